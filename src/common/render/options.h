@@ -1,0 +1,84 @@
+// Everything a user can choose, with the defaults of `ptexp`. Plain data; parsing is command_line.h.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace pt {
+
+enum class Mode { serial, megakernel, wavefront };
+enum class Work { pixel, sample, persistent };
+enum class Compaction { cub, atomic, none };
+enum class Schedule { automatic, host, graph };
+enum class SceneMemory { global, shared, constant };
+enum class Branching { divergent, reduced };
+enum class RngKind { philox, xorwow };
+enum class AccelKind { automatic, brute, bvh2 };
+enum class WorldBuilder { host, device };
+
+/// The wavefront's kernels, in the order in which a wave runs them.
+enum class StageId { generate, intersect, shade_miss, shade_surface, shadow, accumulate };
+inline constexpr int stage_count = 6;
+
+struct DeviceChoice {
+  enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
+  int index = 0;  ///< CUDA device ordinal
+};
+
+struct BlockSize {
+  int x = 16;
+  int y = 16;
+};
+
+/// Overrides of the scene's own camera; absent values keep the scene's.
+/// Lengths in scene units, `vertical_fov_degrees` in (0, 180), `aperture` is the lens diameter.
+struct CameraOverrides {
+  std::optional<std::array<float, 3>> look_from, look_at, up;
+  std::optional<float> vertical_fov_degrees, aperture, focus_distance;
+};
+
+struct Options {
+  // Image
+  int width = 600;      ///< pixels, 1..65535
+  int height = 300;     ///< pixels, 1..65535
+  int spp = 50;         ///< samples per pixel, >= 1
+  int max_depth = 50;   ///< rays per path, camera ray included, 1..65535
+  std::uint64_t seed = 1;
+  std::string output = "image.exr";  ///< .exr, .png or .ppm
+  float exposure = 0.0f;             ///< stops, for PNG and PPM only
+
+  // Scene
+  std::string scene = "spheres";
+  int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
+  WorldBuilder create_world = WorldBuilder::host;
+  CameraOverrides camera;
+
+  // Execution
+  Mode mode = Mode::wavefront;
+  DeviceChoice device;
+  int threads = 0;  ///< CPU threads, 0: all
+  AccelKind accel = AccelKind::automatic;
+  Work work = Work::persistent;  ///< megakernel
+  BlockSize block;               ///< megakernel, threads per block
+  Compaction compaction = Compaction::atomic;
+  std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
+  bool regenerate = true;
+  Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
+  std::array<int, stage_count> stage_block = {256, 256, 256, 256, 256, 256};  ///< by StageId
+
+  // The paper's toggles
+  SceneMemory scene_memory = SceneMemory::global;
+  Branching branching = Branching::divergent;
+  RngKind rng = RngKind::philox;
+
+  // Measurement
+  int repeat = 1;  ///< measured renders, >= 1
+  int warmup = 0;  ///< unmeasured renders before them, >= 0
+  std::string stats_file;  ///< JSON, empty: none
+  std::string csv_file;    ///< appended, empty: none
+  bool quiet = false;
+};
+
+}  // namespace pt
