@@ -1,0 +1,47 @@
+# Decides whether the CUDA device is built (PTEXP_CUDA) and with which flags.
+set(PTEXP_CUDA_FOUND FALSE)
+if(NOT PTEXP_CUDA STREQUAL "OFF")
+  include(CheckLanguage)
+  check_language(CUDA)
+  if(CMAKE_CUDA_COMPILER)
+    # A GPU in this machine is the target; without one, PTX that every GPU since Turing can load.
+    if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+      execute_process(COMMAND nvidia-smi -L RESULT_VARIABLE no_gpu OUTPUT_QUIET ERROR_QUIET)
+      if(no_gpu EQUAL 0)
+        set(CMAKE_CUDA_ARCHITECTURES native)
+      else()
+        set(CMAKE_CUDA_ARCHITECTURES 75-virtual)
+      endif()
+    endif()
+    enable_language(CUDA)
+    find_package(CUDAToolkit REQUIRED)
+    if(CUDAToolkit_VERSION VERSION_LESS 12.4)
+      set(cuda_problem "CUDA ${CUDAToolkit_VERSION} is too old: conditional graph nodes need 12.4")
+    else()
+      set(PTEXP_CUDA_FOUND TRUE)
+    endif()
+  else()
+    set(cuda_problem "no CUDA compiler (nvcc) was found")
+  endif()
+  if(NOT PTEXP_CUDA_FOUND)
+    if(PTEXP_CUDA STREQUAL "ON")
+      message(FATAL_ERROR "PTEXP_CUDA=ON, but ${cuda_problem}")
+    endif()
+    message(STATUS "Building for the CPU only: ${cuda_problem}")
+  endif()
+endif()
+
+if(PTEXP_CUDA_FOUND)
+  message(STATUS "Building for the CPU and CUDA (architectures: ${CMAKE_CUDA_ARCHITECTURES})")
+  set(CMAKE_CUDA_STANDARD 20)
+  set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+  set(CMAKE_CUDA_EXTENSIONS OFF)
+  add_library(ptexp_cuda_flags INTERFACE)
+  target_compile_definitions(ptexp_cuda_flags INTERFACE PTEXP_CUDA=1)
+  # 20012: GLM 0.9.9 marks defaulted members __host__ __device__.
+  target_compile_options(ptexp_cuda_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 -lineinfo
+      "-Xcompiler=-Wall,-ffp-contract=off">
+    $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_WERROR}>>:-Werror=all-warnings>
+    $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_FAST_MATH}>>:--use_fast_math>)
+endif()

@@ -1,0 +1,25 @@
+// Which devices this machine has, and which of them an option names.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/render/options.h"
+
+namespace pt {
+
+struct DeviceInfo {
+  DeviceChoice choice;  ///< what to pass as --device: never automatic
+  std::string name;     ///< e.g. "NVIDIA H200"
+  std::string detail;   ///< e.g. "132 multiprocessors, 139.8 GiB, compute capability 9.0"
+};
+
+/// The CPU first, then every usable CUDA device. Never throws: a broken driver means no GPU.
+std::vector<DeviceInfo> list_devices();
+
+/// Resolves automatic to the first GPU, else the CPU. Throws Error when the device is not there,
+/// saying why (no GPU found, built without CUDA, ordinal out of range).
+DeviceInfo choose_device(const DeviceChoice& choice);
+
+}  // namespace pt
