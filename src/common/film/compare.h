@@ -12,7 +12,7 @@ struct ImageDifference {
   double relative_mse = 0;  ///< mean of (a - b)^2 / (b^2 + 1e-2), b the reference (Rousselle 2011)
   double largest = 0;       ///< largest |a - b|; infinite where one value is not finite and the
                             ///< two differ in bits
-  std::uint64_t differing_pixels = 0;  ///< pixels with any value of different bits
+  std::uint64_t differing_pixels = 0;       ///< pixels with any value of different bits
   std::uint64_t pixels_past_tolerance = 0;  ///< pixels with any |a - b| > tolerance
 };
 

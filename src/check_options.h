@@ -1,0 +1,23 @@
+// Options that each are valid but do not go together, or that this run would ignore.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "common/render/options.h"
+
+namespace pt {
+
+/// The names of the options that the user gave, without dashes: defaults are never refused.
+using GivenOptions = std::set<std::string>;
+
+/// Throws Error when two options contradict each other, whatever the device.
+void check_consistent(const Options& options, const GivenOptions& given);
+
+/// Throws Error when a given option has no effect in the chosen mode, or none on `device`. The
+/// device is checked only where it is known: pass choose_device's answer to check all.
+void check_applicable(const Options& options, const GivenOptions& given,
+                      std::optional<DeviceChoice::Kind> device);
+
+}  // namespace pt

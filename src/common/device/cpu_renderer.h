@@ -1,0 +1,86 @@
+// What all modes share on the CPU: the film, the batches, the clock and the threads.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <vector>
+
+#include "common/film/film.h"
+#include "common/render/dispatch.h"
+#include "common/render/renderer.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Adds up wall time by stage, in the order in which the stages first appear.
+class StageTimer {
+ public:
+  template <class Function>
+  void time(const char* stage, Function&& function) {
+    const auto start = std::chrono::steady_clock::now();
+    function();
+    add(stage, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start));
+  }
+  void reset() { stages_.clear(); }
+  const std::vector<StageTime>& stages() const { return stages_; }
+
+ private:
+  void add(const char* stage, std::chrono::duration<double, std::milli> elapsed);
+  std::vector<StageTime> stages_;
+};
+
+class CpuRenderer : public Renderer {
+ public:
+  /// `threads`: 0 for all. `scene` must outlive the renderer. Throws Error when the machine's
+  /// memory cannot hold the film.
+  CpuRenderer(const Options& options, const SceneData& scene, int threads);
+
+  RenderRun render(const RenderHooks& hooks) override;
+  Image image() override;
+  void describe(RenderReport& report) const override;
+
+ protected:
+  /// Traces every path of the batch and stores its sample. Runs inside the task arena.
+  virtual void trace_batch(const SampleBuffer& batch) = 0;
+
+  /// Calls function(source) with the options' random source, its states initialised for `batch`.
+  template <class Function>
+  void with_random_source(const SampleBuffer& batch, Function&& function) {
+    if (options_.rng == RngKind::philox) {
+      function(PhiloxSource{options_.seed});
+    } else {
+      timer_.time("render_init", [&] { init_random_states(batch); });
+      function(XorwowSource<XorwowState>{states_.data()});
+    }
+  }
+
+  void note_memory(const char* name, std::uint64_t size_bytes);
+
+  const Options options_;
+  const SceneTraits traits_;
+  const Scene scene_;
+  StageTimer timer_;
+  std::uint64_t waves_ = 0;
+  std::uint64_t pool_size_ = 0;
+
+ private:
+  void init_random_states(const SampleBuffer& batch);
+  void accumulate(const SampleBuffer& batch);
+
+  int threads_;
+  tbb::task_arena arena_;
+  std::uint64_t primitive_count_;
+  int batch_samples_;
+  double setup_ms_ = 0;
+  std::vector<Sample> samples_;
+  std::vector<FilmPixel> film_;
+  std::vector<XorwowState> states_;
+  PathTally tally_;
+  std::vector<BufferSize> memory_;
+};
+
+/// Throws Error when `size_bytes` exceed the memory that the machine has free.
+void check_host_memory(std::uint64_t size_bytes, const std::string& purpose);
+
+}  // namespace pt

@@ -1,0 +1,20 @@
+// Writing a file so that its readers find the old content or the new one, never a part.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace pt {
+
+/// Throws Error when write_file_atomically(path, ...) could not begin: the folder is missing or
+/// closed to us, or `path` is a folder or write-protected. Leaves nothing behind.
+void check_writable(const std::string& path);
+
+/// Replaces `path` by `bytes`: they go to a temporary file in the same folder, which is synced and
+/// then renamed. After any failure `path` is as it was and the temporary is gone. A new file gets
+/// the permissions of the umask, a replaced one keeps its own; a link stays, its target is
+/// replaced. A device or pipe (/dev/stdout) has nothing to protect and is written directly.
+/// Throws Error naming `path`.
+void write_file_atomically(const std::string& path, std::string_view bytes);
+
+}  // namespace pt

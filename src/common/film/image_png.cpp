@@ -1,0 +1,112 @@
+// PNG through libpng.
+#include <algorithm>
+#include <vector>
+
+#include "common/error.h"
+#include "common/film/image_codec.h"
+#include "common/film/png_session.h"
+#include "common/film/tone_mapping.h"
+
+namespace pt {
+namespace {
+
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; });
+}
+
+/// Points into `metadata`.
+std::vector<png_text> text_chunks(const ImageMetadata& metadata) {
+  std::vector<png_text> chunks;
+  for (const auto& [key, value] : metadata) {
+    png_text chunk{};
+    // tEXt is Latin-1; iTXt is UTF-8.
+    chunk.compression = is_ascii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    chunk.key = const_cast<char*>(key.c_str());
+    chunk.text = const_cast<char*>(value.c_str());
+    chunk.text_length = value.size();
+    chunks.push_back(chunk);
+  }
+  return chunks;
+}
+
+std::string encode_png(const Image& image, const ImageMetadata& metadata,
+                       const ToneMapping& tone_mapping) {
+  const std::string samples = quantize(image, tone_mapping, srgb_curve);
+  const std::vector<png_text> texts = text_chunks(metadata);
+  PngWriter writer;
+  attempt(writer, [&](png_structp png, png_infop info) {
+    png_set_IHDR(png, info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
+    png_write_info(png, info);
+    const auto* row = reinterpret_cast<png_const_bytep>(samples.data());
+    for (int y = 0; y < image.height; ++y, row += 3 * image.width) png_write_row(png, row);
+    png_write_end(png, info);
+  });
+  return std::move(writer.session.output);
+}
+
+struct PngHeader {
+  int width = 0, height = 0;
+  double decoded_bytes = 0;  ///< of the pixels, as the file stores them
+};
+
+PngHeader read_header(PngReader& reader) {
+  PngHeader header;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // allocate_image says it better
+    png_read_info(png, info);
+    header.width = static_cast<int>(png_get_image_width(png, info));
+    header.height = static_cast<int>(png_get_image_height(png, info));
+    header.decoded_bytes = static_cast<double>(png_get_rowbytes(png, info)) * header.height;
+  });
+  return header;
+}
+
+/// Fills `image`, which has the size of the header.
+void read_pixels(PngReader& reader, Image& image) {
+  int passes = 0, max_value = 0;
+  std::size_t row_bytes = 0;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_expand(png);  // palettes and fewer than 8 bits
+    png_set_strip_alpha(png);
+    png_set_gray_to_rgb(png);
+    passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    max_value = png_get_bit_depth(png, info) == 16 ? 65535 : 255;
+    row_bytes = png_get_rowbytes(png, info);
+  });
+  std::string samples(row_bytes * image.height, '\0');
+  attempt(reader, [&](png_structp png, png_infop info) {
+    for (int pass = 0; pass < passes; ++pass) {
+      auto* row = reinterpret_cast<png_bytep>(samples.data());
+      for (int y = 0; y < image.height; ++y, row += row_bytes) png_read_row(png, row, nullptr);
+    }
+    png_read_end(png, info);
+  });
+  dequantize(samples, max_value, srgb_curve, image);
+}
+
+Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
+    throw Error("not a PNG: it does not begin with the PNG signature");
+  }
+  PngReader reader(bytes);
+  const PngHeader header = read_header(reader);
+  Image image = allocate_image(header.width, header.height, header.decoded_bytes, bytes.size());
+  read_pixels(reader, image);
+
+  png_textp texts = nullptr;
+  const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
+  for (int i = 0; i < count; ++i) {
+    (*metadata)[texts[i].key] = texts[i].text ? texts[i].text : "";
+  }
+  return image;
+}
+
+}  // namespace
+
+const ImageCodec png_codec{".png", encode_png, decode_png};
+
+}  // namespace pt

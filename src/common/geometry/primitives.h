@@ -1,0 +1,41 @@
+// The geometry of a scene as arrays, and one primitive's intersection by number.
+#pragma once
+
+#include "common/geometry/quad.h"
+#include "common/geometry/sphere.h"
+
+namespace pt {
+
+/// Numbered spheres first: primitive i is spheres[i] or quads[i - sphere_count].
+struct Primitives {
+  const Sphere* spheres = nullptr;
+  const Quad* quads = nullptr;
+  std::uint32_t sphere_count = 0;
+  std::uint32_t quad_count = 0;
+
+  PT_HD bool is_sphere(std::uint32_t primitive) const { return primitive < sphere_count; }
+  PT_HD const Quad& quad(std::uint32_t primitive) const { return quads[primitive - sphere_count]; }
+};
+
+/// Keeps the nearer of `hit` and an intersection at `t`; `t` <= 0 is none. Of two at the same
+/// distance the lower number wins, so that the order of the tests does not matter.
+PT_HD void keep_nearer(Hit& hit, float t, std::uint32_t primitive) {
+  if (t > 0.0f && (t < hit.t || (t == hit.t && primitive < hit.primitive))) {
+    hit.t = t;
+    hit.primitive = primitive;
+  }
+}
+
+PT_HD float primitive_distance(const Primitives& primitives, std::uint32_t i, const Ray& ray) {
+  if (!primitives.is_sphere(i)) return quad_distance(primitives.quad(i), ray);
+  const Sphere sphere = primitives.spheres[i];
+  return sphere_discriminant(sphere, ray) < 0.0f ? -1.0f : sphere_distance(sphere, ray);
+}
+
+PT_HD SurfacePoint surface_point(const Primitives& primitives, const Ray& ray, const Hit& hit) {
+  return primitives.is_sphere(hit.primitive)
+             ? sphere_surface(primitives.spheres[hit.primitive], ray, hit.t)
+             : quad_surface(primitives.quad(hit.primitive), ray, hit.t);
+}
+
+}  // namespace pt

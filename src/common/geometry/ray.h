@@ -1,0 +1,39 @@
+// Rays and hits.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+/// Points origin + t direction with t > 0; `direction` has unit length.
+struct Ray {
+  Vec3 origin;
+  Vec3 direction;
+};
+
+inline constexpr std::uint32_t no_primitive = 0xffffffffu;
+inline constexpr float infinite_distance = 3.0e38f;
+
+/// The nearest intersection. Primitives are numbered spheres first, then quads.
+struct Hit {
+  float t = infinite_distance;
+  std::uint32_t primitive = no_primitive;
+
+  PT_HD bool is_miss() const { return primitive == no_primitive; }
+};
+
+/// A point on a surface, with what is needed to leave it.
+struct SurfacePoint {
+  Vec3 position;
+  Vec3 normal;         ///< outward geometric normal, unit length
+  float error_bound;   ///< how far `position` and the surface may be apart through rounding
+};
+
+/// A ray from `point` towards `direction` that cannot meet the surface it leaves: its origin lies
+/// beyond the rounding error, on the side to which it goes (pbrt-v4, section 6.8.6).
+PT_HD Ray spawn_ray(const SurfacePoint& point, const Vec3& direction) {
+  const float side = glm::dot(direction, point.normal) < 0.0f ? -1.0f : 1.0f;
+  return {point.position + (side * point.error_bound) * point.normal, direction};
+}
+
+}  // namespace pt

@@ -1,0 +1,78 @@
+// Sampling the primitives that emit (pbrt-v4, sections 6.2.4 and 12.4).
+#pragma once
+
+#include "common/geometry/primitives.h"
+#include "common/math/frame.h"
+#include "common/sampling/warp.h"
+
+namespace pt {
+
+struct LightSample {
+  Vec3 wi{0.0f};          ///< unit vector to the light
+  float distance = 0.0f;  ///< to the sampled point, less the rounding error
+  float pdf = 0.0f;       ///< per solid angle; 0: nothing to be gained
+};
+
+/// Density per solid angle of sample_quad at a point of the quad `distance` away along `wi`.
+PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distance) {
+  const float cosine = -glm::dot(quad.normal, wi);
+  return cosine > 0.0f ? distance * distance / (cosine * quad.area) : 0.0f;
+}
+
+/// Uniform over the area, on the side to which the normal points.
+PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, float u1) {
+  const Vec3 to_light = quad.corner + u0 * quad.edge_a + u1 * quad.edge_b - from;
+  const float distance2 = glm::dot(to_light, to_light);
+  if (distance2 == 0.0f) return {};
+  const float distance = sqrtf(distance2);
+  const Vec3 wi = to_light / distance;
+  return {wi, distance * (1.0f - 1e-4f), quad_solid_angle_pdf(quad, wi, distance)};
+}
+
+/// 1 - cos of the half angle under which the sphere is seen from `from`, outside of it, without
+/// cancellation for small ones; 0 from inside.
+PT_HD float sphere_one_minus_cos(const Sphere& sphere, const Vec3& from) {
+  const Vec3 to_center = sphere.center - from;
+  const float distance2 = glm::dot(to_center, to_center);
+  if (distance2 <= sphere.radius_squared) return 0.0f;
+  const float sin2 = sphere.radius_squared / distance2;
+  return sin2 / (1.0f + sqrtf(1.0f - sin2));
+}
+
+PT_HD float sphere_solid_angle_pdf(const Sphere& sphere, const Vec3& from) {
+  const float one_minus_cos = sphere_one_minus_cos(sphere, from);
+  return one_minus_cos > 0.0f ? 0.5f * inverse_pi / one_minus_cos : 0.0f;
+}
+
+/// Uniform over the cone of directions in which the sphere is seen; none from inside.
+PT_HD LightSample sample_sphere(const Sphere& sphere, const Vec3& from, float u0, float u1) {
+  const float one_minus_cos_max = sphere_one_minus_cos(sphere, from);
+  if (one_minus_cos_max <= 0.0f) return {};
+  const float one_minus_cos = u0 * one_minus_cos_max;
+  const float cos_theta = 1.0f - one_minus_cos;
+  const float sin_theta = sqrtf(fmaxf(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
+  const SinCos phi = sincos_2pi(u1);
+  const Frame frame = make_frame(normalize(sphere.center - from));
+  const Vec3 wi =
+      normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
+  const float distance = sphere_distance(sphere, {from, wi});
+  return {wi, distance * (1.0f - 1e-4f), 0.5f * inverse_pi / one_minus_cos_max};
+}
+
+PT_HD LightSample sample_primitive(const Primitives& primitives, std::uint32_t primitive,
+                                   const Vec3& from, float u0, float u1) {
+  return primitives.is_sphere(primitive)
+             ? sample_sphere(primitives.spheres[primitive], from, u0, u1)
+             : sample_quad(primitives.quad(primitive), from, u0, u1);
+}
+
+/// Density with which sample_primitive at `from` would have chosen the point that a ray from there
+/// hit at `distance` in direction `wi`.
+PT_HD float primitive_pdf(const Primitives& primitives, std::uint32_t primitive, const Vec3& from,
+                          const Vec3& wi, float distance) {
+  return primitives.is_sphere(primitive)
+             ? sphere_solid_angle_pdf(primitives.spheres[primitive], from)
+             : quad_solid_angle_pdf(primitives.quad(primitive), wi, distance);
+}
+
+}  // namespace pt

@@ -1,0 +1,20 @@
+// Radiance of rays that leave the scene.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+/// A vertical gradient, the paper's background; equal colours give a constant sky.
+struct Sky {
+  Color nadir{0.0f};   ///< radiance from straight below
+  Color zenith{0.0f};  ///< radiance from straight above
+};
+
+/// `direction` has unit length and points away from the scene.
+PT_HD Color sky_radiance(const Sky& sky, const Vec3& direction) {
+  const float t = 0.5f * (direction.y + 1.0f);
+  return (1.0f - t) * sky.nadir + t * sky.zenith;
+}
+
+}  // namespace pt

@@ -1,0 +1,25 @@
+// The contract of a BSDF. Directions point away from the surface; `n` is the outward unit normal.
+//
+// A BSDF is a small value with three functions:
+//   BsdfSample sample(wo, n, u)    chooses wi; u uniform in [0, 1)^4
+//   Color evaluate(wo, wi, n)      f(wo, wi) |cos wi|; black for a delta BSDF
+//   float pdf(wo, wi, n)           density of sample() per solid angle; 0 for a delta BSDF
+// and `bool is_delta()`: true when it scatters into discrete directions only.
+// Adding one: a file here, its name in material.h's list. tests/test_bsdf.cpp then tests it.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+struct BsdfSample {
+  Vec3 wi{0.0f};
+  Color weight{0.0f};  ///< f |cos| / pdf
+  float pdf = 0.0f;    ///< per solid angle; infinite for a delta, 0: the path is absorbed
+};
+
+inline constexpr float delta_pdf = HUGE_VALF;
+
+PT_HD Vec3 reflect(const Vec3& wo, const Vec3& n) { return 2.0f * glm::dot(wo, n) * n - wo; }
+
+}  // namespace pt

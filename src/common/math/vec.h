@@ -1,0 +1,40 @@
+// Vectors: GLM under the names of this project.
+#pragma once
+
+#include "common/platform.h"
+// GLM must come after platform.h
+#include <glm/glm.hpp>
+
+namespace pt {
+
+using Vec3 = glm::vec3;
+using Vec4 = glm::vec4;
+using Color = glm::vec3;  ///< linear RGB radiance or reflectance
+
+inline constexpr float pi = 3.14159265358979f;
+inline constexpr float inverse_pi = 0.31830988618379f;
+inline constexpr float half_ulp = 5.9604645e-8f;  ///< 2^-24: rounding error of one operation
+inline constexpr float one_minus_ulp = 0.99999994f;  ///< the largest float below 1
+
+/// v / |v|; each component ends in a rounded product (see platform.h).
+PT_HD Vec3 normalize(const Vec3& v) {
+  const float scale = inverse_sqrt(glm::dot(v, v));
+  return {multiply_rounded(v.x, scale), multiply_rounded(v.y, scale), multiply_rounded(v.z, scale)};
+}
+
+PT_HD Color multiply_rounded(const Color& a, const Color& b) {
+  return {multiply_rounded(a.x, b.x), multiply_rounded(a.y, b.y), multiply_rounded(a.z, b.z)};
+}
+
+PT_HD Color add_rounded(const Color& a, const Color& b) {
+  return {add_rounded(a.x, b.x), add_rounded(a.y, b.y), add_rounded(a.z, b.z)};
+}
+
+PT_HD bool is_black(const Color& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
+
+/// Largest absolute component: the scale of a position's rounding error.
+PT_HD float max_abs(const Vec3& v) {
+  return fmaxf(fmaxf(fabsf(v.x), fabsf(v.y)), fabsf(v.z));
+}
+
+}  // namespace pt

@@ -1,0 +1,106 @@
+// The one place that knows whether a file is compiled for the CPU or for CUDA.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#define PT_PRAGMA(x) _Pragma(#x)
+
+#ifdef __CUDACC__
+#include <cuda.h>  // before GLM, which reads CUDA_VERSION
+#include <cuda_runtime.h>
+#define GLM_FORCE_CUDA
+#define PT_HD __host__ __device__ inline
+#define PT_UNROLL(n) PT_PRAGMA(unroll n)
+#else
+#include <atomic>
+#define PT_HD inline
+#define PT_UNROLL(n) PT_PRAGMA(GCC unroll n)
+#endif
+
+namespace pt {
+
+PT_HD std::uint32_t float_to_bits(float x) {
+#ifdef __CUDA_ARCH__
+  return __float_as_uint(x);
+#else
+  std::uint32_t bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits;
+#endif
+}
+
+PT_HD float bits_to_float(std::uint32_t bits) {
+#ifdef __CUDA_ARCH__
+  return __uint_as_float(bits);
+#else
+  float x;
+  std::memcpy(&x, &bits, sizeof x);
+  return x;
+#endif
+}
+
+/// 1 / sqrt(x): within 2 ulp on CUDA, correctly rounded in two steps on the CPU.
+PT_HD float inverse_sqrt(float x) {
+#ifdef __CUDA_ARCH__
+  return rsqrtf(x);
+#else
+  return 1.0f / std::sqrt(x);
+#endif
+}
+
+// A compiler may contract a product and a sum into one fused operation, and may do so in one kernel
+// and not in another. The wavefront stores a path's state where the megakernel keeps it in
+// registers, so a value that crosses a stage's border must end in an operation that is never fused
+// with the next one. See docs/architecture.md, 'Bit-equal modes'.
+
+/// a * b, rounded, never part of a fused operation.
+PT_HD float multiply_rounded(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return __fmul_rn(a, b);
+#else
+  return a * b;  // the CPU is compiled with -ffp-contract=off
+#endif
+}
+
+/// a + b, rounded, never part of a fused operation.
+PT_HD float add_rounded(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return __fadd_rn(a, b);
+#else
+  return a + b;
+#endif
+}
+
+/// (bits << 1) | sign of x: one instruction on CUDA.
+PT_HD std::uint32_t shift_in_sign(std::uint32_t bits, float x) {
+#ifdef __CUDA_ARCH__
+  return __funnelshift_l(__float_as_uint(x), bits, 1);
+#else
+  return (bits << 1) | (float_to_bits(x) >> 31);
+#endif
+}
+
+PT_HD int count_leading_zeros(std::uint32_t x) {
+#ifdef __CUDA_ARCH__
+  return __clz(static_cast<int>(x));
+#else
+  return x == 0 ? 32 : __builtin_clz(x);
+#endif
+}
+
+/// Adds to a counter that other threads add to, and returns its former value.
+PT_HD std::uint32_t atomic_fetch_add(std::uint32_t* counter, std::uint32_t amount) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(counter, amount);
+#elif defined(__CUDACC__)
+  const std::uint32_t before = *counter;  // host side of a .cu file: never called from threads
+  *counter += amount;
+  return before;
+#else
+  return std::atomic_ref<std::uint32_t>(*counter).fetch_add(amount, std::memory_order_relaxed);
+#endif
+}
+
+}  // namespace pt

@@ -1,0 +1,21 @@
+// The samples of an image are taken in batches: the sample buffer holds one batch, and between two
+// the render can report, be interrupted or be resumed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "common/render/renderer.h"
+
+namespace pt {
+
+/// Samples per pixel of one batch: as many of `spp` as fit into `paths_max` paths, at least one.
+/// Batches are of equal size but for the last, and never exceed 2^31 - 1 paths.
+int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max);
+
+/// Calls run_batch(first_sample, samples) until `spp` samples are taken or the hooks stop it.
+/// Returns the samples per pixel that were taken.
+int for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
+                   const std::function<void(int first_sample, int samples)>& run_batch);
+
+}  // namespace pt

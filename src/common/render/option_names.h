@@ -1,0 +1,94 @@
+// The one place where an enumerator of options.h has a name: the command line, the reports and
+// every error message read these tables.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "common/render/options.h"
+
+namespace pt {
+
+template <typename E>
+struct EnumName {
+  E value;
+  std::string_view name;
+};
+
+/// Every enumerator of E with its name, in the order of declaration.
+template <typename E>
+inline constexpr std::array<EnumName<E>, 0> enum_names{};
+
+template <>
+inline constexpr auto enum_names<Mode> = std::to_array<EnumName<Mode>>(
+    {{Mode::serial, "serial"}, {Mode::megakernel, "megakernel"}, {Mode::wavefront, "wavefront"}});
+template <>
+inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
+    {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});
+template <>
+inline constexpr auto enum_names<Compaction> = std::to_array<EnumName<Compaction>>(
+    {{Compaction::cub, "cub"}, {Compaction::atomic, "atomic"}, {Compaction::none, "none"}});
+template <>
+inline constexpr auto enum_names<Schedule> = std::to_array<EnumName<Schedule>>(
+    {{Schedule::automatic, "auto"}, {Schedule::host, "host"}, {Schedule::graph, "graph"}});
+template <>
+inline constexpr auto enum_names<SceneMemory> =
+    std::to_array<EnumName<SceneMemory>>({{SceneMemory::global, "global"},
+                                          {SceneMemory::shared, "shared"},
+                                          {SceneMemory::constant, "constant"}});
+template <>
+inline constexpr auto enum_names<Branching> = std::to_array<EnumName<Branching>>(
+    {{Branching::divergent, "divergent"}, {Branching::reduced, "reduced"}});
+template <>
+inline constexpr auto enum_names<RngKind> =
+    std::to_array<EnumName<RngKind>>({{RngKind::philox, "philox"}, {RngKind::xorwow, "xorwow"}});
+template <>
+inline constexpr auto enum_names<AccelKind> = std::to_array<EnumName<AccelKind>>(
+    {{AccelKind::automatic, "auto"}, {AccelKind::brute, "brute"}, {AccelKind::bvh2, "bvh2"}});
+template <>
+inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
+    {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});
+template <>
+inline constexpr auto enum_names<StageId> =
+    std::to_array<EnumName<StageId>>({{StageId::generate, "generate"},
+                                      {StageId::intersect, "intersect"},
+                                      {StageId::shade_miss, "shade_miss"},
+                                      {StageId::shade_surface, "shade_surface"},
+                                      {StageId::shadow, "shadow"},
+                                      {StageId::accumulate, "accumulate"}});
+static_assert(enum_names<StageId>.size() == stage_count);
+template <>
+inline constexpr auto enum_names<DeviceChoice::Kind> =
+    std::to_array<EnumName<DeviceChoice::Kind>>({{DeviceChoice::Kind::automatic, "auto"},
+                                                 {DeviceChoice::Kind::cpu, "cpu"},
+                                                 {DeviceChoice::Kind::cuda, "cuda"}});
+
+/// An enumeration with a table above.
+template <typename E>
+concept NamedEnum = !enum_names<E>.empty();
+
+/// The name that the command line uses, e.g. "auto" for Schedule::automatic.
+template <NamedEnum E>
+std::string to_string(E value) {
+  for (const EnumName<E>& entry : enum_names<E>)
+    if (entry.value == value) return std::string(entry.name);
+  return "?";  // only a cast can make a value without a name
+}
+
+/// "auto", "cpu" or "cuda:N".
+inline std::string to_string(const DeviceChoice& device) {
+  const std::string kind = to_string(device.kind);
+  return device.kind == DeviceChoice::Kind::cuda ? kind + ':' + std::to_string(device.index) : kind;
+}
+
+/// The names joined, e.g. "serial|megakernel|wavefront".
+template <NamedEnum E>
+std::string joined_names(std::string_view separator) {
+  std::string text;
+  for (const EnumName<E>& entry : enum_names<E>)
+    text.append(text.empty() ? "" : separator).append(entry.name);
+  return text;
+}
+
+}  // namespace pt

@@ -1,0 +1,46 @@
+// A value of an option: from the text of the command line and back. Every parse_ function throws
+// Error with one line that names the option, the value and what was expected.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "common/render/option_names.h"
+#include "common/render/options.h"
+
+namespace pt {
+
+/// Throws Error "--name value: problem".
+[[noreturn]] void refuse_value(const std::string& name, const std::string& value,
+                               const std::string& problem);
+
+std::uint64_t parse_integer(const std::string& name, const std::string& text, std::uint64_t lowest,
+                            std::uint64_t highest);
+/// A finite number; `expected` and `holds` state a further condition, e.g. "a number above 0".
+float parse_number(const std::string& name, const std::string& text, const char* expected,
+                   bool (*holds)(float));
+std::array<float, 3> parse_vector(const std::string& name, const std::string& text);  ///< "x,y,z"
+bool parse_switch(const std::string& name, const std::string& text);  ///< "on" or "off"
+DeviceChoice parse_device(const std::string& name, const std::string& text);
+BlockSize parse_block(const std::string& name, const std::string& text);  ///< "16x8"
+/// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
+std::array<int, stage_count> parse_stage_blocks(const std::string& name, const std::string& text,
+                                                std::array<int, stage_count> blocks);
+/// "auto" (0) or a number of paths, "K" and "M" standing for 2^10 and 2^20.
+std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
+
+template <NamedEnum E>
+E parse_name(const std::string& name, const std::string& text) {
+  for (const EnumName<E>& entry : enum_names<E>)
+    if (entry.name == text) return entry.value;
+  refuse_value(name, text, "expected one of " + joined_names<E>(", "));
+}
+
+// The inverse of the functions above: text that they accept and that gives the same value.
+std::string number_text(float value);
+std::string vector_text(const std::array<float, 3>& value);
+std::string block_text(const BlockSize& block);
+std::string stage_blocks_text(const std::array<int, stage_count>& blocks);
+
+}  // namespace pt

@@ -1,0 +1,36 @@
+// What a finished run tells: a table for the eye, JSON and CSV for programs (docs/statistics.md),
+// and the metadata of its image.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/render/options.h"
+#include "common/render/stats.h"
+
+namespace pt {
+
+/// Of the JSON and the CSV. Raise it whenever a field changes its name, unit or meaning or is
+/// added or removed, and tell docs/statistics.md.
+inline constexpr int report_schema_version = 1;
+
+/// Every repeat ran, and the last one had all its samples.
+bool is_complete(const Options& options, const RenderReport& report);
+
+/// A short table of times, counts and rates; ends with a newline.
+std::string report_table(const Options& options, const RenderReport& report);
+
+/// All of `options` and `report`, and what the program was built from.
+std::string report_json(const Options& options, const RenderReport& report);
+
+/// Column name and value of one CSV row; the names are the same for every run.
+using CsvRow = std::vector<std::pair<std::string, std::string>>;
+CsvRow report_csv_row(const Options& options, const RenderReport& report);
+
+/// Options, seed, device, build and times, for the header of the image.
+std::map<std::string, std::string> report_metadata(const Options& options,
+                                                   const RenderReport& report);
+
+}  // namespace pt

@@ -1,0 +1,31 @@
+// Counter-based random numbers: Philox4x32-10, equal bit for bit to cuRAND's.
+// Salmon et al. 2011, 'Parallel random numbers: as easy as 1, 2, 3', SC'11.
+#pragma once
+
+#include "common/platform.h"
+
+namespace pt {
+
+struct Uint4 {
+  std::uint32_t x, y, z, w;
+};
+
+/// Ten rounds over a 128-bit counter with a 64-bit key. cuRAND's
+/// curand_init(seed, subsequence, offset) followed by curand4() gives
+/// philox4x32_10({offset/4 lo, offset/4 hi, subsequence lo, hi}, seed lo, seed hi).
+PT_HD Uint4 philox4x32_10(Uint4 counter, std::uint32_t key0, std::uint32_t key1) {
+  PT_UNROLL(10)
+  for (int round = 0; round < 10; ++round) {
+    const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * counter.x;
+    const std::uint64_t p1 = std::uint64_t{0xCD9E8D57u} * counter.z;
+    counter = {static_cast<std::uint32_t>(p1 >> 32) ^ counter.y ^ key0,
+               static_cast<std::uint32_t>(p1),
+               static_cast<std::uint32_t>(p0 >> 32) ^ counter.w ^ key1,
+               static_cast<std::uint32_t>(p0)};
+    key0 += 0x9E3779B9u;
+    key1 += 0xBB67AE85u;
+  }
+  return counter;
+}
+
+}  // namespace pt

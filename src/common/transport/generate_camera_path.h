@@ -1,0 +1,16 @@
+// Step 1: a path begins at the camera.
+#pragma once
+
+#include "common/scene/scene.h"
+#include "common/transport/path.h"
+
+namespace pt {
+
+/// The camera ray of a new path through a uniformly chosen point of its pixel.
+/// `u`: block 0 of the path's random numbers; x, y for the pixel, z, w for the lens.
+PT_HD Ray generate_camera_path(const Scene& scene, const PathState& path, const Vec4& u) {
+  return camera_ray(scene.camera, static_cast<float>(pixel_x(path.pixel)) + u.x,
+                    static_cast<float>(pixel_y(path.pixel)) + u.y, u.z, u.w);
+}
+
+}  // namespace pt

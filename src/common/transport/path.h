@@ -1,0 +1,23 @@
+// The state of a path between two stages.
+#pragma once
+
+#include "common/geometry/ray.h"
+
+namespace pt {
+
+PT_HD std::uint32_t pack_pixel(std::uint32_t x, std::uint32_t y) { return x | y << 16; }
+PT_HD std::uint32_t pixel_x(std::uint32_t pixel) { return pixel & 0xffffu; }
+PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
+
+struct PathState {
+  Color beta{1.0f};          ///< throughput: product of f |cos| / pdf so far
+  std::uint32_t pixel = 0;   ///< x | y << 16
+  std::uint32_t sample = 0;  ///< counted from the batch's first sample
+  std::uint16_t rays = 0;    ///< traced so far, the camera ray included
+  std::uint16_t shadow_rays = 0;
+  float bsdf_pdf = delta_distribution;  ///< density that chose the current ray, for MIS
+
+  static constexpr float delta_distribution = HUGE_VALF;  ///< no light sampling could have found it
+};
+
+}  // namespace pt

@@ -1,0 +1,27 @@
+// Steps 3a and 3b as one: the paper's 'reduced branching'. A miss is a surface that emits the sky
+// and reflects nothing, so that all threads of a warp take the same way through the code.
+#pragma once
+
+#include "common/transport/shade_miss.h"
+#include "common/transport/shade_surface.h"
+
+namespace pt {
+
+/// As shade_surface, for a hit or a miss. The scene must have a primitive, whose data a miss loads
+/// and then discards.
+template <SceneTraits traits>
+PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
+                           std::uint32_t max_depth, const Vec4& scatter, const Vec4& light) {
+  const bool miss = hit.is_miss();
+  const std::uint16_t shadow_rays = path.shadow_rays;
+  const Color sky = shade_miss(scene, ray, path);
+  Scattering result = shade_surface<traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, max_depth,
+                                            scatter, light);
+  result.alive = result.alive && !miss;
+  result.emitted = miss ? sky : result.emitted;
+  result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;
+  path.shadow_rays = miss ? shadow_rays : path.shadow_rays;
+  return result;
+}
+
+}  // namespace pt

@@ -1,0 +1,13 @@
+// The seed's sequential program: one thread, one path at a time. The baseline of all comparisons.
+#pragma once
+
+#include <memory>
+
+#include "common/render/renderer.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+std::unique_ptr<Renderer> make_serial_renderer(const Options& options, const SceneData& scene);
+
+}  // namespace pt
