@@ -14,17 +14,17 @@ Color trace_path(const Scene& scene, PathState& path, Stream& random, std::uint3
   Color radiance(0.0f);
   Ray ray = generate_camera_path(scene, path, random.draw(scatter_block(0)));
   for (;;) {
-    const Hit hit = intersect_closest<traits>(scene, ray);
+    const Hit hit = intersect_closest<traits.accel>(scene, ray);
     ++path.rays;
     if (hit.is_miss()) return add_rounded(radiance, shade_miss(scene, ray, path));
 
     const Vec4 u = random.draw(scatter_block(path.rays));
     const Vec4 light = traits.has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
     const Scattering scattering =
-        shade_surface<traits>(scene, ray, hit, path, max_depth, u, light);
+        shade_surface<traits.has_lights>(scene, ray, hit, path, max_depth, u, light);
     radiance = add_rounded(radiance, scattering.emitted);
     if (!is_black(scattering.shadow.radiance) &&
-        !intersect_shadow<traits>(scene, scattering.shadow)) {
+        !intersect_shadow<traits.accel>(scene, scattering.shadow)) {
       radiance = add_rounded(radiance, scattering.shadow.radiance);
     }
     if (!scattering.alive) return radiance;

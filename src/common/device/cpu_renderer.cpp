@@ -48,7 +48,7 @@ void check_host_memory(std::uint64_t size_bytes, const std::string& purpose) {
   }
 }
 
-void StageTimer::add(const char* stage, std::chrono::duration<double, std::milli> elapsed) {
+void StageTimer::add(const std::string& stage, std::chrono::duration<double, std::milli> elapsed) {
   for (StageTime& entry : stages_) {
     if (entry.stage == stage) {
       entry.time_ms += elapsed.count();

@@ -17,7 +17,7 @@ namespace pt {
 class StageTimer {
  public:
   template <class Function>
-  void time(const char* stage, Function&& function) {
+  void time(const std::string& stage, Function&& function) {
     const auto start = std::chrono::steady_clock::now();
     function();
     add(stage, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start));
@@ -26,7 +26,7 @@ class StageTimer {
   const std::vector<StageTime>& stages() const { return stages_; }
 
  private:
-  void add(const char* stage, std::chrono::duration<double, std::milli> elapsed);
+  void add(const std::string& stage, std::chrono::duration<double, std::milli> elapsed);
   std::vector<StageTime> stages_;
 };
 

@@ -68,7 +68,9 @@ PT_HD bool is_finite(const Color& c) {
 }
 
 PT_HD int length_bin(std::uint32_t rays) {
-  return rays == 0 ? 0 : rays < path_length_bins ? static_cast<int>(rays) - 1 : path_length_bins - 1;
+  return rays == 0                 ? 0
+         : rays < path_length_bins ? static_cast<int>(rays) - 1
+                                   : path_length_bins - 1;
 }
 
 /// Adds one pixel's samples of the batch to the film, in their order; `count(bin)` is called with

@@ -14,9 +14,9 @@ struct ShadowRay {
   Color radiance{0.0f};  ///< added to the pixel's sample if the ray is free; black: no question
 };
 
-template <SceneTraits traits>
+template <Accel accel>
 PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray) {
-  if constexpr (traits.accel == Accel::brute) {
+  if constexpr (accel == Accel::brute) {
     return closest_hit_brute(scene.primitives, ray);
   } else {
     return closest_hit_bvh2(scene.bvh_nodes, scene.primitives, ray);
@@ -24,9 +24,9 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray) {
 }
 
 /// True when something lies between the shadow ray's ends.
-template <SceneTraits traits>
+template <Accel accel>
 PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow) {
-  if constexpr (traits.accel == Accel::brute) {
+  if constexpr (accel == Accel::brute) {
     return any_hit_brute(scene.primitives, shadow.ray, shadow.distance);
   } else {
     return any_hit_bvh2(scene.bvh_nodes, scene.primitives, shadow.ray, shadow.distance);

@@ -51,28 +51,28 @@ PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, c
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
 /// that name (random.h); `light` is not read in a scene without lights. Updates the path's
 /// throughput, density and counts. A path ends when it is absorbed or has traced `max_depth` rays.
-template <SceneTraits traits>
+template <bool has_lights>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                                std::uint32_t max_depth, const Vec4& scatter, const Vec4& light) {
   const SurfacePoint point = surface_point(scene.primitives, ray, hit);
   const Material material = scene.material(hit.primitive);
   const Vec3 wo = -ray.direction;
   Scattering result;
-  if constexpr (traits.has_lights) {
+  if constexpr (has_lights) {
     result.emitted = emitted_radiance(scene, ray, hit, path, point, material);
   }
   if (path.rays >= max_depth) return result;
 
   BsdfSample next;
   visit(material, [&](const auto& bsdf) {
-    if constexpr (traits.has_lights) {
+    if constexpr (has_lights) {
       if (!bsdf.is_delta()) {
         result.shadow = sample_direct_light(scene, path, bsdf, point, wo, light);
       }
     }
     next = bsdf.sample(wo, point.normal, scatter);
   });
-  if constexpr (traits.has_lights) {
+  if constexpr (has_lights) {
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);

@@ -1,0 +1,44 @@
+#include "make_renderer.h"
+
+#include "common/error.h"
+#include "common/scene/builtin_scenes.h"
+#include "megakernel/megakernel.h"
+#include "serial/serial.h"
+#include "wavefront/wavefront.h"
+
+#ifdef PTEXP_CUDA
+#include "common/device/create_world.h"
+#endif
+
+namespace pt {
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
+  if (options.create_world == WorldBuilder::host) return make_scene(options);
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda) {
+    return make_scene(options, create_world_on(device.choice.index));
+  }
+#endif
+  throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
+                                        const DeviceInfo& device) {
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
+    return options.mode == Mode::megakernel
+               ? make_megakernel_cuda(options, scene, device.choice.index)
+               : make_wavefront_cuda(options, scene, device.choice.index);
+  }
+#endif
+  switch (options.mode) {
+    case Mode::serial:
+      return make_serial_renderer(options, scene);
+    case Mode::megakernel:
+      return make_megakernel_cpu(options, scene);
+    default:
+      return make_wavefront_cpu(options, scene);
+  }
+}
+
+}  // namespace pt

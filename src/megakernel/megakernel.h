@@ -1,0 +1,17 @@
+// Renderers in which one thread follows whole paths.
+#pragma once
+
+#include <memory>
+
+#include "common/render/renderer.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+std::unique_ptr<Renderer> make_megakernel_cpu(const Options& options, const SceneData& scene);
+
+/// `device`: CUDA device ordinal. Only in a build with CUDA.
+std::unique_ptr<Renderer> make_megakernel_cuda(const Options& options, const SceneData& scene,
+                                               int device);
+
+}  // namespace pt

@@ -1,0 +1,89 @@
+// The megakernel on the CPU: the paths are divided over oneTBB's threads as --work says.
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+
+#include "common/device/cpu_renderer.h"
+#include "megakernel/megakernel.h"
+#include "megakernel/trace_path.h"
+
+namespace pt {
+namespace {
+
+/// A thread of the CPU is a warp of one.
+class PathRange {
+ public:
+  /// Every `step`-th path of [first, end).
+  PathRange(const SampleBuffer& batch, std::uint32_t first, std::uint32_t end, std::uint32_t step)
+      : batch_(batch), next_(first), end_(end), step_(step) {}
+
+  bool any(bool value) const { return value; }
+
+  bool next(PathState& path, bool wanted) {
+    if (!wanted) return true;
+    if (next_ >= end_) return false;
+    path = batch_.begin_path(next_);
+    next_ = end_ - next_ > step_ ? next_ + step_ : end_;
+    return true;
+  }
+
+ private:
+  const SampleBuffer& batch_;
+  std::uint32_t next_, end_, step_;
+};
+
+class MegakernelCpu : public CpuRenderer {
+ public:
+  MegakernelCpu(const Options& options, const SceneData& scene)
+      : CpuRenderer(options, scene, options.threads) {}
+
+ private:
+  void trace_batch(const SampleBuffer& batch) override {
+    with_random_source(batch, [&](const auto& source) {
+      dispatch_traits(traits_, [&](auto traits) {
+        dispatch_branching(options_.branching, [&](auto branching) {
+          timer_.time("megakernel", [&] {
+            divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
+              PathRange work(batch, first, end, step);
+              trace_paths<traits(), branching()>(
+                  scene_, source, batch, static_cast<std::uint32_t>(options_.max_depth), work);
+            });
+          });
+        });
+      });
+    });
+  }
+
+  // pixel: a task follows all samples of a pixel; sample: a task is one path's row of the batch;
+  // persistent: each thread fetches runs of paths until none is left.
+  template <class Trace>
+  void divide(const SampleBuffer& batch, Trace&& trace) {
+    const std::uint32_t pixels = batch.pixel_count.divisor();
+    if (options_.work == Work::pixel) {
+      tbb::parallel_for(std::uint32_t{0}, pixels,
+                        [&](std::uint32_t i) { trace(i, batch.path_count, pixels); });
+    } else if (options_.work == Work::sample) {
+      tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, batch.path_count),
+                        [&](const auto& range) { trace(range.begin(), range.end(), 1); });
+    } else {
+      constexpr std::uint32_t run = 256;
+      std::atomic<std::uint64_t> next{0};
+      const int threads = tbb::this_task_arena::max_concurrency();
+      tbb::parallel_for(0, threads, [&](int) {
+        for (std::uint64_t first; (first = next.fetch_add(run)) < batch.path_count;) {
+          const std::uint64_t end = std::min<std::uint64_t>(first + run, batch.path_count);
+          trace(static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end), 1);
+        }
+      });
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_megakernel_cpu(const Options& options, const SceneData& scene) {
+  return std::make_unique<MegakernelCpu>(options, scene);
+}
+
+}  // namespace pt

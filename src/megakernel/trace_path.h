@@ -1,0 +1,71 @@
+// The megakernel's body: one thread follows whole paths, everything in registers.
+#pragma once
+
+#include "common/film/film.h"
+#include "common/transport/generate_camera_path.h"
+#include "common/transport/shade_any.h"
+
+namespace pt {
+
+/// Traces paths until `work` has no more. A thread whose path ends takes the next one at once and
+/// does not wait for the other paths of its warp, so the loop turns once per ray, not per path: each
+/// turn draws the numbers that decide the ray, then makes it (at the camera or at the last hit), then
+/// traces it. The parts that every thread needs, the draw and the intersection, are executed
+/// together whatever each path's length.
+///
+/// `Work` gives paths away: `bool next(PathState& path, bool wanted)` is called by all threads of a
+/// warp together; where `wanted`, it fills in a new path or returns false; elsewhere it returns true.
+/// `bool any(bool)` is true when the argument is true for any thread of the warp.
+template <SceneTraits traits, Branching branching, class Source, class Work>
+PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
+                       std::uint32_t max_depth, Work& work) {
+  PathState path;
+  bool working = work.next(path, true);
+  typename Source::Stream random = source.open(samples.id_of(path));
+  Color radiance(0.0f);
+  Ray ray;
+  Hit hit;
+  while (work.any(working)) {
+    bool ended = false;
+    if (working) {
+      const Vec4 u = random.draw(scatter_block(path.rays));
+      if (path.rays == 0) {
+        ray = generate_camera_path(scene, path, u);
+      } else {
+        const Vec4 light = traits.has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+        const Scattering scattering =
+            branching == Branching::reduced
+                ? shade_any<traits.has_lights>(scene, ray, hit, path, max_depth, u, light)
+                : shade_surface<traits.has_lights>(scene, ray, hit, path, max_depth, u, light);
+        radiance = add_rounded(radiance, scattering.emitted);
+        if constexpr (traits.has_lights) {
+          if (!is_black(scattering.shadow.radiance) &&
+              !intersect_shadow<traits.accel>(scene, scattering.shadow)) {
+            radiance = add_rounded(radiance, scattering.shadow.radiance);
+          }
+        }
+        ray = scattering.ray;
+        ended = !scattering.alive;
+      }
+      if (!ended) {
+        hit = intersect_closest<traits.accel>(scene, ray);
+        ++path.rays;
+        if (branching == Branching::divergent && hit.is_miss()) {
+          radiance = add_rounded(radiance, shade_miss(scene, ray, path));
+          ended = true;
+        }
+      }
+      if (ended) samples.store(path, radiance);
+    }
+    if (work.any(ended)) {
+      const bool has_path = work.next(path, ended);
+      if (ended) {
+        working = has_path;
+        random = source.open(samples.id_of(path));
+        radiance = Color(0.0f);
+      }
+    }
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,141 @@
+// The wavefront on the CPU: stages are parallel loops over oneTBB.
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "common/device/cpu_renderer.h"
+#include "common/render/option_names.h"
+#include "wavefront/wavefront.h"
+
+namespace pt {
+namespace {
+
+// Enough paths for every thread of a large machine, few enough to stay in its caches.
+constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 16;
+
+class CpuExecutor {
+ public:
+  CpuExecutor(const Scene& scene, const Options& options, StageTimer& timer, WaveCounters& counters,
+              std::uint32_t path_count)
+      : scene_(scene), options_(options), timer_(timer), counters_(counters),
+        path_count_(path_count) {}
+
+  void compact(const CompactionRequest& request) {
+    timer_.time("compact", [&] { compact_cpu(options_.compaction, request); });
+  }
+
+  void begin_wave() { more_ = pt::begin_wave(counters_, path_count_, options_.regenerate); }
+
+  bool more() const { return more_; }
+
+  template <class Stage>
+  void run(const Stage& stage, const StageQueue& queue) {
+    const std::uint32_t count = *queue.count;
+    if (count == 0) return;
+    timer_.time(to_string(Stage::id), [&] {
+      tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 512), [&](const auto& range) {
+        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+          const std::uint32_t slot = queue.slots == nullptr ? i : queue.slots[i];
+          if (queue.slots == nullptr && queue.tags[slot] != Stage::tag) continue;
+          stage(scene_, slot, i);
+        }
+      });
+    });
+  }
+
+ private:
+  const Scene& scene_;
+  const Options& options_;
+  StageTimer& timer_;
+  WaveCounters& counters_;
+  std::uint32_t path_count_;
+  bool more_ = true;
+};
+
+class WavefrontCpu : public CpuRenderer {
+ public:
+  WavefrontCpu(const Options& options, const SceneData& scene)
+      : CpuRenderer(options, scene, options.threads) {
+    const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
+                                      static_cast<std::uint64_t>(options.spp);
+    pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
+    const bool lights = traits_.has_lights;
+    const std::uint64_t size_bytes =
+        pool_size_ * (PathPool::bytes_per_slot(lights) + (lights ? 5 : 4) * sizeof(std::uint32_t));
+    check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
+    note_memory("path pool and queues", size_bytes);
+    allocate(lights);
+  }
+
+ private:
+  void allocate(bool lights) {
+    PathPool& pool = buffers_.pool;
+    slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
+    buffers_.slot_count = &slot_count_;
+    buffers_.counters = &counters_;
+    pool.tag = array<PathTag>();
+    pool.origin = array<Record>();
+    pool.direction = array<Record>();
+    pool.throughput = array<Record>();
+    pool.hit = array<HitRecord>();
+    for (auto* queue : {&buffers_.ray_queue, &buffers_.free_queue, &buffers_.surface_queue,
+                        &buffers_.miss_queue}) {
+      *queue = array<std::uint32_t>();
+    }
+    if (!lights) return;
+    pool.bsdf_pdf = array<float>();
+    pool.shadow_tag = array<PathTag>();
+    pool.shadow_origin = array<Record>();
+    pool.shadow_direction = array<Record>();
+    pool.shadow_radiance = array<Record>();
+    buffers_.shadow_queue = array<std::uint32_t>();
+  }
+
+  // Zero-filled, so every tag is PathTag::free.
+  template <class T>
+  T* array() {
+    arrays_.push_back(std::shared_ptr<void>(new T[slot_count_]{}, [](void* p) {
+      delete[] static_cast<T*>(p);
+    }));
+    return static_cast<T*>(arrays_.back().get());
+  }
+
+  void trace_batch(const SampleBuffer& batch) override {
+    with_random_source(batch, [&](const auto& source) {
+      dispatch_traits(traits_, [&](auto traits) {
+        dispatch_branching(options_.branching, [&](auto branching) {
+          run_waves<traits(), branching()>(source, batch);
+        });
+      });
+    });
+  }
+
+  template <SceneTraits traits, Branching branching, class Source>
+  void run_waves(const Source& source, const SampleBuffer& batch) {
+    const bool use_queues = options_.compaction != Compaction::none;
+    counters_ = {};
+    WaveContext<Source> wave{buffers_,
+                             {buffers_.pool, batch, source, &counters_,
+                              use_queues ? buffers_.ray_queue : nullptr,
+                              static_cast<std::uint32_t>(options_.max_depth)},
+                             use_queues};
+    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
+    while (execute.more()) run_wave<traits, branching>(execute, wave);
+    waves_ += counters_.waves;
+  }
+
+  std::uint32_t slot_count_ = 0;
+  WaveCounters counters_{};
+  WaveBuffers buffers_;
+  std::vector<std::shared_ptr<void>> arrays_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene) {
+  return std::make_unique<WavefrontCpu>(options, scene);
+}
+
+}  // namespace pt
