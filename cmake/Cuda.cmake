@@ -33,6 +33,10 @@ endif()
 
 if(PTEXP_CUDA_FOUND)
   message(STATUS "Building for the CPU and CUDA (architectures: ${CMAKE_CUDA_ARCHITECTURES})")
+  if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know nvcc's
+    set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+    set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+  endif()
   set(CMAKE_CUDA_STANDARD 20)
   set(CMAKE_CUDA_STANDARD_REQUIRED ON)
   set(CMAKE_CUDA_EXTENSIONS OFF)
@@ -41,7 +45,7 @@ if(PTEXP_CUDA_FOUND)
   # 20012: GLM 0.9.9 marks defaulted members __host__ __device__.
   target_compile_options(ptexp_cuda_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 -lineinfo
-      "-Xcompiler=-Wall,-ffp-contract=off">
+    -Xcompiler=-Wall,-Wno-unknown-pragmas,-ffp-contract=off>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_WERROR}>>:-Werror=all-warnings>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_FAST_MATH}>>:--use_fast_math>)
 endif()

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <vector>
@@ -28,15 +29,24 @@ const std::vector<Rule>& rules() {
   static const std::vector<Mode> parallel{Mode::megakernel, Mode::wavefront};
   static const std::vector<Mode> megakernel{Mode::megakernel}, wavefront{Mode::wavefront};
   static const std::vector<Kind> cpu{Kind::cpu}, cuda{Kind::cuda}, any{Kind::cpu, Kind::cuda};
+  // clang-format off
   static const std::vector<Rule> list{
-      {"device", "cuda", parallel, cuda},           {"threads", nullptr, parallel, cpu},
-      {"work", nullptr, megakernel, any},           {"block", nullptr, megakernel, cuda},
-      {"compaction", nullptr, wavefront, any},      {"pool-size", nullptr, wavefront, any},
-      {"regenerate", nullptr, wavefront, any},      {"schedule", nullptr, wavefront, any},
-      {"schedule", "graph", wavefront, cuda},       {"stage-block", nullptr, wavefront, cuda},
-      {"create-world", "device", parallel, cuda},   {"scene-memory", "shared", parallel, cuda},
-      {"scene-memory", "constant", parallel, cuda}, {"rng", "xorwow", parallel, cuda},
+      {"device",       "cuda",     parallel,   cuda},
+      {"threads",      nullptr,    parallel,   cpu},
+      {"work",         nullptr,    megakernel, any},
+      {"block",        nullptr,    megakernel, cuda},
+      {"compaction",   nullptr,    wavefront,  any},
+      {"pool-size",    nullptr,    wavefront,  any},
+      {"regenerate",   nullptr,    wavefront,  any},
+      {"schedule",     nullptr,    wavefront,  any},
+      {"schedule",     "graph",    wavefront,  cuda},
+      {"stage-block",  nullptr,    wavefront,  cuda},
+      {"create-world", "device",   parallel,   cuda},
+      {"scene-memory", "shared",   parallel,   cuda},
+      {"scene-memory", "constant", parallel,   cuda},
+      {"branching",    "reduced",  parallel,   any},
   };
+  // clang-format on
   return list;
 }
 

@@ -4,8 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "common/error.h"
 #include "common/render/option_list.h"
@@ -92,7 +94,7 @@ std::string only_value(CLI::Option& option, const std::string& name) {
   return values.front();
 }
 
-CompareCommand compare_command(const Parser& parser) {
+CompareCommand parse_compare(const Parser& parser) {
   if (parser.image_b->count() == 0)
     throw Error("compare: expected two images, `ptexp compare A B [--tolerance T]`");
   CompareCommand command{parser.image_a->results()[0], parser.image_b->results()[0]};
@@ -106,7 +108,7 @@ CompareCommand compare_command(const Parser& parser) {
   return command;
 }
 
-RenderCommand render_command(const Parser& parser) {
+RenderCommand parse_render(const Parser& parser) {
   RenderCommand command;
   for (const auto& [entry, option] : parser.options) {
     if (option->count() == 0) continue;
@@ -174,7 +176,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   check_extras(parser);
   if (parser.compare->parsed()) {
     check_alone(parser, "compare", nullptr);
-    return compare_command(parser);
+    return parse_compare(parser);
   }
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},
@@ -185,7 +187,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     check_alone(parser, option->get_name(), option);
     return command;
   }
-  return render_command(parser);
+  return parse_render(parser);
 }
 
 }  // namespace pt

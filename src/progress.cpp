@@ -12,7 +12,7 @@ namespace {
 
 constexpr double bar_interval_s = 0.1;
 constexpr double line_interval_s = 5;
-constexpr int bar_width = 30;
+constexpr int bar_width = 20;
 
 std::string rate_text(double samples_per_s) {
   if (samples_per_s >= 1e9) return fmt::format("{:.2f} Gsamples/s", samples_per_s / 1e9);

@@ -18,8 +18,8 @@ enum class ProgressStyle {
 /// `bar` where `stream` is a terminal, else `lines`.
 ProgressStyle progress_style(std::FILE* stream, bool quiet);
 
-/// E.g. "[#####...............]  25 %  12.5 Msamples/s  0:08 left"; `bar_width` 0 leaves out the bar.
-/// Rate and time left stay away while they are unknown.
+/// E.g. "[#####...............]  25 %  12.5 Msamples/s  0:08 left"; `bar_width` 0 leaves out the
+/// bar. Rate and time left stay away while they are unknown.
 std::string progress_text(std::uint64_t done, std::uint64_t total, double elapsed_s, int bar_width);
 
 /// Shows one render after the other. Cheap to call often: it writes at most every tenth of a second

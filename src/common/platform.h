@@ -41,6 +41,39 @@ PT_HD float bits_to_float(std::uint32_t bits) {
 #endif
 }
 
+/// *p by 16-byte accesses, which the compiler does not make of a structure's members by itself.
+template <class T>
+PT_HD T load_wide(const T* p) {
+#ifdef __CUDA_ARCH__
+  static_assert(sizeof(T) % 16 == 0 && alignof(T) % 16 == 0);
+  T value;
+  PT_UNROLL(4)
+  for (int i = 0; i < static_cast<int>(sizeof(T) / 16); ++i) {
+    const uint4 part = reinterpret_cast<const uint4*>(p)[i];
+    memcpy(reinterpret_cast<char*>(&value) + 16 * i, &part, 16);
+  }
+  return value;
+#else
+  return *p;
+#endif
+}
+
+/// *p = value by 16-byte accesses.
+template <class T>
+PT_HD void store_wide(T* p, const T& value) {
+#ifdef __CUDA_ARCH__
+  static_assert(sizeof(T) % 16 == 0 && alignof(T) % 16 == 0);
+  PT_UNROLL(4)
+  for (int i = 0; i < static_cast<int>(sizeof(T) / 16); ++i) {
+    uint4 part;
+    memcpy(&part, reinterpret_cast<const char*>(&value) + 16 * i, 16);
+    reinterpret_cast<uint4*>(p)[i] = part;
+  }
+#else
+  *p = value;
+#endif
+}
+
 /// 1 / sqrt(x): within 2 ulp on CUDA, correctly rounded in two steps on the CPU.
 PT_HD float inverse_sqrt(float x) {
 #ifdef __CUDA_ARCH__

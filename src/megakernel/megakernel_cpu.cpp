@@ -46,7 +46,7 @@ class MegakernelCpu : public CpuRenderer {
           timer_.time("megakernel", [&] {
             divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
               PathRange work(batch, first, end, step);
-              trace_paths<traits(), branching()>(
+              trace_paths<decltype(traits), branching()>(
                   scene_, source, batch, static_cast<std::uint32_t>(options_.max_depth), work);
             });
           });

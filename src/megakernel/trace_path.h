@@ -16,7 +16,7 @@ namespace pt {
 /// `Work` gives paths away: `bool next(PathState& path, bool wanted)` is called by all threads of a
 /// warp together; where `wanted`, it fills in a new path or returns false; elsewhere it returns true.
 /// `bool any(bool)` is true when the argument is true for any thread of the warp.
-template <SceneTraits traits, Branching branching, class Source, class Work>
+template <class Traits, Branching branching, class Source, class Work>
 PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
                        std::uint32_t max_depth, Work& work) {
   PathState path;
@@ -32,15 +32,15 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
       if (path.rays == 0) {
         ray = generate_camera_path(scene, path, u);
       } else {
-        const Vec4 light = traits.has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+        const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
         const Scattering scattering =
             branching == Branching::reduced
-                ? shade_any<traits.has_lights>(scene, ray, hit, path, max_depth, u, light)
-                : shade_surface<traits.has_lights>(scene, ray, hit, path, max_depth, u, light);
+                ? shade_any<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light)
+                : shade_surface<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light);
         radiance = add_rounded(radiance, scattering.emitted);
-        if constexpr (traits.has_lights) {
+        if constexpr (Traits::has_lights) {
           if (!is_black(scattering.shadow.radiance) &&
-              !intersect_shadow<traits.accel>(scene, scattering.shadow)) {
+              !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
             radiance = add_rounded(radiance, scattering.shadow.radiance);
           }
         }
@@ -48,7 +48,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         ended = !scattering.alive;
       }
       if (!ended) {
-        hit = intersect_closest<traits.accel>(scene, ray);
+        hit = intersect_closest<Traits::accel>(scene, ray);
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
           radiance = add_rounded(radiance, shade_miss(scene, ray, path));

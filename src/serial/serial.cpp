@@ -9,22 +9,22 @@ namespace pt {
 namespace {
 
 /// One path from the camera to its end: the whole algorithm, in the order of the textbooks.
-template <SceneTraits traits, class Stream>
+template <class Traits, class Stream>
 Color trace_path(const Scene& scene, PathState& path, Stream& random, std::uint32_t max_depth) {
   Color radiance(0.0f);
   Ray ray = generate_camera_path(scene, path, random.draw(scatter_block(0)));
   for (;;) {
-    const Hit hit = intersect_closest<traits.accel>(scene, ray);
+    const Hit hit = intersect_closest<Traits::accel>(scene, ray);
     ++path.rays;
     if (hit.is_miss()) return add_rounded(radiance, shade_miss(scene, ray, path));
 
     const Vec4 u = random.draw(scatter_block(path.rays));
-    const Vec4 light = traits.has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+    const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
     const Scattering scattering =
-        shade_surface<traits.has_lights>(scene, ray, hit, path, max_depth, u, light);
+        shade_surface<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light);
     radiance = add_rounded(radiance, scattering.emitted);
     if (!is_black(scattering.shadow.radiance) &&
-        !intersect_shadow<traits.accel>(scene, scattering.shadow)) {
+        !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
       radiance = add_rounded(radiance, scattering.shadow.radiance);
     }
     if (!scattering.alive) return radiance;
@@ -40,17 +40,17 @@ class SerialRenderer : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       dispatch_traits(traits_, [&](auto traits) {
-        timer_.time("serial", [&] { trace_all<traits()>(source, batch); });
+        timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
       });
     });
   }
 
-  template <SceneTraits traits, class Source>
+  template <class Traits, class Source>
   void trace_all(const Source& source, const SampleBuffer& batch) {
     for (std::uint32_t i = 0; i < batch.path_count; ++i) {
       PathState path = batch.begin_path(i);
       auto random = source.open(batch.id_of(path));
-      const Color radiance = trace_path<traits>(scene_, path, random,
+      const Color radiance = trace_path<Traits>(scene_, path, random,
                                                 static_cast<std::uint32_t>(options_.max_depth));
       batch.store(path, radiance);
     }

@@ -31,10 +31,10 @@ struct PathPool {
   HitRecord* hit = nullptr;
   // Only in scenes with lights:
   float* bsdf_pdf = nullptr;
-  PathTag* shadow_tag = nullptr;        ///< surface: a shadow ray waits; free: none
-  Record* shadow_origin = nullptr;      ///< ray origin, distance
-  Record* shadow_direction = nullptr;   ///< ray direction, number of the sample
-  Record* shadow_radiance = nullptr;    ///< what arrives if the ray is free
+  PathTag* shadow_tag = nullptr;       ///< surface: a shadow ray waits; free: none
+  Record* shadow_origin = nullptr;     ///< ray origin, distance
+  Record* shadow_direction = nullptr;  ///< ray direction, number of the sample
+  Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free
 
   static constexpr std::uint64_t bytes_per_slot(bool has_lights) {
     return sizeof(PathTag) + 3 * sizeof(Record) + sizeof(HitRecord) +
@@ -44,12 +44,16 @@ struct PathPool {
   PT_HD static Record pack(const Vec3& v, std::uint32_t w) { return {v.x, v.y, v.z, w}; }
   PT_HD static Vec3 vec(const Record& r) { return {r.x, r.y, r.z}; }
 
-  PT_HD Ray load_ray(std::uint32_t slot) const { return {vec(origin[slot]), vec(direction[slot])}; }
+  PT_HD Ray load_ray(std::uint32_t slot) const {
+    return {vec(load_wide(&origin[slot])), vec(load_wide(&direction[slot]))};
+  }
 
   /// The ray and the state of its path; `with_pdf` in scenes with lights.
   template <bool with_pdf>
   PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
-    const Record o = origin[slot], d = direction[slot], b = throughput[slot];
+    const Record o = load_wide(&origin[slot]);
+    const Record d = load_wide(&direction[slot]);
+    const Record b = load_wide(&throughput[slot]);
     ray = {vec(o), vec(d)};
     PathState path;
     path.sample = o.w;
@@ -63,10 +67,10 @@ struct PathPool {
 
   template <bool with_pdf>
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
-    origin[slot] = pack(ray.origin, path.sample);
-    direction[slot] =
-        pack(ray.direction, path.rays | std::uint32_t{path.shadow_rays} << 16);
-    throughput[slot] = pack(path.beta, path.pixel);
+    store_wide(&origin[slot], pack(ray.origin, path.sample));
+    store_wide(&direction[slot],
+               pack(ray.direction, path.rays | std::uint32_t{path.shadow_rays} << 16));
+    store_wide(&throughput[slot], pack(path.beta, path.pixel));
     if constexpr (with_pdf) bsdf_pdf[slot] = path.bsdf_pdf;
   }
 
@@ -77,14 +81,15 @@ struct PathPool {
   PT_HD void store_hit(std::uint32_t slot, const Hit& h) const { hit[slot] = {h.t, h.primitive}; }
 
   PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow, std::uint32_t number) const {
-    shadow_origin[slot] = pack(shadow.ray.origin, float_to_bits(shadow.distance));
-    shadow_direction[slot] = pack(shadow.ray.direction, number);
-    shadow_radiance[slot] = pack(shadow.radiance, 0);
+    store_wide(&shadow_origin[slot], pack(shadow.ray.origin, float_to_bits(shadow.distance)));
+    store_wide(&shadow_direction[slot], pack(shadow.ray.direction, number));
+    store_wide(&shadow_radiance[slot], pack(shadow.radiance, 0));
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
-    const Record o = shadow_origin[slot], d = shadow_direction[slot];
+    const Record o = load_wide(&shadow_origin[slot]);
+    const Record d = load_wide(&shadow_direction[slot]);
     number = d.w;
-    return {{vec(o), vec(d)}, bits_to_float(o.w), vec(shadow_radiance[slot])};
+    return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(&shadow_radiance[slot]))};
   }
 };
 

@@ -50,7 +50,7 @@ struct WaveContext {
 
 /// One wave: every free slot gets a new path, every path in flight one more ray.
 /// An Executor runs a compaction, the decision between two waves, or a stage over a queue.
-template <SceneTraits traits, Branching branching, class Source, class Executor>
+template <class Traits, Branching branching, class Source, class Executor>
 void run_wave(Executor& execute, const WaveContext<Source>& wave) {
   const WaveBuffers& b = wave.buffers;
   const PathTag* tags = b.pool.tag;
@@ -59,25 +59,25 @@ void run_wave(Executor& execute, const WaveContext<Source>& wave) {
   execute.compact(wave.request(tags, PathTag::intersect, b.ray_queue, PathTag::free, b.free_queue,
                                counters->ready));
   execute.begin_wave();
-  execute.run(GeneratePaths<traits.has_lights, Source>{wave.stage},
+  execute.run(GeneratePaths<Traits::has_lights, Source>{wave.stage},
               wave.queue(b.free_queue, &counters->generate, tags));
-  execute.run(IntersectRays<traits.accel, branching>{b.pool},
+  execute.run(IntersectRays<Traits::accel, branching>{b.pool},
               wave.queue(b.ray_queue, &counters->intersect, tags));
 
   execute.compact(wave.request(tags, PathTag::surface, b.surface_queue, PathTag::miss, b.miss_queue,
                                counters->shade));
   if constexpr (branching == Branching::divergent) {
-    execute.run(ShadeMiss<traits.has_lights>{b.pool, wave.stage.samples},
+    execute.run(ShadeMiss<Traits::has_lights>{b.pool, wave.stage.samples},
                 wave.queue(b.miss_queue, &counters->shade[1], tags));
   }
-  execute.run(ShadeSurface<traits.has_lights, branching, Source>{wave.stage},
+  execute.run(ShadeSurface<Traits::has_lights, branching, Source>{wave.stage},
               wave.queue(b.surface_queue, &counters->shade[0], tags));
 
-  if constexpr (traits.has_lights) {
+  if constexpr (Traits::has_lights) {
     const PathTag* shadow_tags = b.pool.shadow_tag;
     execute.compact(wave.request(shadow_tags, PathTag::surface, b.shadow_queue, PathTag::miss,
                                  b.miss_queue, counters->shadow));
-    execute.run(TraceShadowRays<traits.accel>{b.pool, wave.stage.samples},
+    execute.run(TraceShadowRays<Traits::accel>{b.pool, wave.stage.samples},
                 wave.queue(b.shadow_queue, &counters->shadow[0], shadow_tags));
   }
 }

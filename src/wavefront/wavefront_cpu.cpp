@@ -106,13 +106,13 @@ class WavefrontCpu : public CpuRenderer {
     with_random_source(batch, [&](const auto& source) {
       dispatch_traits(traits_, [&](auto traits) {
         dispatch_branching(options_.branching, [&](auto branching) {
-          run_waves<traits(), branching()>(source, batch);
+          run_waves<decltype(traits), branching()>(source, batch);
         });
       });
     });
   }
 
-  template <SceneTraits traits, Branching branching, class Source>
+  template <class Traits, Branching branching, class Source>
   void run_waves(const Source& source, const SampleBuffer& batch) {
     const bool use_queues = options_.compaction != Compaction::none;
     counters_ = {};
@@ -122,7 +122,7 @@ class WavefrontCpu : public CpuRenderer {
                               static_cast<std::uint32_t>(options_.max_depth)},
                              use_queues};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
-    while (execute.more()) run_wave<traits, branching>(execute, wave);
+    while (execute.more()) run_wave<Traits, branching>(execute, wave);
     waves_ += counters_.waves;
   }
 

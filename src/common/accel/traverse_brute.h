@@ -5,16 +5,15 @@
 
 namespace pt {
 
-/// Bit 31 - j is set when the ray's line meets sphere `first` + j, j < `count` <= 32.
+/// Bit 31 - j is set when the ray's line meets sphere first[j], 0 <= j < count, 1 <= count <= 32.
 /// One pass without branches finds the candidates; the few that there are come after, each thread
 /// turning to its own. Testing and resolving in one loop would make every thread of a warp wait
 /// whenever any of them has a candidate, which for scattered rays is nearly always.
-PT_HD std::uint32_t sphere_candidates(const Sphere* spheres, std::uint32_t first,
-                                      std::uint32_t count, const Ray& ray) {
+PT_HD std::uint32_t sphere_candidates(const Sphere* first, int count, const Ray& ray) {
   std::uint32_t missed = 0;
   PT_UNROLL(8)
-  for (std::uint32_t j = 0; j < count; ++j) {
-    missed = shift_in_sign(missed, sphere_discriminant(spheres[first + j], ray));
+  for (int j = 0; j < count; ++j) {
+    missed = shift_in_sign(missed, sphere_discriminant(load_wide(first + j), ray));
   }
   return ~missed << (32 - count);
 }
@@ -25,11 +24,11 @@ PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, V
   for (std::uint32_t first = 0; first < primitives.sphere_count; first += 32) {
     const std::uint32_t rest = primitives.sphere_count - first;
     std::uint32_t candidates =
-        sphere_candidates(primitives.spheres, first, rest < 32 ? rest : 32, ray);
+        sphere_candidates(primitives.spheres + first, static_cast<int>(rest < 32 ? rest : 32), ray);
     while (candidates != 0) {
       const int j = count_leading_zeros(candidates);
       candidates &= ~(0x80000000u >> j);
-      if (visit(sphere_distance(primitives.spheres[first + j], ray), first + j)) return true;
+      if (visit(sphere_distance(load_wide(&primitives.spheres[first + j]), ray), first + j)) return true;
     }
   }
   for (std::uint32_t i = 0; i < primitives.quad_count; ++i) {

@@ -54,7 +54,7 @@ PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const Primitives& primitives, co
   std::uint32_t current = 0;
   while (current != done) {
     while (!is_leaf(current) && current != done) {
-      const Bvh2Node node = nodes[current];
+      const Bvh2Node node = load_wide(&nodes[current]);
       const SlabHit a = intersect_slabs(slab, node.xy[0], node.z.x, node.z.y, t_max);
       const SlabHit b = intersect_slabs(slab, node.xy[1], node.z.z, node.z.w, t_max);
       if (a.hit() && b.hit()) {

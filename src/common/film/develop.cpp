@@ -1,10 +1,11 @@
 #include "common/film/develop.h"
 
 #include <numeric>
+#include <span>
 
 namespace pt {
 
-Image develop(std::span<const FilmPixel> film, int width, int height) {
+Image develop(const std::vector<FilmPixel>& film, int width, int height) {
   Image image{width, height, {}};
   image.rgb.reserve(3 * film.size());
   for (const FilmPixel& pixel : film) {

@@ -10,7 +10,7 @@ namespace pt {
 
 /// One finished path.
 struct alignas(16) Sample {
-  Color radiance{0.0f};
+  Color radiance = Color(0.0f);
   std::uint32_t rays = 0;  ///< closest-hit rays, shadow rays << 16
 };
 
@@ -42,7 +42,8 @@ struct SampleBuffer {
   }
 
   PT_HD void store(const PathState& path, const Color& radiance) const {
-    samples[number_of(path)] = {radiance, path.rays | std::uint32_t{path.shadow_rays} << 16};
+    store_wide(&samples[number_of(path)],
+               Sample{radiance, path.rays | std::uint32_t{path.shadow_rays} << 16});
   }
 };
 
@@ -81,7 +82,7 @@ PT_HD void accumulate_pixel(FilmPixel* film, const SampleBuffer& buffer, std::ui
   FilmPixel sum = film[pixel];
   const std::uint32_t stride = buffer.pixel_count.divisor();
   for (std::uint32_t i = pixel; i < buffer.path_count; i += stride) {
-    const Sample sample = buffer.samples[i];
+    const Sample sample = load_wide(&buffer.samples[i]);
     tally.rays += sample.rays & 0xffffu;
     tally.shadow_rays += sample.rays >> 16;
     count(length_bin(sample.rays & 0xffffu));

@@ -1,9 +1,8 @@
-// OpenEXR, from and to memory.
+// EXR through OpenEXR.
 #include <Iex.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
@@ -11,9 +10,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "common/error.h"
+#include "common/film/exr_memory.h"
 #include "common/film/image_codec.h"
 
 namespace pt {
@@ -21,48 +20,6 @@ namespace {
 
 constexpr const char* channel_names[3] = {"R", "G", "B"};
 constexpr int max_tile_size = 4096;
-
-class MemoryWriter : public Imf::OStream {
- public:
-  MemoryWriter() : OStream("") {}
-
-  void write(const char data[], int count) override {
-    const auto size = static_cast<std::size_t>(count);
-    bytes.replace(position_, std::min(size, bytes.size() - position_), data, size);
-    position_ += size;
-  }
-  std::uint64_t tellp() override { return position_; }
-  void seekp(std::uint64_t position) override {
-    if (position > bytes.size()) bytes.resize(position);
-    position_ = position;
-  }
-
-  std::string bytes;
-
- private:
-  std::size_t position_ = 0;
-};
-
-class MemoryReader : public Imf::IStream {
- public:
-  explicit MemoryReader(std::string_view bytes) : IStream(""), bytes_(bytes) {}
-
-  bool read(char data[], int count) override {
-    if (position_ > bytes_.size() || count < 0 ||
-        static_cast<std::size_t>(count) > bytes_.size() - position_) {
-      throw Iex::InputExc("truncated or corrupted");
-    }
-    std::memcpy(data, bytes_.data() + position_, static_cast<std::size_t>(count));
-    position_ += static_cast<std::size_t>(count);
-    return position_ < bytes_.size();
-  }
-  std::uint64_t tellg() override { return position_; }
-  void seekg(std::uint64_t position) override { position_ = position; }
-
- private:
-  std::string_view bytes_;
-  std::uint64_t position_ = 0;
-};
 
 /// The R, G and B of `pixels`, wherever the data window lies.
 Imf::FrameBuffer frame_buffer(const float* pixels, const Imath::Box2i& window) {
@@ -91,7 +48,7 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
     if (is_reserved(key)) throw Error(fmt::format("metadata key '{}' is taken by OpenEXR", key));
     header.insert(key, Imf::StringAttribute(value));
   }
-  MemoryWriter stream;
+  ExrWriter stream;
   {
     Imf::OutputFile file(stream, header, 0);
     file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow()));
@@ -109,6 +66,22 @@ void check_kind(std::string_view bytes) {
   const int flags = byte(5) << 8;
   if (flags & (Imf::NON_IMAGE_FLAG | Imf::MULTI_PART_FILE_FLAG)) {
     throw Error("deep or multi-part OpenEXR; expected a flat one with a single part");
+  }
+}
+
+/// OpenEXR allocates what the size of an attribute announces: refuses sizes past the file's end.
+void check_attributes(std::string_view bytes) {
+  std::size_t position = 8;  // after magic number and version
+  while (position < bytes.size() && bytes[position] != '\0') {
+    for (int name_and_type = 0; name_and_type < 2; ++name_and_type) {
+      position = std::min(bytes.find('\0', position), bytes.size() - 1) + 1;
+    }
+    std::uint32_t size = 0;
+    for (int i = 0; i < 4 && position < bytes.size(); ++i, ++position) {
+      size |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[position])) << 8 * i;
+    }
+    if (size > bytes.size() - position) throw Error("truncated or corrupted in the header");
+    position += size;
   }
 }
 
@@ -132,10 +105,11 @@ int check_channels(const Imf::ChannelList& channels) {
 
 Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
   check_kind(bytes);
+  check_attributes(bytes);
   // For the whole process, hence the same value each time.
   Imf::Header::setMaxImageSize(max_image_size, max_image_size);
   Imf::Header::setMaxTileSize(max_tile_size, max_tile_size);
-  MemoryReader stream(bytes);
+  ExrReader stream(bytes);
   Imf::InputFile file(stream, 0);
   const Imf::Header& header = file.header();
   const int pixel_bytes = check_channels(header.channels());

@@ -47,6 +47,21 @@ std::string encode_png(const Image& image, const ImageMetadata& metadata,
   return std::move(writer.session.output);
 }
 
+/// libpng allocates what the length of a chunk announces: refuses lengths past the file's end.
+void check_chunks(std::string_view bytes) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
+    throw Error("not a PNG: it does not begin with the PNG signature");
+  }
+  for (std::string_view rest = bytes.substr(8); !rest.empty();) {
+    // A chunk: length, name, as many bytes as the length says, checksum.
+    const std::size_t length =
+        rest.size() < 12 ? 0 : png_get_uint_32(reinterpret_cast<png_const_bytep>(rest.data()));
+    if (rest.size() < 12 || rest.size() - 12 < length) throw Error("truncated or corrupted");
+    if (rest.substr(4, 4) == "IEND") return;
+    rest.remove_prefix(12 + length);
+  }
+}
+
 struct PngHeader {
   int width = 0, height = 0;
   double decoded_bytes = 0;  ///< of the pixels, as the file stores them
@@ -89,9 +104,7 @@ void read_pixels(PngReader& reader, Image& image) {
 }
 
 Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
-    throw Error("not a PNG: it does not begin with the PNG signature");
-  }
+  check_chunks(bytes);
   PngReader reader(bytes);
   const PngHeader header = read_header(reader);
   Image image = allocate_image(header.width, header.height, header.decoded_bytes, bytes.size());

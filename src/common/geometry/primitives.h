@@ -28,13 +28,13 @@ PT_HD void keep_nearer(Hit& hit, float t, std::uint32_t primitive) {
 
 PT_HD float primitive_distance(const Primitives& primitives, std::uint32_t i, const Ray& ray) {
   if (!primitives.is_sphere(i)) return quad_distance(primitives.quad(i), ray);
-  const Sphere sphere = primitives.spheres[i];
+  const Sphere sphere = load_wide(&primitives.spheres[i]);
   return sphere_discriminant(sphere, ray) < 0.0f ? -1.0f : sphere_distance(sphere, ray);
 }
 
 PT_HD SurfacePoint surface_point(const Primitives& primitives, const Ray& ray, const Hit& hit) {
   return primitives.is_sphere(hit.primitive)
-             ? sphere_surface(primitives.spheres[hit.primitive], ray, hit.t)
+             ? sphere_surface(load_wide(&primitives.spheres[hit.primitive]), ray, hit.t)
              : quad_surface(primitives.quad(hit.primitive), ray, hit.t);
 }
 

@@ -8,7 +8,7 @@
 namespace pt {
 
 struct LightSample {
-  Vec3 wi{0.0f};          ///< unit vector to the light
+  Vec3 wi = Vec3(0.0f);          ///< unit vector to the light
   float distance = 0.0f;  ///< to the sampled point, less the rounding error
   float pdf = 0.0f;       ///< per solid angle; 0: nothing to be gained
 };

@@ -13,8 +13,8 @@
 namespace pt {
 
 struct BsdfSample {
-  Vec3 wi{0.0f};
-  Color weight{0.0f};  ///< f |cos| / pdf
+  Vec3 wi = Vec3(0.0f);
+  Color weight = Color(0.0f);  ///< f |cos| / pdf
   float pdf = 0.0f;    ///< per solid angle; infinite for a delta, 0: the path is absorbed
 };
 

@@ -10,9 +10,9 @@ namespace pt {
 enum class MaterialKind : std::uint32_t { diffuse, metal, dielectric };
 
 struct alignas(16) Material {
-  Color albedo{0.5f};
+  Color albedo = Color(0.5f);
   float parameter = 0.0f;  ///< metal: fuzz; dielectric: eta
-  Color emission{0.0f};    ///< radiance on the side to which the normal points
+  Color emission = Color(0.0f);    ///< radiance on the side to which the normal points
   MaterialKind kind = MaterialKind::diffuse;
 };
 

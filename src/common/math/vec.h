@@ -1,8 +1,11 @@
 // Vectors: GLM under the names of this project.
 #pragma once
 
-#include "common/platform.h"
-// GLM must come after platform.h
+#include "common/platform.h"  // before GLM
+
+// Without the other names of the components (r, s, ...), which are members of unions: nvcc 13.0
+// reports an invalid bitcast for some constructors of classes that hold such vectors.
+#define GLM_FORCE_XYZW_ONLY
 #include <glm/glm.hpp>
 
 namespace pt {

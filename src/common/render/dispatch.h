@@ -12,15 +12,15 @@ namespace pt {
 template <auto value>
 using Constant = std::integral_constant<decltype(value), value>;
 
-/// function(Constant<traits>) for the scene's traits.
+/// function(Traits<...>{}) for the scene's traits.
 template <class Function>
 decltype(auto) dispatch_traits(SceneTraits traits, Function&& function) {
   if (traits.accel == Accel::brute) {
-    return traits.has_lights ? function(Constant<SceneTraits{Accel::brute, true}>{})
-                             : function(Constant<SceneTraits{Accel::brute, false}>{});
+    return traits.has_lights ? function(Traits<Accel::brute, true>{})
+                             : function(Traits<Accel::brute, false>{});
   }
-  return traits.has_lights ? function(Constant<SceneTraits{Accel::bvh2, true}>{})
-                           : function(Constant<SceneTraits{Accel::bvh2, false}>{});
+  return traits.has_lights ? function(Traits<Accel::bvh2, true>{})
+                           : function(Traits<Accel::bvh2, false>{});
 }
 
 /// function(Constant<branching>).

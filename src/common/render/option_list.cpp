@@ -113,8 +113,9 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return block_text(o.block); }),
            "megakernel on CUDA: threads of a block, at most 1,024")
       .add(choice("compaction", &Options::compaction),
-           "wavefront: how the paths that wait for a stage are\n"
-           "gathered; none: every stage visits the whole pool")
+           "wavefront: how the paths that wait for a stage are gathered:\n"
+           "cub: a selection in order; atomic: appended in any order;\n"
+           "none: not at all, every stage visits the whole pool")
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",
                [](Options& o, const std::string& s) {
@@ -155,8 +156,8 @@ void add_toggles(std::vector<OptionEntry>& list) {
            "reduced: a miss is shaded as a surface that reflects\n"
            "nothing, so that hits and misses share one branch")
       .add(choice("rng", &Options::rng),
-           "philox: stateless. xorwow: cuRAND states kept per path, set\n"
-           "up by a render_init kernel as in the paper; CUDA only");
+           "philox: stateless. xorwow: a state kept per path, set up by\n"
+           "render_init as in the paper");
 }
 
 void add_measurement(std::vector<OptionEntry>& list) {

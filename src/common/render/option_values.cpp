@@ -37,12 +37,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-std::string grouped(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(i, ",");
-  return text;
-}
-
 int parse_stage_threads(const std::string& name, const std::string& text) {
   const auto threads = whole<std::uint64_t>(text);
   if (!threads || *threads < 1 || *threads > max_block_threads)
@@ -146,6 +140,12 @@ std::uint64_t parse_pool_size(const std::string& name, const std::string& text) 
                  "expected auto or a number of paths from 1 to " + grouped(max_pool_size) +
                      ", e.g. 512K or 2M (times 2^10, 2^20)");
   return *value << shift;
+}
+
+std::string grouped(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(i, ",");
+  return text;
 }
 
 std::string number_text(float value) { return fmt::format("{}", value); }

@@ -43,4 +43,6 @@ std::string vector_text(const std::array<float, 3>& value);
 std::string block_text(const BlockSize& block);
 std::string stage_blocks_text(const std::array<int, stage_count>& blocks);
 
+std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
+
 }  // namespace pt

@@ -13,7 +13,7 @@ namespace {
 std::vector<std::string> column_stages() {
   std::vector<std::string> names;
   for (const auto& [stage, name] : enum_names<StageId>) names.emplace_back(name);
-  names.insert(names.end(), {"compact", "megakernel"});
+  names.insert(names.end(), {"compact", "megakernel", "serial", "render_init"});
   return names;
 }
 

@@ -3,18 +3,12 @@
 #include <algorithm>
 
 #include "common/render/option_names.h"
+#include "common/render/option_values.h"
 #include "common/render/report.h"
 #include "common/render/run_summary.h"
 
 namespace pt {
 namespace {
-
-/// 1234567 -> "1,234,567".
-std::string grouped(std::uint64_t value) {
-  std::string text = std::to_string(value);
-  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(i, ",");
-  return text;
-}
 
 std::string time_columns(const Spread& time, bool repeated) {
   const std::string median = fmt::format("{:>12.3f}", time.median);

@@ -19,8 +19,8 @@ struct Scene {
   const std::uint32_t* lights = nullptr;       ///< primitives that emit
   std::uint32_t light_count = 0;
 
-  PT_HD const Material& material(std::uint32_t primitive) const {
-    return materials[material_of[primitive]];
+  PT_HD Material material(std::uint32_t primitive) const {
+    return load_wide(&materials[material_of[primitive]]);
   }
 };
 
@@ -30,6 +30,13 @@ enum class Accel { brute, bvh2 };
 struct SceneTraits {
   Accel accel = Accel::brute;
   bool has_lights = false;
+};
+
+/// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+template <Accel accel_value, bool has_lights_value>
+struct Traits {
+  static constexpr Accel accel = accel_value;
+  static constexpr bool has_lights = has_lights_value;
 };
 
 }  // namespace pt

@@ -50,7 +50,7 @@ class WorldRandom {
   std::uint32_t index_;
   std::uint32_t block_ = 0;
   int used_ = 4;
-  Vec4 values_{0.0f};
+  Vec4 values_ = Vec4(0.0f);
 };
 
 PT_HD Color random_diffuse_albedo(WorldRandom& random) {

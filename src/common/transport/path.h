@@ -10,7 +10,7 @@ PT_HD std::uint32_t pixel_x(std::uint32_t pixel) { return pixel & 0xffffu; }
 PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 struct PathState {
-  Color beta{1.0f};          ///< throughput: product of f |cos| / pdf so far
+  Color beta = Color(1.0f);          ///< throughput: product of f |cos| / pdf so far
   std::uint32_t pixel = 0;   ///< x | y << 16
   std::uint32_t sample = 0;  ///< counted from the batch's first sample
   std::uint16_t rays = 0;    ///< traced so far, the camera ray included

@@ -13,7 +13,7 @@ namespace pt {
 struct Scattering {
   bool alive = false;
   Ray ray;
-  Color emitted{0.0f};  ///< to be added to the path's sample
+  Color emitted = Color(0.0f);  ///< to be added to the path's sample
   ShadowRay shadow;     ///< to be traced unless its radiance is black
 };
 

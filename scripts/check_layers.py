@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Checks the includes and conditionals below src/ against the rules of the architecture.
+
+Usage: check_layers.py [SRC]     SRC is the repository's src/ folder unless given
+
+Prints FILE:LINE and the rule broken, and exits with 1, for every breach. The rules are the tables
+below; a new folder or a new permission is a line in one of them.
+"""
+import fnmatch
+import re
+import sys
+from pathlib import Path
+
+# Who may include whom: layer, the files in it (the first pattern that fits counts; * spans
+# folders), and the layers that it may include besides itself. Whoever stands higher may include
+# lower only, so there are no cycles.
+PLAIN = ["platform"]
+MATHS = ["math", *PLAIN]
+SAMPLING = ["sampling", *MATHS]
+SHAPES = ["geometry", *SAMPLING]
+SCENE_PARTS = ["light", "material", "accel", *SHAPES]
+PHYSICS = ["transport", "scene", *SCENE_PARTS]
+HOST = ["options", "error"]
+AROUND = ["render", "film", *PHYSICS, *HOST]
+COMMON = ["device_builders", "device", *AROUND]
+
+LAYERS = [
+    # Mains and schedules. A schedule never includes another one.
+    ("serial", ["serial/*"], COMMON),
+    ("megakernel", ["megakernel/*"], COMMON),
+    ("wavefront", ["wavefront/*"], COMMON),
+    ("metropolis", ["metropolis/*"], COMMON),
+    # The few files among the physics that launch kernels: they build what the physics reads.
+    ("device_builders", ["common/accel/build_*.cu", "common/scene/*.cu", "common/scene/*_cuda.cpp"],
+     ["device", "scene", *SCENE_PARTS, *HOST]),
+    # What runs a schedule on a device.
+    ("device", ["common/device/*"], AROUND),
+    # Plain data that the user chooses and that is measured; errors and build facts.
+    ("options", ["common/render/options.h", "common/render/option_names.h",
+                 "common/render/stats.h"], []),
+    ("error", ["common/error.h", "common/build_info.h"], []),
+    # Around the physics: renderers, batches, reports; what becomes of the samples.
+    ("render", ["common/render/*"], ["film", *PHYSICS, *HOST]),
+    ("film", ["common/film/*"], [*PHYSICS, *HOST]),
+    # Physics, which knows no device, film or renderer.
+    ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
+    ("scene", ["common/scene/*"], [*SCENE_PARTS, *HOST]),
+    ("light", ["common/light/*"], ["material", *SHAPES]),
+    ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
+    ("material", ["common/material/*"], SHAPES),
+    ("geometry", ["common/geometry/*"], SAMPLING),
+    ("sampling", ["common/sampling/*"], MATHS),
+    ("math", ["common/math/*"], PLAIN),
+    ("platform", ["common/platform.h"], []),
+]
+SCHEDULES = ["serial", "megakernel", "wavefront", "metropolis"]
+MAIN = "main"  # the files that lie in src/ itself
+MAIN_MAY_INCLUDE = [*SCHEDULES, *COMMON]
+
+# Who may know CUDA.
+CUDA_HEADER = re.compile(
+    r"(cuda|curand|cublas|cufft|cusolver|cusparse|cupti|nvtx|nvToolsExt|nvml|nvrtc|nvPTXCompiler|"
+    r"nv/|cccl/|cooperative_groups|mma\.h|crt/|device_launch_parameters|vector_types|"
+    r"vector_functions|driver_types|math_constants|sm_\d)")
+CUB_HEADER = re.compile(r"(cub|thrust)/")
+CUDA_FILES = ["*.cu", "*.cuh", "*_cuda.*"]
+CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_*.cu"]
+PLATFORM = "common/platform.h"
+PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GLM needs them
+
+# Who may be compiled differently with and without CUDA.
+COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
+BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
+BUILD_CONDITION_FILES = ["make_renderer.cpp", "common/device/devices*.cpp",
+                         "common/scene/*builtin*"]
+
+SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}
+INCLUDE = re.compile(r"\s*#\s*include\b\s*(?:\"([^\"]*)\"|<([^>]*)>)?")
+CONDITION = re.compile(r"\s*#\s*(?:if|ifdef|ifndef|elif|elifdef|elifndef)\b(.*)")
+# What may hide a comment's beginning or end, a comment itself, or a continued line.
+TOKEN = re.compile(r"""//(?:\\\n|[^\n])*|/\*.*?\*/|R"([^\s()\\]{0,16})\(.*?\)\1"|"""
+                   r""""(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|\\\n""", re.DOTALL)
+
+
+def fits(path, patterns):
+    return any(fnmatch.fnmatchcase(path, pattern) for pattern in patterns)
+
+
+def layer_of(path):
+    """The layer of a path below src/, or None."""
+    if "/" not in path:
+        return MAIN
+    return next((name for name, patterns, _ in LAYERS if fits(path, patterns)), None)
+
+
+def allowed(layer):
+    if layer == MAIN:
+        return MAIN_MAY_INCLUDE
+    return next(may_include for name, _, may_include in LAYERS if name == layer)
+
+
+def logical_lines(text):
+    """Yields (line number, line) without comments and raw strings, continued lines joined."""
+    def replace(match):
+        token = match.group()
+        if token == "\\\n":
+            return "\v"  # one logical line that spans two
+        if token.startswith(("//", "/*", "R")):
+            return " " + "\v" * token.count("\n")
+        return token
+    number = 1
+    for line in TOKEN.sub(replace, text).split("\n"):
+        begin = len(line) - len(line.lstrip())
+        yield number + line.count("\v", 0, begin), line.replace("\v", " ")
+        number += 1 + line.count("\v")
+
+
+def own_path(source, header, path):
+    """The path below src/ of an included header of this project, or None for a library's."""
+    for candidate in (source / header, (source / path).parent / header):
+        if candidate.is_file():
+            return candidate.resolve().relative_to(source).as_posix()
+    return header if header.split("/")[0] in ["common", *SCHEDULES] else None
+
+
+def check_include(source, path, layer, quoted, angled):
+    """Yields the rules that an #include breaks."""
+    header = quoted or angled
+    if not header:
+        yield "an include is written out, not computed by a macro"
+        return
+    own = own_path(source, header, path)
+    if own:
+        if own != header:
+            yield f"the project's headers are included by their path below src/: \"{own}\""
+        if not quoted:
+            yield "the project's headers are included in quotes"
+        included = layer_of(own)
+        if included is None:
+            yield f"{own} lies in no layer"
+        elif included != layer and included not in allowed(layer):
+            yield (f"{layer} does not include {included} ({own}); "
+                   f"it may include: {', '.join(allowed(layer)) or 'nothing of this project'}")
+        if own.endswith((".cu", ".cpp")):
+            yield f"{own} is compiled by itself and never included"
+        elif own.endswith(".cuh") and not fits(path, CUDA_FILES):
+            yield f"only CUDA files ({', '.join(CUDA_FILES)}) include a .cuh"
+    elif quoted:
+        yield f"no \"{header}\" below src/; a library's header is included in <>"
+    elif CUB_HEADER.match(header):
+        if not fits(path, CUB_FILES):
+            yield f"only {', '.join(CUB_FILES)} include CUB: each such file takes long to compile"
+    elif CUDA_HEADER.match(header) and not fits(path, CUDA_FILES):
+        if path != PLATFORM:
+            yield f"only CUDA files ({', '.join(CUDA_FILES)}) include CUDA's headers"
+        elif header not in PLATFORM_CUDA_HEADERS:
+            yield f"{PLATFORM} includes none of CUDA but {', '.join(PLATFORM_CUDA_HEADERS)}"
+
+
+def check_condition(path, condition):
+    """Yields the rules that an #if breaks."""
+    if COMPILER_CONDITION.search(condition) and path != PLATFORM:
+        yield (f"only {PLATFORM} asks which compiler runs; "
+               "elsewhere a file is split by device, name_cpu.cpp and name_cuda.cu")
+    if BUILD_CONDITION.search(condition) and not fits(path, BUILD_CONDITION_FILES):
+        yield f"only {', '.join(BUILD_CONDITION_FILES)} ask whether CUDA is built in"
+
+
+def check_file(source, path):
+    """Yields (line number, rule broken) for a file, named by its path below src/."""
+    layer = layer_of(path)
+    if layer is None:
+        yield 1, "lies in no layer: give its folder a line in scripts/check_layers.py"
+        return
+    for number, line in logical_lines((source / path).read_text(encoding="utf-8")):
+        include = INCLUDE.match(line)
+        condition = CONDITION.match(line)
+        rules = ()
+        if include:
+            rules = check_include(source, path, layer, *include.groups())
+        elif condition:
+            rules = check_condition(path, condition.group(1))
+        for rule in rules:
+            yield number, rule
+
+
+def main(arguments):
+    if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
+        print(__doc__.strip())
+        return 0 if len(arguments) == 1 else 2
+    default = Path(__file__).resolve().parent.parent / "src"
+    source = Path(arguments[0] if arguments else default).resolve()
+    paths = sorted(file.relative_to(source).as_posix() for file in source.rglob("*")
+                   if file.suffix in SOURCE_ENDINGS and file.is_file())
+    if not paths:
+        print(f"check_layers.py: no C++ or CUDA files below {source}", file=sys.stderr)
+        return 2
+    breaches = [(path, *breach) for path in paths for breach in check_file(source, path)]
+    for path, number, rule in breaches:
+        print(f"{source.name}/{path}:{number}: {rule}")
+    print(f"{len(paths)} files checked, {len(breaches)} breaches of the layers")
+    return 1 if breaches else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

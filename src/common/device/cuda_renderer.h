@@ -1,0 +1,135 @@
+// What the modes share on CUDA: the scene's upload, the film, the batches, the clocks.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "common/device/cuda_check.h"
+#include "common/device/cuda_memory.h"
+#include "common/device/scene_storage.h"
+#include "common/device/stage_clock.h"
+#include "common/film/film.h"
+#include "common/render/dispatch.h"
+#include "common/render/renderer.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+struct CurandState;
+
+class CudaRenderer : public Renderer {
+ public:
+  /// Throws Error when the scene, the film or the options do not fit the device.
+  CudaRenderer(const Options& options, const SceneData& scene, int device);
+  ~CudaRenderer() override;
+
+  RenderRun render(const RenderHooks& hooks) override;
+  Image image() override;
+  void describe(RenderReport& report) const override;
+
+ protected:
+  /// Makes everything that a batch needs and that is no part of its time (graphs, for example).
+  virtual void prepare_batch(const SampleBuffer& /*batch*/) {}
+  /// Enqueues the kernels that trace the batch on stream().
+  virtual void trace_batch(const SampleBuffer& batch) = 0;
+  /// Waves run since the last call; 0 in modes without waves.
+  virtual std::uint64_t take_wave_count() { return 0; }
+
+  /// Launches a kernel on stream() inside an NVTX range of its name and notes its resources.
+  /// Throws Error when the device cannot run a block of this size.
+  template <class... Parameters, class... Arguments>
+  void launch(const char* name, void (*kernel)(Parameters...), dim3 grid, dim3 block,
+              std::size_t shared_bytes, const Arguments&... arguments) {
+    launch_erased(name, reinterpret_cast<const void*>(kernel), grid, block, shared_bytes,
+                  Pack<Parameters...>(arguments...).pointers());
+  }
+
+  /// Blocks of `kernel` that the device holds at once.
+  std::uint32_t resident_blocks(const void* kernel, int block_threads, std::size_t shared_bytes);
+
+  /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres.
+  template <class Function>
+  void with_scene_storage(Function&& function) const {
+    if (options_.scene_memory == SceneMemory::shared) {
+      function(SceneStorage<SceneMemory::shared>{scene_}, host_spheres_.size() * sizeof(Sphere));
+    } else if (options_.scene_memory == SceneMemory::constant) {
+      SceneStorage<SceneMemory::constant> storage{scene_, {}};
+      std::copy(host_spheres_.begin(), host_spheres_.end(), storage.spheres);
+      function(storage, std::size_t{0});
+    } else {
+      function(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
+    }
+  }
+
+  /// Calls function(source) with the options' random source.
+  template <class Function>
+  void with_random_source(Function&& function) const {
+    if (options_.rng == RngKind::philox) {
+      function(PhiloxSource{options_.seed});
+    } else {
+      function(XorwowSource<CurandState>{states_});
+    }
+  }
+
+  cudaStream_t stream() const { return stream_; }
+  StageClock* clock() const { return clock_; }
+
+  const Options options_;
+  const SceneTraits traits_;
+  Scene scene_;  ///< a view of device memory
+  CudaMemory memory_;
+  cudaDeviceProp properties_{};
+  std::uint64_t pool_size_ = 0;
+  std::string schedule_;
+
+ private:
+  void upload(const SceneData& scene);
+  void allocate_film();
+  /// The arguments of a launch, converted to the kernel's parameters and listed by address.
+  template <class... Parameters>
+  class Pack {
+   public:
+    template <class... Arguments>
+    explicit Pack(const Arguments&... arguments) : values_(arguments...) {}
+    void** pointers() {
+      std::apply([this](auto&... value) { pointers_ = {const_cast<void*>(static_cast<const void*>(&value))...}; },
+                 values_);
+      return pointers_.data();
+    }
+
+   private:
+    std::tuple<std::remove_cv_t<Parameters>...> values_;
+    std::array<void*, sizeof...(Parameters)> pointers_{};
+  };
+
+  void launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
+                     std::size_t shared_bytes, void** arguments);
+  void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
+  void render_batch(const SampleBuffer& batch, RenderRun& run);
+  void read_clock(RenderRun& run);
+
+  int device_;
+  std::string driver_;
+  std::uint64_t primitive_count_;
+  std::vector<Sphere> host_spheres_;
+  int batch_samples_ = 1;
+  cudaStream_t stream_ = nullptr;
+  cudaEvent_t start_ = nullptr, stop_ = nullptr;
+  Sample* samples_ = nullptr;
+  FilmPixel* film_ = nullptr;
+  PathTally* tally_ = nullptr;
+  CurandState* states_ = nullptr;
+  StageClock* clock_ = nullptr;
+  std::vector<KernelInfo> kernels_;
+  std::vector<const void*> kernel_pointers_;
+  double setup_ms_ = 0;
+  double transfer_ms_ = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,249 @@
+#include <fmt/format.h>
+#include <nvtx3/nvToolsExt.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "common/device/cuda_renderer.h"
+#include "common/device/film_kernels.h"
+#include "common/error.h"
+#include "common/film/develop.h"
+#include "common/render/batches.h"
+
+namespace pt {
+namespace {
+
+// One batch takes a tenth of a second at most, and 2 GiB for its samples.
+constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
+
+constexpr double mib = 1024.0 * 1024.0;
+
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+        .count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+const char* const clock_names[clock_count] = {
+    "generate", "intersect",  "shade_miss", "shade_surface", "shadow", "accumulate",
+    "compact",  "begin_wave", "megakernel", "render_init",   "idle"};
+
+}  // namespace
+
+CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
+    : options_(options),
+      traits_(scene.traits()),
+      device_(device),
+      primitive_count_(scene.primitive_count()),
+      host_spheres_(scene.spheres) {
+  const Stopwatch watch;
+  check_cuda(cudaSetDevice(device), "cudaSetDevice");
+  check_cuda(cudaGetDeviceProperties(&properties_, device), "cudaGetDeviceProperties");
+  int driver = 0, runtime = 0;
+  check_cuda(cudaDriverGetVersion(&driver), "cudaDriverGetVersion");
+  check_cuda(cudaRuntimeGetVersion(&runtime), "cudaRuntimeGetVersion");
+  driver_ = fmt::format("CUDA driver {}.{}, runtime {}.{}", driver / 1000, driver % 1000 / 10,
+                        runtime / 1000, runtime % 1000 / 10);
+  check_cuda(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate");
+  check_cuda(cudaEventCreate(&start_), "cudaEventCreate");
+  check_cuda(cudaEventCreate(&stop_), "cudaEventCreate");
+  const Stopwatch transfer;
+  upload(scene);
+  transfer_ms_ = transfer.ms();
+  allocate_film();
+  setup_ms_ = watch.ms() - transfer_ms_;
+}
+
+CudaRenderer::~CudaRenderer() {
+  cudaEventDestroy(start_);
+  cudaEventDestroy(stop_);
+  cudaStreamDestroy(stream_);
+}
+
+void CudaRenderer::upload(const SceneData& scene) {
+  const std::size_t sphere_bytes = scene.spheres.size() * sizeof(Sphere);
+  if (options_.scene_memory == SceneMemory::constant &&
+      scene.spheres.size() > constant_spheres_max) {
+    throw Error(fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
+                            "parameters hold at most {}",
+                            scene.spheres.size(), constant_spheres_max));
+  }
+  if (options_.scene_memory == SceneMemory::shared &&
+      sphere_bytes > properties_.sharedMemPerBlockOptin) {
+    throw Error(fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
+                            "of this device has at most {}",
+                            scene.spheres.size(), sphere_bytes,
+                            properties_.sharedMemPerBlockOptin));
+  }
+  scene_ = host_view(scene, options_.width, options_.height);
+  scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
+  scene_.primitives.quads = memory_.upload("scene", scene.quads);
+  scene_.materials = memory_.upload("scene", scene.materials);
+  scene_.material_of = memory_.upload("scene", scene.material_of);
+  scene_.lights = memory_.upload("scene", scene.lights);
+  scene_.bvh_nodes = memory_.upload("acceleration structure", scene.bvh_nodes);
+}
+
+void CudaRenderer::allocate_film() {
+  const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
+  const std::uint64_t bytes_per_path =
+      sizeof(Sample) + (options_.rng == RngKind::xorwow ? random_state_bytes() : 0);
+  const std::uint64_t least = pixels * (sizeof(FilmPixel) + bytes_per_path);
+  const std::uint64_t free = CudaMemory::free_bytes();
+  if (least > free || pixels > 0x7fffffffu) {
+    throw Error(fmt::format("not enough device memory: an image of {} x {} pixels needs {:.0f} MiB, "
+                            "{:.0f} MiB are free",
+                            options_.width, options_.height, static_cast<double>(least) / mib,
+                            static_cast<double>(free) / mib));
+  }
+  // Half of what is free is left to the path pool and to others.
+  const std::uint64_t room = std::max(free / 2, least) - pixels * sizeof(FilmPixel);
+  batch_samples_ =
+      batch_samples(options_.spp, pixels, std::min(batch_paths_max, room / bytes_per_path));
+  const std::uint64_t paths = pixels * static_cast<std::uint64_t>(batch_samples_);
+  film_ = memory_.allocate<FilmPixel>("film", pixels);
+  samples_ = memory_.allocate<Sample>("samples", paths);
+  if (options_.rng == RngKind::xorwow) {
+    states_ = reinterpret_cast<CurandState*>(
+        memory_.allocate<char>("random states", paths * random_state_bytes()));
+  }
+  tally_ = memory_.allocate<PathTally>("counters", 1);
+  clock_ = memory_.allocate<StageClock>("counters", 1);
+  check_cuda(cudaMemset(film_, 0, pixels * sizeof(FilmPixel)), "cudaMemset");
+  check_cuda(cudaMemset(tally_, 0, sizeof(PathTally)), "cudaMemset");
+}
+
+std::uint32_t CudaRenderer::resident_blocks(const void* kernel, int block_threads,
+                                            std::size_t shared_bytes) {
+  int per_multiprocessor = 0;
+  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel,
+                                                           block_threads, shared_bytes),
+             "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  return static_cast<std::uint32_t>(std::max(per_multiprocessor, 1) *
+                                    properties_.multiProcessorCount);
+}
+
+void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
+                               std::size_t shared_bytes) {
+  cudaFuncAttributes attributes{};
+  check_cuda(cudaFuncGetAttributes(&attributes, kernel), name);
+  const int threads = static_cast<int>(block.x * block.y * block.z);
+  if (threads > attributes.maxThreadsPerBlock) {
+    throw Error(fmt::format("kernel {} uses {} registers per thread: a block has at most {} threads, "
+                            "{} were asked for (--block, --stage-block)",
+                            name, attributes.numRegs, attributes.maxThreadsPerBlock, threads));
+  }
+  if (shared_bytes > 48 * 1024) {
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                    static_cast<int>(shared_bytes)),
+               name);
+  }
+  const std::uint32_t resident = resident_blocks(kernel, threads, shared_bytes);
+  const int warps = (threads + 31) / 32 * static_cast<int>(resident);
+  const int room =
+      properties_.multiProcessorCount * (properties_.maxThreadsPerMultiProcessor / 32);
+  kernel_pointers_.push_back(kernel);
+  kernels_.push_back({name, attributes.numRegs, attributes.localSizeBytes,
+                      attributes.sharedSizeBytes + shared_bytes, threads,
+                      static_cast<double>(warps) / room});
+}
+
+void CudaRenderer::launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
+                                 std::size_t shared_bytes, void** arguments) {
+  if (std::find(kernel_pointers_.begin(), kernel_pointers_.end(), kernel) ==
+      kernel_pointers_.end()) {
+    note_kernel(name, kernel, block, shared_bytes);
+  }
+  nvtxRangePushA(name);
+  const cudaError_t status =
+      cudaLaunchKernel(kernel, grid, block, arguments, shared_bytes, stream_);
+  nvtxRangePop();
+  check_cuda(status, name);
+}
+
+void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+  constexpr int block = 256;
+  prepare_batch(batch);
+  check_cuda(cudaEventRecord(start_, stream_), "cudaEventRecord");
+  launch("start_clock", start_clock, 1, 1, 0, clock_);
+  if (options_.rng == RngKind::xorwow) {
+    launch("render_init", render_init, (batch.path_count + block - 1) / block, block, 0, states_,
+           batch, options_.seed, clock_);
+  }
+  trace_batch(batch);
+  const int accumulate_block = options_.stage_block[static_cast<int>(StageId::accumulate)];
+  launch("accumulate", accumulate_film,
+         (batch.pixel_count.divisor() + accumulate_block - 1) / accumulate_block, accumulate_block,
+         0, film_, batch, tally_, clock_);
+  launch("stop_clock", stop_clock, 1, 1, 0, clock_);
+  check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");
+  check_cuda(cudaEventSynchronize(stop_), "rendering a batch");
+  float elapsed_ms = 0;
+  check_cuda(cudaEventElapsedTime(&elapsed_ms, start_, stop_), "cudaEventElapsedTime");
+  run.kernel_ms += elapsed_ms;
+}
+
+RenderRun CudaRenderer::render(const RenderHooks& hooks) {
+  check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+  const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
+  check_cuda(cudaMemsetAsync(film_, 0, pixels * sizeof(FilmPixel), stream_), "cudaMemset");
+  check_cuda(cudaMemsetAsync(tally_, 0, sizeof(PathTally), stream_), "cudaMemset");
+  check_cuda(cudaMemsetAsync(clock_, 0, sizeof(StageClock), stream_), "cudaMemset");
+  SampleBuffer batch;
+  batch.samples = samples_;
+  batch.width = FastDivider(static_cast<std::uint32_t>(options_.width));
+  batch.pixel_count = FastDivider(static_cast<std::uint32_t>(pixels));
+  RenderRun run;
+  run.samples_done = for_each_batch(options_.spp, batch_samples_, pixels, hooks,
+                                    [&](int first_sample, int samples) {
+                                      batch.first_sample = static_cast<std::uint32_t>(first_sample);
+                                      batch.path_count = static_cast<std::uint32_t>(pixels) * samples;
+                                      render_batch(batch, run);
+                                    });
+  run.waves = take_wave_count();
+  read_clock(run);
+  return run;
+}
+
+void CudaRenderer::read_clock(RenderRun& run) {
+  StageClock clock;
+  check_cuda(cudaMemcpy(&clock, clock_, sizeof clock, cudaMemcpyDeviceToHost), "cudaMemcpy");
+  for (int i = 0; i < static_cast<int>(ClockId::idle); ++i) {
+    if (clock.launches[i] == 0) continue;
+    run.stages.push_back(
+        {clock_names[i], static_cast<double>(clock.time_ns[i]) * 1e-6, clock.launches[i]});
+  }
+}
+
+Image CudaRenderer::image() {
+  const Stopwatch transfer;
+  std::vector<FilmPixel> film(std::uint64_t(options_.width) * std::uint64_t(options_.height));
+  check_cuda(cudaMemcpy(film.data(), film_, film.size() * sizeof(FilmPixel), cudaMemcpyDeviceToHost),
+             "downloading the image");
+  transfer_ms_ += transfer.ms();
+  return develop(film, options_.width, options_.height);
+}
+
+void CudaRenderer::describe(RenderReport& report) const {
+  PathTally tally;
+  check_cuda(cudaMemcpy(&tally, tally_, sizeof tally, cudaMemcpyDeviceToHost), "cudaMemcpy");
+  report.device_kind = "cuda";
+  report.device_name = properties_.name;
+  report.driver = driver_;
+  report.accel = traits_.accel == Accel::brute ? "brute" : "bvh2";
+  report.schedule = schedule_;
+  report.pool_size = pool_size_;
+  report.primitives = primitive_count_;
+  report.setup_ms = setup_ms_;
+  report.transfer_ms = transfer_ms_;
+  report.counts = summarize(tally);
+  report.memory = memory_.buffers();
+  report.kernels = kernels_;
+}
+
+}  // namespace pt

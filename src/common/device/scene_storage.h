@@ -1,0 +1,44 @@
+// Where the spheres lie while a kernel tests them: the paper's question about shared memory.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "common/render/options.h"
+#include "common/scene/scene.h"
+
+namespace pt {
+
+/// A kernel's parameters may take 32,764 bytes (CUDA 12.1 and later, compute capability 7.0); half
+/// of it is enough for the paper's scenes and keeps launches short.
+inline constexpr std::uint32_t constant_spheres_max = 1024;
+
+/// The scene as a kernel parameter. bind() gives the view that the kernel works with; all threads
+/// of a block call it together.
+template <SceneMemory memory>
+struct SceneStorage;
+
+template <>
+struct SceneStorage<SceneMemory::global> {
+  static constexpr SceneMemory memory = SceneMemory::global;
+  Scene scene;
+  __device__ Scene bind() const;
+};
+
+template <>
+struct SceneStorage<SceneMemory::shared> {
+  static constexpr SceneMemory memory = SceneMemory::shared;
+  Scene scene;  // the kernel is launched with room for all spheres
+
+  __device__ Scene bind() const;
+};
+
+template <>
+struct SceneStorage<SceneMemory::constant> {
+  static constexpr SceneMemory memory = SceneMemory::constant;
+  Scene scene;
+  Sphere spheres[constant_spheres_max];  // in the constant bank, being a parameter
+
+  __device__ Scene bind() const;
+};
+
+}  // namespace pt

@@ -1,0 +1,71 @@
+// ptexp: one image, rendered in several ways that can be compared.
+#include <fmt/format.h>
+
+#include <cctype>
+#include <new>
+#include <stdexcept>
+
+#include "command_line.h"
+#include "common/build_info.h"
+#include "common/device/devices.h"
+#include "common/render/option_names.h"
+#include "common/scene/builtin_scenes.h"
+#include "compare_command.h"
+#include "render_command.h"
+
+namespace pt {
+namespace {
+
+int execute(const RenderCommand& command) { return render_command(command); }
+
+int execute(const CompareCommand& command) {
+  return compare_command(command.a, command.b, command.tolerance);
+}
+
+int execute(const ListScenesCommand&) {
+  for (const SceneInfo& scene : scene_list())
+    fmt::print("{:<10} {}\n", scene.name, scene.description);
+  return 0;
+}
+
+int execute(const ListDevicesCommand&) {
+  for (const DeviceInfo& device : list_devices())
+    fmt::print("{:<10} {} ({})\n", to_string(device.choice), device.name, device.detail);
+  return 0;
+}
+
+int execute(const VersionCommand&) {
+  const BuildInfo& build = build_info();
+  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\n", build.version, build.commit,
+             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "");
+  return 0;
+}
+
+int execute(const HelpCommand& command) {
+  fmt::print("{}", command.text);
+  return 0;
+}
+
+/// One line, whatever a file's name contains.
+int report_error(std::string message) {
+  for (char& c : message)
+    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
+  fmt::print(stderr, "ptexp: error: {}\n", message);
+  return 2;
+}
+
+}  // namespace
+}  // namespace pt
+
+int main(int argc, char** argv) {
+  try {
+    const auto command = pt::parse_command_line({argv + 1, argv + argc});
+    return std::visit([](const auto& one) { return pt::execute(one); }, command);
+  } catch (const std::bad_alloc&) {
+    return pt::report_error("not enough host memory for this scene and image size");
+  } catch (const std::length_error&) {  // a std::vector that no memory could hold
+    return pt::report_error("not enough host memory for this scene and image size");
+  } catch (const std::exception& error) {
+    return pt::report_error(error.what());
+  }
+}

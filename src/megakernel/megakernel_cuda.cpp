@@ -1,0 +1,33 @@
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "megakernel/megakernel.h"
+#include "megakernel/megakernel_cuda.h"
+
+namespace pt {
+
+MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, int device)
+    : CudaRenderer(options, scene, device) {
+  const std::int64_t threads = std::int64_t{options.block.x} * options.block.y;
+  if (threads > properties_.maxThreadsPerBlock) {
+    throw Error(fmt::format("--block {}x{}: {} threads; a block has at most {}", options.block.x,
+                            options.block.y, threads, properties_.maxThreadsPerBlock));
+  }
+  next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
+}
+
+void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
+  check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, stream()), "cudaMemsetAsync");
+  with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
+    with_random_source([&](const auto& source) {
+      launch_megakernel(storage, shared_bytes, source, batch);
+    });
+  });
+}
+
+std::unique_ptr<Renderer> make_megakernel_cuda(const Options& options, const SceneData& scene,
+                                               int device) {
+  return std::make_unique<MegakernelCuda>(options, scene, device);
+}
+
+}  // namespace pt

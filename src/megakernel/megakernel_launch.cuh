@@ -1,0 +1,40 @@
+// Definition of MegakernelCuda::launch_megakernel, for the files that instantiate it.
+#pragma once
+
+#include "common/device/curand_state.cuh"
+#include "megakernel/megakernel_cuda.h"
+#include "megakernel/megakernel_kernel.cuh"
+
+namespace pt {
+
+template <class Kernel>
+dim3 MegakernelCuda::grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes,
+                               std::uint32_t samples) {
+  if (options_.work == Work::persistent) {
+    return dim3(resident_blocks(reinterpret_cast<const void*>(kernel),
+                                static_cast<int>(block.x * block.y), shared_bytes));
+  }
+  return dim3((options_.width + block.x - 1) / block.x, (options_.height + block.y - 1) / block.y,
+              options_.work == Work::sample ? samples : 1);
+}
+
+template <SceneMemory memory, class Source>
+void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
+                                       std::size_t shared_bytes, const Source& source,
+                                       const SampleBuffer& batch) {
+  const dim3 block(options_.block.x, options_.block.y);
+  const std::uint32_t samples = batch.path_count / batch.pixel_count.divisor();
+  const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
+                              static_cast<std::uint32_t>(options_.height), samples, next_path_};
+  dispatch_traits(traits_, [&](auto traits) {
+    dispatch_branching(options_.branching, [&](auto branching) {
+      constexpr auto kernel =
+          megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
+      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, samples), block,
+             shared_bytes, storage, batch, division, source,
+             static_cast<std::uint32_t>(options_.max_depth), clock());
+    });
+  });
+}
+
+}  // namespace pt

@@ -1,0 +1,106 @@
+#include "render_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "common/device/devices.h"
+#include "common/film/atomic_file.h"
+#include "common/film/image_io.h"
+#include "common/render/csv_file.h"
+#include "common/render/option_names.h"
+#include "common/render/report.h"
+#include "interrupt.h"
+#include "make_renderer.h"
+#include "measure.h"
+#include "progress.h"
+
+namespace pt {
+namespace {
+
+constexpr int exit_interrupted = 130;  // what a shell reports for a program ended by SIGINT
+
+/// Runs `work` and returns its wall time.
+template <typename Work>
+double timed_ms(const Work& work) {
+  const double begin_s = Progress::steady_seconds();
+  work();
+  return 1e3 * (Progress::steady_seconds() - begin_s);
+}
+
+void check_outputs(const Options& options) {
+  check_image_path(options.output);
+  if (!options.stats_file.empty()) check_writable(options.stats_file);
+  if (!options.csv_file.empty()) check_csv(options.csv_file, report_csv_row(options, {}));
+}
+
+/// Finds a device for the options and says which.
+DeviceInfo find_device(const RenderCommand& command) {
+  using Kind = DeviceChoice::Kind;
+  const Options& options = command.options;
+  const bool is_serial = options.mode == Mode::serial;  // one CPU thread, GPU or not
+  const DeviceInfo device = choose_device(is_serial ? DeviceChoice{Kind::cpu, 0} : options.device);
+  check_applicable(options, command.given, device.choice.kind);
+  if (!options.quiet) {
+    fmt::print("device {}: {} ({})\n", to_string(device.choice), device.name, device.detail);
+    std::fflush(stdout);  // before the wait, even into a pipe
+  }
+  return device;
+}
+
+/// The image, then what there is to tell about it. CSV rows are for comparing: complete runs only.
+void write_outputs(const Options& options, const Image& image, RenderReport& report) {
+  const ToneMapping tone_mapping{options.exposure};
+  report.image_write_ms = timed_ms(
+      [&] { write_image(options.output, image, report_metadata(options, report), tone_mapping); });
+  if (!options.quiet) {
+    fmt::print("{}wrote {}\n", report_table(options, report), options.output);
+    std::fflush(stdout);
+  }
+  if (!options.stats_file.empty())
+    write_file_atomically(options.stats_file, report_json(options, report));
+  if (!options.csv_file.empty() && is_complete(options, report))
+    append_csv_row(options.csv_file, report_csv_row(options, report));
+}
+
+void say_interrupted(const Options& options, const Measurement& measurement, bool has_image) {
+  const std::string image = has_image
+                                ? fmt::format("image has {} of {} samples per pixel",
+                                              measurement.runs.back().samples_done, options.spp)
+                                : "no sample was finished, no image written";
+  fmt::print(stderr, "ptexp: interrupted: {}{}\n", image,
+             options.csv_file.empty() ? "" : "; no row appended to " + options.csv_file);
+}
+
+}  // namespace
+
+int render_command(const RenderCommand& command) {
+  check_outputs(command.options);
+  const DeviceInfo device = find_device(command);
+  Options options = command.options;
+  options.device = device.choice;  // what is reported is the device that was used
+  catch_interrupt();
+
+  RenderReport report;
+  std::optional<SceneData> scene;
+  report.scene_ms = timed_ms([&] { scene = make_scene_for(options, device); });
+  report.primitives = scene->primitive_count();
+  const std::unique_ptr<Renderer> renderer = make_renderer(options, *scene, device);
+
+  Progress progress(stderr, progress_style(stderr, options.quiet));
+  const Measurement measurement = measure(*renderer, options, progress, interrupted);
+  const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
+  if (has_image) {
+    const Image image = renderer->image();
+    renderer->describe(report);
+    report.runs = measurement.runs;
+    write_outputs(options, image, report);
+  }
+  if (!measurement.interrupted) return 0;
+  say_interrupted(options, measurement, has_image);
+  return exit_interrupted;
+}
+
+}  // namespace pt

@@ -1,0 +1,165 @@
+#include "wavefront/wavefront_cuda.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/error.h"
+
+namespace pt {
+namespace {
+
+// Found by measurement on an H200 (results/): large enough to hide the launches, small enough for
+// most of the pool to stay in the L2 cache.
+constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 20;
+
+// A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
+// ray find empty queues.
+constexpr int waves_per_turn = 2;
+
+constexpr double mib = 1024.0 * 1024.0;
+
+}  // namespace
+
+WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
+    : CudaRenderer(options, scene, device) {
+  schedule_ = options.schedule == Schedule::host ? "host" : "graph";
+  allocate_pool();
+  check_cuda(cudaMallocHost(reinterpret_cast<void**>(&host_counters_), sizeof *host_counters_),
+             "cudaMallocHost");
+}
+
+WavefrontCuda::~WavefrontCuda() {
+  destroy_graph();
+  cudaFreeHost(host_counters_);
+}
+
+void WavefrontCuda::allocate_pool() {
+  const bool lights = traits_.has_lights;
+  const std::uint64_t bytes_per_slot =
+      PathPool::bytes_per_slot(lights) + (lights ? 5 : 4) * sizeof(std::uint32_t);
+  const std::uint64_t free = CudaMemory::free_bytes();
+  const std::uint64_t image_paths = std::uint64_t(options_.width) * std::uint64_t(options_.height) *
+                                    static_cast<std::uint64_t>(options_.spp);
+  if (options_.pool_size == 0) {
+    // Never more than the image needs, and at most half of the free memory.
+    pool_size_ = std::min({auto_pool_size, image_paths, free / 2 / bytes_per_slot});
+  } else {
+    pool_size_ = options_.pool_size;
+  }
+  if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
+    throw Error(fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
+                            "{:.0f} MiB, {:.0f} MiB are free",
+                            pool_size_, static_cast<double>(pool_size_ * bytes_per_slot) / mib,
+                            static_cast<double>(free) / mib));
+  }
+  const std::uint64_t n = pool_size_;
+  PathPool& pool = buffers_.pool;
+  pool.slot_count = static_cast<std::uint32_t>(n);
+  pool.tag = memory_.allocate<PathTag>("path pool", n);
+  pool.origin = memory_.allocate<Record>("path pool", n);
+  pool.direction = memory_.allocate<Record>("path pool", n);
+  pool.throughput = memory_.allocate<Record>("path pool", n);
+  pool.hit = memory_.allocate<HitRecord>("path pool", n);
+  check_cuda(cudaMemset(pool.tag, static_cast<int>(PathTag::free), n), "cudaMemset");
+  for (auto* queue : {&buffers_.ray_queue, &buffers_.free_queue, &buffers_.surface_queue,
+                      &buffers_.miss_queue}) {
+    *queue = memory_.allocate<std::uint32_t>("queues", n);
+  }
+  if (lights) {
+    pool.bsdf_pdf = memory_.allocate<float>("path pool", n);
+    pool.shadow_tag = memory_.allocate<PathTag>("path pool", n);
+    pool.shadow_origin = memory_.allocate<Record>("path pool", n);
+    pool.shadow_direction = memory_.allocate<Record>("path pool", n);
+    pool.shadow_radiance = memory_.allocate<Record>("path pool", n);
+    check_cuda(cudaMemset(pool.shadow_tag, static_cast<int>(PathTag::free), n), "cudaMemset");
+    buffers_.shadow_queue = memory_.allocate<std::uint32_t>("queues", n);
+  }
+  buffers_.counters = memory_.allocate<WaveCounters>("counters", 1);
+  buffers_.slot_count =
+      memory_.upload("counters", std::vector<std::uint32_t>{static_cast<std::uint32_t>(n)});
+  compactor_ = std::make_unique<CudaCompactor>(options_.compaction, pool.slot_count, memory_);
+}
+
+void WavefrontCuda::compact(const CompactionRequest& request) {
+  compactor_->enqueue(request, clock(), stream());
+}
+
+void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
+  if (schedule_ != "graph") return;
+  if (graph_exec_ != nullptr && batch.first_sample == graph_first_sample_ &&
+      batch.path_count == graph_path_count_) {
+    return;
+  }
+  destroy_graph();
+  build_graph(batch);
+}
+
+// A graph whose only node is a WHILE loop; its body is a few waves, recorded from the stream.
+void WavefrontCuda::build_graph(const SampleBuffer& batch) {
+  check_cuda(cudaGraphCreate(&graph_, 0), "cudaGraphCreate");
+  cudaGraphConditionalHandle loop{};
+  check_cuda(cudaGraphConditionalHandleCreate(&loop, graph_, 1, cudaGraphCondAssignDefault),
+             "cudaGraphConditionalHandleCreate");
+  cudaGraphNodeParams parameters{};
+  parameters.type = cudaGraphNodeTypeConditional;
+  parameters.conditional.handle = loop;
+  parameters.conditional.type = cudaGraphCondTypeWhile;
+  parameters.conditional.size = 1;
+  cudaGraphNode_t node{};
+#if CUDART_VERSION >= 13000
+  check_cuda(cudaGraphAddNode(&node, graph_, nullptr, nullptr, 0, &parameters), "cudaGraphAddNode");
+#else
+  check_cuda(cudaGraphAddNode(&node, graph_, nullptr, 0, &parameters), "cudaGraphAddNode");
+#endif
+  const cudaGraph_t body = parameters.conditional.phGraph_out[0];
+  check_cuda(cudaStreamBeginCaptureToGraph(stream(), body, nullptr, nullptr, 0,
+                                           cudaStreamCaptureModeThreadLocal),
+             "cudaStreamBeginCaptureToGraph");
+  for (int i = 0; i < waves_per_turn; ++i) enqueue_wave(batch, loop);
+  cudaGraph_t captured{};
+  check_cuda(cudaStreamEndCapture(stream(), &captured), "cudaStreamEndCapture");
+  check_cuda(cudaGraphInstantiate(&graph_exec_, graph_, 0), "cudaGraphInstantiate");
+  check_cuda(cudaGraphUpload(graph_exec_, stream()), "cudaGraphUpload");
+  check_cuda(cudaStreamSynchronize(stream()), "cudaGraphUpload");
+  graph_first_sample_ = batch.first_sample;
+  graph_path_count_ = batch.path_count;
+}
+
+void WavefrontCuda::destroy_graph() {
+  if (graph_exec_ != nullptr) cudaGraphExecDestroy(graph_exec_);
+  if (graph_ != nullptr) cudaGraphDestroy(graph_);
+  graph_exec_ = nullptr;
+  graph_ = nullptr;
+}
+
+void WavefrontCuda::read_counters() {
+  check_cuda(cudaMemcpyAsync(host_counters_, buffers_.counters, sizeof(WaveCounters),
+                             cudaMemcpyDeviceToHost, stream()),
+             "reading the wave's counters");
+  check_cuda(cudaStreamSynchronize(stream()), "running a wave");
+}
+
+void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
+  check_cuda(cudaMemsetAsync(buffers_.counters, 0, sizeof(WaveCounters), stream()),
+             "cudaMemsetAsync");
+  if (graph_exec_ != nullptr) {
+    check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
+    read_counters();
+  } else {
+    do {
+      enqueue_wave(batch, 0);
+      read_counters();
+    } while (host_counters_->intersect > 0);
+  }
+  waves_ += host_counters_->waves;
+}
+
+std::uint64_t WavefrontCuda::take_wave_count() { return std::exchange(waves_, 0); }
+
+std::unique_ptr<Renderer> make_wavefront_cuda(const Options& options, const SceneData& scene,
+                                              int device) {
+  return std::make_unique<WavefrontCuda>(options, scene, device);
+}
+
+}  // namespace pt

@@ -1,0 +1,50 @@
+// The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
+#pragma once
+
+#include "common/device/cuda_renderer.h"
+#include "wavefront/compaction_cuda.h"
+#include "wavefront/wavefront.h"
+
+namespace pt {
+
+class WavefrontCuda : public CudaRenderer {
+ public:
+  WavefrontCuda(const Options& options, const SceneData& scene, int device);
+  ~WavefrontCuda() override;
+
+  /// Enqueues one wave on stream(). `loop`: the handle of the graph's loop, 0 outside of one.
+  void enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop);
+
+  // The Executor of run_wave (wavefront.h):
+  void compact(const CompactionRequest& request);
+  void begin_wave();
+  template <class Stage>
+  void run(const Stage& stage, const StageQueue& queue);
+
+ protected:
+  void prepare_batch(const SampleBuffer& batch) override;
+  void trace_batch(const SampleBuffer& batch) override;
+  std::uint64_t take_wave_count() override;
+
+ private:
+  template <class Source>
+  void enqueue_wave_with(const Source& source, const SampleBuffer& batch);
+  void allocate_pool();
+  void build_graph(const SampleBuffer& batch);
+  void destroy_graph();
+  void read_counters();
+
+  WaveBuffers buffers_;
+  std::unique_ptr<CudaCompactor> compactor_;
+  WaveCounters* host_counters_ = nullptr;  ///< pinned
+  std::uint64_t waves_ = 0;
+  // What the wave being enqueued belongs to:
+  std::uint32_t path_count_ = 0;
+  cudaGraphConditionalHandle loop_ = 0;
+  // The graph of the last batch: batches of the same place and size share it.
+  cudaGraph_t graph_ = nullptr;
+  cudaGraphExec_t graph_exec_ = nullptr;
+  std::uint32_t graph_first_sample_ = 0, graph_path_count_ = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,61 @@
+// One wave as kernel launches: the Executor of run_wave on CUDA.
+#include "common/device/curand_state.cuh"
+#include "wavefront/stage_kernel.cuh"
+#include "wavefront/wavefront_cuda.h"
+
+namespace pt {
+namespace {
+
+const char* const stage_names[stage_count] = {"generate",      "intersect", "shade_miss",
+                                              "shade_surface", "shadow",    "accumulate"};
+
+}  // namespace
+
+void WavefrontCuda::begin_wave() {
+  launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
+         options_.regenerate, loop_, clock());
+}
+
+template <class Stage>
+void WavefrontCuda::run(const Stage& stage, const StageQueue& queue) {
+  const int block = options_.stage_block[static_cast<int>(Stage::id)];
+  const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
+    using Storage = std::remove_cvref_t<decltype(storage)>;
+    constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
+    const std::uint32_t blocks =
+        (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
+    const std::uint32_t resident =
+        resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
+    launch(stage_names[static_cast<int>(Stage::id)], kernel, blocks < resident ? blocks : resident,
+           block, shared_bytes, storage, stage, queue, clock());
+  };
+  // Only the kernels that trace rays read the spheres again and again.
+  if constexpr (Stage::traces_rays) {
+    with_scene_storage(launch_with);
+  } else {
+    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
+  }
+}
+
+template <class Source>
+void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& batch) {
+  const bool use_queues = options_.compaction != Compaction::none;
+  const WaveContext<Source> wave{buffers_,
+                                 {buffers_.pool, batch, source, buffers_.counters,
+                                  use_queues ? buffers_.ray_queue : nullptr,
+                                  static_cast<std::uint32_t>(options_.max_depth)},
+                                 use_queues};
+  dispatch_traits(traits_, [&](auto traits) {
+    dispatch_branching(options_.branching, [&](auto branching) {
+      run_wave<decltype(traits), decltype(branching)::value>(*this, wave);
+    });
+  });
+}
+
+void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop) {
+  path_count_ = batch.path_count;
+  loop_ = loop;
+  with_random_source([&](const auto& source) { enqueue_wave_with(source, batch); });
+}
+
+}  // namespace pt

@@ -1,0 +1,183 @@
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "common/film/atomic_file.h"
+#include "temp_folder.h"
+
+namespace pt {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+mode_t permissions(const std::string& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0);
+  return status.st_mode & 0777;
+}
+
+/// While it lives, a file cannot grow past `bytes`: a disk that fills up in the middle of a write.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit old_{};
+};
+
+TEST(AtomicFile, WritesAndReplaces) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.json");
+  write_file_atomically(path, "first, and longer");
+  EXPECT_EQ(read_text(path), "first, and longer");
+  const std::string second("sec\0nd", 6);
+  write_file_atomically(path, second);
+  EXPECT_EQ(read_text(path), second);
+  EXPECT_EQ(folder.entries(), Names{"a.json"});
+}
+
+TEST(AtomicFile, FailureInTheMiddleKeepsTheOldFileAndLeavesNoTemporary) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.json");
+  write_file_atomically(path, "old");
+  {
+    const FileSizeLimit limit(1000);
+    expect_error([&] { write_file_atomically(path, std::string(5000, 'x')); }, path);
+    expect_error([&] { write_file_atomically(folder.file("new"), std::string(5000, 'x')); },
+                 "File too large");
+  }
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(folder.entries(), Names{"a.json"});
+}
+
+TEST(AtomicFile, TheOldFileIsWholeWhileItsReaderHasItOpen) {
+  const TempFolder folder;
+  const std::string path = folder.file("a");
+  write_file_atomically(path, "old");
+  std::ifstream reader(path);
+  write_file_atomically(path, "the successor");
+  std::string text;
+  reader >> text;
+  EXPECT_EQ(text, "old");
+}
+
+TEST(AtomicFile, PlacesThatCannotBeWritten) {
+  const TempFolder folder;
+  write_text(folder.file("plain"), "text");
+  fs::create_directory(folder.file("sub"));
+  const std::pair<std::string, std::string> cases[] = {
+      {folder.file("missing/a"), "the folder " + folder.file("missing") + " does not exist"},
+      {folder.file("sub"), "it is a folder"},
+      {folder.file("plain/a"), "Not a directory"},
+      {folder.file("sub/"), "it is a folder"},
+      {folder.file("none/"), "it names no file"},
+      {folder.file(std::string(300, 'n')), "File name too long"},
+      {"", "it names no file"},
+  };
+  for (const auto& [path, reason] : cases) {
+    expect_error([&, &p = path] { check_writable(p); }, "cannot write " + path + ": " + reason);
+    expect_error([&, &p = path] { write_file_atomically(p, "x"); }, reason);
+  }
+  EXPECT_EQ(folder.entries(), (Names{"plain", "sub"}));
+  EXPECT_EQ(read_text(folder.file("plain")), "text");
+}
+
+TEST(AtomicFile, CheckTouchesNothing) {
+  const TempFolder folder;
+  const std::string path = folder.file("a");
+  check_writable(path);
+  EXPECT_EQ(folder.entries(), Names{});
+  write_text(path, "old");
+  const auto before = fs::last_write_time(path);
+  check_writable(path);
+  EXPECT_EQ(read_text(path), "old");
+  EXPECT_EQ(fs::last_write_time(path), before);
+  EXPECT_EQ(folder.entries(), Names{"a"});
+}
+
+TEST(AtomicFile, PermissionsFollowTheUmaskOrTheReplacedFile) {
+  const TempFolder folder;
+  const mode_t old_mask = ::umask(027);
+  write_file_atomically(folder.file("new"), "x");
+  ::umask(old_mask);
+  EXPECT_EQ(permissions(folder.file("new")), 0640u);
+
+  ASSERT_EQ(::chmod(folder.file("new").c_str(), 0604), 0);
+  write_file_atomically(folder.file("new"), "y");
+  EXPECT_EQ(permissions(folder.file("new")), 0604u);
+}
+
+TEST(AtomicFile, WriteProtectionHolds) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  const TempFolder folder;
+  const std::string path = folder.file("a");
+  write_text(path, "old");
+  ASSERT_EQ(::chmod(path.c_str(), 0444), 0);
+  expect_error([&] { write_file_atomically(path, "x"); }, "Permission denied");
+  EXPECT_EQ(read_text(path), "old");
+}
+
+TEST(AtomicFile, ALinkStaysALink) {
+  const TempFolder folder;
+  fs::create_directory(folder.file("sub"));
+  write_text(folder.file("sub/target"), "old");
+  fs::create_symlink("sub/target", folder.file("link"));
+  write_file_atomically(folder.file("link"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder.file("link")));
+  EXPECT_EQ(read_text(folder.file("sub/target")), "new");
+}
+
+// With pipes and devices of our own: a mistake here, run as root, would replace those in /dev.
+TEST(AtomicFile, APipeIsWrittenDirectlyAndSurvives) {
+  const TempFolder folder;
+  const std::string path = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  check_writable(path);
+  write_file_atomically(path, "through");
+  char text[16] = "";
+  EXPECT_EQ(::read(reader, text, sizeof text), 7);
+  ::close(reader);
+  EXPECT_STREQ(text, "through");
+  EXPECT_TRUE(fs::is_fifo(path));
+  EXPECT_EQ(folder.entries(), Names{"pipe"});
+}
+
+TEST(AtomicFile, AFullDeviceIsAnError) {
+  const TempFolder folder;
+  const std::string path = folder.file("full");
+  if (::mknod(path.c_str(), S_IFCHR | 0600, makedev(1, 7)) != 0 || !std::ofstream(path)) {
+    GTEST_SKIP() << "only root may make devices";
+  }
+  expect_error([&] { write_file_atomically(path, "x"); }, path + ": No space left on device");
+  EXPECT_TRUE(fs::is_character_file(path));
+}
+
+TEST(AtomicFile, ANameInTheCurrentFolder) {
+  const TempFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.file(""));
+  write_file_atomically("a", "here");
+  fs::current_path(before);
+  EXPECT_EQ(read_text(folder.file("a")), "here");
+}
+
+}  // namespace
+}  // namespace pt
