@@ -15,21 +15,20 @@ namespace {
 class PathRange {
  public:
   /// Every `step`-th path of [first, end).
-  PathRange(const SampleBuffer& batch, std::uint32_t first, std::uint32_t end, std::uint32_t step)
-      : batch_(batch), next_(first), end_(end), step_(step) {}
+  PathRange(std::uint32_t first, std::uint32_t end, std::uint32_t step)
+      : next_(first), end_(end), step_(step) {}
 
   bool any(bool value) const { return value; }
 
-  bool next(PathState& path, bool wanted) {
+  bool next(std::uint32_t& number, bool wanted) {
     if (!wanted) return true;
     if (next_ >= end_) return false;
-    path = batch_.begin_path(next_);
+    number = next_;
     next_ = end_ - next_ > step_ ? next_ + step_ : end_;
     return true;
   }
 
  private:
-  const SampleBuffer& batch_;
   std::uint32_t next_, end_, step_;
 };
 
@@ -45,7 +44,7 @@ class MegakernelCpu : public CpuRenderer {
         dispatch_branching(options_.branching, [&](auto branching) {
           timer_.time("megakernel", [&] {
             divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
-              PathRange work(batch, first, end, step);
+              PathRange work(first, end, step);
               trace_paths<decltype(traits), branching()>(
                   scene_, source, batch, static_cast<std::uint32_t>(options_.max_depth), work);
             });

@@ -11,8 +11,7 @@ namespace pt {
 struct WorkDivision {
   Work work;
   std::uint32_t width, height;
-  std::uint32_t samples;      ///< in the batch
-  std::uint32_t* next_path;   ///< persistent: paths handed out so far
+  std::uint32_t* next_path;  ///< persistent: paths handed out so far
 };
 
 /// Paths that a persistent warp fetches at once: few atomic operations, and an even end.
@@ -28,54 +27,52 @@ class ThreadWork {
     // sample: the third dimension of the grid is the sample.
     const std::uint32_t x = blockIdx.x * blockDim.x + threadIdx.x;
     const std::uint32_t y = blockIdx.y * blockDim.y + threadIdx.y;
-    pixel_ = pack_pixel(x, y);
-    const bool inside = x < division.width && y < division.height;
-    next_ = division.work == Work::sample ? blockIdx.z : 0;
-    end_ = !inside ? 0 : division.work == Work::sample ? blockIdx.z + 1 : division.samples;
+    if (x >= division.width || y >= division.height) return;
+    const bool one = division.work == Work::sample;
+    next_ = batch.number_of(x, y, one ? blockIdx.z : 0);
+    end_ = one ? next_ + 1 : batch.path_count;
   }
 
   __device__ bool any(bool value) const { return __any_sync(warp_, value); }
 
-  __device__ bool next(PathState& path, bool wanted) {
-    if (division_.work == Work::persistent) return fetch(path, wanted);
+  __device__ bool next(std::uint32_t& number, bool wanted) {
+    if (division_.work == Work::persistent) return fetch(number, wanted);
     if (!wanted) return true;
     if (next_ >= end_) return false;
-    path = PathState{};
-    path.pixel = pixel_;
-    path.sample = next_++;
+    number = next_;
+    next_ += batch_.pixel_count.divisor();
     return true;
   }
 
  private:
-  /// The warp owns the paths [next_, end_), the same in all of its threads; when they run out in the
-  /// middle of a request, one of them fetches more for all.
-  __device__ bool fetch(PathState& path, bool wanted) {
+  /// The warp owns the paths [next_, end_), the same in all of its threads; when they run out in
+  /// the middle of a request, one of them fetches more for all.
+  __device__ bool fetch(std::uint32_t& number, bool wanted) {
     const std::uint32_t asking = __ballot_sync(warp_, wanted);
     const std::uint32_t lane = (threadIdx.y * blockDim.x + threadIdx.x) & 31;
     const std::uint32_t rank = __popc(asking & ((1u << lane) - 1));
     const std::uint32_t count = __popc(asking);
     const std::uint32_t left = end_ - next_;
-    std::uint32_t number = next_ + rank;
+    std::uint32_t fetched = next_ + rank;
     next_ += count;
     if (count > left) {
       const int leader = __ffs(warp_) - 1;
       std::uint32_t first = 0;
       if (lane == leader) first = atomicAdd(division_.next_path, fetch_size);
       first = __shfl_sync(warp_, first, leader);
-      if (rank >= left) number = first + (rank - left);
+      if (rank >= left) fetched = first + (rank - left);
       next_ = first + (count - left);
       end_ = first + fetch_size;
     }
     if (!wanted) return true;
-    if (number >= batch_.path_count) return false;
-    path = batch_.begin_path(number);
+    if (fetched >= batch_.path_count) return false;
+    number = fetched;
     return true;
   }
 
   const WorkDivision& division_;
   const SampleBuffer& batch_;
   std::uint32_t warp_;  ///< the threads of this warp
-  std::uint32_t pixel_ = 0;
   std::uint32_t next_ = 0, end_ = 0;
 };
 

@@ -23,15 +23,14 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        std::size_t shared_bytes, const Source& source,
                                        const SampleBuffer& batch) {
   const dim3 block(options_.block.x, options_.block.y);
-  const std::uint32_t samples = batch.path_count / batch.pixel_count.divisor();
   const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
-                              static_cast<std::uint32_t>(options_.height), samples, next_path_};
+                              static_cast<std::uint32_t>(options_.height), next_path_};
   dispatch_traits(traits_, [&](auto traits) {
     dispatch_branching(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
-      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, samples), block,
-             shared_bytes, storage, batch, division, source,
+      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch.sample_count),
+             block, shared_bytes, storage, batch, division, source,
              static_cast<std::uint32_t>(options_.max_depth), clock());
     });
   });

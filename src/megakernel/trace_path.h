@@ -8,20 +8,21 @@
 namespace pt {
 
 /// Traces paths until `work` has no more. A thread whose path ends takes the next one at once and
-/// does not wait for the other paths of its warp, so the loop turns once per ray, not per path: each
-/// turn draws the numbers that decide the ray, then makes it (at the camera or at the last hit), then
-/// traces it. The parts that every thread needs, the draw and the intersection, are executed
-/// together whatever each path's length.
+/// does not wait for the other paths of its warp, so the loop turns once per ray, not per path:
+/// each turn draws the numbers that decide the ray, then makes it (at the camera or at the last
+/// hit), then traces it. The parts that every thread needs, the draw and the intersection, are
+/// executed together whatever each path's length.
 ///
-/// `Work` gives paths away: `bool next(PathState& path, bool wanted)` is called by all threads of a
-/// warp together; where `wanted`, it fills in a new path or returns false; elsewhere it returns true.
-/// `bool any(bool)` is true when the argument is true for any thread of the warp.
+/// `Work` gives paths away: `bool next(std::uint32_t& number, bool wanted)` is called by all
+/// threads of a warp together; where `wanted`, it names a new path or returns false; elsewhere it
+/// returns true. `bool any(bool)` is true when the argument is true for any thread of the warp.
 template <class Traits, Branching branching, class Source, class Work>
 PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
                        std::uint32_t max_depth, Work& work) {
   PathState path;
-  bool working = work.next(path, true);
-  typename Source::Stream random = source.open(samples.id_of(path));
+  bool working = work.next(path.number, true);
+  PathId id = samples.id_of(path.number);
+  typename Source::Stream random = source.open(id);
   Color radiance(0.0f);
   Ray ray;
   Hit hit;
@@ -30,7 +31,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
     if (working) {
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
-        ray = generate_camera_path(scene, path, u);
+        ray = generate_camera_path(scene, id.pixel, u);
       } else {
         const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
         const Scattering scattering =
@@ -51,17 +52,21 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         hit = intersect_closest<Traits::accel>(scene, ray);
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          radiance = add_rounded(radiance, shade_miss(scene, ray, path));
+          radiance = add_rounded(radiance, shade_miss(scene, ray.direction, path));
           ended = true;
         }
       }
       if (ended) samples.store(path, radiance);
     }
     if (work.any(ended)) {
-      const bool has_path = work.next(path, ended);
+      std::uint32_t number = path.number;
+      const bool has_path = work.next(number, ended);
       if (ended) {
         working = has_path;
-        random = source.open(samples.id_of(path));
+        path = PathState{};
+        path.number = number;
+        id = samples.id_of(number);
+        random = source.open(id);
         radiance = Color(0.0f);
       }
     }

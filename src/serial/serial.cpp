@@ -10,13 +10,14 @@ namespace {
 
 /// One path from the camera to its end: the whole algorithm, in the order of the textbooks.
 template <class Traits, class Stream>
-Color trace_path(const Scene& scene, PathState& path, Stream& random, std::uint32_t max_depth) {
+Color trace_path(const Scene& scene, std::uint32_t pixel, PathState& path, Stream& random,
+                 std::uint32_t max_depth) {
   Color radiance(0.0f);
-  Ray ray = generate_camera_path(scene, path, random.draw(scatter_block(0)));
+  Ray ray = generate_camera_path(scene, pixel, random.draw(scatter_block(0)));
   for (;;) {
     const Hit hit = intersect_closest<Traits::accel>(scene, ray);
     ++path.rays;
-    if (hit.is_miss()) return add_rounded(radiance, shade_miss(scene, ray, path));
+    if (hit.is_miss()) return add_rounded(radiance, shade_miss(scene, ray.direction, path));
 
     const Vec4 u = random.draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
@@ -48,9 +49,11 @@ class SerialRenderer : public CpuRenderer {
   template <class Traits, class Source>
   void trace_all(const Source& source, const SampleBuffer& batch) {
     for (std::uint32_t i = 0; i < batch.path_count; ++i) {
-      PathState path = batch.begin_path(i);
-      auto random = source.open(batch.id_of(path));
-      const Color radiance = trace_path<Traits>(scene_, path, random,
+      const PathId id = batch.id_of(i);
+      PathState path;
+      path.number = i;
+      auto random = source.open(id);
+      const Color radiance = trace_path<Traits>(scene_, id.pixel, path, random,
                                                 static_cast<std::uint32_t>(options_.max_depth));
       batch.store(path, radiance);
     }

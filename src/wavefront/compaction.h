@@ -1,11 +1,14 @@
-// Compaction: gathers the slots that wait for a stage into that stage's queue.
+// Compaction: every stage finds the slots that wait for it in a queue. Three ways to fill the
+// queues:
 //
-// Contract of every strategy, on every device: after compact(request), queue c (c = 0, 1) holds in
-// its first counts[c] places exactly the slots whose tag is wanted[c], each once; nothing else is
-// written. The order is
-//   cub     ascending slots
-//   atomic  any order
-//   none    no queue is written: counts[c] is right, and a stage looks at every slot's tag.
+//   cub     stages write tags; a pass over all tags gathers each queue, in ascending order of slots
+//           (CUB's DevicePartition on CUDA, a parallel scan on the CPU)
+//   atomic  no pass: a stage that has finished a slot appends it to its next queue, a block of
+//           threads reserving its places with one atomic addition; the order is that of arrival
+//   none    no queues: stages look at every slot's tag; a pass only counts
+//
+// Contract of all: a queue holds exactly the slots that wait for its stage, each once, and its
+// count is right; nothing else is written.
 #pragma once
 
 #include <string>
@@ -16,14 +19,17 @@
 
 namespace pt {
 
+/// A pass over the tags, for the strategies that make one.
 struct CompactionRequest {
   const PathTag* tags = nullptr;  ///< [slot_count]
   std::uint32_t slot_count = 0;
-  PathTag wanted[2] = {};              ///< two different tags
-  std::uint32_t* queues[2] = {};       ///< [capacity] each; may be null with Compaction::none
-  std::uint32_t capacity = 0;          ///< of each queue, at least slot_count
-  std::uint32_t* counts = nullptr;     ///< [2]; need not be zero before
+  PathTag wanted[2] = {};           ///< two different tags
+  std::uint32_t* queues[2] = {};    ///< [capacity] each; not written with Compaction::none
+  std::uint32_t capacity = 0;       ///< of each queue, at least slot_count
+  std::uint32_t* counts = nullptr;  ///< [2]: how many slots have wanted[c]
 };
+
+inline bool appends_in_stages(Compaction strategy) { return strategy == Compaction::atomic; }
 
 /// Throws Error when a queue could overflow or the request cannot be served.
 inline void check_request(const CompactionRequest& request) {
@@ -40,7 +46,7 @@ inline void check_request(const CompactionRequest& request) {
   }
 }
 
-/// Runs one request on the calling thread's oneTBB arena.
+/// Runs one request on the calling thread's oneTBB arena. Not for Compaction::atomic.
 void compact_cpu(Compaction strategy, const CompactionRequest& request);
 
 }  // namespace pt

@@ -1,6 +1,8 @@
-#include <cub/device/device_partition.cuh>
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/discard_iterator.h>
+
+#include <algorithm>
+#include <cub/device/device_partition.cuh>
 
 #include "common/device/cuda_check.h"
 #include "common/device/stage_stamp.cuh"
@@ -10,9 +12,6 @@ namespace pt {
 namespace {
 
 constexpr int block_threads = 256;
-constexpr int warps = block_threads / 32;
-constexpr int items = 8;  // slots per thread
-constexpr std::uint32_t tile = block_threads * items;
 
 /// CUB's question for each slot. Being asked about slot 0 is also how the clock learns that the
 /// compaction has begun: CUB's kernels are not ours to change.
@@ -37,74 +36,31 @@ cudaError_t partition(void* storage, std::size_t& storage_bytes, const Compactio
       HasTag{request.tags, request.wanted[1], nullptr}, stream);
 }
 
-/// A block gathers a tile of slots: each warp votes 32 slots at a time, the block adds up its votes
-/// and reserves its places in both queues with one atomic addition each. The last block to finish
-/// publishes the counts and clears the cursors for the next call. With `write` false it only counts.
-template <bool write>
-__global__ void gather_by_arrival(CompactionRequest request, std::uint32_t* cursors,
-                                  StageClock* clock) {
+/// Compaction::none: how many slots have each tag.
+__global__ void count_tags(CompactionRequest request, StageClock* clock) {
   if (clock != nullptr) stamp_first_thread(clock, ClockId::compact);
-  __shared__ std::uint32_t votes[2][items * warps];  // then: places before this vote's slots
-  __shared__ std::uint32_t base[2];
-  const int lane = threadIdx.x & 31, warp = threadIdx.x >> 5;
-  std::uint32_t mask[2][items];
-  for (int i = 0; i < items; ++i) {
-    const std::uint32_t slot = blockIdx.x * tile + i * block_threads + threadIdx.x;
+  for (std::uint32_t i = blockIdx.x * blockDim.x; i < request.slot_count;
+       i += gridDim.x * blockDim.x) {
+    const std::uint32_t slot = i + threadIdx.x;
     const bool inside = slot < request.slot_count;
     const PathTag tag = inside ? request.tags[slot] : PathTag{};
     for (int c = 0; c < 2; ++c) {
-      mask[c][i] = __ballot_sync(0xffffffffu, inside && tag == request.wanted[c]);
-      if (lane == 0) votes[c][i * warps + warp] = __popc(mask[c][i]);
-    }
-  }
-  __syncthreads();
-  if (warp < 2) {  // one warp per queue turns its 64 votes into places
-    std::uint32_t* row = votes[warp];
-    const std::uint32_t a = row[2 * lane], b = row[2 * lane + 1];
-    std::uint32_t sum = a + b;
-    for (int d = 1; d < 32; d *= 2) {
-      const std::uint32_t before = __shfl_up_sync(0xffffffffu, sum, d);
-      if (lane >= d) sum += before;
-    }
-    row[2 * lane] = sum - a - b;
-    row[2 * lane + 1] = sum - b;
-    if (lane == 31) base[warp] = sum > 0 ? atomicAdd(&cursors[warp], sum) : 0;
-  }
-  __syncthreads();
-  if constexpr (write) {
-    for (int i = 0; i < items; ++i) {
-      const std::uint32_t slot = blockIdx.x * tile + i * block_threads + threadIdx.x;
-      for (int c = 0; c < 2; ++c) {
-        if ((mask[c][i] >> lane & 1) == 0) continue;
-        const std::uint32_t rank = __popc(mask[c][i] & ((1u << lane) - 1));
-        request.queues[c][base[c] + votes[c][i * warps + warp] + rank] = slot;
-      }
-    }
-  }
-  if (threadIdx.x == 0) {
-    __threadfence();
-    if (atomicAdd(&cursors[2], 1) == gridDim.x - 1) {
-      for (int c = 0; c < 2; ++c) request.counts[c] = atomicExch(&cursors[c], 0);
-      atomicExch(&cursors[2], 0);
+      const int votes = __syncthreads_count(inside && tag == request.wanted[c]);
+      if (threadIdx.x == 0 && votes > 0) atomicAdd(&request.counts[c], votes);
     }
   }
 }
-static_assert(items * warps == 64, "the scan above is of 64 votes");
 
 }  // namespace
 
 CudaCompactor::CudaCompactor(Compaction strategy, std::uint32_t slot_count_max, CudaMemory& memory)
     : strategy_(strategy), slot_count_max_(slot_count_max) {
-  if (strategy == Compaction::cub) {
-    CompactionRequest request;
-    request.slot_count = slot_count_max;
-    check_cuda(partition(nullptr, cub_storage_bytes_, request, nullptr, nullptr),
-               "cub::DevicePartition::If");
-    cub_storage_ = memory.allocate<char>("compaction", cub_storage_bytes_);
-  } else {
-    cursors_ = memory.allocate<std::uint32_t>("compaction", 3);
-    check_cuda(cudaMemset(cursors_, 0, 3 * sizeof *cursors_), "cudaMemset");
-  }
+  if (strategy != Compaction::cub) return;
+  CompactionRequest request;
+  request.slot_count = slot_count_max;
+  check_cuda(partition(nullptr, cub_storage_bytes_, request, nullptr, nullptr),
+             "cub::DevicePartition::If");
+  cub_storage_ = memory.allocate<char>("compaction", cub_storage_bytes_);
 }
 
 void CudaCompactor::enqueue(const CompactionRequest& request, StageClock* clock,
@@ -117,13 +73,13 @@ void CudaCompactor::enqueue(const CompactionRequest& request, StageClock* clock,
   if (strategy_ == Compaction::cub) {
     std::size_t bytes = cub_storage_bytes_;
     check_cuda(partition(cub_storage_, bytes, request, clock, stream), "cub::DevicePartition::If");
-    return;
-  }
-  const std::uint32_t blocks = request.slot_count == 0 ? 1 : (request.slot_count + tile - 1) / tile;
-  if (strategy_ == Compaction::atomic) {
-    gather_by_arrival<true><<<blocks, block_threads, 0, stream>>>(request, cursors_, clock);
   } else {
-    gather_by_arrival<false><<<blocks, block_threads, 0, stream>>>(request, cursors_, clock);
+    check_cuda(cudaMemsetAsync(request.counts, 0, 2 * sizeof *request.counts, stream),
+               "cudaMemsetAsync");
+    constexpr std::uint32_t blocks_max = 1024;
+    const std::uint32_t blocks = (request.slot_count + block_threads - 1) / block_threads;
+    const std::uint32_t grid = std::clamp(blocks, 1u, blocks_max);
+    count_tags<<<grid, block_threads, 0, stream>>>(request, clock);
   }
   check_cuda(cudaGetLastError(), "compact");
 }

@@ -1,4 +1,4 @@
-// The compaction strategies on CUDA, behind one call.
+// The compaction strategies that make a pass over the tags, on CUDA.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -14,8 +14,9 @@ class CudaCompactor {
   /// `slot_count_max`: of all requests to come. Memory is taken from `memory` now, none later.
   CudaCompactor(Compaction strategy, std::uint32_t slot_count_max, CudaMemory& memory);
 
-  /// Enqueues the request; its pointers are device memory. `clock` may be null. Can be captured into
-  /// a graph. Throws Error as check_request does, or when there are more slots than announced.
+  /// Enqueues the request, which Compaction::atomic does not need; its pointers are device memory.
+  /// `clock` may be null. Can be captured into a graph. Throws Error as check_request does, or when
+  /// there are more slots than announced.
   void enqueue(const CompactionRequest& request, StageClock* clock, cudaStream_t stream) const;
 
  private:
@@ -23,7 +24,6 @@ class CudaCompactor {
   std::uint32_t slot_count_max_;
   void* cub_storage_ = nullptr;
   std::size_t cub_storage_bytes_ = 0;
-  std::uint32_t* cursors_ = nullptr;  ///< two queues' ends, and how many blocks are done
 };
 
 }  // namespace pt

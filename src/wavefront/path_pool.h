@@ -22,23 +22,24 @@ struct alignas(8) HitRecord {
   std::uint32_t primitive;
 };
 
+/// What has happened to a path and where it goes is all in three records; a miss needs only two.
 struct PathPool {
   std::uint32_t slot_count = 0;
-  PathTag* tag = nullptr;
-  Record* origin = nullptr;      ///< ray origin, sample
-  Record* direction = nullptr;   ///< ray direction, rays | shadow rays << 16
-  Record* throughput = nullptr;  ///< beta, pixel
+  Record* origin = nullptr;      ///< ray origin, density of the BSDF
+  Record* direction = nullptr;   ///< ray direction, number of the path
+  Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   HitRecord* hit = nullptr;
+  // Only with compaction over tags:
+  PathTag* tag = nullptr;
+  PathTag* shadow_tag = nullptr;  ///< surface: a shadow ray waits; free: none
   // Only in scenes with lights:
-  float* bsdf_pdf = nullptr;
-  PathTag* shadow_tag = nullptr;       ///< surface: a shadow ray waits; free: none
   Record* shadow_origin = nullptr;     ///< ray origin, distance
-  Record* shadow_direction = nullptr;  ///< ray direction, number of the sample
+  Record* shadow_direction = nullptr;  ///< ray direction, number of the path
   Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free
 
   static constexpr std::uint64_t bytes_per_slot(bool has_lights) {
-    return sizeof(PathTag) + 3 * sizeof(Record) + sizeof(HitRecord) +
-           (has_lights ? sizeof(float) + sizeof(PathTag) + 3 * sizeof(Record) : 0);
+    return 3 * sizeof(Record) + sizeof(HitRecord) + sizeof(PathTag) +
+           (has_lights ? 3 * sizeof(Record) + sizeof(PathTag) : 0);
   }
 
   PT_HD static Record pack(const Vec3& v, std::uint32_t w) { return {v.x, v.y, v.z, w}; }
@@ -48,30 +49,31 @@ struct PathPool {
     return {vec(load_wide(&origin[slot])), vec(load_wide(&direction[slot]))};
   }
 
-  /// The ray and the state of its path; `with_pdf` in scenes with lights.
-  template <bool with_pdf>
-  PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
-    const Record o = load_wide(&origin[slot]);
+  /// The path and its ray, of which a miss needs the direction only.
+  PT_HD PathState load_path(std::uint32_t slot, Vec3& ray_direction) const {
     const Record d = load_wide(&direction[slot]);
     const Record b = load_wide(&throughput[slot]);
-    ray = {vec(o), vec(d)};
+    ray_direction = vec(d);
     PathState path;
-    path.sample = o.w;
-    path.rays = static_cast<std::uint16_t>(d.w);
-    path.shadow_rays = static_cast<std::uint16_t>(d.w >> 16);
     path.beta = vec(b);
-    path.pixel = b.w;
-    if constexpr (with_pdf) path.bsdf_pdf = bsdf_pdf[slot];
+    path.number = d.w;
+    path.rays = static_cast<std::uint16_t>(b.w);
+    path.shadow_rays = static_cast<std::uint16_t>(b.w >> 16);
     return path;
   }
 
-  template <bool with_pdf>
+  PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
+    const Record o = load_wide(&origin[slot]);
+    PathState path = load_path(slot, ray.direction);
+    ray.origin = vec(o);
+    path.bsdf_pdf = bits_to_float(o.w);
+    return path;
+  }
+
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
-    store_wide(&origin[slot], pack(ray.origin, path.sample));
-    store_wide(&direction[slot],
-               pack(ray.direction, path.rays | std::uint32_t{path.shadow_rays} << 16));
-    store_wide(&throughput[slot], pack(path.beta, path.pixel));
-    if constexpr (with_pdf) bsdf_pdf[slot] = path.bsdf_pdf;
+    store_wide(&origin[slot], pack(ray.origin, float_to_bits(path.bsdf_pdf)));
+    store_wide(&direction[slot], pack(ray.direction, path.number));
+    store_wide(&throughput[slot], pack(path.beta, path.packed_rays()));
   }
 
   PT_HD Hit load_hit(std::uint32_t slot) const {

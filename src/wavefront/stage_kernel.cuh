@@ -1,4 +1,4 @@
-// The kernel around a stage: threads take the slots of its queue in turn.
+// The kernel around a stage: threads take the slots of its queue in turn and send them on.
 #pragma once
 
 #include "common/device/scene_storage.cuh"
@@ -7,31 +7,115 @@
 
 namespace pt {
 
-/// The queue's length is read on the device, so the grid has a fixed size and loops.
-template <class Stage, SceneMemory memory>
-__global__ void stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
-                             const __grid_constant__ Stage stage, StageQueue queue,
-                             StageClock* clock) {
-  stamp_first_thread(clock, static_cast<ClockId>(Stage::id));
-  const std::uint32_t count = *queue.count;
-  const std::uint32_t first = blockIdx.x * blockDim.x;
-  if (first >= count) return;
-  const Scene scene = storage.bind();
-  for (std::uint32_t i = first + threadIdx.x; i < count; i += gridDim.x * blockDim.x) {
-    const std::uint32_t slot = queue.slots == nullptr ? i : queue.slots[i];
-    if (queue.slots == nullptr && queue.tags[slot] != Stage::tag) continue;
-    stage(scene, slot, i);
+/// Appends slots to up to `streams` queues: a vote per warp, a sum per block, and one atomic
+/// addition per block and queue. All threads of the block call append() together.
+template <int streams>
+class BlockAppender {
+ public:
+  struct Shared {
+    std::uint32_t place[2][streams][32];  // [turn][stream][warp]: votes, then places
+  };
+
+  __device__ explicit BlockAppender(Shared& shared)
+      : shared_(shared), lane_(threadIdx.x & 31), warp_(threadIdx.x >> 5) {
+    const std::uint32_t threads = blockDim.x - 32 * warp_;
+    warp_mask_ = threads >= 32 ? 0xffffffffu : (1u << threads) - 1;
+  }
+
+  /// Where `wanted[s]`, puts `slot` at the end of queues[s], whose length is *ends[s].
+  __device__ void append(const bool (&wanted)[streams], std::uint32_t slot,
+                         std::uint32_t* const (&queues)[streams],
+                         std::uint32_t* const (&ends)[streams]) {
+    auto& place = shared_.place[turn_];
+    std::uint32_t votes[streams];
+    for (int s = 0; s < streams; ++s) {
+      votes[s] = __ballot_sync(warp_mask_, wanted[s]);
+      if (lane_ == 0) place[s][warp_] = __popc(votes[s]);
+    }
+    __syncthreads();
+    if (threadIdx.x < streams) reserve(place[threadIdx.x], ends);
+    __syncthreads();
+    for (int s = 0; s < streams; ++s) {
+      if (wanted[s]) {
+        queues[s][place[s][warp_] + __popc(votes[s] & ((1u << lane_) - 1))] = slot;
+      }
+    }
+    turn_ ^= 1;  // the next call must not overwrite what slower warps still read
+  }
+
+ private:
+  __device__ void reserve(std::uint32_t (&votes)[32], std::uint32_t* const (&ends)[streams]) {
+    const int warps = (blockDim.x + 31) / 32;
+    std::uint32_t total = 0;
+    for (int w = 0; w < warps; ++w) total += votes[w];
+    std::uint32_t* end = ends[0];
+    for (int s = 1; s < streams; ++s) {
+      if (threadIdx.x == s) end = ends[s];
+    }
+    std::uint32_t next = total > 0 ? atomicAdd(end, total) : 0;
+    for (int w = 0; w < warps; ++w) {
+      const std::uint32_t count = votes[w];
+      votes[w] = next;
+      next += count;
+    }
+  }
+
+  Shared& shared_;
+  int lane_, warp_;
+  std::uint32_t warp_mask_;
+  int turn_ = 0;
+};
+
+/// Sends what a block has finished to the next queues. Called by all of its threads, with `done` in
+/// those that had a slot.
+template <class Stage, class Appender>
+__device__ void append_next(Appender& appender, const StageQueues& queues, bool done, Next next,
+                            std::uint32_t slot) {
+  constexpr StageOutcomes outcomes = Stage::outcomes;
+  const int a = static_cast<int>(outcomes.tag[0]), b = static_cast<int>(outcomes.tag[1]);
+  const bool to_a = done && next.tag == outcomes.tag[0];
+  constexpr int shadow = static_cast<int>(QueueId::shadow);
+  if constexpr (outcomes.casts_shadow_rays) {
+    appender.append({to_a, done && !to_a, done && next.shadow}, slot,
+                    {queues.next[a], queues.next[b], queues.next[shadow]},
+                    {queues.waiting + a, queues.waiting + b, queues.waiting + shadow});
+  } else {
+    appender.append({to_a, done && !to_a}, slot, {queues.next[a], queues.next[b]},
+                    {queues.waiting + a, queues.waiting + b});
   }
 }
 
-/// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
-/// 0 outside of a graph.
-static __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count,
-                                         bool regenerate, cudaGraphConditionalHandle loop,
-                                         StageClock* clock) {
-  stamp(clock, ClockId::begin_wave);
-  const bool more = begin_wave(*counters, path_count, regenerate);
-  if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
+/// The queue's length is read on the device, so the grid has a fixed size and loops.
+template <class Stage, SceneMemory memory>
+__global__ void stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
+                             const __grid_constant__ Stage stage,
+                             const __grid_constant__ StageQueues queues, StageClock* clock) {
+  using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
+  __shared__ typename Appender::Shared shared;
+  stamp_first_thread(clock, Stage::id);
+  const std::uint32_t count = *queues.count;
+  const std::uint32_t begin = queues.begin();
+  if (blockIdx.x * blockDim.x >= count) return;
+  const Scene scene = storage.bind();
+  Appender appender(shared);
+  const bool appends = queues.tags == nullptr;
+  for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
+    const std::uint32_t i = base + threadIdx.x;
+    std::uint32_t slot = i;
+    bool mine = i < count;
+    if (mine && queues.slots != nullptr) slot = queues.slots[begin + i];
+    if (mine && queues.slots == nullptr) mine = queues.tags[slot] == Stage::tag;
+    Next next{};
+    if (mine) next = stage(scene, slot, i);
+    if (appends) {
+      if constexpr (Stage::outcomes.sends) append_next<Stage>(appender, queues, mine, next, slot);
+    } else if (mine) {
+      queues.tags[slot] = next.tag;
+      if constexpr (Stage::outcomes.casts_shadow_rays) {
+        queues.shadow_tags[slot] = next.shadow ? PathTag::surface : PathTag::free;
+      }
+    }
+  }
 }
 
 }  // namespace pt

@@ -10,11 +10,18 @@
 
 namespace pt {
 
-/// Where a stage finds its slots. `slots` null: it looks at all slots and takes those whose tag it is.
-struct StageQueue {
-  const std::uint32_t* slots;
-  const std::uint32_t* count;  ///< in the device's memory
-  const PathTag* tags;
+/// Where a stage finds its slots, slots[*first .. *first + *count), and where they go from there;
+/// all in the device's memory.
+struct StageQueues {
+  const std::uint32_t* slots = nullptr;  ///< null: all slots whose tag is the stage's
+  const std::uint32_t* count = nullptr;
+  const std::uint32_t* first = nullptr;  ///< null: 0
+  PathTag* tags = nullptr;               ///< null: slots are appended to the queues instead
+  PathTag* shadow_tags = nullptr;
+  std::uint32_t* next[queue_count] = {};
+  std::uint32_t* waiting = nullptr;  ///< [queue_count] ends of the queues
+
+  PT_HD std::uint32_t begin() const { return first == nullptr ? 0 : *first; }
 };
 
 /// The buffers of a wavefront, allocated by the device's renderer.
@@ -22,63 +29,63 @@ struct WaveBuffers {
   PathPool pool;
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
-  std::uint32_t* ray_queue = nullptr;      ///< [slot_count] each
-  std::uint32_t* free_queue = nullptr;
-  std::uint32_t* surface_queue = nullptr;
-  std::uint32_t* miss_queue = nullptr;
-  std::uint32_t* shadow_queue = nullptr;   ///< in scenes with lights
-};
+  std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null without queues
 
-template <class Source>
-struct WaveContext {
-  WaveBuffers buffers;
-  StageContext<Source> stage;
-  bool use_queues;  ///< false with Compaction::none
+  std::uint32_t* queue(QueueId id) const { return queues[static_cast<int>(id)]; }
+  std::uint32_t* waiting(QueueId id) const { return &counters->waiting[static_cast<int>(id)]; }
 
-  CompactionRequest request(const PathTag* tags, PathTag a, std::uint32_t* queue_a, PathTag b,
-                            std::uint32_t* queue_b, std::uint32_t* counts) const {
-    return {tags, buffers.pool.slot_count, {a, b}, {queue_a, queue_b}, buffers.pool.slot_count,
-            counts};
+  /// A pass that fills the queue `id` with the slots tagged `a` and the one after it with those
+  /// tagged `b`.
+  CompactionRequest request(const PathTag* tags, QueueId id, PathTag a, PathTag b) const {
+    const int i = static_cast<int>(id);
+    std::uint32_t* second =
+        i + 1 < queue_count ? queues[i + 1] : queues[0];  // no slot is tagged so
+    return {tags, pool.slot_count, {a, b}, {queues[i], second}, pool.slot_count, waiting(id)};
   }
 
-  StageQueue queue(const std::uint32_t* slots, const std::uint32_t* count,
-                   const PathTag* tags) const {
-    return use_queues ? StageQueue{slots, count, tags}
-                      : StageQueue{nullptr, buffers.slot_count, tags};
+  StageQueues stage_queues(QueueId id, const std::uint32_t* count, PathTag* tags,
+                           const std::uint32_t* first = nullptr) const {
+    StageQueues result;
+    const bool has_queues = queue(id) != nullptr;
+    result.slots = queue(id);
+    result.count = has_queues ? count : slot_count;
+    result.first = has_queues ? first : nullptr;
+    result.tags = tags;
+    result.shadow_tags = pool.shadow_tag;
+    for (int i = 0; i < queue_count; ++i) result.next[i] = queues[i];
+    result.waiting = counters->waiting;
+    return result;
   }
 };
 
-/// One wave: every free slot gets a new path, every path in flight one more ray.
-/// An Executor runs a compaction, the decision between two waves, or a stage over a queue.
+/// One wave: free slots get new paths, and every path in flight one more ray. An Executor fills the
+/// queues by a pass (a no-op where stages append), decides between two waves, and runs a stage.
 template <class Traits, Branching branching, class Source, class Executor>
-void run_wave(Executor& execute, const WaveContext<Source>& wave) {
-  const WaveBuffers& b = wave.buffers;
-  const PathTag* tags = b.pool.tag;
-  WaveCounters* counters = b.counters;
+void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+  using enum QueueId;
+  PathTag* tags = b.pool.tag;
+  const WaveCounters* counters = b.counters;
 
-  execute.compact(wave.request(tags, PathTag::intersect, b.ray_queue, PathTag::free, b.free_queue,
-                               counters->ready));
+  execute.compact(b.request(tags, free, PathTag::free, PathTag::intersect));
   execute.begin_wave();
-  execute.run(GeneratePaths<Traits::has_lights, Source>{wave.stage},
-              wave.queue(b.free_queue, &counters->generate, tags));
+  execute.run(GeneratePaths<Traits::has_lights, Source>{context},
+              b.stage_queues(free, &counters->generate, tags, b.waiting(free)));
   execute.run(IntersectRays<Traits::accel, branching>{b.pool},
-              wave.queue(b.ray_queue, &counters->intersect, tags));
+              b.stage_queues(intersect, &counters->intersect, tags));
 
-  execute.compact(wave.request(tags, PathTag::surface, b.surface_queue, PathTag::miss, b.miss_queue,
-                               counters->shade));
+  execute.compact(b.request(tags, miss, PathTag::miss, PathTag::surface));
   if constexpr (branching == Branching::divergent) {
-    execute.run(ShadeMiss<Traits::has_lights>{b.pool, wave.stage.samples},
-                wave.queue(b.miss_queue, &counters->shade[1], tags));
+    execute.run(ShadeMiss<Traits::has_lights>{b.pool, context.samples},
+                b.stage_queues(miss, b.waiting(miss), tags));
   }
-  execute.run(ShadeSurface<Traits::has_lights, branching, Source>{wave.stage},
-              wave.queue(b.surface_queue, &counters->shade[0], tags));
+  execute.run(ShadeSurface<Traits::has_lights, branching, Source>{context},
+              b.stage_queues(surface, b.waiting(surface), tags));
 
   if constexpr (Traits::has_lights) {
-    const PathTag* shadow_tags = b.pool.shadow_tag;
-    execute.compact(wave.request(shadow_tags, PathTag::surface, b.shadow_queue, PathTag::miss,
-                                 b.miss_queue, counters->shadow));
-    execute.run(TraceShadowRays<Traits::accel>{b.pool, wave.stage.samples},
-                wave.queue(b.shadow_queue, &counters->shadow[0], shadow_tags));
+    PathTag* shadow_tags = b.pool.shadow_tag;
+    execute.compact(b.request(shadow_tags, shadow, PathTag::surface, PathTag::miss));
+    execute.run(TraceShadowRays<Traits::accel>{b.pool, context.samples},
+                b.stage_queues(shadow, b.waiting(shadow), shadow_tags));
   }
 }
 

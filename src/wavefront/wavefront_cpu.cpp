@@ -1,13 +1,12 @@
 // The wavefront on the CPU: stages are parallel loops over oneTBB.
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "common/device/cpu_renderer.h"
 #include "common/render/option_names.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/run_stage_cpu.h"
 
 namespace pt {
 namespace {
@@ -19,10 +18,14 @@ class CpuExecutor {
  public:
   CpuExecutor(const Scene& scene, const Options& options, StageTimer& timer, WaveCounters& counters,
               std::uint32_t path_count)
-      : scene_(scene), options_(options), timer_(timer), counters_(counters),
+      : scene_(scene),
+        options_(options),
+        timer_(timer),
+        counters_(counters),
         path_count_(path_count) {}
 
   void compact(const CompactionRequest& request) {
+    if (appends_in_stages(options_.compaction)) return;
     timer_.time("compact", [&] { compact_cpu(options_.compaction, request); });
   }
 
@@ -31,18 +34,9 @@ class CpuExecutor {
   bool more() const { return more_; }
 
   template <class Stage>
-  void run(const Stage& stage, const StageQueue& queue) {
-    const std::uint32_t count = *queue.count;
-    if (count == 0) return;
-    timer_.time(to_string(Stage::id), [&] {
-      tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 512), [&](const auto& range) {
-        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-          const std::uint32_t slot = queue.slots == nullptr ? i : queue.slots[i];
-          if (queue.slots == nullptr && queue.tags[slot] != Stage::tag) continue;
-          stage(scene_, slot, i);
-        }
-      });
-    });
+  void run(const Stage& stage, const StageQueues& queues) {
+    if (*queues.count == 0) return;
+    timer_.time(to_string(Stage::id), [&] { run_stage_cpu(stage, scene_, queues); });
   }
 
  private:
@@ -63,7 +57,7 @@ class WavefrontCpu : public CpuRenderer {
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
     const bool lights = traits_.has_lights;
     const std::uint64_t size_bytes =
-        pool_size_ * (PathPool::bytes_per_slot(lights) + (lights ? 5 : 4) * sizeof(std::uint32_t));
+        pool_size_ * (PathPool::bytes_per_slot(lights) + queue_count * sizeof(std::uint32_t));
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);
     allocate(lights);
@@ -75,30 +69,29 @@ class WavefrontCpu : public CpuRenderer {
     slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
     buffers_.slot_count = &slot_count_;
     buffers_.counters = &counters_;
-    pool.tag = array<PathTag>();
     pool.origin = array<Record>();
     pool.direction = array<Record>();
     pool.throughput = array<Record>();
     pool.hit = array<HitRecord>();
-    for (auto* queue : {&buffers_.ray_queue, &buffers_.free_queue, &buffers_.surface_queue,
-                        &buffers_.miss_queue}) {
-      *queue = array<std::uint32_t>();
+    if (!appends_in_stages(options_.compaction)) {
+      pool.tag = array<PathTag>();
+      if (lights) pool.shadow_tag = array<PathTag>();
     }
-    if (!lights) return;
-    pool.bsdf_pdf = array<float>();
-    pool.shadow_tag = array<PathTag>();
-    pool.shadow_origin = array<Record>();
-    pool.shadow_direction = array<Record>();
-    pool.shadow_radiance = array<Record>();
-    buffers_.shadow_queue = array<std::uint32_t>();
+    if (options_.compaction != Compaction::none) {
+      for (std::uint32_t*& queue : buffers_.queues) queue = array<std::uint32_t>();
+    }
+    if (lights) {
+      pool.shadow_origin = array<Record>();
+      pool.shadow_direction = array<Record>();
+      pool.shadow_radiance = array<Record>();
+    }
   }
 
   // Zero-filled, so every tag is PathTag::free.
   template <class T>
   T* array() {
-    arrays_.push_back(std::shared_ptr<void>(new T[slot_count_]{}, [](void* p) {
-      delete[] static_cast<T*>(p);
-    }));
+    arrays_.push_back(
+        std::shared_ptr<void>(new T[slot_count_]{}, [](void* p) { delete[] static_cast<T*>(p); }));
     return static_cast<T*>(arrays_.back().get());
   }
 
@@ -114,15 +107,21 @@ class WavefrontCpu : public CpuRenderer {
 
   template <class Traits, Branching branching, class Source>
   void run_waves(const Source& source, const SampleBuffer& batch) {
-    const bool use_queues = options_.compaction != Compaction::none;
     counters_ = {};
-    WaveContext<Source> wave{buffers_,
-                             {buffers_.pool, batch, source, &counters_,
-                              use_queues ? buffers_.ray_queue : nullptr,
-                              static_cast<std::uint32_t>(options_.max_depth)},
-                             use_queues};
+    if (appends_in_stages(
+            options_.compaction)) {  // every slot begins in the queue of the free ones
+      std::uint32_t* free = buffers_.queue(QueueId::free);
+      std::iota(free, free + slot_count_, 0u);
+      *buffers_.waiting(QueueId::free) = slot_count_;
+    }
+    const StageContext<Source> context{buffers_.pool,
+                                       batch,
+                                       source,
+                                       &counters_,
+                                       buffers_.queue(QueueId::intersect),
+                                       static_cast<std::uint32_t>(options_.max_depth)};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
-    while (execute.more()) run_wave<Traits, branching>(execute, wave);
+    while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
     waves_ += counters_.waves;
   }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "common/error.h"
 
@@ -37,7 +38,7 @@ WavefrontCuda::~WavefrontCuda() {
 void WavefrontCuda::allocate_pool() {
   const bool lights = traits_.has_lights;
   const std::uint64_t bytes_per_slot =
-      PathPool::bytes_per_slot(lights) + (lights ? 5 : 4) * sizeof(std::uint32_t);
+      PathPool::bytes_per_slot(lights) + (queue_count + 1) * sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
   const std::uint64_t image_paths = std::uint64_t(options_.width) * std::uint64_t(options_.height) *
                                     static_cast<std::uint64_t>(options_.spp);
@@ -48,41 +49,66 @@ void WavefrontCuda::allocate_pool() {
     pool_size_ = options_.pool_size;
   }
   if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
-    throw Error(fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
-                            "{:.0f} MiB, {:.0f} MiB are free",
-                            pool_size_, static_cast<double>(pool_size_ * bytes_per_slot) / mib,
-                            static_cast<double>(free) / mib));
+    throw Error(
+        fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
+                    "{:.0f} MiB, {:.0f} MiB are free",
+                    pool_size_, static_cast<double>(pool_size_ * bytes_per_slot) / mib,
+                    static_cast<double>(free) / mib));
   }
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = static_cast<std::uint32_t>(n);
-  pool.tag = memory_.allocate<PathTag>("path pool", n);
   pool.origin = memory_.allocate<Record>("path pool", n);
   pool.direction = memory_.allocate<Record>("path pool", n);
   pool.throughput = memory_.allocate<Record>("path pool", n);
   pool.hit = memory_.allocate<HitRecord>("path pool", n);
-  check_cuda(cudaMemset(pool.tag, static_cast<int>(PathTag::free), n), "cudaMemset");
-  for (auto* queue : {&buffers_.ray_queue, &buffers_.free_queue, &buffers_.surface_queue,
-                      &buffers_.miss_queue}) {
-    *queue = memory_.allocate<std::uint32_t>("queues", n);
-  }
   if (lights) {
-    pool.bsdf_pdf = memory_.allocate<float>("path pool", n);
-    pool.shadow_tag = memory_.allocate<PathTag>("path pool", n);
     pool.shadow_origin = memory_.allocate<Record>("path pool", n);
     pool.shadow_direction = memory_.allocate<Record>("path pool", n);
     pool.shadow_radiance = memory_.allocate<Record>("path pool", n);
-    check_cuda(cudaMemset(pool.shadow_tag, static_cast<int>(PathTag::free), n), "cudaMemset");
-    buffers_.shadow_queue = memory_.allocate<std::uint32_t>("queues", n);
+  }
+  if (options_.compaction != Compaction::none) {
+    for (std::uint32_t*& queue : buffers_.queues) {
+      queue = memory_.allocate<std::uint32_t>("queues", n);
+    }
+  }
+  if (appends_in_stages(options_.compaction)) {
+    std::vector<std::uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0u);
+    all_slots_ = memory_.upload("queues", all);
+  } else {
+    pool.tag = memory_.allocate<PathTag>("path pool", n);
+    if (lights) pool.shadow_tag = memory_.allocate<PathTag>("path pool", n);
+    compactor_ = std::make_unique<CudaCompactor>(options_.compaction, pool.slot_count, memory_);
   }
   buffers_.counters = memory_.allocate<WaveCounters>("counters", 1);
   buffers_.slot_count =
       memory_.upload("counters", std::vector<std::uint32_t>{static_cast<std::uint32_t>(n)});
-  compactor_ = std::make_unique<CudaCompactor>(options_.compaction, pool.slot_count, memory_);
 }
 
 void WavefrontCuda::compact(const CompactionRequest& request) {
-  compactor_->enqueue(request, clock(), stream());
+  if (compactor_ != nullptr) compactor_->enqueue(request, clock(), stream());
+}
+
+// Every slot is free when a batch begins.
+void WavefrontCuda::start_queues() {
+  const PathPool& pool = buffers_.pool;
+  const auto fill = [&](PathTag* tags) {
+    if (tags == nullptr) return;
+    check_cuda(cudaMemsetAsync(tags, static_cast<int>(PathTag::free), pool.slot_count, stream()),
+               "cudaMemsetAsync");
+  };
+  check_cuda(cudaMemsetAsync(buffers_.counters, 0, sizeof(WaveCounters), stream()),
+             "cudaMemsetAsync");
+  fill(pool.tag);
+  fill(pool.shadow_tag);
+  if (all_slots_ == nullptr) return;
+  const auto copy = [&](std::uint32_t* to, const std::uint32_t* from, std::size_t count) {
+    check_cuda(cudaMemcpyAsync(to, from, count * sizeof *to, cudaMemcpyDeviceToDevice, stream()),
+               "cudaMemcpyAsync");
+  };
+  copy(buffers_.queue(QueueId::free), all_slots_, pool.slot_count);
+  copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
@@ -141,8 +167,7 @@ void WavefrontCuda::read_counters() {
 }
 
 void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
-  check_cuda(cudaMemsetAsync(buffers_.counters, 0, sizeof(WaveCounters), stream()),
-             "cudaMemsetAsync");
+  start_queues();
   if (graph_exec_ != nullptr) {
     check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
     read_counters();

@@ -19,7 +19,7 @@ class WavefrontCuda : public CudaRenderer {
   void compact(const CompactionRequest& request);
   void begin_wave();
   template <class Stage>
-  void run(const Stage& stage, const StageQueue& queue);
+  void run(const Stage& stage, const StageQueues& queues);
 
  protected:
   void prepare_batch(const SampleBuffer& batch) override;
@@ -34,7 +34,10 @@ class WavefrontCuda : public CudaRenderer {
   void destroy_graph();
   void read_counters();
 
+  void start_queues();
+
   WaveBuffers buffers_;
+  std::uint32_t* all_slots_ = nullptr;  ///< 0, 1, 2, ...: the first queue of free slots
   std::unique_ptr<CudaCompactor> compactor_;
   WaveCounters* host_counters_ = nullptr;  ///< pinned
   std::uint64_t waves_ = 0;

@@ -9,6 +9,15 @@ namespace {
 const char* const stage_names[stage_count] = {"generate",      "intersect", "shade_miss",
                                               "shade_surface", "shadow",    "accumulate"};
 
+/// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
+/// 0 outside of a graph.
+__global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
+                                  cudaGraphConditionalHandle loop, StageClock* clock) {
+  stamp(clock, ClockId::begin_wave);
+  const bool more = pt::begin_wave(*counters, path_count, regenerate);
+  if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
+}
+
 }  // namespace
 
 void WavefrontCuda::begin_wave() {
@@ -17,7 +26,7 @@ void WavefrontCuda::begin_wave() {
 }
 
 template <class Stage>
-void WavefrontCuda::run(const Stage& stage, const StageQueue& queue) {
+void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   const int block = options_.stage_block[static_cast<int>(Stage::id)];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
@@ -27,7 +36,7 @@ void WavefrontCuda::run(const Stage& stage, const StageQueue& queue) {
     const std::uint32_t resident =
         resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
     launch(stage_names[static_cast<int>(Stage::id)], kernel, blocks < resident ? blocks : resident,
-           block, shared_bytes, storage, stage, queue, clock());
+           block, shared_bytes, storage, stage, queues, clock());
   };
   // Only the kernels that trace rays read the spheres again and again.
   if constexpr (Stage::traces_rays) {
@@ -39,15 +48,15 @@ void WavefrontCuda::run(const Stage& stage, const StageQueue& queue) {
 
 template <class Source>
 void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& batch) {
-  const bool use_queues = options_.compaction != Compaction::none;
-  const WaveContext<Source> wave{buffers_,
-                                 {buffers_.pool, batch, source, buffers_.counters,
-                                  use_queues ? buffers_.ray_queue : nullptr,
-                                  static_cast<std::uint32_t>(options_.max_depth)},
-                                 use_queues};
+  const StageContext<Source> context{buffers_.pool,
+                                     batch,
+                                     source,
+                                     buffers_.counters,
+                                     buffers_.queue(QueueId::intersect),
+                                     static_cast<std::uint32_t>(options_.max_depth)};
   dispatch_traits(traits_, [&](auto traits) {
     dispatch_branching(options_.branching, [&](auto branching) {
-      run_wave<decltype(traits), decltype(branching)::value>(*this, wave);
+      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context);
     });
   });
 }

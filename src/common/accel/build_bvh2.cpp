@@ -20,7 +20,6 @@ constexpr int median_depth = 16;        // from here on, halve: keeps the tree b
 
 using Range = std::span<std::uint32_t>;
 
-
 class Builder {
  public:
   Builder(std::span<const Bounds> bounds, std::uint32_t second_kind, float padding)
@@ -149,7 +148,7 @@ class Builder {
   void number_by_kind() {
     std::vector<std::uint32_t> place(bvh_.order.size());
     std::uint32_t first = 0, second = std::min<std::uint32_t>(
-        second_kind_, static_cast<std::uint32_t>(bvh_.order.size()));
+                                 second_kind_, static_cast<std::uint32_t>(bvh_.order.size()));
     for (std::size_t i = 0; i < place.size(); ++i) {
       place[i] = bvh_.order[i] < second_kind_ ? first++ : second++;
     }

@@ -26,10 +26,10 @@ struct Bvh2 {
   std::vector<std::uint32_t> order;  ///< leaves refer to places in it; it holds primitive numbers
 };
 
-/// `bounds[i]` holds primitive i. Primitives below `first_of_second_kind` and the others never share
-/// a leaf, and in `order` the first kind comes before the second, so that reordering each kind's
-/// array by `order` makes leaves contiguous. Boxes are widened by `padding` on all sides.
-/// At least one primitive; the tree is no deeper than bvh_depth_max.
+/// `bounds[i]` holds primitive i. Primitives below `first_of_second_kind` and the others never
+/// share a leaf, and in `order` the first kind comes before the second, so that reordering each
+/// kind's array by `order` makes leaves contiguous. Boxes are widened by `padding` on all sides. At
+/// least one primitive; the tree is no deeper than bvh_depth_max.
 Bvh2 build_bvh2(std::span<const Bounds> bounds, std::uint32_t first_of_second_kind, float padding);
 
 }  // namespace pt

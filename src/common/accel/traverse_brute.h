@@ -28,7 +28,8 @@ PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, V
     while (candidates != 0) {
       const int j = count_leading_zeros(candidates);
       candidates &= ~(0x80000000u >> j);
-      if (visit(sphere_distance(load_wide(&primitives.spheres[first + j]), ray), first + j)) return true;
+      if (visit(sphere_distance(load_wide(&primitives.spheres[first + j]), ray), first + j))
+        return true;
     }
   }
   for (std::uint32_t i = 0; i < primitives.quad_count; ++i) {
@@ -48,9 +49,8 @@ PT_HD Hit closest_hit_brute(const Primitives& primitives, const Ray& ray) {
 
 /// Whether anything lies on the ray nearer than `distance`.
 PT_HD bool any_hit_brute(const Primitives& primitives, const Ray& ray, float distance) {
-  return for_each_intersection(primitives, ray, [&](float t, std::uint32_t) {
-    return t > 0.0f && t < distance;
-  });
+  return for_each_intersection(primitives, ray,
+                               [&](float t, std::uint32_t) { return t > 0.0f && t < distance; });
 }
 
 }  // namespace pt

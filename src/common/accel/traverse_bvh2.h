@@ -1,4 +1,5 @@
-// Traversal of the binary BVH: nearest child first, a short stack (Aila and Laine 2009, while-while).
+// Traversal of the binary BVH: nearest child first, a short stack (Aila and Laine 2009,
+// while-while).
 #pragma once
 
 #include "common/accel/bvh2.h"
@@ -91,9 +92,8 @@ PT_HD Hit closest_hit_bvh2(const Bvh2Node* nodes, const Primitives& primitives, 
 /// Whether anything lies on the ray nearer than `distance`.
 PT_HD bool any_hit_bvh2(const Bvh2Node* nodes, const Primitives& primitives, const Ray& ray,
                         float distance) {
-  return traverse_bvh2(nodes, primitives, ray, distance, [&](float t, std::uint32_t, float&) {
-    return t > 0.0f && t < distance;
-  });
+  return traverse_bvh2(nodes, primitives, ray, distance,
+                       [&](float t, std::uint32_t, float&) { return t > 0.0f && t < distance; });
 }
 
 }  // namespace pt

@@ -85,8 +85,8 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
   note_memory("film", pixels * sizeof(FilmPixel));
   note_memory("samples", paths * sizeof(Sample));
   if (state_bytes > 0) note_memory("random states", state_bytes);
-  setup_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                  .count();
+  setup_ms_ =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
@@ -107,7 +107,8 @@ RenderRun CpuRenderer::render(const RenderHooks& hooks) {
       options_.spp, batch_samples_, film_.size(), hooks, [&](int first_sample, int samples) {
         const auto start = std::chrono::steady_clock::now();
         buffer.first_sample = static_cast<std::uint32_t>(first_sample);
-        buffer.path_count = static_cast<std::uint32_t>(film_.size()) * samples;
+        buffer.sample_count = static_cast<std::uint32_t>(samples);
+        buffer.path_count = static_cast<std::uint32_t>(film_.size()) * buffer.sample_count;
         arena_.execute([&] {
           trace_batch(buffer);
           timer_.time("accumulate", [&] { accumulate(buffer); });
@@ -123,7 +124,7 @@ RenderRun CpuRenderer::render(const RenderHooks& hooks) {
 
 void CpuRenderer::init_random_states(const SampleBuffer& batch) {
   tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t i) {
-    xorwow_init(xorwow_seed(options_.seed, batch.id_of(batch.begin_path(i))), states_[i]);
+    xorwow_init(xorwow_seed(options_.seed, batch.id_of(i)), states_[i]);
   });
 }
 

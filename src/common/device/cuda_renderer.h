@@ -98,8 +98,11 @@ class CudaRenderer : public Renderer {
     template <class... Arguments>
     explicit Pack(const Arguments&... arguments) : values_(arguments...) {}
     void** pointers() {
-      std::apply([this](auto&... value) { pointers_ = {const_cast<void*>(static_cast<const void*>(&value))...}; },
-                 values_);
+      std::apply(
+          [this](auto&... value) {
+            pointers_ = {const_cast<void*>(static_cast<const void*>(&value))...};
+          },
+          values_);
       return pointers_.data();
     }
 

@@ -69,16 +69,17 @@ void CudaRenderer::upload(const SceneData& scene) {
   const std::size_t sphere_bytes = scene.spheres.size() * sizeof(Sphere);
   if (options_.scene_memory == SceneMemory::constant &&
       scene.spheres.size() > constant_spheres_max) {
-    throw Error(fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
-                            "parameters hold at most {}",
-                            scene.spheres.size(), constant_spheres_max));
+    throw Error(
+        fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
+                    "parameters hold at most {}",
+                    scene.spheres.size(), constant_spheres_max));
   }
   if (options_.scene_memory == SceneMemory::shared &&
       sphere_bytes > properties_.sharedMemPerBlockOptin) {
-    throw Error(fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
-                            "of this device has at most {}",
-                            scene.spheres.size(), sphere_bytes,
-                            properties_.sharedMemPerBlockOptin));
+    throw Error(
+        fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
+                    "of this device has at most {}",
+                    scene.spheres.size(), sphere_bytes, properties_.sharedMemPerBlockOptin));
   }
   scene_ = host_view(scene, options_.width, options_.height);
   scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
@@ -96,10 +97,11 @@ void CudaRenderer::allocate_film() {
   const std::uint64_t least = pixels * (sizeof(FilmPixel) + bytes_per_path);
   const std::uint64_t free = CudaMemory::free_bytes();
   if (least > free || pixels > 0x7fffffffu) {
-    throw Error(fmt::format("not enough device memory: an image of {} x {} pixels needs {:.0f} MiB, "
-                            "{:.0f} MiB are free",
-                            options_.width, options_.height, static_cast<double>(least) / mib,
-                            static_cast<double>(free) / mib));
+    throw Error(
+        fmt::format("not enough device memory: an image of {} x {} pixels needs {:.0f} MiB, "
+                    "{:.0f} MiB are free",
+                    options_.width, options_.height, static_cast<double>(least) / mib,
+                    static_cast<double>(free) / mib));
   }
   // Half of what is free is left to the path pool and to others.
   const std::uint64_t room = std::max(free / 2, least) - pixels * sizeof(FilmPixel);
@@ -134,9 +136,10 @@ void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
   check_cuda(cudaFuncGetAttributes(&attributes, kernel), name);
   const int threads = static_cast<int>(block.x * block.y * block.z);
   if (threads > attributes.maxThreadsPerBlock) {
-    throw Error(fmt::format("kernel {} uses {} registers per thread: a block has at most {} threads, "
-                            "{} were asked for (--block, --stage-block)",
-                            name, attributes.numRegs, attributes.maxThreadsPerBlock, threads));
+    throw Error(
+        fmt::format("kernel {} uses {} registers per thread: a block has at most {} threads, "
+                    "{} were asked for (--block, --stage-block)",
+                    name, attributes.numRegs, attributes.maxThreadsPerBlock, threads));
   }
   if (shared_bytes > 48 * 1024) {
     check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
@@ -145,8 +148,7 @@ void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
   }
   const std::uint32_t resident = resident_blocks(kernel, threads, shared_bytes);
   const int warps = (threads + 31) / 32 * static_cast<int>(resident);
-  const int room =
-      properties_.multiProcessorCount * (properties_.maxThreadsPerMultiProcessor / 32);
+  const int room = properties_.multiProcessorCount * (properties_.maxThreadsPerMultiProcessor / 32);
   kernel_pointers_.push_back(kernel);
   kernels_.push_back({name, attributes.numRegs, attributes.localSizeBytes,
                       attributes.sharedSizeBytes + shared_bytes, threads,
@@ -199,12 +201,13 @@ RenderRun CudaRenderer::render(const RenderHooks& hooks) {
   batch.width = FastDivider(static_cast<std::uint32_t>(options_.width));
   batch.pixel_count = FastDivider(static_cast<std::uint32_t>(pixels));
   RenderRun run;
-  run.samples_done = for_each_batch(options_.spp, batch_samples_, pixels, hooks,
-                                    [&](int first_sample, int samples) {
-                                      batch.first_sample = static_cast<std::uint32_t>(first_sample);
-                                      batch.path_count = static_cast<std::uint32_t>(pixels) * samples;
-                                      render_batch(batch, run);
-                                    });
+  run.samples_done = for_each_batch(
+      options_.spp, batch_samples_, pixels, hooks, [&](int first_sample, int samples) {
+        batch.first_sample = static_cast<std::uint32_t>(first_sample);
+        batch.sample_count = static_cast<std::uint32_t>(samples);
+        batch.path_count = static_cast<std::uint32_t>(pixels) * batch.sample_count;
+        render_batch(batch, run);
+      });
   run.waves = take_wave_count();
   read_clock(run);
   return run;
@@ -223,8 +226,9 @@ void CudaRenderer::read_clock(RenderRun& run) {
 Image CudaRenderer::image() {
   const Stopwatch transfer;
   std::vector<FilmPixel> film(std::uint64_t(options_.width) * std::uint64_t(options_.height));
-  check_cuda(cudaMemcpy(film.data(), film_, film.size() * sizeof(FilmPixel), cudaMemcpyDeviceToHost),
-             "downloading the image");
+  check_cuda(
+      cudaMemcpy(film.data(), film_, film.size() * sizeof(FilmPixel), cudaMemcpyDeviceToHost),
+      "downloading the image");
   transfer_ms_ += transfer.ms();
   return develop(film, options_.width, options_.height);
 }

@@ -28,12 +28,12 @@ void add_cuda_devices(std::vector<DeviceInfo>& devices) {
   for (int i = 0; i < count; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
-    devices.push_back({{DeviceChoice::Kind::cuda, i},
-                       p.name,
-                       fmt::format("{} multiprocessors, {:.1f} GiB, compute capability {}.{}",
-                                   p.multiProcessorCount,
-                                   static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major,
-                                   p.minor)});
+    devices.push_back(
+        {{DeviceChoice::Kind::cuda, i},
+         p.name,
+         fmt::format("{} multiprocessors, {:.1f} GiB, compute capability {}.{}",
+                     p.multiProcessorCount, static_cast<double>(p.totalGlobalMem) / (1 << 30),
+                     p.major, p.minor)});
   }
 #else
   (void)devices;

@@ -1,6 +1,5 @@
-#include "common/device/film_kernels.h"
-
 #include "common/device/curand_state.cuh"
+#include "common/device/film_kernels.h"
 #include "common/device/stage_stamp.cuh"
 
 namespace pt {
@@ -13,7 +12,7 @@ __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64
   stamp_first_thread(clock, ClockId::render_init);
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= batch.path_count) return;
-  const PathId id = batch.id_of(batch.begin_path(i));
+  const PathId id = batch.id_of(i);
   curand_init(xorwow_seed(seed, id), 0, 0, &states[i].state);
 }
 

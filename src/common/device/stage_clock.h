@@ -9,8 +9,19 @@
 namespace pt {
 
 /// The kernels that have a time of their own. The first ones are StageId's.
-enum class ClockId { generate, intersect, shade_miss, shade_surface, shadow, accumulate, compact,
-                     begin_wave, megakernel, render_init, idle };
+enum class ClockId {
+  generate,
+  intersect,
+  shade_miss,
+  shade_surface,
+  shadow,
+  accumulate,
+  compact,
+  begin_wave,
+  megakernel,
+  render_init,
+  idle
+};
 inline constexpr int clock_count = static_cast<int>(ClockId::idle) + 1;
 
 struct StageClock {

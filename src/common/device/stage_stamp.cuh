@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/device/stage_clock.h"
+#include "common/render/options.h"
 
 namespace pt {
 
@@ -17,6 +18,10 @@ __device__ inline void stamp(StageClock* clock, ClockId id) {
 
 __device__ inline void stamp_first_thread(StageClock* clock, ClockId id) {
   if ((blockIdx.x | blockIdx.y | blockIdx.z | threadIdx.x | threadIdx.y) == 0) stamp(clock, id);
+}
+
+__device__ inline void stamp_first_thread(StageClock* clock, StageId id) {
+  stamp_first_thread(clock, static_cast<ClockId>(id));  // ClockId begins with StageId's values
 }
 
 }  // namespace pt

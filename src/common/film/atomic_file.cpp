@@ -145,9 +145,10 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
     }
     TemporaryFile successor(target.folder);
     Descriptor& descriptor = successor.descriptor();
-    if (target.mode && ::fchmod(descriptor.get(), *target.mode) != 0) fail(errno);
+    // File systems without permissions or without sync are no reason to lose the content.
+    if (target.mode && ::fchmod(descriptor.get(), *target.mode) != 0 && errno != EPERM) fail(errno);
     descriptor.write(bytes);
-    if (::fsync(descriptor.get()) != 0) fail(errno);
+    if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail(errno);
     descriptor.close();
     successor.rename(target.file);
   });

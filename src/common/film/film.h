@@ -20,30 +20,22 @@ struct SampleBuffer {
   FastDivider width;
   FastDivider pixel_count;
   std::uint32_t first_sample = 0;  ///< of the batch, counted from the image's first
-  std::uint32_t path_count = 0;    ///< samples in the batch * pixels, below 2^31
+  std::uint32_t sample_count = 0;  ///< in the batch
+  std::uint32_t path_count = 0;    ///< sample_count * pixels, below 2^31
 
-  /// The state of a new path: the one with this number.
-  PT_HD PathState begin_path(std::uint32_t number) const {
-    PathState path;
-    path.sample = pixel_count.quotient(number);
-    const std::uint32_t pixel = number - path.sample * pixel_count.divisor();
+  PT_HD PathId id_of(std::uint32_t number) const {
+    const std::uint32_t sample = pixel_count.quotient(number);
+    const std::uint32_t pixel = number - sample * pixel_count.divisor();
     const std::uint32_t y = width.quotient(pixel);
-    path.pixel = pack_pixel(pixel - y * width.divisor(), y);
-    return path;
+    return {pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, number};
   }
 
-  PT_HD std::uint32_t number_of(const PathState& path) const {
-    return path.sample * pixel_count.divisor() + pixel_y(path.pixel) * width.divisor() +
-           pixel_x(path.pixel);
-  }
-
-  PT_HD PathId id_of(const PathState& path) const {
-    return {path.pixel, first_sample + path.sample, number_of(path)};
+  PT_HD std::uint32_t number_of(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
+    return sample * pixel_count.divisor() + y * width.divisor() + x;
   }
 
   PT_HD void store(const PathState& path, const Color& radiance) const {
-    store_wide(&samples[number_of(path)],
-               Sample{radiance, path.rays | std::uint32_t{path.shadow_rays} << 16});
+    store_wide(&samples[path.number], Sample{radiance, path.packed_rays()});
   }
 };
 
@@ -75,22 +67,37 @@ PT_HD int length_bin(std::uint32_t rays) {
 }
 
 /// Adds one pixel's samples of the batch to the film, in their order; `count(bin)` is called with
-/// the length bin of each path, and `tally` gets the other numbers.
+/// the length bin of each path, and `tally` gets the other numbers. Several samples are loaded
+/// before the first is used, since nothing else hides the latency of a thread that walks through a
+/// batch.
 template <class CountLength>
 PT_HD void accumulate_pixel(FilmPixel* film, const SampleBuffer& buffer, std::uint32_t pixel,
                             PathTally& tally, CountLength&& count) {
+  constexpr std::uint32_t ahead = 8;
   FilmPixel sum = film[pixel];
   const std::uint32_t stride = buffer.pixel_count.divisor();
-  for (std::uint32_t i = pixel; i < buffer.path_count; i += stride) {
-    const Sample sample = load_wide(&buffer.samples[i]);
-    tally.rays += sample.rays & 0xffffu;
-    tally.shadow_rays += sample.rays >> 16;
-    count(length_bin(sample.rays & 0xffffu));
-    if (is_finite(sample.radiance)) {
-      for (int c = 0; c < 3; ++c) sum.sum[c] += sample.radiance[c];
-      ++sum.samples;
-    } else {
-      ++tally.nonfinite;
+  const std::uint32_t sample_count = buffer.sample_count;
+  for (std::uint32_t first = 0; first < sample_count; first += ahead) {
+    Sample loaded[ahead];
+    PT_UNROLL(8)
+    for (std::uint32_t k = 0; k < ahead; ++k) {
+      if (first + k < sample_count) {
+        loaded[k] = load_wide(&buffer.samples[(first + k) * stride + pixel]);
+      }
+    }
+    PT_UNROLL(8)
+    for (std::uint32_t k = 0; k < ahead; ++k) {
+      if (first + k >= sample_count) break;
+      const Sample& sample = loaded[k];
+      tally.rays += sample.rays & 0xffffu;
+      tally.shadow_rays += sample.rays >> 16;
+      count(length_bin(sample.rays & 0xffffu));
+      if (is_finite(sample.radiance)) {
+        for (int c = 0; c < 3; ++c) sum.sum[c] += sample.radiance[c];
+        ++sum.samples;
+      } else {
+        ++tally.nonfinite;
+      }
     }
   }
   film[pixel] = sum;

@@ -20,7 +20,7 @@ PT_HD Quad make_quad(const Vec3& corner, const Vec3& edge_a, const Vec3& edge_b)
   const Vec3 n = glm::cross(edge_a, edge_b);
   const float n2 = glm::dot(n, n);
   const float area = sqrtf(n2);
-  return {corner, edge_a, edge_b, glm::cross(edge_b, n) / n2, glm::cross(n, edge_a) / n2,
+  return {corner,   edge_a, edge_b, glm::cross(edge_b, n) / n2, glm::cross(n, edge_a) / n2,
           n / area, area};
 }
 
@@ -42,8 +42,8 @@ PT_HD SurfacePoint quad_surface(const Quad& quad, const Ray& ray, float t) {
   const Vec3 p = ray.origin + t * ray.direction;
   const float distance = glm::dot(quad.normal, p - quad.corner);
   const Vec3 position = p - distance * quad.normal;
-  const float scale = max_abs(position) + max_abs(quad.corner) + max_abs(quad.edge_a) +
-                      max_abs(quad.edge_b);
+  const float scale =
+      max_abs(position) + max_abs(quad.corner) + max_abs(quad.edge_a) + max_abs(quad.edge_b);
   return {position, quad.normal, 8.0f * half_ulp * scale};
 }
 

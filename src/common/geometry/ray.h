@@ -25,8 +25,8 @@ struct Hit {
 /// A point on a surface, with what is needed to leave it.
 struct SurfacePoint {
   Vec3 position;
-  Vec3 normal;         ///< outward geometric normal, unit length
-  float error_bound;   ///< how far `position` and the surface may be apart through rounding
+  Vec3 normal;        ///< outward geometric normal, unit length
+  float error_bound;  ///< how far `position` and the surface may be apart through rounding
 };
 
 /// A ray from `point` towards `direction` that cannot meet the surface it leaves: its origin lies

@@ -10,7 +10,7 @@ struct alignas(16) Sphere {
   Vec3 center;
   float radius_squared;
 
-  PT_HD float radius() const { return sqrtf(radius_squared); }
+  PT_HD float radius() const { return fast_sqrt(radius_squared); }
 };
 
 /// A quarter of the discriminant: negative when the line misses the sphere. Computed from the
@@ -30,7 +30,7 @@ PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   const float b = glm::dot(oc, ray.direction);
   const Vec3 off = oc - b * ray.direction;
   const float d = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
-  const float half_chord = sqrtf(fmaxf(d, 0.0f));
+  const float half_chord = fast_sqrt(d);
   const float near = b - half_chord;
   return near > 0.0f ? near : b + half_chord;
 }

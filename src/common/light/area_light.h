@@ -8,7 +8,7 @@
 namespace pt {
 
 struct LightSample {
-  Vec3 wi = Vec3(0.0f);          ///< unit vector to the light
+  Vec3 wi = Vec3(0.0f);   ///< unit vector to the light
   float distance = 0.0f;  ///< to the sampled point, less the rounding error
   float pdf = 0.0f;       ///< per solid angle; 0: nothing to be gained
 };
@@ -53,8 +53,7 @@ PT_HD LightSample sample_sphere(const Sphere& sphere, const Vec3& from, float u0
   const float sin_theta = sqrtf(fmaxf(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
   const SinCos phi = sincos_2pi(u1);
   const Frame frame = make_frame(normalize(sphere.center - from));
-  const Vec3 wi =
-      normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
+  const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
   const float distance = sphere_distance(sphere, {from, wi});
   return {wi, distance * (1.0f - 1e-4f), 0.5f * inverse_pi / one_minus_cos_max};
 }

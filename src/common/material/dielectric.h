@@ -30,12 +30,12 @@ struct Dielectric {
     const float cos_i = fminf(fabsf(cos_o), 1.0f);
     // Radiance is not scaled by eta^2: paths start and end outside, where the factors cancel.
     if (u.x < fresnel_dielectric(cos_i, relative_eta)) {
-      return {normalize(reflect(wo, facing)), tint, delta_pdf};
+      return {normalize(reflect(wo, facing)), tint};
     }
     const float inverse_eta = 1.0f / relative_eta;
     const float sin2_t = fmaxf(0.0f, (1.0f - cos_i * cos_i) * inverse_eta * inverse_eta);
     const float cos_t = sqrtf(fmaxf(0.0f, 1.0f - sin2_t));
-    return {normalize((inverse_eta * cos_i - cos_t) * facing - inverse_eta * wo), tint, delta_pdf};
+    return {normalize((inverse_eta * cos_i - cos_t) * facing - inverse_eta * wo), tint};
   }
 
   PT_HD Color evaluate(const Vec3&, const Vec3&, const Vec3&) const { return Color(0.0f); }

@@ -13,8 +13,7 @@ struct Diffuse {
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
     const Vec3 facing = glm::dot(wo, n) < 0.0f ? -n : n;
-    const Vec3 wi = sample_cosine_hemisphere(facing, u.x, u.y);
-    return {wi, albedo, multiply_rounded(fmaxf(glm::dot(wi, facing), 0.0f), inverse_pi)};
+    return {sample_cosine_hemisphere(facing, u.x, u.y), albedo};
   }
 
   PT_HD Color evaluate(const Vec3& wo, const Vec3& wi, const Vec3& n) const {

@@ -11,8 +11,8 @@ enum class MaterialKind : std::uint32_t { diffuse, metal, dielectric };
 
 struct alignas(16) Material {
   Color albedo = Color(0.5f);
-  float parameter = 0.0f;  ///< metal: fuzz; dielectric: eta
-  Color emission = Color(0.0f);    ///< radiance on the side to which the normal points
+  float parameter = 0.0f;        ///< metal: fuzz; dielectric: eta
+  Color emission = Color(0.0f);  ///< radiance on the side to which the normal points
   MaterialKind kind = MaterialKind::diffuse;
 };
 

@@ -17,11 +17,10 @@ struct Metal {
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
     const float cos_o = glm::dot(wo, n);
     const Vec3 mirror = reflect(wo, n);
-    if (is_delta()) return {normalize(mirror), albedo, delta_pdf};
+    if (is_delta()) return {normalize(mirror), albedo};
     const Vec3 sum = mirror + fuzz * sample_unit_ball(u.x, u.y, u.z);
     if (glm::dot(sum, n) * cos_o <= 0.0f) return {};
-    const Vec3 wi = normalize(sum);
-    return {wi, albedo, ball_pdf(mirror, wi)};
+    return {normalize(sum), albedo};
   }
 
   PT_HD Color evaluate(const Vec3& wo, const Vec3& wi, const Vec3& n) const {

@@ -19,9 +19,7 @@ PT_HD Frame make_frame(const Vec3& n) {
   const float sign = copysignf(1.0f, n.z);
   const float a = -1.0f / (sign + n.z);
   const float b = n.x * n.y * a;
-  return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x},
-          {b, sign + n.y * n.y * a, -n.y},
-          n};
+  return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
 }
 
 }  // namespace pt

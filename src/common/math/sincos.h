@@ -18,7 +18,8 @@ PT_HD SinCos sincos_2pi(float u) {
   const float x2 = x * x;
   // Taylor terms up to x^9 and x^8: the remainder at pi/4 is below 2e-9 and 3e-8.
   const float s =
-      x + x * x2 * (-1.6666667e-1f + x2 * (8.3333333e-3f + x2 * (-1.9841270e-4f + x2 * 2.7557319e-6f)));
+      x +
+      x * x2 * (-1.6666667e-1f + x2 * (8.3333333e-3f + x2 * (-1.9841270e-4f + x2 * 2.7557319e-6f)));
   const float c =
       1.0f + x2 * (-0.5f + x2 * (4.1666667e-2f + x2 * (-1.3888889e-3f + x2 * 2.4801587e-5f)));
   const int q = static_cast<int>(quadrant) & 3;

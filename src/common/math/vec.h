@@ -16,7 +16,7 @@ using Color = glm::vec3;  ///< linear RGB radiance or reflectance
 
 inline constexpr float pi = 3.14159265358979f;
 inline constexpr float inverse_pi = 0.31830988618379f;
-inline constexpr float half_ulp = 5.9604645e-8f;  ///< 2^-24: rounding error of one operation
+inline constexpr float half_ulp = 5.9604645e-8f;     ///< 2^-24: rounding error of one operation
 inline constexpr float one_minus_ulp = 0.99999994f;  ///< the largest float below 1
 
 /// v / |v|; each component ends in a rounded product (see platform.h).
@@ -36,8 +36,6 @@ PT_HD Color add_rounded(const Color& a, const Color& b) {
 PT_HD bool is_black(const Color& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
 
 /// Largest absolute component: the scale of a position's rounding error.
-PT_HD float max_abs(const Vec3& v) {
-  return fmaxf(fmaxf(fabsf(v.x), fabsf(v.y)), fabsf(v.z));
-}
+PT_HD float max_abs(const Vec3& v) { return fmaxf(fmaxf(fabsf(v.x), fabsf(v.y)), fabsf(v.z)); }
 
 }  // namespace pt

@@ -14,7 +14,7 @@ PT_HD float to_unit_float(std::uint32_t bits) {
 /// Uniform on the unit sphere; density 1 / (4 pi).
 PT_HD Vec3 sample_unit_sphere(float u0, float u1) {
   const float z = 1.0f - 2.0f * u0;
-  const float r = sqrtf(fmaxf(0.0f, 1.0f - z * z));
+  const float r = fast_sqrt(1.0f - z * z);
   const SinCos phi = sincos_2pi(u1);
   return {r * phi.cos, r * phi.sin, z};
 }
@@ -31,7 +31,7 @@ struct Disk {
 
 /// Uniform on the unit disk; density 1 / pi.
 PT_HD Disk sample_unit_disk(float u0, float u1) {
-  const float r = sqrtf(u0);
+  const float r = fast_sqrt(u0);
   const SinCos phi = sincos_2pi(u1);
   return {r * phi.cos, r * phi.sin};
 }

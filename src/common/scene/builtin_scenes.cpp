@@ -48,11 +48,11 @@ SceneData make_cornell() {
   const auto red = scene.add_material(make_diffuse({0.65f, 0.05f, 0.05f}));
   const auto green = scene.add_material(make_diffuse({0.12f, 0.45f, 0.15f}));
   const auto lamp = scene.add_material(make_diffuse(Color(0.0f), {17.0f, 12.0f, 4.0f}));
-  scene.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white);   // floor
-  scene.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, white);   // ceiling
-  scene.add_quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white);   // back
-  scene.add_quad({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, red);     // left
-  scene.add_quad({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, green);    // right
+  scene.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white);  // floor
+  scene.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, white);  // ceiling
+  scene.add_quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white);  // back
+  scene.add_quad({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, red);    // left
+  scene.add_quad({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, green);   // right
   scene.add_quad({-0.25f, 1.99f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}, lamp);
   add_box(scene, {-0.35f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, 17.0f, white);
   add_box(scene, {0.35f, 0.3f, 0.35f}, {0.6f, 0.6f, 0.6f}, -17.0f, white);

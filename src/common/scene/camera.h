@@ -19,9 +19,9 @@ struct CameraParameters {
 /// Directions are relative to `origin`; pixel (0, 0) is the upper left corner.
 struct Camera {
   Vec3 origin;
-  Vec3 corner;       ///< from the origin to the upper left corner of the focal plane
-  Vec3 step_x;       ///< one pixel to the right
-  Vec3 step_y;       ///< one pixel down
+  Vec3 corner;          ///< from the origin to the upper left corner of the focal plane
+  Vec3 step_x;          ///< one pixel to the right
+  Vec3 step_y;          ///< one pixel down
   Vec3 lens_x, lens_y;  ///< half axes of the lens disk
 };
 
@@ -39,7 +39,10 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
   return {parameters.look_from,
           -parameters.focus_distance * backward - 0.5f * static_cast<float>(width) * step_x -
               0.5f * static_cast<float>(height) * step_y,
-          step_x, step_y, lens_radius * right, lens_radius * up};
+          step_x,
+          step_y,
+          lens_radius * right,
+          lens_radius * up};
 }
 
 /// The ray through film position (x, y), in pixels; `u` in [0, 1)^2 chooses the point of the lens.

@@ -32,7 +32,8 @@ struct SceneTraits {
   bool has_lights = false;
 };
 
-/// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+/// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host
+/// pass.)
 template <Accel accel_value, bool has_lights_value>
 struct Traits {
   static constexpr Accel accel = accel_value;

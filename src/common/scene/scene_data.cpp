@@ -44,7 +44,8 @@ void check_camera(const CameraParameters& camera) {
     throw Error("--look-from and --look-at are the same point; the camera needs a direction");
   }
   const Vec3 side = glm::cross(camera.up, backward);
-  if (glm::dot(side, side) <= 1e-12f * glm::dot(camera.up, camera.up) * glm::dot(backward, backward)) {
+  if (glm::dot(side, side) <=
+      1e-12f * glm::dot(camera.up, camera.up) * glm::dot(backward, backward)) {
     throw Error("--up is zero or parallel to the view direction; choose another vector");
   }
   if (!(camera.vertical_fov_degrees > 0.0f && camera.vertical_fov_degrees < 180.0f)) {
@@ -55,8 +56,7 @@ void check_camera(const CameraParameters& camera) {
     throw Error(fmt::format("--aperture {}: expected a diameter >= 0", camera.aperture));
   }
   if (!(camera.focus_distance > 0.0f)) {
-    throw Error(
-        fmt::format("--focus-distance {}: expected a distance > 0", camera.focus_distance));
+    throw Error(fmt::format("--focus-distance {}: expected a distance > 0", camera.focus_distance));
   }
 }
 
@@ -136,9 +136,9 @@ void prepare_scene(SceneData& scene, const Options& options) {
   check_camera(scene.camera);
   join_materials(scene);
   list_lights(scene);
-  const bool brute = options.accel == AccelKind::brute ||
-                     (options.accel == AccelKind::automatic &&
-                      scene.primitive_count() <= brute_force_max);
+  const bool brute =
+      options.accel == AccelKind::brute ||
+      (options.accel == AccelKind::automatic && scene.primitive_count() <= brute_force_max);
   scene.accel = brute ? Accel::brute : Accel::bvh2;
   scene.bvh_nodes.clear();
   if (!brute) {

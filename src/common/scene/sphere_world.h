@@ -43,7 +43,9 @@ class WorldRandom {
   }
 
   /// lo + u (hi - lo)
-  PT_HD float next(float lo, float hi) { return add_rounded(lo, multiply_rounded(next(), hi - lo)); }
+  PT_HD float next(float lo, float hi) {
+    return add_rounded(lo, multiply_rounded(next(), hi - lo));
+  }
 
  private:
   static constexpr std::uint32_t seed = 1984;  // the CUDA port's seed of its world
@@ -78,7 +80,8 @@ PT_HD float height_on_ground(float x, float z, float radius) {
 }
 
 /// The paper's scene: a ground and `count` random spheres, 70 % diffuse and 30 % metal. They are
-/// spread evenly by the R2 sequence (Roberts 2018) over a square whose area grows with their number.
+/// spread evenly by the R2 sequence (Roberts 2018) over a square whose area grows with their
+/// number.
 PT_HD void create_spheres(SphereWorld& world, std::uint32_t count) {
   add_ground(world);
   const float side = multiply_rounded(1.3f, sqrtf(static_cast<float>(count)));
@@ -93,7 +96,8 @@ PT_HD void create_spheres(SphereWorld& world, std::uint32_t count) {
   }
 }
 
-/// The final scene of 'Ray Tracing in One Weekend': a grid of small spheres around three large ones.
+/// The final scene of 'Ray Tracing in One Weekend': a grid of small spheres around three large
+/// ones.
 PT_HD void create_rtow(SphereWorld& world) {
   add_ground(world);
   for (int a = -11; a < 11; ++a) {

@@ -11,7 +11,8 @@ namespace pt {
 struct ShadowRay {
   Ray ray;
   float distance = 0.0f;
-  Color radiance = Color(0.0f);  ///< added to the pixel's sample if the ray is free; black: no question
+  Color radiance =
+      Color(0.0f);  ///< added to the pixel's sample if the ray is free; black: no question
 };
 
 template <Accel accel>

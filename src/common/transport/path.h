@@ -10,14 +10,15 @@ PT_HD std::uint32_t pixel_x(std::uint32_t pixel) { return pixel & 0xffffu; }
 PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 struct PathState {
-  Color beta = Color(1.0f);          ///< throughput: product of f |cos| / pdf so far
-  std::uint32_t pixel = 0;   ///< x | y << 16
-  std::uint32_t sample = 0;  ///< counted from the batch's first sample
+  Color beta = Color(1.0f);  ///< throughput: product of f |cos| / pdf so far
+  std::uint32_t number = 0;  ///< the path's place in the batch: tells its pixel and sample
   std::uint16_t rays = 0;    ///< traced so far, the camera ray included
   std::uint16_t shadow_rays = 0;
   float bsdf_pdf = delta_distribution;  ///< density that chose the current ray, for MIS
 
   static constexpr float delta_distribution = HUGE_VALF;  ///< no light sampling could have found it
+
+  PT_HD std::uint32_t packed_rays() const { return rays | std::uint32_t{shadow_rays} << 16; }
 };
 
 }  // namespace pt

@@ -14,7 +14,7 @@ struct Scattering {
   bool alive = false;
   Ray ray;
   Color emitted = Color(0.0f);  ///< to be added to the path's sample
-  ShadowRay shadow;     ///< to be traced unless its radiance is black
+  ShadowRay shadow;             ///< to be traced unless its radiance is black
 };
 
 /// beta * Le, weighted against light sampling, which could have found the same point.
@@ -71,13 +71,16 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
       }
     }
     next = bsdf.sample(wo, point.normal, scatter);
+    if constexpr (has_lights) {
+      path.bsdf_pdf =
+          bsdf.is_delta() ? PathState::delta_distribution : bsdf.pdf(wo, next.wi, point.normal);
+    }
   });
   if constexpr (has_lights) {
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  path.bsdf_pdf = next.pdf;
-  result.alive = next.pdf > 0.0f && !is_black(path.beta);
+  result.alive = !is_black(path.beta);
   result.ray = spawn_ray(point, next.wi);
   return result;
 }

@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Draws the tables of the experiments: NAME.csv, with the NAME.json beside it, as NAME.png.
+
+A marker is the median of the repeats, a bar reaches from the fastest to the slowest. The colours
+(Okabe and Ito 2008, 'Color Universal Design') and the markers tell the series apart, each alone.
+"""
+import argparse
+import csv
+import json
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")  # draws into files, needs no screen
+from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-import-position
+
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+
+
+def in_groups(rows, label):
+    """{value of the label: its rows}, in the order of the table."""
+    groups = {}
+    for row in rows:
+        groups.setdefault(row.get(label, ""), []).append(row)
+    return groups
+
+
+def spread(rows, column):
+    """Medians, and the lengths of the bars below and above them."""
+    low, middle, high = ([float(row[f"{column}_{part}"]) for row in rows]
+                         for part in ("min", "median", "max"))
+    return middle, [[m - l for m, l in zip(middle, low)], [h - m for m, h in zip(middle, high)]]
+
+
+def label_times(axis):
+    """A logarithmic axis of milliseconds with plain numbers: 1, 2, 5, 10 ..."""
+    axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5), numticks=30))
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:,g}"))
+    axis.set_minor_locator(ticker.NullLocator())
+
+
+def draw_lines(axes, rows, style):
+    for number, (series, members) in enumerate(in_groups(rows, "series").items()):
+        look = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
+        measured = sorted((row for row in members if row["status"] == "measured"),
+                          key=lambda row: float(row["x"]))
+        if measured:
+            medians, bars = spread(measured, style["y"])
+            axes.errorbar([float(row["x"]) for row in measured], medians, bars, label=series,
+                          capsize=3, linewidth=1.2, markersize=5, **look)
+        targets = [row for row in members if row.get("target_ms")]
+        axes.scatter([float(row["x"]) for row in targets],
+                     [float(row["target_ms"]) for row in targets], marker="_", s=300,
+                     color=look["color"], label=f"{series}: target" if targets else None)
+    refused = [row for row in rows if row["status"] == "refused"]
+    for x in sorted({float(row["x"]) for row in refused}):
+        axes.axvline(x, color="grey", linestyle=":", linewidth=1)
+        axes.text(x, 0.98, "refused ", rotation=90, ha="right", va="top", color="grey",
+                  transform=axes.get_xaxis_transform())
+    axes.set_xscale("log")
+    axes.set_xlabel(style["x_label"])
+    ticks = sorted({float(row["x"]) for row in rows})
+    axes.set_xticks(ticks, [f"{tick:,.0f}" for tick in ticks], rotation=30, ha="right")
+    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    axes.set_ylabel(style["y_label"])
+    if style["log_y"]:
+        axes.set_yscale("log")
+        label_times(axes.yaxis)
+    axes.legend(fontsize="small")
+
+
+def draw_bars(axes, rows, style):
+    measured = [row for row in rows if row["status"] == "measured"]
+    places = {row["name"]: -place for place, row in enumerate(rows)}  # the first one on top
+    medians, bars = spread(measured, style["y"])
+    axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
+              color=COLOURS[5], edgecolor=COLOURS[0])
+    for row in rows:
+        if row["status"] == "refused":
+            axes.text(0, places[row["name"]], " refused", va="center", color="grey",
+                      transform=axes.get_yaxis_transform())
+    if measured and measured[0]["x"] == "default":
+        axes.axvline(medians[0], color=COLOURS[4], linestyle="--", linewidth=1)
+    axes.set_yticks(list(places.values()), [row["x"] for row in rows])
+    axes.set_xlabel(style["y_label"])
+    if style["log_y"]:
+        axes.set_xscale("log")
+        label_times(axes.xaxis)
+
+
+def draw(path):
+    """Draws the table at `path`; returns the path of the picture."""
+    path = Path(path)
+    facts = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["x"]]  # without x: not for the picture
+    style = facts["plot"]
+    panels = in_groups(rows, "panel")
+    figure, all_axes = pyplot.subplots(1, len(panels), squeeze=False, layout="constrained",
+                                       figsize=(6.4 * len(panels), 4.8))
+    for axes, (panel, members) in zip(all_axes[0], panels.items()):
+        {"lines": draw_lines, "bars": draw_bars}[style["kind"]](axes, members, style)
+        axes.set_title(panel, fontsize="medium")
+        axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)
+    title = f"{style['title']}{' (quick: small images)' if facts['quick'] else ''}"
+    figure.suptitle(f"{title}\n{facts['device']['name']}, {facts['host']['cpu']}",
+                    fontsize="medium")
+    picture = path.with_suffix(".png")
+    figure.savefig(picture, dpi=130, metadata={"Software": None})
+    pyplot.close(figure)
+    return picture
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("tables", metavar="NAME.csv", nargs="+", type=Path)
+    for path in parser.parse_args().tables:
+        try:
+            print(f"wrote {draw(path)}")
+        except (OSError, ValueError, KeyError) as error:
+            sys.exit(f"plot.py: error: {path}: {error}")
+
+
+if __name__ == "__main__":
+    main()

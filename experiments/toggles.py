@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Toggles: what does each of the paper's choices cost or gain, alone?
+
+Every row differs from the defaults of its mode by one option. All but --rng xorwow give the same
+image.
+"""
+import sys
+
+import harness
+from harness import Configuration, Experiment, Plot
+
+BOTH = [("scene-memory", ["shared", "constant"]), ("branching", ["reduced"]), ("rng", ["xorwow"])]
+TOGGLES = {
+    "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
+    "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
+                  ("regenerate", ["off"])],
+}
+POOL_SIZES = ["128K", "256K", "512K", "1M", "2M", "4M", "8M"]
+QUICK_POOL_SIZES = ["1K", "4K"]
+
+
+def configurations(arguments, _device):
+    image = "--width 600 --height 300 --spp 50 --max-depth 50"
+    pool_sizes = POOL_SIZES
+    if arguments.quick:
+        image, pool_sizes = "--width 60 --height 30 --spp 5 --max-depth 50", QUICK_POOL_SIZES
+    result = []
+    for mode, toggles in TOGGLES.items():
+        if mode == "wavefront":
+            toggles = [*toggles, ("pool-size", pool_sizes)]
+        changes = [("default", "")]
+        changes += [(f"{option} {value}", f" --{option} {value}")
+                    for option, values in toggles for value in values]
+        result += [Configuration(f"{mode}: {name}", f"--mode {mode} {image}{text}",
+                                 {"panel": mode, "x": name, "relative_to_default": ""})
+                   for name, text in changes]
+    return result
+
+
+def finish(rows, _arguments):
+    defaults = {row["panel"]: float(row["kernel_ms_median"]) for row in rows
+                if row["x"] == "default"}
+    for row in rows:
+        if row["panel"] in defaults:
+            relative = float(row["kernel_ms_median"]) / defaults[row["panel"]]
+            row["relative_to_default"] = f"{relative:.3f}"
+
+
+EXPERIMENT = Experiment(
+    "toggles", __doc__.splitlines()[0], configurations,
+    Plot("bars", "The paper's toggles, each alone: spheres, 600x300, 50 samples, depth 50",
+         log_y=False),
+    finish=finish, table=("relative_to_default",))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT))

@@ -1,0 +1,66 @@
+// A stage as a parallel loop, and how its slots are sent on.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+
+#include "wavefront/wavefront.h"
+
+namespace pt {
+
+/// Collects what a range of slots sends on, then reserves the places in each queue with one atomic
+/// addition.
+class RangeAppender {
+ public:
+  static constexpr std::uint32_t range_max = 512;
+
+  void append(QueueId queue, std::uint32_t slot) {
+    const int q = static_cast<int>(queue);
+    slots_[q][counts_[q]++] = slot;
+  }
+
+  void flush(const StageQueues& queues) {
+    for (int q = 0; q < queue_count; ++q) {
+      if (counts_[q] == 0) continue;
+      const std::uint32_t place = atomic_fetch_add(&queues.waiting[q], counts_[q]);
+      std::copy_n(slots_[q].begin(), counts_[q], queues.next[q] + place);
+      counts_[q] = 0;
+    }
+  }
+
+ private:
+  std::array<std::uint32_t, queue_count> counts_{};
+  std::array<std::array<std::uint32_t, range_max>, queue_count> slots_;
+};
+
+/// Runs `stage` over its queue on the calling thread's oneTBB arena, and sends every slot on.
+template <class Stage>
+void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
+  const std::uint32_t begin = queues.begin();
+  // simple_partitioner: no range is longer than its grain.
+  const tbb::blocked_range<std::uint32_t> all(0, *queues.count, RangeAppender::range_max);
+  const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
+    RangeAppender appender;
+    for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+      const std::uint32_t slot = queues.slots == nullptr ? i : queues.slots[begin + i];
+      if (queues.slots == nullptr && queues.tags[slot] != Stage::tag) continue;
+      const Next next = stage(scene, slot, i);
+      if (queues.tags != nullptr) {
+        queues.tags[slot] = next.tag;
+        if (Stage::outcomes.casts_shadow_rays) {
+          queues.shadow_tags[slot] = next.shadow ? PathTag::surface : PathTag::free;
+        }
+      } else {
+        if (Stage::outcomes.sends) appender.append(static_cast<QueueId>(next.tag), slot);
+        if (next.shadow) appender.append(QueueId::shadow, slot);
+      }
+    }
+    if (queues.tags == nullptr) appender.flush(queues);
+  };
+  tbb::parallel_for(all, run_range, tbb::simple_partitioner());
+}
+
+}  // namespace pt

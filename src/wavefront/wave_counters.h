@@ -1,0 +1,47 @@
+// The numbers of a wave, in the device's memory: between two waves nobody asks the host.
+#pragma once
+
+#include "common/platform.h"
+
+namespace pt {
+
+/// A queue for each stage that waits; the first four have PathTag's numbers. One pass over the tags
+/// fills two that stand side by side.
+enum class QueueId { free, intersect, miss, surface, shadow };
+inline constexpr int queue_count = 5;
+
+struct WaveCounters {
+  std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; the last one is none's
+  std::uint32_t live;                      ///< paths in flight when the wave begins
+  std::uint32_t generate;                  ///< paths that it starts, in the last free slots
+  std::uint32_t intersect;                 ///< rays that it traces: live + generate
+  std::uint32_t first_path;                ///< number of the first path that it starts
+  std::uint32_t next_path;                 ///< paths started so far
+  std::uint32_t ticket;                    ///< paths handed out where no queue ranks the free slots
+  std::uint32_t waves;
+};
+
+/// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
+/// when nothing is left to do. Without regeneration the pool is filled again only when all of its
+/// paths have ended.
+PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate) {
+  std::uint32_t& free = c.waiting[static_cast<int>(QueueId::free)];
+  std::uint32_t& rays = c.waiting[static_cast<int>(QueueId::intersect)];
+  const std::uint32_t remaining = path_count - c.next_path;
+  c.live = rays;
+  c.generate = regenerate || c.live == 0 ? (free < remaining ? free : remaining) : 0;
+  c.intersect = c.live + c.generate;
+  c.first_path = c.next_path;
+  c.next_path += c.generate;
+  c.ticket = 0;
+  free -= c.generate;
+  rays = 0;
+  c.waiting[static_cast<int>(QueueId::miss)] = 0;
+  c.waiting[static_cast<int>(QueueId::surface)] = 0;
+  c.waiting[static_cast<int>(QueueId::shadow)] = 0;
+  if (c.intersect == 0) return false;
+  ++c.waves;
+  return true;
+}
+
+}  // namespace pt
