@@ -54,7 +54,10 @@ void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& qu
           queues.shadow_tags[slot] = next.shadow ? PathTag::surface : PathTag::free;
         }
       } else {
-        if (Stage::outcomes.sends) appender.append(static_cast<QueueId>(next.tag), slot);
+        const int to = static_cast<int>(next.tag);
+        if (Stage::outcomes.sends && queues.next[to] != nullptr) {
+          appender.append(static_cast<QueueId>(to), slot);
+        }
         if (next.shadow) appender.append(QueueId::shadow, slot);
       }
     }

@@ -75,12 +75,14 @@ __device__ void append_next(Appender& appender, const StageQueues& queues, bool 
   const int a = static_cast<int>(outcomes.tag[0]), b = static_cast<int>(outcomes.tag[1]);
   const bool to_a = done && next.tag == outcomes.tag[0];
   constexpr int shadow = static_cast<int>(QueueId::shadow);
+  if (queues.next[a] == nullptr && queues.next[b] == nullptr) return;
+  const bool to_b = done && !to_a && queues.next[b] != nullptr;
   if constexpr (outcomes.casts_shadow_rays) {
-    appender.append({to_a, done && !to_a, done && next.shadow}, slot,
+    appender.append({to_a, to_b, done && next.shadow}, slot,
                     {queues.next[a], queues.next[b], queues.next[shadow]},
                     {queues.waiting + a, queues.waiting + b, queues.waiting + shadow});
   } else {
-    appender.append({to_a, done && !to_a}, slot, {queues.next[a], queues.next[b]},
+    appender.append({to_a, to_b}, slot, {queues.next[a], queues.next[b]},
                     {queues.waiting + a, queues.waiting + b});
   }
 }
@@ -99,12 +101,13 @@ __global__ void stage_kernel(const __grid_constant__ SceneStorage<memory> storag
   const Scene scene = storage.bind();
   Appender appender(shared);
   const bool appends = queues.tags == nullptr;
+  const bool looks_at_tags = queues.slots == nullptr && !appends;
   for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
     const std::uint32_t i = base + threadIdx.x;
-    std::uint32_t slot = i;
+    std::uint32_t slot = begin + i;
     bool mine = i < count;
     if (mine && queues.slots != nullptr) slot = queues.slots[begin + i];
-    if (mine && queues.slots == nullptr) mine = queues.tags[slot] == Stage::tag;
+    if (mine && looks_at_tags) mine = queues.tags[slot] == Stage::tag;
     Next next{};
     if (mine) next = stage(scene, slot, i);
     if (appends) {

@@ -13,13 +13,14 @@ namespace pt {
 /// Where a stage finds its slots, slots[*first .. *first + *count), and where they go from there;
 /// all in the device's memory.
 struct StageQueues {
-  const std::uint32_t* slots = nullptr;  ///< null: all slots whose tag is the stage's
+  const std::uint32_t* slots = nullptr;  ///< null: slots in their own order; of those that have
+                                         ///< tags, the ones whose tag is the stage's
   const std::uint32_t* count = nullptr;
   const std::uint32_t* first = nullptr;  ///< null: 0
   PathTag* tags = nullptr;               ///< null: slots are appended to the queues instead
   PathTag* shadow_tags = nullptr;
-  std::uint32_t* next[queue_count] = {};
-  std::uint32_t* waiting = nullptr;  ///< [queue_count] ends of the queues
+  std::uint32_t* next[queue_count] = {};  ///< null: nobody waits there
+  std::uint32_t* waiting = nullptr;       ///< [queue_count] ends of the queues
 
   PT_HD std::uint32_t begin() const { return first == nullptr ? 0 : *first; }
 };
@@ -30,6 +31,7 @@ struct WaveBuffers {
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null without queues
+  bool reuses_slots = true;  ///< false: the pool holds the whole batch, a free slot stays free
 
   std::uint32_t* queue(QueueId id) const { return queues[static_cast<int>(id)]; }
   std::uint32_t* waiting(QueueId id) const { return &counters->waiting[static_cast<int>(id)]; }
@@ -46,13 +48,14 @@ struct WaveBuffers {
   StageQueues stage_queues(QueueId id, const std::uint32_t* count, PathTag* tags,
                            const std::uint32_t* first = nullptr) const {
     StageQueues result;
-    const bool has_queues = queue(id) != nullptr;
+    const bool looks_at_tags = queue(id) == nullptr && tags != nullptr;
     result.slots = queue(id);
-    result.count = has_queues ? count : slot_count;
-    result.first = has_queues ? first : nullptr;
+    result.count = looks_at_tags ? slot_count : count;
+    result.first = looks_at_tags ? nullptr : first;
     result.tags = tags;
     result.shadow_tags = pool.shadow_tag;
     for (int i = 0; i < queue_count; ++i) result.next[i] = queues[i];
+    if (!reuses_slots) result.next[static_cast<int>(QueueId::free)] = nullptr;
     result.waiting = counters->waiting;
     return result;
   }
@@ -60,16 +63,20 @@ struct WaveBuffers {
 
 /// One wave: free slots get new paths, and every path in flight one more ray. An Executor fills the
 /// queues by a pass (a no-op where stages append), decides between two waves, and runs a stage.
+/// Without `starts_paths` it does not look for free slots.
 template <class Traits, Branching branching, class Source, class Executor>
-void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
+              bool starts_paths = true) {
   using enum QueueId;
   PathTag* tags = b.pool.tag;
   const WaveCounters* counters = b.counters;
 
   execute.compact(b.request(tags, free, PathTag::free, PathTag::intersect));
   execute.begin_wave();
-  execute.run(GeneratePaths<Traits::has_lights, Source>{context},
-              b.stage_queues(free, &counters->generate, tags, b.waiting(free)));
+  if (starts_paths) {
+    execute.run(GeneratePaths<Traits::has_lights, Source>{context},
+                b.stage_queues(free, &counters->generate, tags, b.waiting(free)));
+  }
   execute.run(IntersectRays<Traits::accel, branching>{b.pool},
               b.stage_queues(intersect, &counters->intersect, tags));
 

@@ -10,9 +10,11 @@
 namespace pt {
 namespace {
 
-// Found by measurement on an H200 (results/): large enough to hide the launches, small enough for
-// most of the pool to stay in the L2 cache.
-constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 20;
+// Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
+// the L2 cache. Found by measurement on an H200 (results/), as is the rule for appended queues,
+// which keep the order of the pixels only as long as no slot is used twice: the whole batch at
+// once.
+constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 19;
 
 // A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
 // ray find empty queues.
@@ -40,14 +42,15 @@ void WavefrontCuda::allocate_pool() {
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(lights) + (queue_count + 1) * sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
-  const std::uint64_t image_paths = std::uint64_t(options_.width) * std::uint64_t(options_.height) *
-                                    static_cast<std::uint64_t>(options_.spp);
+  const bool appends = appends_in_stages(options_.compaction);
   if (options_.pool_size == 0) {
-    // Never more than the image needs, and at most half of the free memory.
-    pool_size_ = std::min({auto_pool_size, image_paths, free / 2 / bytes_per_slot});
+    const std::uint64_t wanted =
+        appends ? batch_paths() : std::min(pool_size_for_passes, batch_paths());
+    pool_size_ = std::min(wanted, free / 2 / bytes_per_slot);
   } else {
     pool_size_ = options_.pool_size;
   }
+  buffers_.reuses_slots = !appends || pool_size_ < batch_paths();
   if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
     throw Error(
         fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
@@ -68,14 +71,20 @@ void WavefrontCuda::allocate_pool() {
     pool.shadow_radiance = memory_.allocate<Record>("path pool", n);
   }
   if (options_.compaction != Compaction::none) {
-    for (std::uint32_t*& queue : buffers_.queues) {
-      queue = memory_.allocate<std::uint32_t>("queues", n);
+    for (int i = 0; i < queue_count; ++i) {
+      const QueueId id = static_cast<QueueId>(i);
+      const bool used = id == QueueId::free     ? buffers_.reuses_slots
+                        : id == QueueId::shadow ? lights
+                                                : true;
+      if (used) buffers_.queues[i] = memory_.allocate<std::uint32_t>("queues", n);
     }
   }
-  if (appends_in_stages(options_.compaction)) {
-    std::vector<std::uint32_t> all(n);
-    std::iota(all.begin(), all.end(), 0u);
-    all_slots_ = memory_.upload("queues", all);
+  if (appends) {
+    if (buffers_.reuses_slots) {
+      std::vector<std::uint32_t> all(n);
+      std::iota(all.begin(), all.end(), 0u);
+      all_slots_ = memory_.upload("queues", all);
+    }
   } else {
     pool.tag = memory_.allocate<PathTag>("path pool", n);
     if (lights) pool.shadow_tag = memory_.allocate<PathTag>("path pool", n);
@@ -102,12 +111,12 @@ void WavefrontCuda::start_queues() {
              "cudaMemsetAsync");
   fill(pool.tag);
   fill(pool.shadow_tag);
-  if (all_slots_ == nullptr) return;
+  if (compactor_ != nullptr) return;
   const auto copy = [&](std::uint32_t* to, const std::uint32_t* from, std::size_t count) {
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof *to, cudaMemcpyDeviceToDevice, stream()),
                "cudaMemcpyAsync");
   };
-  copy(buffers_.queue(QueueId::free), all_slots_, pool.slot_count);
+  if (all_slots_ != nullptr) copy(buffers_.queue(QueueId::free), all_slots_, pool.slot_count);
   copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
 }
 
@@ -142,7 +151,7 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaStreamBeginCaptureToGraph(stream(), body, nullptr, nullptr, 0,
                                            cudaStreamCaptureModeThreadLocal),
              "cudaStreamBeginCaptureToGraph");
-  for (int i = 0; i < waves_per_turn; ++i) enqueue_wave(batch, loop);
+  for (int i = 0; i < waves_per_turn; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
   cudaGraph_t captured{};
   check_cuda(cudaStreamEndCapture(stream(), &captured), "cudaStreamEndCapture");
   check_cuda(cudaGraphInstantiate(&graph_exec_, graph_, 0), "cudaGraphInstantiate");
@@ -168,12 +177,14 @@ void WavefrontCuda::read_counters() {
 
 void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   start_queues();
+  // A pool that holds the whole batch starts all paths in the first wave.
+  if (!buffers_.reuses_slots) enqueue_wave(batch, 0, true);
   if (graph_exec_ != nullptr) {
     check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
     read_counters();
   } else {
     do {
-      enqueue_wave(batch, 0);
+      enqueue_wave(batch, 0, buffers_.reuses_slots);
       read_counters();
     } while (host_counters_->intersect > 0);
   }

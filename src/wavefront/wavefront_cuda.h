@@ -13,7 +13,8 @@ class WavefrontCuda : public CudaRenderer {
   ~WavefrontCuda() override;
 
   /// Enqueues one wave on stream(). `loop`: the handle of the graph's loop, 0 outside of one.
-  void enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop);
+  /// `starts_paths`: see run_wave.
+  void enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop, bool starts_paths);
 
   // The Executor of run_wave (wavefront.h):
   void compact(const CompactionRequest& request);
@@ -28,7 +29,7 @@ class WavefrontCuda : public CudaRenderer {
 
  private:
   template <class Source>
-  void enqueue_wave_with(const Source& source, const SampleBuffer& batch);
+  void enqueue_wave_with(const Source& source, const SampleBuffer& batch, bool starts_paths);
   void allocate_pool();
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();

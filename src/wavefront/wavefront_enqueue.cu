@@ -47,7 +47,8 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
 }
 
 template <class Source>
-void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& batch) {
+void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& batch,
+                                      bool starts_paths) {
   const StageContext<Source> context{buffers_.pool,
                                      batch,
                                      source,
@@ -56,15 +57,17 @@ void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& 
                                      static_cast<std::uint32_t>(options_.max_depth)};
   dispatch_traits(traits_, [&](auto traits) {
     dispatch_branching(options_.branching, [&](auto branching) {
-      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context);
+      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
+                                                             starts_paths);
     });
   });
 }
 
-void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop) {
+void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
+                                 bool starts_paths) {
   path_count_ = batch.path_count;
   loop_ = loop;
-  with_random_source([&](const auto& source) { enqueue_wave_with(source, batch); });
+  with_random_source([&](const auto& source) { enqueue_wave_with(source, batch, starts_paths); });
 }
 
 }  // namespace pt

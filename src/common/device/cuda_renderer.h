@@ -56,11 +56,11 @@ class CudaRenderer : public Renderer {
   /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres.
   template <class Function>
   void with_scene_storage(Function&& function) const {
-    if (options_.scene_memory == SceneMemory::shared) {
-      function(SceneStorage<SceneMemory::shared>{scene_}, host_spheres_.size() * sizeof(Sphere));
-    } else if (options_.scene_memory == SceneMemory::constant) {
+    if (scene_memory_ == SceneMemory::shared) {
+      function(SceneStorage<SceneMemory::shared>{scene_}, scan_spheres_.size() * sizeof(Sphere));
+    } else if (scene_memory_ == SceneMemory::constant) {
       SceneStorage<SceneMemory::constant> storage{scene_, {}};
-      std::copy(host_spheres_.begin(), host_spheres_.end(), storage.spheres);
+      std::copy(scan_spheres_.begin(), scan_spheres_.end(), storage.spheres);
       function(storage, std::size_t{0});
     } else {
       function(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
@@ -76,6 +76,9 @@ class CudaRenderer : public Renderer {
       function(XorwowSource<CurandState>{states_});
     }
   }
+
+  /// Paths of the largest batch.
+  std::uint64_t batch_paths() const { return batch_paths_; }
 
   cudaStream_t stream() const { return stream_; }
   StageClock* clock() const { return clock_; }
@@ -120,8 +123,10 @@ class CudaRenderer : public Renderer {
   int device_;
   std::string driver_;
   std::uint64_t primitive_count_;
-  std::vector<Sphere> host_spheres_;
+  std::vector<Sphere> scan_spheres_;
+  SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
   int batch_samples_ = 1;
+  std::uint64_t batch_paths_ = 0;
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
   Sample* samples_ = nullptr;

@@ -40,7 +40,7 @@ CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int d
       traits_(scene.traits()),
       device_(device),
       primitive_count_(scene.primitive_count()),
-      host_spheres_(scene.spheres) {
+      scan_spheres_(scene.scan_spheres) {
   const Stopwatch watch;
   check_cuda(cudaSetDevice(device), "cudaSetDevice");
   check_cuda(cudaGetDeviceProperties(&properties_, device), "cudaGetDeviceProperties");
@@ -66,16 +66,20 @@ CudaRenderer::~CudaRenderer() {
 }
 
 void CudaRenderer::upload(const SceneData& scene) {
-  const std::size_t sphere_bytes = scene.spheres.size() * sizeof(Sphere);
-  if (options_.scene_memory == SceneMemory::constant &&
-      scene.spheres.size() > constant_spheres_max) {
+  const std::size_t sphere_bytes = scene.scan_spheres.size() * sizeof(Sphere);
+  const bool fits_constant = scene.scan_spheres.size() <= constant_spheres_max;
+  scene_memory_ = options_.scene_memory;
+  if (scene_memory_ == SceneMemory::automatic) {
+    scene_memory_ =
+        fits_constant && scene.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
+  }
+  if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(
         fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
                     "parameters hold at most {}",
                     scene.spheres.size(), constant_spheres_max));
   }
-  if (options_.scene_memory == SceneMemory::shared &&
-      sphere_bytes > properties_.sharedMemPerBlockOptin) {
+  if (scene_memory_ == SceneMemory::shared && sphere_bytes > properties_.sharedMemPerBlockOptin) {
     throw Error(
         fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
                     "of this device has at most {}",
@@ -83,6 +87,7 @@ void CudaRenderer::upload(const SceneData& scene) {
   }
   scene_ = host_view(scene, options_.width, options_.height);
   scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
+  scene_.primitives.scan = memory_.upload("scene", scene.scan_spheres);
   scene_.primitives.quads = memory_.upload("scene", scene.quads);
   scene_.materials = memory_.upload("scene", scene.materials);
   scene_.material_of = memory_.upload("scene", scene.material_of);
@@ -108,6 +113,7 @@ void CudaRenderer::allocate_film() {
   batch_samples_ =
       batch_samples(options_.spp, pixels, std::min(batch_paths_max, room / bytes_per_path));
   const std::uint64_t paths = pixels * static_cast<std::uint64_t>(batch_samples_);
+  batch_paths_ = paths;
   film_ = memory_.allocate<FilmPixel>("film", pixels);
   samples_ = memory_.allocate<Sample>("samples", paths);
   if (options_.rng == RngKind::xorwow) {

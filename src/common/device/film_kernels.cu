@@ -16,30 +16,40 @@ __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64
   curand_init(xorwow_seed(seed, id), 0, 0, &states[i].state);
 }
 
+namespace {
+
+__device__ void add_to(std::uint64_t* sum, std::uint64_t value) {
+  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(value));
+}
+
+}  // namespace
+
+// All counts are added up per block first: one address that every thread adds to would be the
+// slowest part of the kernel by far.
 __global__ void accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally,
                                 StageClock* clock) {
   stamp_first_thread(clock, ClockId::accumulate);
+  __shared__ std::uint64_t block_rays, block_shadow_rays, block_nonfinite;
   __shared__ std::uint32_t lengths[path_length_bins];
   for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) lengths[i] = 0;
+  if (threadIdx.x == 0) block_rays = block_shadow_rays = block_nonfinite = 0;
   __syncthreads();
   const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
   if (pixel < batch.pixel_count.divisor()) {
-    // Only the scalar members are used: the lengths of all threads go to shared memory.
-    PathTally mine;
+    PathTally mine;  // its lengths are not used: those of all threads go to shared memory
     accumulate_pixel(film, batch, pixel, mine, [](int bin) { atomicAdd(&lengths[bin], 1u); });
-    atomicAdd(reinterpret_cast<unsigned long long*>(&tally->rays), mine.rays);
-    if (mine.shadow_rays > 0) {
-      atomicAdd(reinterpret_cast<unsigned long long*>(&tally->shadow_rays), mine.shadow_rays);
-    }
-    if (mine.nonfinite > 0) {
-      atomicAdd(reinterpret_cast<unsigned long long*>(&tally->nonfinite), mine.nonfinite);
-    }
+    add_to(&block_rays, mine.rays);
+    if (mine.shadow_rays > 0) add_to(&block_shadow_rays, mine.shadow_rays);
+    if (mine.nonfinite > 0) add_to(&block_nonfinite, mine.nonfinite);
   }
   __syncthreads();
+  if (threadIdx.x == 0) {
+    add_to(&tally->rays, block_rays);
+    if (block_shadow_rays > 0) add_to(&tally->shadow_rays, block_shadow_rays);
+    if (block_nonfinite > 0) add_to(&tally->nonfinite, block_nonfinite);
+  }
   for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) {
-    if (lengths[i] > 0) {
-      atomicAdd(reinterpret_cast<unsigned long long*>(&tally->lengths[i]), lengths[i]);
-    }
+    if (lengths[i] > 0) add_to(&tally->lengths[i], lengths[i]);
   }
 }
 

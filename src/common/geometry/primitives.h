@@ -12,6 +12,10 @@ struct Primitives {
   const Quad* quads = nullptr;
   std::uint32_t sphere_count = 0;
   std::uint32_t quad_count = 0;
+  // The spheres once more, for the pass that tests them all: a multiple of four, filled up with
+  // ones that no ray meets. They may lie elsewhere (SceneMemory).
+  const Sphere* scan = nullptr;
+  std::uint32_t scan_count = 0;
 
   PT_HD bool is_sphere(std::uint32_t primitive) const { return primitive < sphere_count; }
   PT_HD const Quad& quad(std::uint32_t primitive) const { return quads[primitive - sphere_count]; }
@@ -28,8 +32,7 @@ PT_HD void keep_nearer(Hit& hit, float t, std::uint32_t primitive) {
 
 PT_HD float primitive_distance(const Primitives& primitives, std::uint32_t i, const Ray& ray) {
   if (!primitives.is_sphere(i)) return quad_distance(primitives.quad(i), ray);
-  const Sphere sphere = load_wide(&primitives.spheres[i]);
-  return sphere_discriminant(sphere, ray) < 0.0f ? -1.0f : sphere_distance(sphere, ray);
+  return sphere_distance(load_wide(&primitives.spheres[i]), ray);
 }
 
 PT_HD SurfacePoint surface_point(const Primitives& primitives, const Ray& ray, const Hit& hit) {

@@ -13,24 +13,17 @@ struct alignas(16) Sphere {
   PT_HD float radius() const { return fast_sqrt(radius_squared); }
 };
 
-/// A quarter of the discriminant: negative when the line misses the sphere. Computed from the
-/// vector between the centre and the line's nearest point, not as b^2 - c, whose two terms cancel
-/// (Haines, Guenther and Akenine-Moeller 2019, Ray Tracing Gems, chapter 7).
-PT_HD float sphere_discriminant(const Sphere& sphere, const Ray& ray) {
-  const Vec3 oc = sphere.center - ray.origin;
-  const float b = glm::dot(oc, ray.direction);
-  const Vec3 off = oc - b * ray.direction;
-  return sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
-}
-
-/// Distance to the nearest intersection with t > 0 of a line whose discriminant is not negative;
-/// negative or zero when the sphere lies behind.
+/// Distance to the nearest intersection with t > 0; a value <= 0 when there is none. The
+/// discriminant is computed from the vector between the centre and the line's nearest point, not as
+/// b^2 - c, whose two terms cancel (Haines, Guenther and Akenine-Moeller 2019, Ray Tracing Gems,
+/// chapter 7).
 PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   const Vec3 oc = sphere.center - ray.origin;
   const float b = glm::dot(oc, ray.direction);
   const Vec3 off = oc - b * ray.direction;
-  const float d = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
-  const float half_chord = fast_sqrt(d);
+  const float discriminant = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
+  if (discriminant < 0.0f) return -1.0f;
+  const float half_chord = fast_sqrt(discriminant);
   const float near = b - half_chord;
   return near > 0.0f ? near : b + half_chord;
 }

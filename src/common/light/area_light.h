@@ -54,7 +54,10 @@ PT_HD LightSample sample_sphere(const Sphere& sphere, const Vec3& from, float u0
   const SinCos phi = sincos_2pi(u1);
   const Frame frame = make_frame(normalize(sphere.center - from));
   const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
-  const float distance = sphere_distance(sphere, {from, wi});
+  float distance = sphere_distance(sphere, {from, wi});
+  if (distance <= 0.0f) {  // grazing: rounding has moved the ray past the sphere
+    distance = glm::dot(sphere.center - from, wi);
+  }
   return {wi, distance * (1.0f - 1e-4f), 0.5f * inverse_pi / one_minus_cos_max};
 }
 

@@ -34,7 +34,8 @@ inline constexpr auto enum_names<Schedule> = std::to_array<EnumName<Schedule>>(
     {{Schedule::automatic, "auto"}, {Schedule::host, "host"}, {Schedule::graph, "graph"}});
 template <>
 inline constexpr auto enum_names<SceneMemory> =
-    std::to_array<EnumName<SceneMemory>>({{SceneMemory::global, "global"},
+    std::to_array<EnumName<SceneMemory>>({{SceneMemory::automatic, "auto"},
+                                          {SceneMemory::global, "global"},
                                           {SceneMemory::shared, "shared"},
                                           {SceneMemory::constant, "constant"}});
 template <>

@@ -12,7 +12,7 @@ enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class Compaction { cub, atomic, none };
 enum class Schedule { automatic, host, graph };
-enum class SceneMemory { global, shared, constant };
+enum class SceneMemory { automatic, global, shared, constant };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
 enum class AccelKind { automatic, brute, bvh2 };
@@ -69,7 +69,7 @@ struct Options {
   std::array<int, stage_count> stage_block = {256, 256, 256, 256, 256, 256};  ///< by StageId
 
   // The paper's toggles
-  SceneMemory scene_memory = SceneMemory::global;
+  SceneMemory scene_memory = SceneMemory::automatic;  ///< constant where the spheres fit
   Branching branching = Branching::divergent;
   RngKind rng = RngKind::philox;
 

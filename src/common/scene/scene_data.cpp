@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/accel/build_bvh2.h"
+#include "common/accel/traverse_brute.h"
 #include "common/error.h"
 
 namespace pt {
@@ -145,6 +146,10 @@ void prepare_scene(SceneData& scene, const Options& options) {
     build_structure(scene);
     join_materials(scene);
   }
+  scene.scan_spheres = scene.spheres;
+  while (scene.scan_spheres.size() % scan_group != 0) {
+    scene.scan_spheres.push_back({Vec3(0.0f), -HUGE_VALF});
+  }
 }
 
 Scene host_view(const SceneData& scene, int width, int height) {
@@ -154,6 +159,8 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.primitives = {scene.spheres.data(), scene.quads.data(),
                      static_cast<std::uint32_t>(scene.spheres.size()),
                      static_cast<std::uint32_t>(scene.quads.size())};
+  view.primitives.scan = scene.scan_spheres.data();
+  view.primitives.scan_count = static_cast<std::uint32_t>(scene.scan_spheres.size());
   view.bvh_nodes = scene.bvh_nodes.data();
   view.materials = scene.materials.data();
   view.material_of = scene.material_of.data();

@@ -22,6 +22,7 @@ struct SceneData {
   std::vector<Bvh2Node> bvh_nodes;         ///< empty with Accel::brute
   std::vector<std::uint32_t> material_of;  ///< by primitive
   std::vector<std::uint32_t> lights;       ///< primitives that emit
+  std::vector<Sphere> scan_spheres;        ///< Primitives::scan
 
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
   SceneTraits traits() const { return {accel, !lights.empty()}; }
