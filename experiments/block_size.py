@@ -15,7 +15,8 @@ STAGE_BLOCKS = [16, 64, 256, 1024]
 
 
 # (series, threads per block, options)
-BLOCKS = [(f"megakernel, {work}", edge * edge, f"--mode megakernel --work {work} --block {edge}x{edge}")
+BLOCKS = [(f"megakernel, {work}", edge * edge,
+           f"--mode megakernel --work {work} --block {edge}x{edge}")
           for work in ("pixel", "persistent") for edge in EDGES]
 BLOCKS += [("wavefront", threads, f"--mode wavefront --stage-block {threads}")
            for threads in STAGE_BLOCKS]

@@ -174,7 +174,7 @@ def measure_all(experiment, configurations, program, device, arguments):
         columns = columns or list(measured)
         clash = set(configuration.labels) & {*measured, "name", "status", "message"}
         if clash:
-            raise HarnessError(f"{experiment.name}: ptexp's CSV has columns {sorted(clash)} already")
+            raise HarnessError(f"ptexp's CSV has columns {sorted(clash)} already")
         rows.append({"experiment": experiment.name, "name": configuration.name, "status": status,
                      "message": message, **configuration.labels, **measured})
         result = f"{float(measured['kernel_ms_median']):.4g} ms" if measured else message
@@ -259,22 +259,23 @@ def draw(path):
 
 
 def parse_arguments(experiment, command):
-    parser = argparse.ArgumentParser(description=experiment.question,
-                                     formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser = argparse.ArgumentParser(description=experiment.question)
     add = parser.add_argument
     add("--ptexp", metavar="FILE", default="",
-        help=f"the program; if empty $PTEXP, else {' or '.join(PROGRAMS)}")
+        help=f"the program [$PTEXP, else {' or '.join(PROGRAMS)}]")
     add("--device", metavar="auto|cpu|cuda[:N]", default="auto",
-        help="auto: the first GPU if there is one, else the CPU")
-    add("--repeat", metavar="N", type=int, default=10, help="measured renders of a configuration")
-    add("--warmup", metavar="N", type=int, default=3, help="renders before them")
+        help="auto: the first GPU if there is one, else the CPU [%(default)s]")
+    add("--repeat", metavar="N", type=int, default=10,
+        help="measured renders of a configuration [%(default)s]")
+    add("--warmup", metavar="N", type=int, default=3, help="renders before them [%(default)s]")
     add("--quick", action="store_true",
         help="small images, to see that everything works; labelled 'quick' unless --label is given")
     add("--label", metavar="TEXT", default="",
         help="appended to the files' names, e.g. fast-math for a program built so")
     add("--output", metavar="DIR", type=Path, default=ROOT / "results",
-        help="the files are DIR/DEVICE/NAME.csv, .json and .png")
-    add("--timeout", metavar="S", type=float, default=3600, help="seconds for one configuration")
+        help="the files are DIR/DEVICE/NAME.csv, .json and .png [results/ of the repository]")
+    add("--timeout", metavar="S", type=float, default=3600,
+        help="seconds for one configuration [%(default)s]")
     add("--list", action="store_true", help="print the command lines and run nothing")
     experiment.add_arguments(parser)
     arguments = parser.parse_args(command)
@@ -316,6 +317,9 @@ def main(experiment, command=None):
     arguments = parse_arguments(experiment, command)
     try:
         run(experiment, arguments)
+    except BrokenPipeError:  # whoever read the output has gone
+        sys.stdout = None
+        return 1
     except (HarnessError, OSError) as error:
         print(f"{experiment.name}: error: {error}; no result was written", file=sys.stderr)
         return 2

@@ -11,19 +11,20 @@ from harness import Configuration, Experiment, Plot
 
 SIZES = [(600, 300), (1200, 600), (2400, 1200)]
 SPP = 100
-TIMES = ["image_ms_median", "image_ms_min", "image_ms_max"]  # what kernel_ms_* are without --cpu-spp
-CPU_SERIES = {"serial, CPU": "serial", "megakernel, CPU": "megakernel", "wavefront, CPU": "wavefront"}
+TIMES = ["image_ms_median", "image_ms_min", "image_ms_max"]  # kernel_ms_* without --cpu-spp
+CPU_SERIES = {"serial, CPU": "serial", "megakernel, CPU": "megakernel",
+              "wavefront, CPU": "wavefront"}
 CUDA_SERIES = {"megakernel, CUDA": "megakernel", "wavefront, CUDA": "wavefront"}
 
 
 def add_arguments(parser):
     parser.add_argument("--cpu-repeat", metavar="N", type=int, default=1,
-                        help="as --repeat, for the rows on the CPU, which take minutes")
+                        help="as --repeat, for the slow rows on the CPU [%(default)s]")
     parser.add_argument("--cpu-warmup", metavar="N", type=int, default=0,
-                        help="as --warmup, for the rows on the CPU")
-    parser.add_argument("--cpu-spp", metavar="N", type=int, default=None,
+                        help="as --warmup, for the rows on the CPU [%(default)s]")
+    parser.add_argument("--cpu-spp", metavar="N", type=int, default=0,
                         help="samples of the rows on the CPU; their times are then extrapolated "
-                        "linearly to the full number and marked 'yes' in the column extrapolated")
+                        "linearly and marked 'yes' in the column extrapolated [all samples]")
 
 
 def image_of(arguments):

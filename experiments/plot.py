@@ -97,8 +97,9 @@ def draw(path):
         rows = [row for row in csv.DictReader(file) if row["x"]]  # without x: not for the picture
     style = facts["plot"]
     panels = in_groups(rows, "panel")
+    bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0
     figure, all_axes = pyplot.subplots(1, len(panels), squeeze=False, layout="constrained",
-                                       figsize=(6.4 * len(panels), 4.8))
+                                       figsize=(6.4 * len(panels), max(4.8, 0.3 * bars)))
     for axes, (panel, members) in zip(all_axes[0], panels.items()):
         {"lines": draw_lines, "bars": draw_bars}[style["kind"]](axes, members, style)
         axes.set_title(panel, fontsize="medium")

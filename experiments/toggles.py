@@ -1,22 +1,34 @@
 #!/usr/bin/env python3
 """Toggles: what does each of the paper's choices cost or gain, alone?
 
-Every row differs from the defaults of its mode by one option. All but --rng xorwow give the same
-image.
+Every row differs from the defaults of its mode by one option (and by --regenerate off at each pool
+size). All but --rng xorwow give the same image.
 """
 import sys
 
 import harness
 from harness import Configuration, Experiment, Plot
 
-BOTH = [("scene-memory", ["shared", "constant"]), ("branching", ["reduced"]), ("rng", ["xorwow"])]
+BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["reduced"]),
+        ("rng", ["xorwow"])]
 TOGGLES = {
     "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
-    "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
-                  ("regenerate", ["off"])],
+    "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"])],
 }
 POOL_SIZES = ["128K", "256K", "512K", "1M", "2M", "4M", "8M"]
 QUICK_POOL_SIZES = ["1K", "4K"]
+
+
+def changes_of(mode, pool_sizes):
+    """{name: options} of a mode's rows. Regeneration matters in a pool below the whole batch."""
+    changes = {"default": ""}
+    for option, values in TOGGLES[mode]:
+        changes.update({f"{option} {value}": f"--{option} {value}" for value in values})
+    if mode == "wavefront":
+        for size in pool_sizes:
+            changes[f"pool-size {size}"] = f"--pool-size {size}"
+            changes[f"pool-size {size}, regenerate off"] = f"--pool-size {size} --regenerate off"
+    return changes
 
 
 def configurations(arguments, _device):
@@ -24,17 +36,9 @@ def configurations(arguments, _device):
     pool_sizes = POOL_SIZES
     if arguments.quick:
         image, pool_sizes = "--width 60 --height 30 --spp 5 --max-depth 50", QUICK_POOL_SIZES
-    result = []
-    for mode, toggles in TOGGLES.items():
-        if mode == "wavefront":
-            toggles = [*toggles, ("pool-size", pool_sizes)]
-        changes = [("default", "")]
-        changes += [(f"{option} {value}", f" --{option} {value}")
-                    for option, values in toggles for value in values]
-        result += [Configuration(f"{mode}: {name}", f"--mode {mode} {image}{text}",
-                                 {"panel": mode, "x": name, "relative_to_default": ""})
-                   for name, text in changes]
-    return result
+    return [Configuration(f"{mode}: {name}", f"--mode {mode} {image} {options}",
+                          {"panel": mode, "x": name, "relative_to_default": ""})
+            for mode in TOGGLES for name, options in changes_of(mode, pool_sizes).items()]
 
 
 def finish(rows, _arguments):

@@ -37,6 +37,7 @@ const std::vector<Rule>& rules() {
       {"block",        nullptr,    megakernel, cuda},
       {"compaction",   nullptr,    wavefront,  any},
       {"pool-size",    nullptr,    wavefront,  any},
+      {"finish-paths", nullptr,    wavefront,  any},
       {"regenerate",   nullptr,    wavefront,  any},
       {"schedule",     nullptr,    wavefront,  any},
       {"schedule",     "graph",    wavefront,  cuda},

@@ -23,7 +23,7 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
 }
 
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
-                                        const DeviceInfo& device) {
+                                        [[maybe_unused]] const DeviceInfo& device) {
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
     return options.mode == Mode::megakernel

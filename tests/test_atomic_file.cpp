@@ -160,6 +160,28 @@ TEST(AtomicFile, APipeIsWrittenDirectlyAndSurvives) {
   EXPECT_EQ(folder.entries(), Names{"pipe"});
 }
 
+TEST(AtomicFile, APipeBehindALinkSurvives) {
+  const TempFolder folder;
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", folder.file("link"));
+  const int reader = ::open(folder.file("pipe").c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  write_file_atomically(folder.file("link"), "through");
+  ::close(reader);
+  EXPECT_TRUE(fs::is_fifo(folder.file("pipe")));
+  EXPECT_TRUE(fs::is_symlink(folder.file("link")));
+}
+
+// Like /dev/stdout of a program whose output is closed.
+TEST(AtomicFile, ALinkToNothingIsNotReplaced) {
+  const TempFolder folder;
+  fs::create_symlink("nothing", folder.file("link"));
+  expect_error([&] { check_writable(folder.file("link")); }, "link to nothing");
+  expect_error([&] { write_file_atomically(folder.file("link"), "x"); }, "link to nothing");
+  EXPECT_EQ(fs::read_symlink(folder.file("link")), "nothing");
+  EXPECT_EQ(folder.entries(), Names{"link"});
+}
+
 TEST(AtomicFile, AFullDeviceIsAnError) {
   const TempFolder folder;
   const std::string path = folder.file("full");

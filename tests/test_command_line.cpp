@@ -53,6 +53,7 @@ const std::map<std::string, std::string>& other_values() {
       {"block", "32x4"},
       {"compaction", "cub"},
       {"pool-size", "1048576"},
+      {"finish-paths", "1000"},
       {"regenerate", "off"},
       {"schedule", "graph"},
       {"stage-block",

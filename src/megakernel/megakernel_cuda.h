@@ -2,7 +2,7 @@
 // memory), so launching is split into one file per kind of random number and scene memory.
 #pragma once
 
-#include "common/device/cuda_renderer.h"
+#include "common/device/cuda_renderer.cuh"
 
 namespace pt {
 

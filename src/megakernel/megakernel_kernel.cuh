@@ -1,7 +1,7 @@
 // The megakernel itself, and the three ways of dividing the paths over its threads.
 #pragma once
 
-#include "common/device/scene_storage.cuh"
+#include "common/device/bind_scene.cuh"
 #include "common/device/stage_stamp.cuh"
 #include "megakernel/trace_path.h"
 

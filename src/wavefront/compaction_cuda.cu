@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cub/device/device_partition.cuh>
 
-#include "common/device/cuda_check.h"
+#include "common/device/cuda_check.cuh"
 #include "common/device/stage_stamp.cuh"
 #include "wavefront/compaction_cuda.h"
 

@@ -22,11 +22,12 @@ struct alignas(8) HitRecord {
   std::uint32_t primitive;
 };
 
-/// What has happened to a path and where it goes is all in three records; a miss needs only two.
+/// What has happened to a path and where it goes is all in three records. A miss needs only two,
+/// and to a new path nothing has happened: its throughput is 1 and is neither stored nor loaded.
 struct PathPool {
   std::uint32_t slot_count = 0;
   Record* origin = nullptr;      ///< ray origin, density of the BSDF
-  Record* direction = nullptr;   ///< ray direction, number of the path
+  Record* direction = nullptr;   ///< ray direction, number of the path | new_path
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   HitRecord* hit = nullptr;
   // Only with compaction over tags:
@@ -36,6 +37,8 @@ struct PathPool {
   Record* shadow_origin = nullptr;     ///< ray origin, distance
   Record* shadow_direction = nullptr;  ///< ray direction, number of the path
   Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free
+
+  static constexpr std::uint32_t new_path = 0x80000000u;  ///< numbers are below 2^31
 
   static constexpr std::uint64_t bytes_per_slot(bool has_lights) {
     return 3 * sizeof(Record) + sizeof(HitRecord) + sizeof(PathTag) +
@@ -52,13 +55,15 @@ struct PathPool {
   /// The path and its ray, of which a miss needs the direction only.
   PT_HD PathState load_path(std::uint32_t slot, Vec3& ray_direction) const {
     const Record d = load_wide(&direction[slot]);
-    const Record b = load_wide(&throughput[slot]);
     ray_direction = vec(d);
     PathState path;
-    path.beta = vec(b);
-    path.number = d.w;
-    path.rays = static_cast<std::uint16_t>(b.w);
-    path.shadow_rays = static_cast<std::uint16_t>(b.w >> 16);
+    path.number = d.w & ~new_path;
+    if ((d.w & new_path) == 0) {
+      const Record b = load_wide(&throughput[slot]);
+      path.beta = vec(b);
+      path.rays = static_cast<std::uint16_t>(b.w);
+      path.shadow_rays = static_cast<std::uint16_t>(b.w >> 16);
+    }
     return path;
   }
 
@@ -68,6 +73,11 @@ struct PathPool {
     ray.origin = vec(o);
     path.bsdf_pdf = bits_to_float(o.w);
     return path;
+  }
+
+  PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t number) const {
+    store_wide(&origin[slot], pack(ray.origin, float_to_bits(PathState::delta_distribution)));
+    store_wide(&direction[slot], pack(ray.direction, number | new_path));
   }
 
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {

@@ -1,7 +1,7 @@
 // The kernel around a stage: threads take the slots of its queue in turn and send them on.
 #pragma once
 
-#include "common/device/scene_storage.cuh"
+#include "common/device/bind_scene.cuh"
 #include "common/device/stage_stamp.cuh"
 #include "wavefront/wavefront.h"
 

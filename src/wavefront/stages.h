@@ -60,14 +60,13 @@ struct GeneratePaths {
     } else {
       ray_queue[counters->live + rank] = slot;  // a new path takes part in this very wave
     }
-    PathState path;
-    path.number = counters->first_path + rank;
-    const PathId id_of_path = samples.id_of(path.number);
+    const std::uint32_t number = counters->first_path + rank;
+    const PathId id_of_path = samples.id_of(number);
     auto random = source.open(id_of_path);
     const Ray ray = generate_camera_path(scene, id_of_path.pixel, random.draw(scatter_block(0)));
     source.close(id_of_path, random);
-    pool.store_path(slot, ray, path);
-    if constexpr (has_lights) samples.store(path, Color(0.0f));
+    pool.store_new_path(slot, ray, number);
+    if constexpr (has_lights) store_wide(&samples.samples[number], Sample{});
     return {PathTag::intersect};
   }
 };
@@ -106,46 +105,50 @@ struct ShadeMiss {
   }
 };
 
+/// What a surface does to a path, with the random numbers that decide it.
+template <bool has_lights, Branching branching, class Source>
+PT_HD Scattering scatter_path(const Scene& scene, const StageContext<Source>& context,
+                              const Ray& ray, const Hit& hit, PathState& path) {
+  const PathId id = context.samples.id_of(path.number);
+  auto random = context.source.open(id);
+  const Vec4 u = random.draw(scatter_block(path.rays));
+  const Vec4 light = has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+  context.source.close(id, random);
+  return branching == Branching::reduced
+             ? shade_any<has_lights>(scene, ray, hit, path, context.max_depth, u, light)
+             : shade_surface<has_lights>(scene, ray, hit, path, context.max_depth, u, light);
+}
+
+PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
+  if (is_black(radiance)) return;
+  Color& sum = samples.samples[number].radiance;
+  sum = add_rounded(sum, radiance);
+}
+
 template <bool has_lights, Branching branching, class Source>
 struct ShadeSurface {
   static constexpr StageId id = StageId::shade_surface;
   static constexpr PathTag tag = PathTag::surface;
-  static constexpr bool traces_rays = false;
   static constexpr StageOutcomes outcomes = {{PathTag::intersect, PathTag::free}, true, has_lights};
+  static constexpr bool traces_rays = false;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, max_depth] = context;
+    const PathPool& pool = context.pool;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
-    const Hit hit = pool.load_hit(slot);
     ++path.rays;
-    const PathId id_of_path = samples.id_of(path.number);
-    auto random = source.open(id_of_path);
-    const Vec4 u = random.draw(scatter_block(path.rays));
-    const Vec4 light = has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
-    source.close(id_of_path, random);
-
     const Scattering scattering =
-        branching == Branching::reduced
-            ? shade_any<has_lights>(scene, ray, hit, path, max_depth, u, light)
-            : shade_surface<has_lights>(scene, ray, hit, path, max_depth, u, light);
-
+        scatter_path<has_lights, branching>(scene, context, ray, pool.load_hit(slot), path);
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
     if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
     if (!scattering.alive) {
-      end_path<has_lights>(samples, path, scattering.emitted);
+      end_path<has_lights>(context.samples, path, scattering.emitted);
       return {PathTag::free, shadow};
     }
-    if (has_lights && !is_black(scattering.emitted)) add(path.number, scattering.emitted);
+    if (has_lights) add_radiance(context.samples, path.number, scattering.emitted);
     pool.store_path(slot, scattering.ray, path);
     return {PathTag::intersect, shadow};
-  }
-
- private:
-  PT_HD void add(std::uint32_t number, const Color& radiance) const {
-    Color& sum = context.samples.samples[number].radiance;
-    sum = add_rounded(sum, radiance);
   }
 };
 
@@ -162,9 +165,45 @@ struct TraceShadowRays {
     std::uint32_t number;
     const ShadowRay shadow = pool.load_shadow(slot, number);
     if (!intersect_shadow<accel>(scene, shadow)) {
-      Color& sum = samples.samples[number].radiance;
-      sum = add_rounded(sum, shadow.radiance);
+      add_radiance(samples, number, shadow.radiance);
     }
+    return {PathTag::free};
+  }
+};
+
+/// The last of a batch: when few paths are left, waves cost more than what they do, and one thread
+/// follows each path to its end.
+template <class Traits, Branching branching, class Source>
+struct FinishPaths {
+  static constexpr StageId id = StageId::finish;
+  static constexpr PathTag tag = PathTag::intersect;
+  static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
+  static constexpr bool traces_rays = true;
+  StageContext<Source> context;
+
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    constexpr bool has_lights = Traits::has_lights;
+    Ray ray;
+    PathState path = context.pool.load_path(slot, ray);
+    Color radiance = has_lights ? context.samples.samples[path.number].radiance : Color(0.0f);
+    for (bool alive = true; alive;) {
+      const Hit hit = intersect_closest<Traits::accel>(scene, ray);
+      ++path.rays;
+      if (branching == Branching::divergent && hit.is_miss()) {
+        radiance = add_rounded(radiance, shade_miss(scene, ray.direction, path));
+        break;
+      }
+      const Scattering scattering =
+          scatter_path<has_lights, branching>(scene, context, ray, hit, path);
+      radiance = add_rounded(radiance, scattering.emitted);
+      if (has_lights && !is_black(scattering.shadow.radiance) &&
+          !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
+        radiance = add_rounded(radiance, scattering.shadow.radiance);
+      }
+      ray = scattering.ray;
+      alive = scattering.alive;
+    }
+    context.samples.store(path, radiance);
     return {PathTag::free};
   }
 };

@@ -15,6 +15,7 @@ struct WaveCounters {
   std::uint32_t live;                      ///< paths in flight when the wave begins
   std::uint32_t generate;                  ///< paths that it starts, in the last free slots
   std::uint32_t intersect;                 ///< rays that it traces: live + generate
+  std::uint32_t finish;                    ///< paths left over when the waves end
   std::uint32_t first_path;                ///< number of the first path that it starts
   std::uint32_t next_path;                 ///< paths started so far
   std::uint32_t ticket;                    ///< paths handed out where no queue ranks the free slots
@@ -22,24 +23,30 @@ struct WaveCounters {
 };
 
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
-/// when nothing is left to do. Without regeneration the pool is filled again only when all of its
-/// paths have ended.
-PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate) {
+/// when the waves end: no path is left to start, and no more than `finish_paths` are alive. Without
+/// regeneration the pool is filled again only when all of its paths have ended.
+PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate,
+                      std::uint32_t finish_paths) {
   std::uint32_t& free = c.waiting[static_cast<int>(QueueId::free)];
   std::uint32_t& rays = c.waiting[static_cast<int>(QueueId::intersect)];
   const std::uint32_t remaining = path_count - c.next_path;
-  c.live = rays;
-  c.generate = regenerate || c.live == 0 ? (free < remaining ? free : remaining) : 0;
-  c.intersect = c.live + c.generate;
-  c.first_path = c.next_path;
-  c.next_path += c.generate;
-  c.ticket = 0;
-  free -= c.generate;
-  rays = 0;
   c.waiting[static_cast<int>(QueueId::miss)] = 0;
   c.waiting[static_cast<int>(QueueId::surface)] = 0;
   c.waiting[static_cast<int>(QueueId::shadow)] = 0;
-  if (c.intersect == 0) return false;
+  c.live = rays;
+  c.generate = 0;
+  c.intersect = 0;
+  c.ticket = 0;
+  if (remaining == 0 && c.live <= finish_paths) {
+    c.finish = c.live;
+    return false;
+  }
+  if (regenerate || c.live == 0) c.generate = free < remaining ? free : remaining;
+  c.intersect = c.live + c.generate;
+  c.first_path = c.next_path;
+  c.next_path += c.generate;
+  free -= c.generate;
+  rays = 0;
   ++c.waves;
   return true;
 }

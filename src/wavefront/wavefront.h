@@ -96,6 +96,13 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   }
 }
 
+/// After the last wave: the paths that begin_wave left over are followed to their ends.
+template <class Traits, Branching branching, class Source, class Executor>
+void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+  execute.run(FinishPaths<Traits, branching, Source>{context},
+              b.stage_queues(QueueId::intersect, &b.counters->finish, b.pool.tag));
+}
+
 std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene);
 
 /// `device`: CUDA device ordinal. Only in a build with CUDA.

@@ -29,7 +29,10 @@ class CpuExecutor {
     timer_.time("compact", [&] { compact_cpu(options_.compaction, request); });
   }
 
-  void begin_wave() { more_ = pt::begin_wave(counters_, path_count_, options_.regenerate); }
+  void begin_wave() {
+    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate,
+                           static_cast<std::uint32_t>(options_.finish_paths));
+  }
 
   bool more() const { return more_; }
 
@@ -122,6 +125,7 @@ class WavefrontCpu : public CpuRenderer {
                                        static_cast<std::uint32_t>(options_.max_depth)};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
+    run_finish<Traits, branching>(execute, buffers_, context);
     waves_ += counters_.waves;
   }
 

@@ -188,6 +188,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
       read_counters();
     } while (host_counters_->intersect > 0);
   }
+  if (options_.finish_paths > 0) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 

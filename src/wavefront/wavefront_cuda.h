@@ -1,7 +1,7 @@
 // The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
 #pragma once
 
-#include "common/device/cuda_renderer.h"
+#include "common/device/cuda_renderer.cuh"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/wavefront.h"
 
@@ -15,6 +15,8 @@ class WavefrontCuda : public CudaRenderer {
   /// Enqueues one wave on stream(). `loop`: the handle of the graph's loop, 0 outside of one.
   /// `starts_paths`: see run_wave.
   void enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop, bool starts_paths);
+  /// Enqueues what follows the last wave.
+  void enqueue_finish(const SampleBuffer& batch);
 
   // The Executor of run_wave (wavefront.h):
   void compact(const CompactionRequest& request);
@@ -28,8 +30,9 @@ class WavefrontCuda : public CudaRenderer {
   std::uint64_t take_wave_count() override;
 
  private:
-  template <class Source>
-  void enqueue_wave_with(const Source& source, const SampleBuffer& batch, bool starts_paths);
+  /// Calls function(traits, branching, context) with the options as types.
+  template <class Function>
+  void with_stages(const SampleBuffer& batch, Function&& function);
   void allocate_pool();
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();

@@ -6,15 +6,16 @@
 namespace pt {
 namespace {
 
-const char* const stage_names[stage_count] = {"generate",      "intersect", "shade_miss",
-                                              "shade_surface", "shadow",    "accumulate"};
+const char* const stage_names[stage_count] = {
+    "generate", "intersect", "shade_miss", "shade_surface", "shadow", "finish", "accumulate"};
 
 /// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
 /// 0 outside of a graph.
 __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
-                                  cudaGraphConditionalHandle loop, StageClock* clock) {
+                                  std::uint32_t finish_paths, cudaGraphConditionalHandle loop,
+                                  StageClock* clock) {
   stamp(clock, ClockId::begin_wave);
-  const bool more = pt::begin_wave(*counters, path_count, regenerate);
+  const bool more = pt::begin_wave(*counters, path_count, regenerate, finish_paths);
   if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
 }
 
@@ -22,7 +23,7 @@ __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_cou
 
 void WavefrontCuda::begin_wave() {
   launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
-         options_.regenerate, loop_, clock());
+         options_.regenerate, static_cast<std::uint32_t>(options_.finish_paths), loop_, clock());
 }
 
 template <class Stage>
@@ -46,19 +47,19 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   }
 }
 
-template <class Source>
-void WavefrontCuda::enqueue_wave_with(const Source& source, const SampleBuffer& batch,
-                                      bool starts_paths) {
-  const StageContext<Source> context{buffers_.pool,
-                                     batch,
-                                     source,
-                                     buffers_.counters,
-                                     buffers_.queue(QueueId::intersect),
-                                     static_cast<std::uint32_t>(options_.max_depth)};
-  dispatch_traits(traits_, [&](auto traits) {
-    dispatch_branching(options_.branching, [&](auto branching) {
-      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
-                                                             starts_paths);
+template <class Function>
+void WavefrontCuda::with_stages(const SampleBuffer& batch, Function&& function) {
+  with_random_source([&](const auto& source) {
+    using Source = std::remove_cvref_t<decltype(source)>;
+    const StageContext<Source> context{buffers_.pool,
+                                       batch,
+                                       source,
+                                       buffers_.counters,
+                                       buffers_.queue(QueueId::intersect),
+                                       static_cast<std::uint32_t>(options_.max_depth)};
+    dispatch_traits(traits_, [&](auto traits) {
+      dispatch_branching(options_.branching,
+                         [&](auto branching) { function(traits, branching, context); });
     });
   });
 }
@@ -67,7 +68,15 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
                                  bool starts_paths) {
   path_count_ = batch.path_count;
   loop_ = loop;
-  with_random_source([&](const auto& source) { enqueue_wave_with(source, batch, starts_paths); });
+  with_stages(batch, [&](auto traits, auto branching, const auto& context) {
+    run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context, starts_paths);
+  });
+}
+
+void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
+  with_stages(batch, [&](auto traits, auto branching, const auto& context) {
+    run_finish<decltype(traits), decltype(branching)::value>(*this, buffers_, context);
+  });
 }
 
 }  // namespace pt

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "common/device/cuda_check.h"
-#include "common/device/cuda_memory.h"
+#include "common/device/cuda_check.cuh"
+#include "common/device/cuda_memory.cuh"
 #include "common/error.h"
 
 namespace pt {

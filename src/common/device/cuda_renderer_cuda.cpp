@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "common/device/cuda_renderer.h"
-#include "common/device/film_kernels.h"
+#include "common/device/cuda_renderer.cuh"
+#include "common/device/film_kernels.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
@@ -30,8 +30,8 @@ class Stopwatch {
 };
 
 const char* const clock_names[clock_count] = {
-    "generate", "intersect",  "shade_miss", "shade_surface", "shadow", "accumulate",
-    "compact",  "begin_wave", "megakernel", "render_init",   "idle"};
+    "generate",   "intersect", "shade_miss", "shade_surface", "shadow",      "finish",
+    "accumulate", "compact",   "begin_wave", "megakernel",    "render_init", "idle"};
 
 }  // namespace
 

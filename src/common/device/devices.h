@@ -22,4 +22,8 @@ std::vector<DeviceInfo> list_devices();
 /// saying why (no GPU found, built without CUDA, ordinal out of range).
 DeviceInfo choose_device(const DeviceChoice& choice);
 
+/// Appends the usable CUDA devices; returns what to tell a user who misses one. Only in a build
+/// with CUDA.
+std::string append_cuda_devices(std::vector<DeviceInfo>& devices);
+
 }  // namespace pt

@@ -1,5 +1,5 @@
 #include "common/device/curand_state.cuh"
-#include "common/device/film_kernels.h"
+#include "common/device/film_kernels.cuh"
 #include "common/device/stage_stamp.cuh"
 
 namespace pt {

@@ -1,29 +1,44 @@
-// How a kernel binds its scene: device code.
+// Where the spheres lie while a kernel tests them: the paper's question about shared memory.
 #pragma once
 
-#include "common/device/scene_storage.h"
+#include <cuda_runtime_api.h>
+
+#include "common/render/options.h"
+#include "common/scene/scene.h"
 
 namespace pt {
 
-__device__ inline Scene SceneStorage<SceneMemory::global>::bind() const { return scene; }
+/// A kernel's parameters may take 32,764 bytes (CUDA 12.1 and later, compute capability 7.0); half
+/// of it is enough for the paper's scenes and keeps launches short.
+inline constexpr std::uint32_t constant_spheres_max = 1024;
 
-__device__ inline Scene SceneStorage<SceneMemory::shared>::bind() const {
-  extern __shared__ Sphere shared_spheres[];
-  const std::uint32_t threads = blockDim.x * blockDim.y;
-  for (std::uint32_t i = threadIdx.y * blockDim.x + threadIdx.x; i < scene.primitives.scan_count;
-       i += threads) {
-    store_wide(&shared_spheres[i], load_wide(&scene.primitives.scan[i]));
-  }
-  __syncthreads();
-  Scene bound = scene;
-  bound.primitives.scan = shared_spheres;
-  return bound;
-}
+/// The scene as a kernel parameter. bind() gives the view that the kernel works with; all threads
+/// of a block call it together.
+template <SceneMemory memory>
+struct SceneStorage;
 
-__device__ inline Scene SceneStorage<SceneMemory::constant>::bind() const {
-  Scene bound = scene;
-  bound.primitives.scan = spheres;
-  return bound;
-}
+template <>
+struct SceneStorage<SceneMemory::global> {
+  static constexpr SceneMemory memory = SceneMemory::global;
+  Scene scene;
+  __device__ Scene bind() const;
+};
+
+template <>
+struct SceneStorage<SceneMemory::shared> {
+  static constexpr SceneMemory memory = SceneMemory::shared;
+  Scene scene;  // the kernel is launched with room for all spheres
+
+  __device__ Scene bind() const;
+};
+
+template <>
+struct SceneStorage<SceneMemory::constant> {
+  static constexpr SceneMemory memory = SceneMemory::constant;
+  Scene scene;
+  Sphere spheres[constant_spheres_max];  // in the constant bank, being a parameter
+
+  __device__ Scene bind() const;
+};
 
 }  // namespace pt

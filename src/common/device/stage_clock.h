@@ -15,6 +15,7 @@ enum class ClockId {
   shade_miss,
   shade_surface,
   shadow,
+  finish,
   accumulate,
   compact,
   begin_wave,

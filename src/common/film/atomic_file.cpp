@@ -105,6 +105,8 @@ Target find_target(const std::string& path) {
     target.mode = status.st_mode & 0777;
   } else if (errno != ENOENT) {
     fail(errno);
+  } else if (fs::is_symlink(path)) {  // rename() would replace the link, such as /dev/stdout
+    throw Error("it is a link to nothing");
   }
   if (!target.file.has_filename()) throw Error("it names no file");
   target.folder = target.file.has_parent_path() ? target.file.parent_path() : ".";

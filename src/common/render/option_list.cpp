@@ -133,6 +133,10 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return o.regenerate ? "on" : "off"; }),
            "wavefront: a path that ends gives its slot to a new one;\n"
            "off: the pool runs empty before it is filled again")
+      .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
+           "wavefront: when no sample is left to start and so many paths\n"
+           "are still alive, a thread follows each to its end; 0: waves\n"
+           "to the last ray")
       .add(choice("schedule", &Options::schedule),
            "wavefront: the host launches every stage, or one CUDA graph\n"
            "loops on the device; auto: graph on CUDA, host on the CPU")
@@ -144,7 +148,7 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return stage_blocks_text(o.stage_block); }),
            "wavefront on CUDA: threads per block, for all stages or by\n"
            "name: generate, intersect, shade_miss, shade_surface,\n"
-           "shadow, accumulate; e.g. intersect=128,shadow=64");
+           "shadow, finish, accumulate; e.g. intersect=128,shadow=64");
 }
 
 void add_toggles(std::vector<OptionEntry>& list) {

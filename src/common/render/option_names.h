@@ -57,6 +57,7 @@ inline constexpr auto enum_names<StageId> =
                                       {StageId::shade_miss, "shade_miss"},
                                       {StageId::shade_surface, "shade_surface"},
                                       {StageId::shadow, "shadow"},
+                                      {StageId::finish, "finish"},
                                       {StageId::accumulate, "accumulate"}});
 static_assert(enum_names<StageId>.size() == stage_count);
 template <>

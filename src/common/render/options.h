@@ -1,4 +1,5 @@
-// Everything a user can choose, with the defaults of `ptexp`. Plain data; parsing is command_line.h.
+// Everything a user can choose, with the defaults of `ptexp`. Plain data; parsing is
+// command_line.h.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ enum class AccelKind { automatic, brute, bvh2 };
 enum class WorldBuilder { host, device };
 
 /// The wavefront's kernels, in the order in which a wave runs them.
-enum class StageId { generate, intersect, shade_miss, shade_surface, shadow, accumulate };
-inline constexpr int stage_count = 6;
+enum class StageId { generate, intersect, shade_miss, shade_surface, shadow, finish, accumulate };
+inline constexpr int stage_count = 7;
 
 struct DeviceChoice {
   enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
@@ -41,10 +42,10 @@ struct CameraOverrides {
 
 struct Options {
   // Image
-  int width = 600;      ///< pixels, 1..65535
-  int height = 300;     ///< pixels, 1..65535
-  int spp = 50;         ///< samples per pixel, >= 1
-  int max_depth = 50;   ///< rays per path, camera ray included, 1..65535
+  int width = 600;     ///< pixels, 1..65535
+  int height = 300;    ///< pixels, 1..65535
+  int spp = 50;        ///< samples per pixel, >= 1
+  int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   std::uint64_t seed = 1;
   std::string output = "image.exr";  ///< .exr, .png or .ppm
   float exposure = 0.0f;             ///< stops, for PNG and PPM only
@@ -65,8 +66,9 @@ struct Options {
   Compaction compaction = Compaction::atomic;
   std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
   bool regenerate = true;
+  int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
-  std::array<int, stage_count> stage_block = {256, 256, 256, 256, 256, 256};  ///< by StageId
+  std::array<int, stage_count> stage_block = {256, 256, 256, 256, 256, 256, 256};  ///< by StageId
 
   // The paper's toggles
   SceneMemory scene_memory = SceneMemory::automatic;  ///< constant where the spheres fit
@@ -74,8 +76,8 @@ struct Options {
   RngKind rng = RngKind::philox;
 
   // Measurement
-  int repeat = 1;  ///< measured renders, >= 1
-  int warmup = 0;  ///< unmeasured renders before them, >= 0
+  int repeat = 1;          ///< measured renders, >= 1
+  int warmup = 0;          ///< unmeasured renders before them, >= 0
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
   bool quiet = false;

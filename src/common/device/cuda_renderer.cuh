@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
-#include "common/device/cuda_check.h"
-#include "common/device/cuda_memory.h"
-#include "common/device/scene_storage.h"
+#include "common/device/cuda_check.cuh"
+#include "common/device/cuda_memory.cuh"
+#include "common/device/scene_storage.cuh"
 #include "common/device/stage_clock.h"
 #include "common/film/film.h"
 #include "common/render/dispatch.h"

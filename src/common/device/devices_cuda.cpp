@@ -1,0 +1,28 @@
+#include <cuda_runtime_api.h>
+#include <fmt/format.h>
+
+#include "common/device/devices.h"
+
+namespace pt {
+
+std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
+  int count = 0;
+  const cudaError_t status = cudaGetDeviceCount(&count);
+  if (status != cudaSuccess) {
+    cudaGetLastError();  // clears it
+    return fmt::format("CUDA says: {}", cudaGetErrorString(status));
+  }
+  for (int i = 0; i < count; ++i) {
+    cudaDeviceProp p{};
+    if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
+    devices.push_back(
+        {{DeviceChoice::Kind::cuda, i},
+         p.name,
+         fmt::format("{} multiprocessors, {:.1f} GiB, compute capability {}.{}",
+                     p.multiProcessorCount, static_cast<double>(p.totalGlobalMem) / (1 << 30),
+                     p.major, p.minor)});
+  }
+  return fmt::format("this machine has {}", count);
+}
+
+}  // namespace pt
