@@ -138,13 +138,14 @@ TEST_P(AccelOf, TreeHoldsEveryPrimitiveOnceInBoxesThatContainIt) {
 TEST(SphereCandidates, AreTheSpheresThatTheLineMeets) {
   TestRandom random;
   for (std::uint32_t count = 1; count <= 32; ++count) {
-    std::vector<Sphere> spheres;
+    std::vector<Sphere> spheres, scan;
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto r = static_cast<float>(random.uniform(1, 8));
       spheres.push_back({random_point(random, 10), r * r});
+      scan.push_back({spheres.back().center, (r + 1e-4f) * (r + 1e-4f)});  // as a scene widens it
     }
-    while (spheres.size() % scan_group != 0) spheres.push_back({Vec3(0.0f), -HUGE_VALF});
-    const auto padded = static_cast<std::uint32_t>(spheres.size());
+    while (scan.size() % scan_group != 0) scan.push_back({Vec3(0.0f), -HUGE_VALF});
+    const auto padded = static_cast<std::uint32_t>(scan.size());
     for (int i = 0; i < 500; ++i) {
       const Ray ray{random_point(random, 10), normalize(random_point(random, 1))};
       std::uint32_t met = 0, nearly_met = 0;
@@ -154,7 +155,8 @@ TEST(SphereCandidates, AreTheSpheresThatTheLineMeets) {
         if (off < spheres[j].radius()) met |= 0x80000000u >> j;
         if (off < 1.002 * spheres[j].radius()) nearly_met |= 0x80000000u >> j;
       }
-      const std::uint32_t found = sphere_candidates(spheres.data(), 0u, padded, ProjectedRay(ray));
+      const std::uint32_t found =
+          sphere_candidates(scan.data(), 0u, padded, ProjectedRay(ray, Vec3(0.0f)));
       ASSERT_EQ(met & ~found, 0u) << "lost one of " << count;
       ASSERT_EQ(found & ~nearly_met, 0u) << "invented one of " << count;
     }

@@ -14,7 +14,7 @@ namespace {
 // the L2 cache. Found by measurement on an H200 (results/), as is the rule for appended queues,
 // which keep the order of the pixels only as long as no slot is used twice: the whole batch at
 // once.
-constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 19;
+constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 20;
 
 // A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
 // ray find empty queues.

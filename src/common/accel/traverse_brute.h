@@ -12,18 +12,16 @@ namespace pt {
 /// than any test in three dimensions.
 class ProjectedRay {
  public:
-  PT_HD explicit ProjectedRay(const Ray& ray) {
-    // The projection is made a little too small, which makes all spheres a little too large: no
-    // rounding error can hide a hit from the exact test that follows.
-    constexpr float shrink = 1.0f - 1.0f / 1024.0f;
+  PT_HD ProjectedRay(const Ray& ray, const Vec3& scan_center) {
     const Frame frame = make_frame(ray.direction);
-    x_axis_ = shrink * frame.tangent;
-    y_axis_ = shrink * frame.bitangent;
-    x_ = glm::dot(x_axis_, ray.origin);
-    y_ = glm::dot(y_axis_, ray.origin);
+    const Vec3 origin = ray.origin - scan_center;
+    x_axis_ = frame.tangent;
+    y_axis_ = frame.bitangent;
+    x_ = glm::dot(x_axis_, origin);
+    y_ = glm::dot(y_axis_, origin);
   }
 
-  /// Negative when the line misses the sphere.
+  /// Negative when the line misses the sphere, one of Primitives::scan.
   PT_HD float nearness(const Sphere& sphere) const {
     const Vec3& c = sphere.center;
     const float x = c.x * x_axis_.x + (c.y * x_axis_.y + (c.z * x_axis_.z - x_));
@@ -80,7 +78,7 @@ PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t first,
 /// Calls visit(distance, primitive) for every intersection until it returns true.
 template <class Visit>
 PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, Visit&& visit) {
-  const ProjectedRay projected(ray);
+  const ProjectedRay projected(ray, primitives.scan_center);
   const std::uint32_t count = primitives.scan_count;
   const auto chunk = [&](auto first) {
     if (first >= count) return false;

@@ -12,10 +12,12 @@ struct Primitives {
   const Quad* quads = nullptr;
   std::uint32_t sphere_count = 0;
   std::uint32_t quad_count = 0;
-  // The spheres once more, for the pass that tests them all: a multiple of four, filled up with
-  // ones that no ray meets. They may lie elsewhere (SceneMemory).
+  // The spheres once more, for the pass that tests them all: relative to `scan_center`, widened by
+  // more than that test's rounding error, filled up to a multiple of four with ones that no ray
+  // meets. They may lie elsewhere (SceneMemory).
   const Sphere* scan = nullptr;
   std::uint32_t scan_count = 0;
+  Vec3 scan_center = Vec3(0.0f);
 
   PT_HD bool is_sphere(std::uint32_t primitive) const { return primitive < sphere_count; }
   PT_HD const Quad& quad(std::uint32_t primitive) const { return quads[primitive - sphere_count]; }

@@ -124,6 +124,46 @@ void join_materials(SceneData& scene) {
                            scene.quad_material.end());
 }
 
+// The middle of the spheres' centres, axis by axis: a ground of radius 1000 does not move it far.
+Vec3 median_center(const std::vector<Sphere>& spheres) {
+  Vec3 center(0.0f);
+  if (spheres.empty()) return center;
+  std::vector<float> values(spheres.size());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::transform(spheres.begin(), spheres.end(), values.begin(),
+                   [&](const Sphere& s) { return s.center[axis]; });
+    std::nth_element(values.begin(), middle, values.end());
+    center[axis] = *middle;
+  }
+  return center;
+}
+
+// Spheres for the scan of traverse_brute.h. Its rounding error, and that of the exact test after
+// it, is a few ulps of the largest distance between the centre and an origin of rays: a surface or
+// the camera. Widened by more than that, the scan loses no hit.
+void make_scan(SceneData& scene) {
+  const Vec3 center = median_center(scene.spheres);
+  float extent = glm::length(scene.camera.look_from - center) + scene.camera.aperture;
+  for (const Sphere& s : scene.spheres) {
+    extent = std::max(extent, glm::length(s.center - center) + s.radius());
+  }
+  for (const Quad& q : scene.quads) {
+    const Bounds b = quad_bounds(q);
+    extent = std::max(extent, glm::length(glm::max(b.max - center, center - b.min)));
+  }
+  const float padding = 48.0f * half_ulp * extent;
+  scene.scan_center = center;
+  scene.scan_spheres.clear();
+  for (const Sphere& s : scene.spheres) {
+    const float radius = s.radius() + padding;
+    scene.scan_spheres.push_back({s.center - center, radius * radius});
+  }
+  while (scene.scan_spheres.size() % scan_group != 0) {
+    scene.scan_spheres.push_back({Vec3(0.0f), -HUGE_VALF});
+  }
+}
+
 // Up to here testing every primitive is faster than walking a tree: results/ has the measurement.
 constexpr std::size_t brute_force_max = 96;
 
@@ -146,10 +186,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
     build_structure(scene);
     join_materials(scene);
   }
-  scene.scan_spheres = scene.spheres;
-  while (scene.scan_spheres.size() % scan_group != 0) {
-    scene.scan_spheres.push_back({Vec3(0.0f), -HUGE_VALF});
-  }
+  make_scan(scene);
 }
 
 Scene host_view(const SceneData& scene, int width, int height) {
@@ -161,6 +198,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
                      static_cast<std::uint32_t>(scene.quads.size())};
   view.primitives.scan = scene.scan_spheres.data();
   view.primitives.scan_count = static_cast<std::uint32_t>(scene.scan_spheres.size());
+  view.primitives.scan_center = scene.scan_center;
   view.bvh_nodes = scene.bvh_nodes.data();
   view.materials = scene.materials.data();
   view.material_of = scene.material_of.data();

@@ -23,6 +23,7 @@ struct SceneData {
   std::vector<std::uint32_t> material_of;  ///< by primitive
   std::vector<std::uint32_t> lights;       ///< primitives that emit
   std::vector<Sphere> scan_spheres;        ///< Primitives::scan
+  Vec3 scan_center = Vec3(0.0f);
 
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
   SceneTraits traits() const { return {accel, !lights.empty()}; }

@@ -1,0 +1,517 @@
+// One body of tests for compaction, for every strategy and every device. A device under test is a
+// class with
+//
+//   static bool available(); static constexpr const char* name;
+//   void* allocate(std::size_t size_bytes); void release(void*);
+//   void upload(void* to, const void* from, std::size_t size_bytes); void download(...);
+//   Compactor compactor(Compaction, std::uint32_t slot_count_max);
+//   static std::vector<Shape> shapes();   // ways to run a stage, the usual one first
+//   static constexpr bool numbers_slots;  // can run a stage without a queue and without tags
+//   void run(const Stage&, const StageQueues&, const Shape&);
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/render/option_names.h"
+#include "statistics.h"
+#include "wavefront/wavefront.h"
+
+namespace pt {
+
+using Compactor = std::function<void(const CompactionRequest&)>;
+using Slots = std::vector<std::uint32_t>;
+
+/// A slot's part in a case: it waits for the first or the second stage asked about, or for others.
+enum class Role : std::uint8_t { first, second, other, another };
+
+struct RolePattern {
+  const char* name;
+  Role (*role)(std::uint32_t slot, std::uint32_t slot_count);
+};
+
+/// The finalizer of MurmurHash3: as good as random here.
+inline std::uint32_t scrambled(std::uint32_t x) {
+  x = (x ^ x >> 16) * 0x85ebca6bu;
+  x = (x ^ x >> 13) * 0xc2b2ae35u;
+  return x ^ x >> 16;
+}
+
+/// Waits for the first or second stage with this probability.
+inline Role random_role(std::uint32_t slot, double density) {
+  const std::uint32_t bits = scrambled(slot);
+  const bool waits = bits >> 1 < density * 0x80000000u;
+  return static_cast<Role>((waits ? 0 : 2) + bits % 2);
+}
+
+inline const RolePattern role_patterns[] = {
+    {"none", [](auto, auto) { return Role::other; }},
+    {"all first", [](auto, auto) { return Role::first; }},
+    {"all second", [](auto, auto) { return Role::second; }},
+    {"lowest", [](auto i, auto) { return i == 0 ? Role::first : Role::other; }},
+    {"highest", [](auto i, auto n) { return i == n - 1 ? Role::second : Role::another; }},
+    {"both ends",
+     [](auto i, auto n) { return i == n - 1 ? Role::first
+                                 : i == 0   ? Role::second
+                                            : Role::other; }},
+    {"in turn", [](auto i, auto) { return i % 2 ? Role::first : Role::second; }},
+    {"every other", [](auto i, auto) { return i % 2 ? Role::another : Role::first; }},
+    {"1 %", [](auto i, auto) { return random_role(i, 0.01); }},
+    {"half", [](auto i, auto) { return random_role(i, 0.5); }},
+    {"99 %", [](auto i, auto) { return random_role(i, 0.99); }},
+};
+inline constexpr std::size_t pattern_half = 9;  ///< a pattern with many of all roles
+
+inline const std::uint32_t every_pattern_sizes[] = {
+    0, 1, 2, 31, 32, 33, 255, 256, 257, 511, 512, 513, 1000, 1023, 1024, 1025, 8191, 8192, 8193};
+inline const std::uint32_t some_pattern_sizes[] = {65535,          65536,    65537,
+                                                   (1u << 20) - 1, 1u << 20, (1u << 20) + 1};
+/// Of random tags only.
+inline const std::uint32_t large_sizes[] = {(1u << 24) - 1, 1u << 24, (1u << 24) + 1};
+
+inline std::vector<Role> make_roles(const RolePattern& pattern, std::uint32_t slot_count) {
+  std::vector<Role> roles(slot_count);
+  for (std::uint32_t i = 0; i < slot_count; ++i) roles[i] = pattern.role(i, slot_count);
+  return roles;
+}
+
+/// Calls test(roles) for all sizes and patterns.
+template <class Test>
+void for_each_case(Test&& test) {
+  const auto run = [&](const RolePattern& pattern, std::uint32_t n) {
+    if (testing::Test::HasFailure()) return;
+    SCOPED_TRACE(testing::Message() << n << " slots, waiting: " << pattern.name);
+    test(make_roles(pattern, n));
+  };
+  for (const std::uint32_t n : every_pattern_sizes) {
+    for (const RolePattern& pattern : role_patterns) run(pattern, n);
+  }
+  for (const std::uint32_t n : some_pattern_sizes) {
+    for (const std::size_t i : {std::size_t{2}, std::size_t{5}, pattern_half, pattern_half + 1}) {
+      run(role_patterns[i], n);
+    }
+  }
+  for (const std::uint32_t n : large_sizes) run(role_patterns[pattern_half], n);
+}
+
+/// Tells the first difference only: the arrays are long.
+template <class T>
+void expect_equal_arrays(const std::vector<T>& found, const std::vector<T>& expected,
+                         const std::string& what) {
+  ASSERT_EQ(found.size(), expected.size()) << what;
+  if (found == expected) return;
+  const auto [f, e] = std::mismatch(found.begin(), found.end(), expected.begin());
+  ADD_FAILURE() << what << ": [" << f - found.begin() << "] is " << static_cast<std::uint32_t>(*f)
+                << ", expected " << static_cast<std::uint32_t>(*e);
+}
+
+/// An array in the device's memory between two strips that nobody may write to.
+template <class Device, class T>
+class GuardedArray {
+ public:
+  GuardedArray(Device& device, const std::vector<T>& values)
+      : device_(device),
+        size_bytes_(values.size() * sizeof(T)),
+        memory_(static_cast<std::uint8_t*>(device.allocate(size_bytes_ + 2 * strip_bytes))) {
+    const std::vector<std::uint8_t> strip(strip_bytes, strip_byte);
+    device_.upload(memory_, strip.data(), strip_bytes);
+    device_.upload(memory_ + strip_bytes, values.data(), size_bytes_);
+    device_.upload(memory_ + strip_bytes + size_bytes_, strip.data(), strip_bytes);
+  }
+  GuardedArray(const GuardedArray&) = delete;
+  GuardedArray& operator=(const GuardedArray&) = delete;
+  ~GuardedArray() { device_.release(memory_); }
+
+  T* data() { return reinterpret_cast<T*>(memory_ + strip_bytes); }
+
+  void upload(const std::vector<T>& values) {
+    ASSERT_EQ(values.size() * sizeof(T), size_bytes_);
+    device_.upload(data(), values.data(), size_bytes_);
+  }
+
+  void expect(const std::vector<T>& expected, const std::string& what) {
+    expect_equal_arrays(download(what), expected, what);
+  }
+
+  std::vector<T> download(const std::string& what) {
+    std::vector<std::uint8_t> strips(2 * strip_bytes);
+    device_.download(strips.data(), memory_, strip_bytes);
+    device_.download(&strips[strip_bytes], memory_ + strip_bytes + size_bytes_, strip_bytes);
+    EXPECT_EQ(strips, std::vector<std::uint8_t>(strips.size(), strip_byte))
+        << what << ": written out of bounds";
+    std::vector<T> values(size_bytes_ / sizeof(T));
+    device_.download(values.data(), data(), size_bytes_);
+    return values;
+  }
+
+ private:
+  static constexpr std::size_t strip_bytes = 1024;
+  static constexpr std::uint8_t strip_byte = 0xa5;
+
+  Device& device_;
+  std::size_t size_bytes_;
+  std::uint8_t* memory_;
+};
+
+inline constexpr std::uint32_t poison = 0xdeadbeef;  ///< what no slot and no count is
+
+inline Slots waiting_slots(const std::vector<Role>& roles, Role role) {
+  Slots slots;
+  for (std::uint32_t i = 0; i < roles.size(); ++i) {
+    if (roles[i] == role) slots.push_back(i);
+  }
+  return slots;
+}
+
+/// The arrays of a request, used for several passes one after the other.
+template <class Device>
+class PassTest {
+ public:
+  PassTest(Device& device, Compaction strategy, std::uint32_t slot_count,
+           std::uint32_t slot_count_max)
+      : strategy_(strategy),
+        compact_(device.compactor(strategy, slot_count_max)),
+        tags_(device, std::vector<PathTag>(slot_count)),
+        queues_{{device, Slots(slot_count, poison)}, {device, Slots(slot_count, poison)}},
+        counts_(device, Slots(2, poison)),
+        contents_{Slots(slot_count, poison), Slots(slot_count, poison)} {
+    request_.tags = tags_.data();
+    request_.slot_count = request_.capacity = slot_count;
+    for (int c = 0; c < 2; ++c) request_.queues[c] = queues_[c].data();
+    request_.counts = counts_.data();
+  }
+
+  CompactionRequest& request() { return request_; }
+
+  /// One pass; `meaning` is the tag of each role.
+  void expect_pass(const std::vector<Role>& roles, const PathTag (&meaning)[4]) {
+    std::vector<PathTag> tags;
+    tags.reserve(roles.size());
+    for (const Role role : roles) tags.push_back(meaning[static_cast<int>(role)]);
+    tags_.upload(tags);
+    request_.wanted[0] = meaning[0], request_.wanted[1] = meaning[1];
+    compact_(request_);
+    Slots counts;
+    for (int c = 0; c < 2; ++c) {
+      const Slots waiting = waiting_slots(roles, static_cast<Role>(c));
+      counts.push_back(static_cast<std::uint32_t>(waiting.size()));
+      if (strategy_ != Compaction::none) std::ranges::copy(waiting, contents_[c].begin());
+    }
+    counts_.expect(counts, "counts");
+    expect_contents();
+    tags_.expect(tags, "tags");
+  }
+
+  /// Calls change(request) on a request that would be served and expects it to be refused.
+  void expect_refusal(const std::function<void(CompactionRequest&)>& change,
+                      const std::string& message) {
+    const CompactionRequest before = request_;
+    change(request_);
+    try {
+      compact_(request_);
+      ADD_FAILURE() << "not refused; expected: " << message;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+    request_ = before;
+    expect_contents();
+  }
+
+ private:
+  void expect_contents() {
+    for (int c = 0; c < 2; ++c) queues_[c].expect(contents_[c], "queue " + std::to_string(c));
+  }
+
+  Compaction strategy_;
+  Compactor compact_;
+  GuardedArray<Device, PathTag> tags_;
+  GuardedArray<Device, std::uint32_t> queues_[2], counts_;
+  Slots contents_[2];  ///< of the queues, with what earlier passes left behind
+  CompactionRequest request_;
+};
+
+/// Where a slot went in a case, by role; both others stay where they are.
+inline constexpr PathTag tag_meanings[][4] = {
+    {PathTag::miss, PathTag::surface, PathTag::free, PathTag::intersect},
+    {PathTag::free, PathTag::intersect, PathTag::surface, PathTag::miss},
+    {PathTag::surface, PathTag::miss, PathTag::free, PathTag::free},
+};
+
+/// A stage without physics: every slot goes where the case wants it.
+template <PathTag first, PathTag second, bool shadows>
+struct SortingStage {
+  static constexpr StageId id = StageId::intersect;
+  static constexpr PathTag tag = PathTag::intersect;
+  static constexpr StageOutcomes outcomes = {{first, second}, true, shadows};
+  const Next* next;      ///< [slot]
+  std::uint32_t* calls;  ///< [slot]: how often the stage was called for it
+  std::uint32_t* ranks;  ///< [slot]: the place in the queue that it was told
+
+  PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t rank) const {
+    ++calls[slot];
+    ranks[slot] = rank;
+    return next[slot];
+  }
+};
+
+/// What a stage finds as its input.
+enum class StageInput {
+  queue,      ///< a queue
+  queue_end,  ///< the last places of a queue
+  tags,       ///< the whole pool, of which it takes the slots with its tag
+  every_slot  ///< the whole pool
+};
+
+/// Runs a stage on slots of the roles first and second (with StageInput::every_slot: on all, the
+/// others going the same two ways), and the pass behind it if the strategy makes one.
+template <class Stage, class Device>
+class SendTest {
+ public:
+  SendTest(Device& device, Compaction strategy, StageInput input, std::vector<Role> roles)
+      : device_(device), strategy_(strategy), input_(input), roles_(std::move(roles)) {
+    for (Role& role : roles_) {
+      if (input == StageInput::every_slot) role = static_cast<Role>(static_cast<int>(role) % 2);
+    }
+  }
+
+  /// `dropped`: nobody waits for these.
+  void expect_sent(typename Device::Shape shape, const std::vector<PathTag>& dropped = {}) {
+    const auto n = static_cast<std::uint32_t>(roles_.size());
+    TestRandom random(n);
+    std::vector<Next> next(n);
+    std::vector<PathTag> tags(n), shadow_tags(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const int role = static_cast<int>(roles_[i]);
+      next[i] = {Stage::outcomes.tag[role % 2], shadows && random.bits() % 3 == 0};
+      tags[i] = role < 2 ? Stage::tag : PathTag::free;
+      shadow_tags[i] = static_cast<PathTag>(random.below(4));
+    }
+    const Slots slots = input_slots(random);
+
+    GuardedArray<Device, Next> device_next(device_, next);
+    GuardedArray<Device, std::uint32_t> calls(device_, Slots(n)), ranks(device_, Slots(n, poison));
+    GuardedArray<Device, PathTag> device_tags(device_, tags), device_shadow(device_, shadow_tags);
+    GuardedArray<Device, std::uint32_t> input(device_, slots);
+    const std::uint32_t skipped = input_ == StageInput::queue_end ? queue_rest : 0;
+    const auto waiting_count = static_cast<std::uint32_t>(slots.size()) - skipped;
+    const std::uint32_t length = input_ == StageInput::tags ? n : waiting_count;
+    GuardedArray<Device, std::uint32_t> place(device_, {skipped, length});
+
+    StageQueues q;
+    const bool from_pool = input_ == StageInput::tags || input_ == StageInput::every_slot;
+    q.slots = from_pool ? nullptr : input.data();
+    q.first = input_ == StageInput::queue_end ? place.data() : nullptr;
+    q.count = place.data() + 1;
+    const bool appends = appends_in_stages(strategy_);
+    q.tags = appends ? nullptr : device_tags.data();
+    q.shadow_tags = appends || !shadows ? nullptr : device_shadow.data();
+    // Every queue holds something already; what comes is appended behind it.
+    Slots ends, contents(rests_size + n, poison);
+    for (std::uint32_t i = 0; i <= queue_count; ++i) ends.push_back(5 * i);
+    std::vector<std::unique_ptr<GuardedArray<Device, std::uint32_t>>> queues;
+    for (int i = 0; i < queue_count; ++i) {
+      queues.push_back(std::make_unique<GuardedArray<Device, std::uint32_t>>(device_, contents));
+      const bool used = i == static_cast<int>(QueueId::shadow) ||
+                        std::ranges::find(dropped, static_cast<PathTag>(i)) == dropped.end();
+      q.next[i] = used && strategy_ != Compaction::none ? queues.back()->data() : nullptr;
+    }
+    GuardedArray<Device, std::uint32_t> waiting(device_, ends);
+    q.waiting = waiting.data();
+
+    device_.run(Stage{device_next.data(), calls.data(), ranks.data()}, q, shape);
+
+    expect_calls(slots, skipped, calls.download("calls"), ranks.download("ranks"));
+    std::vector<Slots> sent(queue_count);
+    for (std::size_t k = skipped; k < slots.size(); ++k) {
+      const std::uint32_t slot = slots[k];
+      tags[slot] = next[slot].tag;
+      if (shadows) shadow_tags[slot] = next[slot].shadow ? PathTag::surface : PathTag::free;
+      const auto to = static_cast<std::size_t>(next[slot].tag);
+      if (appends && q.next[to] != nullptr) sent[to].push_back(slot);
+      if (appends && next[slot].shadow) sent[queue_count - 1].push_back(slot);
+    }
+    if (!appends) {
+      device_tags.expect(tags, "tags");
+      if (shadows) device_shadow.expect(shadow_tags, "shadow tags");
+    }
+    for (std::size_t i = 0; i < queue_count; ++i) {
+      expect_appended(sent[i], ends[i], queues[i]->download("queue"), i);
+      ends[i] += static_cast<std::uint32_t>(sent[i].size());
+    }
+    waiting.expect(ends, "ends of the queues");
+  }
+
+ private:
+  static constexpr bool shadows = Stage::outcomes.casts_shadow_rays;
+  static constexpr std::uint32_t queue_rest = 11;  ///< places that queue_end leaves out
+  static constexpr std::uint32_t rests_size = 5 * queue_count;
+
+  /// In an order that the stage must not rely on.
+  Slots input_slots(TestRandom& random) {
+    Slots slots;
+    for (std::uint32_t i = 0; i < roles_.size(); ++i) {
+      if (static_cast<int>(roles_[i]) < 2) slots.push_back(i);
+    }
+    if (input_ == StageInput::tags || input_ == StageInput::every_slot) return slots;
+    for (std::size_t i = slots.size(); i > 1; --i) {
+      std::swap(slots[i - 1], slots[random.below(static_cast<std::uint32_t>(i))]);
+    }
+    if (input_ == StageInput::queue_end) slots.insert(slots.begin(), queue_rest, poison);
+    return slots;
+  }
+
+  void expect_calls(const Slots& slots, std::uint32_t skipped, const Slots& calls,
+                    const Slots& ranks) {
+    Slots expected_calls(roles_.size()), expected_ranks(roles_.size(), poison);
+    for (auto k = skipped; k < slots.size(); ++k) {
+      expected_calls[slots[k]] = 1;
+      expected_ranks[slots[k]] = input_ == StageInput::tags ? slots[k] : k - skipped;
+    }
+    expect_equal_arrays(calls, expected_calls, "calls of the stage");
+    expect_equal_arrays(ranks, expected_ranks, "places in the queue");
+  }
+
+  /// Nothing before `end`, a permutation of `slots` from there on, nothing behind.
+  static void expect_appended(Slots slots, std::uint32_t end, Slots queue, std::size_t id) {
+    const auto begin = queue.begin() + end;
+    const auto count = static_cast<std::ptrdiff_t>(slots.size());
+    std::sort(slots.begin(), slots.end());
+    std::sort(begin, begin + count);
+    Slots expected(queue.size(), poison);
+    std::ranges::copy(slots, expected.begin() + end);
+    expect_equal_arrays(queue, expected, "queue " + std::to_string(id) + ", sorted");
+  }
+
+  Device& device_;
+  Compaction strategy_;
+  StageInput input_;
+  std::vector<Role> roles_;
+};
+
+template <class Device>
+class CompactionOf : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Device::available()) GTEST_SKIP() << "no " << Device::name << " device";
+  }
+};
+TYPED_TEST_SUITE_P(CompactionOf);
+
+inline constexpr Compaction pass_strategies[] = {Compaction::cub, Compaction::none};
+
+TYPED_TEST_P(CompactionOf, APassFindsExactlyTheWaitingSlots) {
+  TypeParam device;
+  for (const Compaction strategy : pass_strategies) {
+    SCOPED_TRACE(to_string(strategy));
+    for_each_case([&](std::vector<Role> roles) {
+      const auto n = static_cast<std::uint32_t>(roles.size());
+      PassTest<TypeParam> test(device, strategy, n, n + n / 3);
+      test.expect_pass(roles, tag_meanings[0]);
+      if (n > some_pattern_sizes[5]) return;
+      // The same buffers again, with other queues and other slots in them.
+      std::rotate(roles.begin(), roles.begin() + n / 3, roles.end());
+      test.expect_pass(roles, tag_meanings[1]);
+      test.expect_pass(roles, tag_meanings[2]);
+      test.expect_pass(std::vector<Role>(n, Role::another), tag_meanings[0]);
+    });
+  }
+}
+
+TYPED_TEST_P(CompactionOf, NoneCountsWithoutQueues) {
+  TypeParam device;
+  for (const std::uint32_t n : {1u, 1000u, 65537u}) {
+    PassTest<TypeParam> test(device, Compaction::none, n, n);
+    test.request().queues[0] = test.request().queues[1] = nullptr;
+    test.expect_pass(make_roles(role_patterns[pattern_half], n), tag_meanings[0]);
+  }
+}
+
+TYPED_TEST_P(CompactionOf, RefusesWhatCouldOverflow) {
+  TypeParam device;
+  for (const Compaction strategy : pass_strategies) {
+    SCOPED_TRACE(to_string(strategy));
+    PassTest<TypeParam> test(device, strategy, 1000, 1000);
+    const std::vector<Role> roles = make_roles(role_patterns[pattern_half], 1000);
+    test.expect_pass(roles, tag_meanings[0]);
+    test.expect_refusal([](CompactionRequest& r) { r.capacity = 999; }, "999 places for 1000");
+    test.expect_refusal([](CompactionRequest& r) { r.capacity = 0; }, "0 places for 1000");
+    test.expect_refusal([](CompactionRequest& r) { r.wanted[1] = r.wanted[0]; }, "are the same");
+    test.expect_refusal([](CompactionRequest& r) { r.slot_count = r.capacity = 0x80000000u; },
+                        "2147483648 slots");
+    test.expect_pass(roles, tag_meanings[1]);
+  }
+}
+
+/// Calls test(strategy, input) for all that a stage can be run with.
+template <class Device, class Test>
+void for_each_input(Test&& test) {
+  using enum StageInput;
+  const auto run = [&](Compaction strategy, StageInput input, const char* name) {
+    if (testing::Test::HasFailure()) return;
+    SCOPED_TRACE(testing::Message() << to_string(strategy) << ", " << name);
+    test(strategy, input);
+  };
+  for (const Compaction strategy : {Compaction::atomic, Compaction::cub}) {
+    run(strategy, queue, "a queue");
+    run(strategy, queue_end, "the end of a queue");
+  }
+  run(Compaction::none, tags, "by tag");
+  if (Device::numbers_slots) run(Compaction::atomic, every_slot, "every slot");
+}
+
+/// Runs all kinds of stages once.
+template <class Device>
+void expect_all_sent(Device& device, const std::vector<Role>& roles,
+                     const typename Device::Shape& shape) {
+  using enum PathTag;
+  for_each_input<Device>([&](Compaction strategy, StageInput input) {
+    SendTest<SortingStage<surface, miss, false>, Device>(device, strategy, input, roles)
+        .expect_sent(shape);
+    SendTest<SortingStage<intersect, free, true>, Device> shadows(device, strategy, input, roles);
+    shadows.expect_sent(shape);
+    shadows.expect_sent(shape, {free});
+    SendTest<SortingStage<free, free, false>, Device> ends(device, strategy, input, roles);
+    ends.expect_sent(shape);
+    ends.expect_sent(shape, {free});
+  });
+}
+
+TYPED_TEST_P(CompactionOf, AStageSendsEverySlotOn) {
+  TypeParam device;
+  for_each_case([&](const std::vector<Role>& roles) {
+    if (roles.size() > some_pattern_sizes[2]) return;
+    expect_all_sent(device, roles, TypeParam::shapes().front());
+  });
+}
+
+TYPED_TEST_P(CompactionOf, AStageSendsEverySlotOnInEveryShape) {
+  TypeParam device;
+  for (const auto& shape : TypeParam::shapes()) {
+    SCOPED_TRACE(shape.text());
+    for (const std::uint32_t n : {1u, 33u, 5000u}) {
+      SCOPED_TRACE(testing::Message() << n << " slots");
+      expect_all_sent(device, make_roles(role_patterns[pattern_half], n), shape);
+    }
+  }
+}
+
+TYPED_TEST_P(CompactionOf, AStageSendsMillionsOfSlotsOn) {
+  TypeParam device;
+  for (const std::uint32_t n : {(1u << 20) - 1, 1u << 20, (1u << 22) + 1}) {
+    SendTest<SortingStage<PathTag::surface, PathTag::miss, false>, TypeParam>(
+        device, Compaction::atomic, StageInput::queue, make_roles(role_patterns[pattern_half], n))
+        .expect_sent(TypeParam::shapes().front());
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(CompactionOf, APassFindsExactlyTheWaitingSlots, NoneCountsWithoutQueues,
+                            RefusesWhatCouldOverflow, AStageSendsEverySlotOn,
+                            AStageSendsEverySlotOnInEveryShape, AStageSendsMillionsOfSlotsOn);
+
+}  // namespace pt

@@ -1,0 +1,273 @@
+// Megakernel and wavefront on the CPU give the serial program's image, bit for bit, and trace the
+// same rays, whatever the options that say how. The serial program itself is compared with a loop
+// over pixels and samples that knows no batch, no film and no schedule.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "common/sampling/random.h"
+#include "common/transport/generate_camera_path.h"
+#include "common/transport/shade_miss.h"
+#include "common/transport/shade_surface.h"
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+// Small, odd, and no multiple of a block or a range.
+constexpr const char *width = "67", *height = "41", *spp = "5";
+// For pools of a few slots, which need a wave for each of their rays.
+constexpr const char *tiny_width = "13", *tiny_height = "7";
+
+/// Sum over a pixel's samples, in their order.
+struct PixelSum {
+  glm::dvec3 radiance{0};
+  std::uint64_t rays = 0, shadow_rays = 0;
+  std::vector<std::uint64_t> live;
+
+  void count_ray(std::size_t k) {
+    if (live.size() <= k) live.resize(k + 1);
+    ++live[k], ++rays;
+  }
+};
+
+template <bool has_lights, Accel accel, class Draw>
+Color follow_path(const Scene& scene, std::uint32_t pixel, std::uint32_t max_depth,
+                  const Draw& draw, PixelSum& sum) {
+  PathState path;
+  Color radiance(0.0f);
+  Ray ray = generate_camera_path(scene, pixel, draw(scatter_block(0)));
+  while (true) {
+    sum.count_ray(path.rays++);
+    const Hit hit = intersect_closest<accel>(scene, ray);
+    if (hit.is_miss()) return radiance + shade_miss(scene, ray.direction, path);
+    const Vec4 u = draw(scatter_block(path.rays));
+    const Vec4 light = has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);
+    const Scattering s = shade_surface<has_lights>(scene, ray, hit, path, max_depth, u, light);
+    radiance += s.emitted;
+    if (!is_black(s.shadow.radiance)) {
+      ++sum.shadow_rays;
+      if (!intersect_shadow<accel>(scene, s.shadow)) radiance += s.shadow.radiance;
+    }
+    if (!s.alive) return radiance;
+    ray = s.ray;
+  }
+}
+
+template <class Draw>
+Color follow_path(const SceneTraits& traits, const Scene& scene, std::uint32_t pixel,
+                  std::uint32_t max_depth, const Draw& draw, PixelSum& sum) {
+  const bool brute = traits.accel == Accel::brute;
+  if (traits.has_lights) {
+    return brute ? follow_path<true, Accel::brute>(scene, pixel, max_depth, draw, sum)
+                 : follow_path<true, Accel::bvh2>(scene, pixel, max_depth, draw, sum);
+  }
+  return brute ? follow_path<false, Accel::brute>(scene, pixel, max_depth, draw, sum)
+               : follow_path<false, Accel::bvh2>(scene, pixel, max_depth, draw, sum);
+}
+
+PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32_t x,
+                     std::uint32_t y) {
+  const Scene view = host_view(scene, options.width, options.height);
+  const std::uint32_t pixel = x | y << 16;
+  PixelSum sum;
+  for (std::uint32_t sample = 0; sample < static_cast<std::uint32_t>(options.spp); ++sample) {
+    XorwowState state;
+    xorwow_init(xorwow_seed(options.seed, {pixel, sample, 0}), state);
+    auto philox = PhiloxSource{options.seed}.open({pixel, sample, 0});
+    const auto draw = [&](std::uint32_t block) {
+      Vec4 u = philox.draw(block);
+      for (int i = 0; i < 4 && options.rng == RngKind::xorwow; ++i) {
+        u[i] = static_cast<float>(xorwow_next(state) >> 8) / 16777216.0f;
+      }
+      return u;
+    };
+    sum.radiance += glm::dvec3(follow_path(
+        scene.traits(), view, pixel, static_cast<std::uint32_t>(options.max_depth), draw, sum));
+  }
+  return sum;
+}
+
+void expect_pixel(const Image& image, std::uint32_t x, std::uint32_t y, const PixelSum& sum,
+                  int samples) {
+  const float* found = image.pixel(static_cast<int>(x), static_cast<int>(y));
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(found[c], static_cast<float>(sum.radiance[c] * (1.0 / samples)))
+        << "pixel " << x << ", " << y << ", channel " << c;
+  }
+}
+
+/// Every scene with what changes its image. Closed scenes are dearer: their paths never escape.
+const std::vector<ImageKind> image_kinds = [] {
+  std::vector<ImageKind> kinds;
+  for (const std::string scene : {"spheres", "rtow", "cornell", "furnace"}) {
+    const bool closed = scene == "cornell" || scene == "furnace";
+    const auto add = [&](const std::string& name, const Settings& more) {
+      Settings settings{{"scene", scene}, {"width", width}, {"height", height}, {"spp", spp}};
+      if (closed) settings.emplace_back("max-depth", "9");
+      settings.insert(settings.end(), more.begin(), more.end());
+      kinds.push_back({scene + "_" + name, settings});
+    };
+    add("bvh2", {{"accel", "bvh2"}});
+    add("xorwow", {{"rng", "xorwow"}, {"seed", "1099511627779"}});
+    add("depth_1", {{"max-depth", "1"}});
+    add("tiny", {{"width", tiny_width}, {"height", tiny_height}});
+    if (scene != "rtow") add("brute", {{"accel", "brute"}});
+    if (closed) add("depth_50", {{"width", "31"}, {"height", "17"}, {"max-depth", "50"}});
+    if (!closed) add("lens", {{"aperture", "1.5"}, {"focus-distance", "9"}, {"max-depth", "3"}});
+  }
+  return kinds;
+}();
+
+/// While it exists, there are as many threads as asked for, even on a smaller machine.
+class ManyThreads {
+ private:
+  tbb::global_control limit_{tbb::global_control::max_allowed_parallelism, 8};
+};
+
+class ModesOf : public testing::TestWithParam<ImageKind> {
+ protected:
+  Options options(const std::string& mode) const {
+    Options result = with(Options(), GetParam().settings);
+    apply(result, {{"device", "cpu"}, {"mode", mode}});
+    return result;
+  }
+  bool is_tiny() const { return options("serial").width == std::stoi(tiny_width); }
+
+ private:
+  ManyThreads threads_;
+};
+INSTANTIATE_TEST_SUITE_P(Images, ModesOf, testing::ValuesIn(image_kinds),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST_P(ModesOf, SerialIsALoopOverPixelsAndSamples) {
+  const Options serial = options("serial");
+  const Rendered rendered = render_options(serial);
+  expect_plausible(rendered, serial);
+  const SceneData scene = make_scene_for(serial, choose_device(serial.device));
+  PathCounts counts;
+  for (int y = 0; y < serial.height; ++y) {
+    for (int x = 0; x < serial.width; ++x) {
+      const auto px = static_cast<std::uint32_t>(x), py = static_cast<std::uint32_t>(y);
+      const PixelSum sum = plain_pixel(scene, serial, px, py);
+      expect_pixel(rendered.image, px, py, sum, serial.spp);
+      if (HasFailure()) return;
+      counts.rays += sum.rays, counts.shadow_rays += sum.shadow_rays;
+      if (counts.live_paths.size() < sum.live.size()) counts.live_paths.resize(sum.live.size());
+      for (std::size_t k = 0; k < sum.live.size(); ++k) counts.live_paths[k] += sum.live[k];
+    }
+  }
+  counts.paths = counts.live_paths[0];
+  expect_same_counts(rendered.counts, counts);
+}
+
+TEST_P(ModesOf, MegakernelEqualsSerial) {
+  const std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
+                                    {"work", {"persistent", "pixel", "sample"}},
+                                    {"branching", {"divergent", "reduced"}}};
+  expect_all_same(options("megakernel"), variations(choices, 5, 1),
+                  render_options(options("serial")));
+}
+
+TEST_P(ModesOf, WavefrontEqualsSerial) {
+  std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
+                              {"compaction", {"atomic", "cub", "none"}},
+                              {"pool-size", {"auto", "1000", "4096", "13735", "13736"}},
+                              {"regenerate", {"on", "off"}},
+                              {"finish-paths", {"0", "1", "700", "131072"}},
+                              {"branching", {"divergent", "reduced"}}};
+  if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
+  expect_all_same(options("wavefront"), variations(choices, 8, 2),
+                  render_options(options("serial")));
+}
+
+/// Three batches of three samples.
+Options batch_options(const std::string& mode) {
+  return with(Options(), {{"device", "cpu"},
+                          {"mode", mode},
+                          {"width", "512"},
+                          {"height", "500"},
+                          {"spp", "9"},
+                          {"spheres", "3"},
+                          {"max-depth", "5"}});
+}
+
+class Batches : public testing::Test {
+ private:
+  ManyThreads threads_;
+};
+
+const char* const mode_names[] = {"serial", "megakernel", "wavefront"};
+
+TEST_F(Batches, DoNotChangeTheImage) {
+  const Options serial = batch_options("serial");
+  const SceneData scene = make_scene_for(serial, choose_device(serial.device));
+  const Rendered expected = render_options(serial);
+  expect_plausible(expected, serial);
+  TestRandom random;
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint32_t x = random.below(512), y = random.below(500);
+    expect_pixel(expected.image, x, y, plain_pixel(scene, serial, x, y), 9);
+  }
+  expect_same(render_options(batch_options("megakernel")), expected);
+  for (const char* compaction : {"atomic", "cub", "none"}) {
+    SCOPED_TRACE(compaction);
+    Options wavefront = with(batch_options("wavefront"), {{"compaction", compaction}});
+    expect_same(render_options(wavefront), expected);
+  }
+}
+
+// A generator's state begins anew in each batch.
+TEST_F(Batches, DoNotChangeTheImageOfXorwow) {
+  const Settings xorwow{{"rng", "xorwow"}};
+  const Options serial = with(batch_options("serial"), xorwow);
+  const SceneData scene = make_scene_for(serial, choose_device(serial.device));
+  const Rendered expected = render_options(serial);
+  TestRandom random;
+  for (int i = 0; i < 1000; ++i) {
+    const std::uint32_t x = random.below(512), y = random.below(500);
+    expect_pixel(expected.image, x, y, plain_pixel(scene, serial, x, y), 9);
+  }
+  expect_same(render_options(with(batch_options("megakernel"), xorwow)), expected);
+  expect_same(render_options(with(batch_options("wavefront"), xorwow)), expected);
+}
+
+using Progress = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
+
+/// Notes the progress and stops after so many batches.
+RenderHooks stop_after(std::size_t batches, Progress& progress) {
+  return {
+      [&progress](std::uint64_t done, std::uint64_t total) { progress.emplace_back(done, total); },
+      [&progress, batches] { return progress.size() >= batches; }};
+}
+
+TEST_F(Batches, AnInterruptionLeavesTheImageOfTheSamplesTaken) {
+  constexpr std::uint64_t pixels = 512 * 500;
+  for (const char* mode : mode_names) {
+    const Options options = batch_options(mode);
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    const auto renderer = make_renderer(options, scene, device);
+    for (const std::size_t batches : {1, 2}) {
+      SCOPED_TRACE(testing::Message() << mode << ", stopped after " << batches);
+      Progress progress;
+      const Rendered stopped = take_image(*renderer, stop_after(batches, progress));
+      const int samples = 3 * static_cast<int>(batches);
+      EXPECT_EQ(stopped.run.samples_done, samples);
+      expect_same(stopped, render_options(with(options, {{"spp", std::to_string(samples)}})));
+      Progress expected{{3 * pixels, 9 * pixels}, {6 * pixels, 9 * pixels}};
+      expected.resize(batches);
+      EXPECT_EQ(progress, expected);
+    }
+    // The same renderer then renders all, as if nothing had happened.
+    SCOPED_TRACE(mode);
+    Progress progress;
+    const Rendered complete = take_image(*renderer, stop_after(99, progress));
+    expect_plausible(complete, options);
+    EXPECT_EQ(
+        progress,
+        (Progress{{3 * pixels, 9 * pixels}, {6 * pixels, 9 * pixels}, {9 * pixels, 9 * pixels}}));
+  }
+}
+
+}  // namespace
+}  // namespace pt
