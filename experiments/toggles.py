@@ -13,7 +13,8 @@ BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["redu
         ("rng", ["xorwow"])]
 TOGGLES = {
     "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
-    "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"])],
+    "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
+                  ("finish-paths", ["0"])],
 }
 POOL_SIZES = ["128K", "256K", "512K", "1M", "2M", "4M", "8M"]
 QUICK_POOL_SIZES = ["1K", "4K"]
