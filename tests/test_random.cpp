@@ -56,6 +56,19 @@ TEST(Xorwow, FollowsMarsagliasRecurrence) {
   }
 }
 
+// The first numbers of cuRAND 13.0's curand_init(seed, 0, 0).
+TEST(Xorwow, KnownAnswersOfCurand) {
+  const auto first_four = [](std::uint64_t seed) {
+    XorwowState state;
+    xorwow_init(seed, state);
+    Words words;
+    for (std::uint32_t& word : words) word = xorwow_next(state);
+    return words;
+  };
+  EXPECT_EQ(first_four(1), (Words{2898200796, 3111669439, 2179589753, 379598403}));
+  EXPECT_EQ(first_four(0x123456789abcdef0), (Words{659909570, 1683698917, 4246992159, 3394647409}));
+}
+
 TEST(UnitFloat, IsTheUpper24BitsAndBelowOne) {
   EXPECT_EQ(to_unit_float(0), 0.0f);
   EXPECT_EQ(to_unit_float(255), 0.0f);

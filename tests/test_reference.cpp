@@ -78,18 +78,18 @@ TEST(LightSampling, CornellEqualsPathsThatFindTheLampByChance) {
   expect_equals_reference(make_scene(options), 8, 150'000, 0.012);
 }
 
-// Both shapes of lights, under a sky, seen by diffuse and by glossy surfaces.
+// Both shapes of lights, under a sky, seen by glossy and by diffuse surfaces.
 TEST(LightSampling, TwoLightsMetalAndASky) {
   SceneData scene;
-  const auto floor = scene.add_material(make_diffuse({0.25f, 0.5f, 1}));
+  const auto floor = scene.add_material(make_metal({0.25f, 0.5f, 1}, 0.8f));
   const auto lamp = scene.add_material(make_diffuse({0.5f, 0.3f, 0.1f}, {2, 3, 1}));
   const auto smooth = scene.add_material(make_metal({0.9f, 0.8f, 0.7f}, 0.3f));
-  const auto rough = scene.add_material(make_metal({0.7f, 0.8f, 0.9f}, 0.9f));
+  const auto diffuse = scene.add_material(make_diffuse({0.7f, 0.8f, 0.9f}));
   scene.add_quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, floor);
   scene.add_quad({0.5f, 2.5f, -1}, {1.5f, 0.5f, 0}, {0, 0, 2}, lamp);  // faces down
   scene.add_sphere({-1.5f, 1.2f, 0}, 0.7f, lamp);
   scene.add_sphere({0.8f, 0.7f, 0.3f}, 0.7f, smooth);
-  scene.add_sphere({0, 0.4f, 1.5f}, 0.4f, rough);
+  scene.add_sphere({0, 0.4f, 1.5f}, 0.4f, diffuse);
   scene.sky = {Color(0.1f), {0.2f, 0.3f, 0.5f}};
   scene.camera = {{1, 2, 6}, {0, 0.8f, 0}, {0, 1, 0}, 45, 0, 6};
   prepare_scene(scene, {});

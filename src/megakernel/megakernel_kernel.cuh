@@ -77,10 +77,11 @@ class ThreadWork {
 };
 
 template <class Traits, Branching branching, SceneMemory memory, class Source>
-__global__ void megakernel(const __grid_constant__ SceneStorage<memory> storage,
-                           const __grid_constant__ SampleBuffer batch,
-                           const __grid_constant__ WorkDivision division, Source source,
-                           std::uint32_t max_depth, StageClock* clock) {
+__global__ void __launch_bounds__(1024)
+    megakernel(const __grid_constant__ SceneStorage<memory> storage,
+               const __grid_constant__ SampleBuffer batch,
+               const __grid_constant__ WorkDivision division, Source source,
+               std::uint32_t max_depth, StageClock* clock) {
   stamp_first_thread(clock, ClockId::megakernel);
   const Scene scene = storage.bind();
   ThreadWork work(division, batch);

@@ -89,9 +89,10 @@ __device__ void append_next(Appender& appender, const StageQueues& queues, bool 
 
 /// The queue's length is read on the device, so the grid has a fixed size and loops.
 template <class Stage, SceneMemory memory>
-__global__ void stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
-                             const __grid_constant__ Stage stage,
-                             const __grid_constant__ StageQueues queues, StageClock* clock) {
+__global__ void __launch_bounds__(1024)
+    stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
+                 const __grid_constant__ Stage stage, const __grid_constant__ StageQueues queues,
+                 StageClock* clock) {
   using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
   __shared__ typename Appender::Shared shared;
   stamp_first_thread(clock, Stage::id);

@@ -6,9 +6,6 @@
 namespace pt {
 namespace {
 
-const char* const stage_names[stage_count] = {
-    "generate", "intersect", "shade_miss", "shade_surface", "shadow", "finish", "accumulate"};
-
 /// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
 /// 0 outside of a graph.
 __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
@@ -36,8 +33,9 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
         (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
     const std::uint32_t resident =
         resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
-    launch(stage_names[static_cast<int>(Stage::id)], kernel, blocks < resident ? blocks : resident,
-           block, shared_bytes, storage, stage, queues, clock());
+    launch(clock_name(static_cast<ClockId>(Stage::id)), kernel,
+           blocks < resident ? blocks : resident, block, shared_bytes, storage, stage, queues,
+           clock());
   };
   // Only the kernels that trace rays read the spheres again and again.
   if constexpr (Stage::traces_rays) {

@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
+#include "common/render/option_names.h"
 
 namespace pt {
 namespace {
@@ -29,11 +30,20 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-const char* const clock_names[clock_count] = {
-    "generate",   "intersect", "shade_miss", "shade_surface", "shadow",      "finish",
-    "accumulate", "compact",   "begin_wave", "megakernel",    "render_init", "idle"};
-
 }  // namespace
+
+const char* clock_name(ClockId id) {
+  static_assert(static_cast<int>(ClockId::compact) == stage_count);  // before it stand the stages
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (int i = 0; i < stage_count; ++i) list.push_back(to_string(static_cast<StageId>(i)));
+    for (const char* name : {"compact", "begin_wave", "megakernel", "render_init", "idle"}) {
+      list.emplace_back(name);
+    }
+    return list;
+  }();
+  return names.at(static_cast<std::size_t>(id)).c_str();
+}
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
     : options_(options),
@@ -224,8 +234,8 @@ void CudaRenderer::read_clock(RenderRun& run) {
   check_cuda(cudaMemcpy(&clock, clock_, sizeof clock, cudaMemcpyDeviceToHost), "cudaMemcpy");
   for (int i = 0; i < static_cast<int>(ClockId::idle); ++i) {
     if (clock.launches[i] == 0) continue;
-    run.stages.push_back(
-        {clock_names[i], static_cast<double>(clock.time_ns[i]) * 1e-6, clock.launches[i]});
+    run.stages.push_back({clock_name(static_cast<ClockId>(i)),
+                          static_cast<double>(clock.time_ns[i]) * 1e-6, clock.launches[i]});
   }
 }
 

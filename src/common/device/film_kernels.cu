@@ -26,8 +26,8 @@ __device__ void add_to(std::uint64_t* sum, std::uint64_t value) {
 
 // All counts are added up per block first: one address that every thread adds to would be the
 // slowest part of the kernel by far.
-__global__ void accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally,
-                                StageClock* clock) {
+__global__ void __launch_bounds__(1024)
+    accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally, StageClock* clock) {
   stamp_first_thread(clock, ClockId::accumulate);
   __shared__ std::uint64_t block_rays, block_shadow_rays, block_nonfinite;
   __shared__ std::uint32_t lengths[path_length_bins];
