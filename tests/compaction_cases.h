@@ -411,9 +411,11 @@ TYPED_TEST_P(CompactionOf, APassFindsExactlyTheWaitingSlots) {
     SCOPED_TRACE(to_string(strategy));
     for_each_case([&](std::vector<Role> roles) {
       const auto n = static_cast<std::uint32_t>(roles.size());
+      const bool large = n > some_pattern_sizes[5];
+      if (large && strategy == Compaction::none) return;
       PassTest<TypeParam> test(device, strategy, n, n + n / 3);
       test.expect_pass(roles, tag_meanings[0]);
-      if (n > some_pattern_sizes[5]) return;
+      if (large) return;
       // The same buffers again, with other queues and other slots in them.
       std::rotate(roles.begin(), roles.begin() + n / 3, roles.end());
       test.expect_pass(roles, tag_meanings[1]);
