@@ -21,7 +21,9 @@ struct HasTag {
   StageClock* clock;
 
   __device__ bool operator()(std::uint32_t slot) const {
+    const unsigned together = __activemask();
     if (slot == 0 && clock != nullptr) stamp(clock, ClockId::compact);
+    __syncwarp(together);  // CUB's next barrier wants the warp undivided
     return tags[slot] == wanted;
   }
 };

@@ -33,7 +33,10 @@ class BlockAppender {
       if (lane_ == 0) place[s][warp_] = __popc(votes[s]);
     }
     __syncthreads();
-    if (threadIdx.x < streams) reserve(place[threadIdx.x], ends);
+    // A thread per queue, or one for several where a block has fewer threads than queues.
+    for (int s = 0; s < streams; ++s) {
+      if (threadIdx.x == s % blockDim.x) reserve(place[s], ends[s]);
+    }
     __syncthreads();
     for (int s = 0; s < streams; ++s) {
       if (wanted[s]) {
@@ -44,14 +47,10 @@ class BlockAppender {
   }
 
  private:
-  __device__ void reserve(std::uint32_t (&votes)[32], std::uint32_t* const (&ends)[streams]) {
+  __device__ static void reserve(std::uint32_t (&votes)[32], std::uint32_t* end) {
     const int warps = (blockDim.x + 31) / 32;
     std::uint32_t total = 0;
     for (int w = 0; w < warps; ++w) total += votes[w];
-    std::uint32_t* end = ends[0];
-    for (int s = 1; s < streams; ++s) {
-      if (threadIdx.x == s) end = ends[s];
-    }
     std::uint32_t next = total > 0 ? atomicAdd(end, total) : 0;
     for (int w = 0; w < warps; ++w) {
       const std::uint32_t count = votes[w];
