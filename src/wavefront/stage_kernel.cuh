@@ -33,10 +33,8 @@ class BlockAppender {
       if (lane_ == 0) place[s][warp_] = __popc(votes[s]);
     }
     __syncthreads();
-    // A thread per queue, or one for several where a block has fewer threads than queues.
-    for (int s = 0; s < streams; ++s) {
-      if (threadIdx.x == s % blockDim.x) reserve(place[s], ends[s]);
-    }
+    // A thread per queue; one for several where a block has fewer threads than queues.
+    for (int s = threadIdx.x; s < streams; s += blockDim.x) reserve(place[s], pick(ends, s));
     __syncthreads();
     for (int s = 0; s < streams; ++s) {
       if (wanted[s]) {
@@ -47,6 +45,15 @@ class BlockAppender {
   }
 
  private:
+  /// ends[s] without an array in local memory.
+  __device__ static std::uint32_t* pick(std::uint32_t* const (&ends)[streams], int s) {
+    std::uint32_t* end = ends[0];
+    for (int k = 1; k < streams; ++k) {
+      if (s == k) end = ends[k];
+    }
+    return end;
+  }
+
   __device__ static void reserve(std::uint32_t (&votes)[32], std::uint32_t* end) {
     const int warps = (blockDim.x + 31) / 32;
     std::uint32_t total = 0;
