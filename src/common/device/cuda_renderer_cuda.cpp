@@ -89,7 +89,9 @@ void CudaRenderer::upload(const SceneData& scene) {
                     "parameters hold at most {}",
                     scene.spheres.size(), constant_spheres_max));
   }
-  if (scene_memory_ == SceneMemory::shared && sphere_bytes > properties_.sharedMemPerBlockOptin) {
+  constexpr std::size_t own_shared_bytes = 2048;  // what a kernel needs besides, at most
+  if (scene_memory_ == SceneMemory::shared &&
+      sphere_bytes + own_shared_bytes > properties_.sharedMemPerBlockOptin) {
     throw Error(
         fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
                     "of this device has at most {}",
@@ -138,6 +140,11 @@ void CudaRenderer::allocate_film() {
 
 std::uint32_t CudaRenderer::resident_blocks(const void* kernel, int block_threads,
                                             std::size_t shared_bytes) {
+  if (shared_bytes > 48 * 1024) {  // more than every kernel may take without asking
+    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
+                                    static_cast<int>(shared_bytes)),
+               "cudaFuncSetAttribute");
+  }
   int per_multiprocessor = 0;
   check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel,
                                                            block_threads, shared_bytes),
@@ -156,11 +163,6 @@ void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
         fmt::format("kernel {} uses {} registers per thread: a block has at most {} threads, "
                     "{} were asked for (--block, --stage-block)",
                     name, attributes.numRegs, attributes.maxThreadsPerBlock, threads));
-  }
-  if (shared_bytes > 48 * 1024) {
-    check_cuda(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                    static_cast<int>(shared_bytes)),
-               name);
   }
   const std::uint32_t resident = resident_blocks(kernel, threads, shared_bytes);
   const int warps = (threads + 31) / 32 * static_cast<int>(resident);
