@@ -3,6 +3,8 @@
 #include <tbb/task_arena.h>
 
 #include <cstring>
+#include <latch>
+#include <thread>
 
 #include "compaction_cases.h"
 #include "wavefront/run_stage_cpu.h"
@@ -50,6 +52,35 @@ class CpuDevice {
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Cpu, CompactionOf, CpuDevice);
+
+// Threads that do nothing but reserve places.
+TEST(RangeAppender, GivesNoPlaceTwice) {
+  constexpr std::uint32_t thread_count = 4, appends = 2'000'000;
+  Slots queue(thread_count * appends, poison), waiting(queue_count + 1);
+  StageQueues queues;
+  queues.next[static_cast<int>(QueueId::surface)] = queue.data();
+  queues.waiting = waiting.data();
+  std::latch start(thread_count);
+  std::vector<std::thread> threads;
+  for (std::uint32_t t = 0; t < thread_count; ++t) {
+    threads.emplace_back([&queues, &start, t] {
+      RangeAppender appender;
+      start.arrive_and_wait();
+      for (std::uint32_t i = 0; i < appends; ++i) {
+        appender.append(QueueId::surface, t * appends + i);
+        appender.flush(queues);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(waiting[static_cast<int>(QueueId::surface)], queue.size());
+  std::vector<int> times(queue.size());
+  for (const std::uint32_t slot : queue) {
+    ASSERT_LT(slot, times.size()) << "a place is empty";
+    ++times[slot];
+  }
+  EXPECT_EQ(times, std::vector<int>(queue.size(), 1));
+}
 
 }  // namespace
 }  // namespace pt
