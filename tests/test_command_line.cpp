@@ -57,7 +57,8 @@ const std::map<std::string, std::string>& other_values() {
       {"regenerate", "off"},
       {"schedule", "graph"},
       {"stage-block",
-       "generate=256,intersect=128,shade_miss=256,shade_surface=64,shadow=1024,finish=256,accumulate=1"},
+       "generate=256,intersect=128,shade_miss=256,shade_surface=64,shadow=1024,finish=256,"
+       "accumulate=1"},
       {"scene-memory", "constant"},
       {"branching", "reduced"},
       {"rng", "xorwow"},

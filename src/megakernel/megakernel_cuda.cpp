@@ -1,8 +1,9 @@
+#include "megakernel/megakernel_cuda.h"
+
 #include <fmt/format.h>
 
 #include "common/error.h"
 #include "megakernel/megakernel.h"
-#include "megakernel/megakernel_cuda.h"
 
 namespace pt {
 
@@ -19,9 +20,8 @@ MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, i
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
   check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, stream()), "cudaMemsetAsync");
   with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
-    with_random_source([&](const auto& source) {
-      launch_megakernel(storage, shared_bytes, source, batch);
-    });
+    with_random_source(
+        [&](const auto& source) { launch_megakernel(storage, shared_bytes, source, batch); });
   });
 }
 

@@ -1,5 +1,5 @@
 #include "megakernel/megakernel_launch.cuh"
 
-template void pt::MegakernelCuda::launch_megakernel(
-    const SceneStorage<SceneMemory::global>&, std::size_t, const XorwowSource<CurandState>&,
-    const SampleBuffer&);
+template void pt::MegakernelCuda::launch_megakernel(const SceneStorage<SceneMemory::global>&,
+                                                    std::size_t, const XorwowSource<CurandState>&,
+                                                    const SampleBuffer&);

@@ -45,8 +45,9 @@ void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& qu
   const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
     RangeAppender appender;
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      const std::uint32_t slot = queues.slots == nullptr ? i : queues.slots[begin + i];
-      if (queues.slots == nullptr && queues.tags[slot] != Stage::tag) continue;
+      const std::uint32_t slot = queues.slots == nullptr ? begin + i : queues.slots[begin + i];
+      const bool looks_at_tags = queues.slots == nullptr && queues.tags != nullptr;
+      if (looks_at_tags && queues.tags[slot] != Stage::tag) continue;
       const Next next = stage(scene, slot, i);
       if (queues.tags != nullptr) {
         queues.tags[slot] = next.tag;

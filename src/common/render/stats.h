@@ -26,7 +26,8 @@ struct PathCounts {
   std::uint64_t paths = 0;
   std::uint64_t rays = 0;  ///< closest-hit rays, camera rays included
   std::uint64_t shadow_rays = 0;
-  std::uint64_t nonfinite_samples = 0;  ///< samples with NaN or Inf, counted and left out of the film
+  std::uint64_t nonfinite_samples =
+      0;  ///< samples with NaN or Inf, counted and left out of the film
   std::vector<std::uint64_t> live_paths;  ///< [k]: paths that traced a k-th ray, k = 0 the camera's
 };
 
@@ -37,24 +38,24 @@ struct BufferSize {
 
 struct KernelInfo {
   std::string name;
-  int registers = 0;          ///< per thread
-  std::uint64_t spill_bytes = 0;  ///< local memory per thread: spills and stack
+  int registers = 0;               ///< per thread
+  std::uint64_t spill_bytes = 0;   ///< local memory per thread: spills and stack
   std::uint64_t shared_bytes = 0;  ///< per block, static and dynamic
   int block_threads = 0;
   double occupancy = 0;  ///< resident warps / the multiprocessor's warps, 0..1
 };
 
 struct RenderReport {
-  std::string device_name;   ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
-  std::string device_kind;   ///< "cpu" or "cuda"
-  std::string driver;        ///< CUDA driver and runtime versions; empty on the CPU
-  std::string accel;         ///< the structure used: "brute" or "bvh2"
-  std::string schedule;      ///< the schedule used: "host" or "graph"; empty where there is none
+  std::string device_name;      ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
+  std::string device_kind;      ///< "cpu" or "cuda"
+  std::string driver;           ///< CUDA driver and runtime versions; empty on the CPU
+  std::string accel;            ///< the structure used: "brute" or "bvh2"
+  std::string schedule;         ///< the schedule used: "host" or "graph"; empty where there is none
   std::uint64_t pool_size = 0;  ///< paths in flight used; 0 in modes without a pool
   std::uint64_t primitives = 0;
-  double scene_ms = 0;       ///< building the scene and its acceleration structure (host wall time)
-  double setup_ms = 0;       ///< device initialisation and allocation
-  double transfer_ms = 0;    ///< scene upload and image download
+  double scene_ms = 0;     ///< building the scene and its acceleration structure (host wall time)
+  double setup_ms = 0;     ///< device initialisation and allocation
+  double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
   PathCounts counts;
   std::vector<RenderRun> runs;  ///< the measured repeats
