@@ -18,7 +18,7 @@ PLAIN = ["platform"]
 MATHS = ["math", *PLAIN]
 SAMPLING = ["sampling", *MATHS]
 SHAPES = ["geometry", *SAMPLING]
-SCENE_PARTS = ["light", "material", "accel", *SHAPES]
+SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
 PHYSICS = ["transport", "scene", *SCENE_PARTS]
 HOST = ["options", "error"]
 AROUND = ["render", "film", *PHYSICS, *HOST]
@@ -45,9 +45,10 @@ LAYERS = [
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
     ("scene", ["common/scene/*"], [*SCENE_PARTS, *HOST]),
-    ("light", ["common/light/*"], ["material", *SHAPES]),
+    ("light", ["common/light/*"], ["material", "texture", *SHAPES]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
-    ("material", ["common/material/*"], SHAPES),
+    ("material", ["common/material/*"], ["texture", *SHAPES]),
+    ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], MATHS),
     ("math", ["common/math/*"], PLAIN),

@@ -115,6 +115,16 @@ PT_HD float add_rounded(float a, float b) {
 #endif
 }
 
+/// a * b + c: one rounding on CUDA, two on the CPU, whose baseline has no such instruction. Never
+/// contracted differently from one kernel to the next.
+PT_HD float fused_multiply_add(float a, float b, float c) {
+#ifdef __CUDA_ARCH__
+  return __fmaf_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
 /// (bits << 1) | sign of x: one instruction on CUDA.
 PT_HD std::uint32_t shift_in_sign(std::uint32_t bits, float x) {
 #ifdef __CUDA_ARCH__

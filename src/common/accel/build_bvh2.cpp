@@ -6,12 +6,6 @@
 
 namespace pt {
 
-float Bounds::half_area() const {
-  const Vec3 size = max - min;
-  if (size.x < 0.0f) return 0.0f;
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
 namespace {
 
 constexpr int bin_count = 16;

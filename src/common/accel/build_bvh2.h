@@ -7,19 +7,9 @@
 #include <vector>
 
 #include "common/accel/bvh2.h"
+#include "common/geometry/bounds.h"
 
 namespace pt {
-
-struct Bounds {
-  Vec3 min{HUGE_VALF};
-  Vec3 max{-HUGE_VALF};
-
-  void grow(const Vec3& p) { min = glm::min(min, p), max = glm::max(max, p); }
-  void grow(const Bounds& b) { min = glm::min(min, b.min), max = glm::max(max, b.max); }
-  Vec3 center() const { return 0.5f * (min + max); }
-  /// Half the surface area; 0 for empty bounds.
-  float half_area() const;
-};
 
 struct Bvh2 {
   std::vector<Bvh2Node> nodes;       ///< the root first

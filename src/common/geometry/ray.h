@@ -14,10 +14,12 @@ struct Ray {
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;
 inline constexpr float infinite_distance = 3.0e38f;
 
-/// The nearest intersection. Primitives are numbered spheres first, then quads.
+/// The nearest intersection. Primitives are numbered spheres first, then quads, then the slots of
+/// triangles (triangle.h).
 struct Hit {
   float t = infinite_distance;
   std::uint32_t primitive = no_primitive;
+  std::uint32_t instance = 0;  ///< of the triangle, in scenes with instances
 
   PT_HD bool is_miss() const { return primitive == no_primitive; }
 };

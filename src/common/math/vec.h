@@ -10,6 +10,7 @@
 
 namespace pt {
 
+using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec4 = glm::vec4;
 using Color = glm::vec3;  ///< linear RGB radiance or reflectance

@@ -14,6 +14,7 @@ struct CameraParameters {
   float vertical_fov_degrees = 40.0f;  ///< in (0, 180)
   float aperture = 0.0f;               ///< diameter of the lens, 0: a pinhole
   float focus_distance = 1.0f;         ///< distance of the plane in perfect focus, > 0
+  bool mirrored = false;               ///< left and right exchanged
 };
 
 /// Directions are relative to `origin`; pixel (0, 0) is the upper left corner.
@@ -33,7 +34,7 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
   const float plane_height =
       2.0f * parameters.focus_distance * tanf(0.5f * parameters.vertical_fov_degrees * pi / 180.0f);
   const float pixel = plane_height / static_cast<float>(height);
-  const Vec3 step_x = pixel * right;
+  const Vec3 step_x = (parameters.mirrored ? -pixel : pixel) * right;
   const Vec3 step_y = -pixel * up;
   const float lens_radius = 0.5f * parameters.aperture;
   return {parameters.look_from,

@@ -1,21 +1,62 @@
 // A scene in memory, owned: what the built-in scenes and loaders fill in.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/geometry/mesh.h"
+#include "common/math/transform.h"
 #include "common/render/options.h"
 #include "common/scene/scene.h"
 
 namespace pt {
 
+/// A group of meshes placed in the world.
+struct Instance {
+  std::uint32_t group = 0;  ///< Mesh::group, not 0
+  Affine to_world;
+};
+
+/// A light without extent.
+struct DeltaLight {
+  enum class Kind : std::uint32_t { point, spot, directional } kind = Kind::point;
+  Vec3 position{0.0f};       ///< point, spot: world space
+  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
+  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
+  float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
+  float cos_outer = -1.0f;   ///< none beyond this one, in between as the format asks
+};
+
+/// Light from infinitely far: a picture of all directions, latitude by longitude.
+struct EnvironmentData {
+  int width = 0, height = 0;  ///< 0: none
+  std::vector<Color> pixels;  ///< radiance; row 0 is the zenith (+y before to_world), the middle
+                              ///< column is the direction -z, u grows towards +x
+  Affine to_world;            ///< a rotation
+};
+
+/// What a scene file asks for where the command line does not.
+struct SceneDefaults {
+  std::optional<int> width, height, spp, max_depth, rr_depth;
+};
+
 struct SceneData {
   std::string name;
+  SceneDefaults defaults;
   CameraParameters camera;
   Sky sky;
+  EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
+  std::vector<DeltaLight> delta_lights;
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;
+  std::vector<Mesh> meshes;         ///< those of group 0 in world space
+  std::vector<Instance> instances;  ///< of the other groups
   std::vector<Material> materials;
+  std::vector<MaterialTextures> material_textures = {{}};  ///< 0: none
+  std::vector<Texture> textures;
+  std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   // Made from the above by prepare_scene():
   Accel accel = Accel::brute;

@@ -1,0 +1,33 @@
+// What rays are traced against in scenes made of triangles: the triangles, the tree over them and,
+// in scenes with instances, a tree of trees.
+#pragma once
+
+#include "common/accel/bvh2.h"
+#include "common/accel/cwbvh.h"
+#include "common/geometry/triangle.h"
+#include "common/math/transform.h"
+
+namespace pt {
+
+/// A group of triangles placed in the world.
+struct alignas(16) InstanceRecord {
+  Affine to_object;    ///< from world space
+  std::uint32_t root;  ///< the group's root among the nodes
+  std::uint32_t number;
+  std::uint32_t padding[2];
+};
+
+/// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are
+/// absolute. With instances, `root` is the root of a tree whose leaves hold instances instead of
+/// triangles (places in `instances`); without, the root of the one tree of triangles.
+struct TriangleTree {
+  const Bvh2Node* bvh2 = nullptr;
+  const CwbvhNode* cwbvh = nullptr;
+  const Triangle* triangles = nullptr;  ///< [slot]
+  const InstanceRecord* instances = nullptr;
+  std::uint32_t triangle_count = 0;  ///< slots
+  std::uint32_t instance_count = 0;  ///< 0: the triangles lie in world space
+  std::uint32_t root = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,81 @@
+// Affine maps of space.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+/// x -> linear part x + translation, as three rows (a, b, c, translation): 48 bytes.
+struct alignas(16) Affine {
+  Vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
+
+  PT_HD Vec3 point(const Vec3& p) const { return vector(p) + translation(); }
+  PT_HD Vec3 vector(const Vec3& v) const {
+    return {row[0].x * v.x + row[0].y * v.y + row[0].z * v.z,
+            row[1].x * v.x + row[1].y * v.y + row[1].z * v.z,
+            row[2].x * v.x + row[2].y * v.y + row[2].z * v.z};
+  }
+  /// The transpose applied to a vector: with the inverse map, this transforms normals (their
+  /// length changes).
+  PT_HD Vec3 transposed(const Vec3& v) const {
+    return {row[0].x * v.x + row[1].x * v.y + row[2].x * v.z,
+            row[0].y * v.x + row[1].y * v.y + row[2].y * v.z,
+            row[0].z * v.x + row[1].z * v.y + row[2].z * v.z};
+  }
+  PT_HD Vec3 translation() const { return {row[0].w, row[1].w, row[2].w}; }
+  PT_HD float determinant() const {
+    return row[0].x * (row[1].y * row[2].z - row[1].z * row[2].y) -
+           row[0].y * (row[1].x * row[2].z - row[1].z * row[2].x) +
+           row[0].z * (row[1].x * row[2].y - row[1].y * row[2].x);
+  }
+};
+
+/// first b, then a.
+PT_HD Affine operator*(const Affine& a, const Affine& b) {
+  Affine c;
+  for (int i = 0; i < 3; ++i) {
+    c.row[i] = a.row[i].x * b.row[0] + a.row[i].y * b.row[1] + a.row[i].z * b.row[2];
+    c.row[i].w += a.row[i].w;
+  }
+  return c;
+}
+
+/// The inverse, computed in double precision; `a` must not be singular.
+inline Affine inverse(const Affine& a) {
+  const auto at = [&](int i, int j) { return static_cast<double>(a.row[i % 3][j % 3]); };
+  const auto cofactor = [&](int i, int j) {
+    return at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1);
+  };
+  const double determinant =
+      at(0, 0) * cofactor(0, 0) + at(0, 1) * cofactor(0, 1) + at(0, 2) * cofactor(0, 2);
+  Affine result;
+  for (int i = 0; i < 3; ++i) {
+    double moved = 0;
+    for (int j = 0; j < 3; ++j) {
+      const double value = cofactor(j, i) / determinant;
+      result.row[i][j] = static_cast<float>(value);
+      moved -= value * static_cast<double>(a.row[j].w);
+    }
+    result.row[i].w = static_cast<float>(moved);
+  }
+  return result;
+}
+
+inline Affine translate(const Vec3& by) {
+  return {{{1, 0, 0, by.x}, {0, 1, 0, by.y}, {0, 0, 1, by.z}}};
+}
+inline Affine scale(const Vec3& by) {
+  return {{{by.x, 0, 0, 0}, {0, by.y, 0, 0}, {0, 0, by.z, 0}}};
+}
+
+/// About `axis`, counterclockwise when it points to the viewer (Rodrigues' formula).
+inline Affine rotate(const Vec3& axis, float degrees) {
+  const Vec3 k = axis / glm::length(axis);
+  const float angle = degrees * pi / 180.0f;
+  const float c = std::cos(angle), s = std::sin(angle), d = 1.0f - c;
+  return {{{c + k.x * k.x * d, k.x * k.y * d - k.z * s, k.x * k.z * d + k.y * s, 0},
+           {k.y * k.x * d + k.z * s, c + k.y * k.y * d, k.y * k.z * d - k.x * s, 0},
+           {k.z * k.x * d - k.y * s, k.z * k.y * d + k.x * s, c + k.z * k.z * d, 0}}};
+}
+
+}  // namespace pt
