@@ -2,6 +2,8 @@
 
 #include "common/error.h"
 #include "common/scene/builtin_scenes.h"
+#include "common/scene/load_scene.h"
+#include "common/scene/prepare_scene.h"
 #include "megakernel/megakernel.h"
 #include "serial/serial.h"
 #include "wavefront/wavefront.h"
@@ -12,7 +14,11 @@
 
 namespace pt {
 
-SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
+SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
+                     const std::function<void(const std::string&)>& warn) {
+  if (is_scene_file(options.scene)) {
+    return load_scene_file(options.scene, {options.definitions, options.strict, warn});
+  }
   if (options.create_world == WorldBuilder::host) return make_scene(options);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda) {
@@ -20,6 +26,12 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
   }
 #endif
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
+  SceneData scene = load_scene(options, device);
+  prepare_scene(scene, options);
+  return scene;
 }
 
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,

@@ -1,7 +1,9 @@
 // Picks the renderer: the only place that knows all modes and devices.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "common/device/devices.h"
 #include "common/render/renderer.h"
@@ -9,7 +11,12 @@
 
 namespace pt {
 
-/// Builds and prepares the scene, on the device where the options want it so. Throws Error.
+/// Loads or makes the scene that the options name, on the device where they want it so. What a file
+/// asks for and ptexp lacks goes to `warn`, a line each. Throws Error.
+SceneData load_scene(const Options& options, const DeviceInfo& device,
+                     const std::function<void(const std::string&)>& warn = {});
+
+/// The same, made ready for renderers.
 SceneData make_scene_for(const Options& options, const DeviceInfo& device);
 
 /// `scene` must outlive the renderer. Throws Error when the options ask for something that the

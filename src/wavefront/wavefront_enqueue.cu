@@ -37,8 +37,8 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
            blocks < resident ? blocks : resident, block, shared_bytes, storage, stage, queues,
            clock());
   };
-  // Only the kernels that trace rays read the spheres again and again.
-  if constexpr (Stage::traces_rays) {
+  // Only these kernels read the spheres again and again.
+  if constexpr (Stage::scans_spheres) {
     with_scene_storage(launch_with);
   } else {
     launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
@@ -54,9 +54,9 @@ void WavefrontCuda::with_stages(const SampleBuffer& batch, Function&& function) 
                                        source,
                                        buffers_.counters,
                                        buffers_.queue(QueueId::intersect),
-                                       static_cast<std::uint32_t>(options_.max_depth)};
+                                       limits_};
     dispatch_traits(traits_, [&](auto traits) {
-      dispatch_branching(options_.branching,
+      dispatch_branching<decltype(traits)>(options_.branching,
                          [&](auto branching) { function(traits, branching, context); });
     });
   });

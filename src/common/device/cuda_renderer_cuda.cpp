@@ -47,6 +47,7 @@ const char* clock_name(ClockId id) {
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
     : options_(options),
+      limits_(path_limits_of(options)),
       traits_(scene.traits()),
       device_(device),
       primitive_count_(scene.primitive_count()),
@@ -257,7 +258,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.device_kind = "cuda";
   report.device_name = properties_.name;
   report.driver = driver_;
-  report.accel = traits_.accel == Accel::brute ? "brute" : "bvh2";
+  report.accel = accel_name(traits_.accel);
   report.schedule = schedule_;
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;

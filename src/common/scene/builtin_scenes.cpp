@@ -107,7 +107,6 @@ SceneData make_scene(const Options& options, const SphereWorldCreator& create_wo
     throw Error(fmt::format("--scene {}: no such scene; expected one of {}", options.scene, names));
   }
   scene.name = options.scene;
-  prepare_scene(scene, options);
   return scene;
 }
 
