@@ -45,12 +45,12 @@ LAYERS = [
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
     ("scene", ["common/scene/*"], [*SCENE_PARTS, *HOST]),
-    ("light", ["common/light/*"], ["material", "texture", *SHAPES]),
+    ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
-    ("sampling", ["common/sampling/*"], MATHS),
+    ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
     ("platform", ["common/platform.h"], []),
 ]
