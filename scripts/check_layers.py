@@ -49,12 +49,12 @@ LAYERS = [
     # Meshes and textures in files; images and their formats.
     ("files", ["common/files/*"], ["image", "material", "texture", *SHAPES, *HOST]),
     ("image", ["common/image/*"], HOST),
-    ("light", ["common/light/*"], ["material", "texture", *SHAPES]),
+    ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
-    ("sampling", ["common/sampling/*"], MATHS),
+    ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
     ("platform", ["common/platform.h"], []),
 ]
