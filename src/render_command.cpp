@@ -104,6 +104,8 @@ int render_command(const RenderCommand& command) {
   report.scene.load_ms = timed_ms([&] { scene = load_scene(options, device, warn); });
   apply_defaults(scene.defaults, command.given, options);
   report.scene.prepare_ms = timed_ms([&] { prepare_scene(scene, options); });
+  report.scene_ms = report.scene.load_ms + report.scene.prepare_ms;
+  report.primitives = scene.primitive_count() + scene.triangle_count();
   describe_scene(scene, report.scene);
   if (!options.quiet) {
     fmt::print("{}", scene_text(options, report.scene));

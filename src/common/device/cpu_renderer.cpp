@@ -62,7 +62,7 @@ void StageTimer::add(const std::string& stage, std::chrono::duration<double, std
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
     : options_(options),
       limits_(path_limits_of(options)),
-      traits_(scene.traits()),
+      traits_(scene.traits),
       scene_(host_view(scene, options.width, options.height)),
       threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
       arena_(threads_),

@@ -48,7 +48,7 @@ const char* clock_name(ClockId id) {
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
     : options_(options),
       limits_(path_limits_of(options)),
-      traits_(scene.traits()),
+      traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
       scan_spheres_(scene.scan_spheres) {
@@ -82,7 +82,8 @@ void CudaRenderer::upload(const SceneData& scene) {
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
     scene_memory_ =
-        fits_constant && scene.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
+        fits_constant && traits_.geometry == Geometry::spheres_and_quads &&
+                traits_.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
   }
   if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(

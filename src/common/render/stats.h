@@ -70,6 +70,7 @@ struct RenderReport {
   std::uint64_t pool_size = 0;  ///< paths in flight used; 0 in modes without a pool
   std::uint64_t primitives = 0;
   SceneFacts scene;
+  double scene_ms = 0;     ///< loading and preparing the scene (host wall time)
   double setup_ms = 0;     ///< device initialisation and allocation
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;

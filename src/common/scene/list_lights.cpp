@@ -124,11 +124,6 @@ class Lister {
 
 }  // namespace
 
-LightList LightListData::view() const {
-  return {lights.data(), selection.data(), static_cast<std::uint32_t>(lights.size()), total_weight,
-          environment_probability};
-}
-
 LightListData list_lights(const SceneData& scene, const Bounds& bounds) {
   return Lister(scene, bounds).list();
 }

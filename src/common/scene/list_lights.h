@@ -5,17 +5,6 @@
 
 namespace pt {
 
-/// The memory behind a LightList.
-struct LightListData {
-  std::vector<Light> lights;
-  std::vector<AliasEntry> selection;
-  float total_weight = 0.0f;
-  float environment_probability = 0.0f;
-
-  /// Valid while the list is neither changed nor destroyed.
-  LightList view() const;
-};
-
 /// Triangles that emit (each instance's by itself, in world space), spheres, delta lights. Weights
 /// are powers over pi, of directional lights that through the scene's bounding sphere. Triangles
 /// are numbered through the meshes in their order. Throws Error for more than 2^24 of them.

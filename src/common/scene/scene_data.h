@@ -8,7 +8,6 @@
 
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
-#include "common/render/options.h"
 #include "common/scene/scene.h"
 
 namespace pt {
@@ -42,6 +41,21 @@ struct SceneDefaults {
   std::optional<int> width, height, spp, max_depth, rr_depth;
 };
 
+/// The memory behind VertexAttributes; empty where no mesh has any.
+struct MeshAttributes {
+  std::vector<TriangleIndices> triangles;
+  std::vector<Vec3> normals;
+  std::vector<Vec2> uvs;
+};
+
+/// The memory behind a LightList.
+struct LightListData {
+  std::vector<Light> lights;
+  std::vector<AliasEntry> selection;
+  float total_weight = 0.0f;
+  float environment_probability = 0.0f;
+};
+
 struct SceneData {
   std::string name;
   SceneDefaults defaults;
@@ -59,27 +73,25 @@ struct SceneData {
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   // Made from the above by prepare_scene():
-  Accel accel = Accel::brute;
-  std::vector<Bvh2Node> bvh_nodes;         ///< empty with Accel::brute
+  SceneTraits traits;
+  std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
   std::vector<std::uint32_t> material_of;  ///< by primitive
   std::vector<std::uint32_t> lights;       ///< primitives that emit
   std::vector<Sphere> scan_spheres;        ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
+  // In scenes with triangles:
+  TriangleTreeData tree;           ///< empty where the device builds it
+  MeshAttributes attributes;
+  std::vector<Affine> to_world;    ///< by instance
+  LightListData light_list;
+  EnvironmentMap environment_map;
 
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
-  SceneTraits traits() const { return {accel, !lights.empty()}; }
+  std::uint64_t triangle_count() const;
 
   std::uint32_t add_material(const Material& material);
   void add_sphere(const Vec3& center, float radius, std::uint32_t material);
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };
-
-/// Applies the options' camera overrides and acceleration structure: checks the camera, builds the
-/// structure (which reorders the primitives), lists the lights. Throws Error for a camera or a
-/// scene that cannot be rendered.
-void prepare_scene(SceneData& scene, const Options& options);
-
-/// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
-Scene host_view(const SceneData& scene, int width, int height);
 
 }  // namespace pt
