@@ -10,8 +10,9 @@ namespace pt {
 /// meta is 0b001 in the upper three bits and 24 + its slot in the lower five; a leaf's is its
 /// number of triangles in unary (1, 3, 7) in the upper three bits and the first one's place,
 /// relative to triangle_base, in the lower five; 0: no child. Inner children follow each other in
-/// memory from child_base, in the order of their slots; slots are chosen so that visiting them by
-/// (slot XOR ray octant) goes roughly from near to far.
+/// memory from child_base, in the order of their slots, and so do the triangles from triangle_base;
+/// slots are chosen so that visiting them by ascending (slot XOR octant) goes roughly from near to
+/// far, where bit 0, 1, 2 of the octant is set when the ray's direction is negative in x, y, z.
 struct alignas(16) CwbvhNode {
   Vec3 origin;
   std::uint8_t exponent[3];  ///< biased as in a float: scale is bits (exponent << 23)
