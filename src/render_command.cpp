@@ -108,7 +108,7 @@ int render_command(const RenderCommand& command) {
   report.primitives = scene.primitive_count() + scene.triangle_count();
   describe_scene(scene, report.scene);
   if (!options.quiet) {
-    fmt::print("{}", scene_text(options, report.scene));
+    fmt::print("{}", scene_text(report.scene));
     std::fflush(stdout);
   }
   const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);

@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
+#include "common/scene/prepare_scene.h"
 
 namespace pt {
 namespace {

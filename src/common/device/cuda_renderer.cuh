@@ -98,6 +98,7 @@ class CudaRenderer : public Renderer {
 
  private:
   void upload(const SceneData& scene);
+  void upload_triangles(const SceneData& scene);
   void allocate_film();
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>
