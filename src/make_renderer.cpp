@@ -14,10 +14,12 @@
 
 namespace pt {
 
-SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
-                     const std::function<void(const std::string&)>& warn) {
+SceneData make_scene_for(const Options& options, const DeviceInfo& device,
+                         const std::function<void(const std::string&)>& warn) {
   if (is_scene_file(options.scene)) {
-    return load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    SceneData scene = load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    prepare_scene(scene, options);
+    return scene;
   }
   if (options.create_world == WorldBuilder::host) return make_scene(options);
 #ifdef PTEXP_CUDA
@@ -26,12 +28,6 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   }
 #endif
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
-}
-
-SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
-  SceneData scene = load_scene(options, device);
-  prepare_scene(scene, options);
-  return scene;
 }
 
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,

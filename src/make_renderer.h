@@ -11,13 +11,10 @@
 
 namespace pt {
 
-/// Loads or makes the scene that the options name, on the device where they want it so. What a file
-/// asks for and ptexp lacks goes to `warn`, a line each. Throws Error.
-SceneData load_scene(const Options& options, const DeviceInfo& device,
-                     const std::function<void(const std::string&)>& warn = {});
-
-/// The same, made ready for renderers.
-SceneData make_scene_for(const Options& options, const DeviceInfo& device);
+/// Loads or makes the scene that the options name, on the device where they want it so, and
+/// prepares it. What a file asks for and ptexp lacks goes to `warn`, a line each. Throws Error.
+SceneData make_scene_for(const Options& options, const DeviceInfo& device,
+                         const std::function<void(const std::string&)>& warn = {});
 
 /// `scene` must outlive the renderer. Throws Error when the options ask for something that the
 /// device or the mode cannot do, or that does not fit into memory.

@@ -12,7 +12,6 @@
 #include "common/render/csv_file.h"
 #include "common/render/option_names.h"
 #include "common/render/report.h"
-#include "common/scene/prepare_scene.h"
 #include "common/scene/scene_facts.h"
 #include "interrupt.h"
 #include "make_renderer.h"
@@ -101,10 +100,8 @@ int render_command(const RenderCommand& command) {
 
   RenderReport report;
   SceneData scene;
-  report.scene.load_ms = timed_ms([&] { scene = load_scene(options, device, warn); });
+  report.scene_ms = timed_ms([&] { scene = make_scene_for(options, device, warn); });
   apply_defaults(scene.defaults, command.given, options);
-  report.scene.prepare_ms = timed_ms([&] { prepare_scene(scene, options); });
-  report.scene_ms = report.scene.load_ms + report.scene.prepare_ms;
   report.primitives = scene.primitive_count() + scene.triangle_count();
   describe_scene(scene, report.scene);
   if (!options.quiet) {

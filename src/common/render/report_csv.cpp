@@ -100,7 +100,6 @@ void add_scene(CsvRow& row, const SceneFacts& facts) {
   row.emplace_back("sah_cost", fmt::format("{:.6g}", facts.sah_cost));
   row.emplace_back("bytes_per_triangle", fmt::format("{:.6g}", facts.bytes_per_triangle));
   row.emplace_back("build_ms", ms(facts.build_ms));
-  row.emplace_back("load_ms", ms(facts.load_ms));
 }
 
 }  // namespace

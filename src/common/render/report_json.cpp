@@ -110,9 +110,7 @@ Json scene_json(const SceneFacts& facts) {
           {"tree_depth", facts.tree_depth},
           {"sah_cost", facts.sah_cost},
           {"bytes_per_triangle", facts.bytes_per_triangle},
-          {"build_ms", facts.build_ms},
-          {"load_ms", facts.load_ms},
-          {"prepare_ms", facts.prepare_ms}};
+          {"build_ms", facts.build_ms}};
 }
 
 }  // namespace

@@ -57,8 +57,7 @@ struct SceneFacts {
   int tree_depth = 0;
   double sah_cost = 0;  ///< by the surface area heuristic; 0: unknown
   double bytes_per_triangle = 0;  ///< of tree and triangles
-  double build_ms = 0;            ///< of the acceleration structure
-  double load_ms = 0, prepare_ms = 0;  ///< wall time; prepare includes a build on the host
+  double build_ms = 0;            ///< of the tree: wall time on the host, kernel time on CUDA
 };
 
 struct RenderReport {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "common/scene/prepare_scene.h"
 
 namespace pt {
 namespace {
@@ -107,6 +108,7 @@ SceneData make_scene(const Options& options, const SphereWorldCreator& create_wo
     throw Error(fmt::format("--scene {}: no such scene; expected one of {}", options.scene, names));
   }
   scene.name = options.scene;
+  prepare_scene(scene, options);
   return scene;
 }
 

@@ -21,7 +21,7 @@ const std::vector<SceneInfo>& scene_list();
 using SphereWorldCreator =
     std::function<void(SphereWorld& world, SphereWorldKind kind, std::uint32_t count)>;
 
-/// Makes the scene that the options name. Throws Error when there is none of that
+/// Builds and prepares the scene that the options name. Throws Error when there is none of that
 /// name, or when a creator is given for a scene without random spheres.
 SceneData make_scene(const Options& options, const SphereWorldCreator& create_world = {});
 

@@ -70,8 +70,7 @@ std::string scene_text(const SceneFacts& facts) {
   std::string text = fmt::format("scene: {}\n", counts);
   if (!memory.empty()) text += fmt::format("memory: {}\n", memory);
   if (facts.tree_nodes > 0) text += tree_text(facts);
-  return text + fmt::format("loaded in {:.0f} ms, prepared in {:.0f} ms\n", facts.load_ms,
-                            facts.prepare_ms);
+  return text;
 }
 
 std::string tree_text(const SceneFacts& facts) {
