@@ -21,7 +21,8 @@ SHAPES = ["geometry", *SAMPLING]
 SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
 PHYSICS = ["transport", "scene", *SCENE_PARTS]
 HOST = ["options", "error"]
-AROUND = ["render", "film", *PHYSICS, *HOST]
+FILES = ["files", "image"]
+AROUND = ["render", "film", *FILES, *PHYSICS, *HOST]
 COMMON = ["device_builders", "device", *AROUND]
 
 LAYERS = [
@@ -40,11 +41,14 @@ LAYERS = [
                  "common/render/stats.h"], []),
     ("error", ["common/error.h", "common/build_info.h"], []),
     # Around the physics: renderers, batches, reports; what becomes of the samples.
-    ("render", ["common/render/*"], ["film", *PHYSICS, *HOST]),
-    ("film", ["common/film/*"], [*PHYSICS, *HOST]),
+    ("render", ["common/render/*"], ["film", *FILES, *PHYSICS, *HOST]),
+    ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
-    ("scene", ["common/scene/*"], [*SCENE_PARTS, *HOST]),
+    ("scene", ["common/scene/*"], [*SCENE_PARTS, *FILES, *HOST]),
+    # Meshes and textures in files; images and their formats.
+    ("files", ["common/files/*"], ["image", "material", "texture", *SHAPES, *HOST]),
+    ("image", ["common/image/*"], HOST),
     ("light", ["common/light/*"], ["material", "texture", *SHAPES]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "common/device/devices.h"
-#include "common/film/atomic_file.h"
-#include "common/film/image_io.h"
+#include "common/image/atomic_file.h"
+#include "common/image/image_io.h"
 #include "common/render/csv_file.h"
 #include "common/render/option_names.h"
 #include "common/render/report.h"

@@ -1,4 +1,4 @@
-#include "common/film/image_io.h"
+#include "common/image/image_io.h"
 
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "common/error.h"
-#include "common/film/atomic_file.h"
-#include "common/film/image_codec.h"
+#include "common/image/atomic_file.h"
+#include "common/image/image_codec.h"
 
 namespace pt {
 namespace {

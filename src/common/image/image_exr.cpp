@@ -12,8 +12,8 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "common/film/exr_memory.h"
-#include "common/film/image_codec.h"
+#include "common/image/exr_memory.h"
+#include "common/image/image_codec.h"
 
 namespace pt {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "common/film/image_codec.h"
-#include "common/film/tone_mapping.h"
+#include "common/image/image_codec.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {

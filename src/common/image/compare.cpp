@@ -1,4 +1,4 @@
-#include "common/film/compare.h"
+#include "common/image/compare.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/film/image_codec.h"
-#include "common/film/png_session.h"
-#include "common/film/tone_mapping.h"
+#include "common/image/image_codec.h"
+#include "common/image/png_session.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "common/film/image.h"
+#include "common/image/image.h"
 
 namespace pt {
 

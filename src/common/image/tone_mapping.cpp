@@ -1,4 +1,4 @@
-#include "common/film/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 
 #include <fmt/format.h>
 

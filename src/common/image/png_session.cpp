@@ -1,4 +1,4 @@
-#include "common/film/png_session.h"
+#include "common/image/png_session.h"
 
 #include <cstdio>
 #include <cstring>

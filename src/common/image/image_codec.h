@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "common/film/image.h"
-#include "common/film/image_io.h"
+#include "common/image/image.h"
+#include "common/image/image_io.h"
 
 namespace pt {
 

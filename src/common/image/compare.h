@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "common/film/image.h"
+#include "common/image/image.h"
 
 namespace pt {
 

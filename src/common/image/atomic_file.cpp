@@ -1,4 +1,4 @@
-#include "common/film/atomic_file.h"
+#include "common/image/atomic_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
