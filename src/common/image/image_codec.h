@@ -26,9 +26,12 @@ extern const ImageCodec exr_codec;  ///< float, ZIP-compressed, metadata as stri
 extern const ImageCodec png_codec;  ///< sRGB, metadata as text chunks
 extern const ImageCodec ppm_codec;  ///< gamma 2, no metadata
 
-/// A black image, allocated only after its size is known to be believable: at most 65535 a side,
-/// and no more than a file of `file_bytes` can hold of `decoded_bytes` (the pixels as the file
-/// stores them, decompressed). Throws Error.
+/// Throws Error unless a file of `file_bytes` can hold an image of this size: at most 65535 pixels
+/// a side, `decoded_bytes` of pixels as the file stores them, decompressed.
+void check_image_size(std::int64_t width, std::int64_t height, double decoded_bytes,
+                      std::size_t file_bytes);
+
+/// A black image, allocated only after check_image_size has found its size believable.
 Image allocate_image(std::int64_t width, std::int64_t height, double decoded_bytes,
                      std::size_t file_bytes);
 

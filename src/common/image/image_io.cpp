@@ -10,7 +10,7 @@
 #include <new>
 #include <system_error>
 
-#include "common/error.h"
+#include "common/error_context.h"
 #include "common/image/atomic_file.h"
 #include "common/image/image_codec.h"
 
@@ -26,23 +26,6 @@ const ImageCodec& codec_of(const std::string& path) {
     if (codec->ending == ending) return *codec;
   }
   throw Error(fmt::format("{}: expected an image file ending in .exr, .png or .ppm", path));
-}
-
-/// Runs `action` and puts `what` ("cannot read x.png") before the message of any failure.
-template <class Action>
-auto explaining(const std::string& what, Action action) {
-  std::string reason;
-  try {
-    return action();
-  } catch (const std::bad_alloc&) {
-    reason = "not enough memory";
-  } catch (const std::exception& error) {
-    reason = error.what();
-  }
-  // Libraries quote the file's content in their messages.
-  std::replace_if(
-      reason.begin(), reason.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  throw Error(what + ": " + reason);
 }
 
 void check_metadata(const ImageMetadata& metadata) {
@@ -83,8 +66,8 @@ std::string read_file(const std::string& path) {
 
 }  // namespace
 
-Image allocate_image(std::int64_t width, std::int64_t height, double decoded_bytes,
-                     std::size_t file_bytes) {
+void check_image_size(std::int64_t width, std::int64_t height, double decoded_bytes,
+                      std::size_t file_bytes) {
   if (width < 1 || height < 1 || width > max_image_size || height > max_image_size) {
     throw Error(fmt::format("image of {}x{} pixels; expected sides of 1 to {}", width, height,
                             max_image_size));
@@ -95,6 +78,11 @@ Image allocate_image(std::int64_t width, std::int64_t height, double decoded_byt
     throw Error(fmt::format("{} bytes cannot hold the {}x{} pixels that the header announces",
                             file_bytes, width, height));
   }
+}
+
+Image allocate_image(std::int64_t width, std::int64_t height, double decoded_bytes,
+                     std::size_t file_bytes) {
+  check_image_size(width, height, decoded_bytes, file_bytes);
   Image image{static_cast<int>(width), static_cast<int>(height), {}};
   image.rgb.resize(static_cast<std::size_t>(3 * width * height));
   return image;

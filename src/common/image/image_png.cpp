@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/image/image_codec.h"
 #include "common/image/png_session.h"
+#include "common/image/rgba8.h"
 #include "common/image/tone_mapping.h"
 
 namespace pt {
@@ -79,6 +80,17 @@ PngHeader read_header(PngReader& reader) {
   return header;
 }
 
+/// Fills rows of `row_bytes`, set by libpng for the transformations that were asked for.
+void read_rows(PngReader& reader, int passes, int height, std::size_t row_bytes, void* rows) {
+  attempt(reader, [&](png_structp png, png_infop info) {
+    for (int pass = 0; pass < passes; ++pass) {
+      auto* row = static_cast<png_bytep>(rows);
+      for (int y = 0; y < height; ++y, row += row_bytes) png_read_row(png, row, nullptr);
+    }
+    png_read_end(png, info);
+  });
+}
+
 /// Fills `image`, which has the size of the header.
 void read_pixels(PngReader& reader, Image& image) {
   int passes = 0, max_value = 0;
@@ -93,13 +105,7 @@ void read_pixels(PngReader& reader, Image& image) {
     row_bytes = png_get_rowbytes(png, info);
   });
   std::string samples(row_bytes * image.height, '\0');
-  attempt(reader, [&](png_structp png, png_infop info) {
-    for (int pass = 0; pass < passes; ++pass) {
-      auto* row = reinterpret_cast<png_bytep>(samples.data());
-      for (int y = 0; y < image.height; ++y, row += row_bytes) png_read_row(png, row, nullptr);
-    }
-    png_read_end(png, info);
-  });
+  read_rows(reader, passes, image.height, row_bytes, samples.data());
   dequantize(samples, max_value, srgb_curve, image);
 }
 
@@ -119,6 +125,26 @@ Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
 }
 
 }  // namespace
+
+Rgba8Image decode_png_rgba8(std::string_view bytes) {
+  check_chunks(bytes);
+  PngReader reader(bytes);
+  const PngHeader header = read_header(reader);
+  check_image_size(header.width, header.height, header.decoded_bytes, bytes.size());
+  int passes = 0;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_expand(png);  // palettes, transparent colours and fewer than 8 bits
+    png_set_scale_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
+    passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+  });
+  Rgba8Image image{header.width, header.height, {}};
+  image.rgba.resize(std::size_t{4} * image.width * image.height);
+  read_rows(reader, passes, image.height, std::size_t{4} * image.width, image.rgba.data());
+  return image;
+}
 
 const ImageCodec png_codec{".png", encode_png, decode_png};
 
