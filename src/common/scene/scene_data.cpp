@@ -17,4 +17,10 @@ void SceneData::add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::
   quad_material.push_back(material);
 }
 
+std::uint64_t SceneData::triangle_count() const {
+  std::uint64_t count = 0;
+  for (const Mesh& mesh : meshes) count += mesh.triangles.size();
+  return count;
+}
+
 }  // namespace pt

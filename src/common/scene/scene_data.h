@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/accel/triangle_tree_data.h"
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
 #include "common/scene/scene.h"

@@ -31,7 +31,24 @@ void append_count(std::string& text, std::uint64_t count, const char* what) {
   text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", count, what, count == 1 ? "" : "s");
 }
 
+/// Of all nodes' visits and triangles' tests, as the builders weigh them.
+constexpr double triangle_cost = 1.0;
+
 }  // namespace
+
+void describe_tree(const TriangleTreeData& tree, SceneFacts& facts) {
+  if (tree.bvh2.empty() && tree.cwbvh.empty()) return;
+  const TreeQuality quality = tree.bvh2.empty() ? measure_tree(tree.cwbvh, tree.root)
+                                                : measure_tree(tree.bvh2, tree.root);
+  facts.tree_nodes = tree.bvh2.size() + tree.cwbvh.size();
+  facts.tree_references = tree.triangles.size();
+  facts.tree_depth = quality.depth;
+  facts.sah_cost = quality.sah_cost(triangle_cost);
+  facts.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
+                             static_cast<double>(std::max<std::uint64_t>(facts.triangles, 1));
+  facts.builder = tree.builder;
+  facts.build_ms = tree.build_ms;
+}
 
 void describe_scene(const SceneData& scene, SceneFacts& facts) {
   facts.triangles = scene.triangle_count();
