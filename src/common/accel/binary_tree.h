@@ -11,10 +11,10 @@
 namespace pt {
 
 /// Primitives that a tree can hold: leaf_first has 28 bits.
-inline constexpr std::uint32_t tree_primitives_max = 1u << 28;
+inline constexpr std::uint32_t build_primitives_max = 1u << 28;
 
-/// A leaf is one place of `order`. Nodes lie in depth-first order, so that those below a node follow
-/// it, the first child's before the second's; there may be unused ones in between.
+/// A leaf is one place of `order`. Nodes lie in depth-first order, so that those below a node
+/// follow it, the first child's before the second's; there may be unused ones in between.
 struct BinaryTree {
   std::unique_ptr<Bvh2Node[]> nodes;
   std::uint32_t node_capacity = 0;   ///< size of `nodes`

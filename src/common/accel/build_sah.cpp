@@ -70,15 +70,14 @@ class Builder {
 
 }  // namespace
 
-BinaryTree build_sah(std::span<const Bounds> bounds) {
-  const auto count = static_cast<std::uint32_t>(bounds.size());
+BinaryTree build_sah(std::uint32_t count, const BoundsOf& bounds_of) {
   const std::unique_ptr<BuildReference[]> memory(new BuildReference[count]);
   const std::span<BuildReference> references(memory.get(), count);
   ReferenceRange all = tbb::parallel_reduce(
       tbb::blocked_range<std::uint32_t>(0, count, 1 << 13), ReferenceRange(),
       [&](const auto& part, ReferenceRange sum) {
         for (std::uint32_t i = part.begin(); i < part.end(); ++i) {
-          references[i] = make_reference(bounds[i], i);
+          references[i] = make_reference(bounds_of(i), i);
           sum.grow(references[i]);
         }
         return sum;

@@ -71,7 +71,7 @@ float CollapseChoices::cost_of(std::uint32_t subtree, float area, int forest) co
 }
 
 void CollapseChoices::gather(std::uint32_t subtree, const Bounds& bounds, int forest,
-                             WideChildren& children) const {
+                             CollapsedChildren& children) const {
   if (!is_leaf(subtree)) {
     const Entry& entry = entries_[subtree];
     while (forest > 1 && entry.share[forest - 1] == 0) --forest;
@@ -87,8 +87,8 @@ void CollapseChoices::gather(std::uint32_t subtree, const Bounds& bounds, int fo
   children.child[children.count++] = {subtree, is_inner, bounds};
 }
 
-WideChildren CollapseChoices::children_of(std::uint32_t index) const {
-  WideChildren children;
+CollapsedChildren CollapseChoices::children_of(std::uint32_t index) const {
+  CollapsedChildren children;
   const Bvh2Node& node = tree_.nodes[index];
   const int first = entries_[index].share[7];
   gather(node.child[0], child_bounds(node, 0), first, children);

@@ -7,15 +7,15 @@
 
 namespace pt {
 
-struct WideChild {
+struct CollapsedChild {
   std::uint32_t subtree;  ///< a Bvh2Node's child
   bool is_inner;          ///< a wide node of its own; else a leaf of all that is below
   Bounds bounds;
 };
 
-struct WideChildren {
+struct CollapsedChildren {
   int count = 0;
-  WideChild child[cwbvh_width];
+  CollapsedChild child[cwbvh_width];
 };
 
 /// Ylitie, Karras and Laine 2017, section 3: C(n, i) is the least cost of what is below node n as a
@@ -27,7 +27,7 @@ class CollapseChoices {
   CollapseChoices(const BinaryTree& tree, const TreeCosts& costs);
 
   /// Of the wide node that stands for binary node `index`.
-  WideChildren children_of(std::uint32_t index) const;
+  CollapsedChildren children_of(std::uint32_t index) const;
   /// The primitives below; more than leaf_size_max are not told.
   LeafMembers members_of(std::uint32_t subtree) const;
 
@@ -45,7 +45,8 @@ class CollapseChoices {
   Below choose(std::uint32_t subtree, float area, int depth);
   void share_out(const Bvh2Node& node, const Below (&half)[2], Entry& entry) const;
   float cost_of(std::uint32_t subtree, float area, int forest) const;
-  void gather(std::uint32_t subtree, const Bounds& bounds, int forest, WideChildren& children) const;
+  void gather(std::uint32_t subtree, const Bounds& bounds, int forest,
+              CollapsedChildren& children) const;
 
   const BinaryTree& tree_;
   TreeCosts costs_;

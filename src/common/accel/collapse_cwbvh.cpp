@@ -45,10 +45,10 @@ class Collapser {
   }
 
   Counts count(std::uint32_t index, int depth) {
-    const WideChildren children = choices_.children_of(index);
+    const CollapsedChildren children = choices_.children_of(index);
     Counts part[cwbvh_width];
     const auto count_child = [&](int c) {
-      const WideChild& child = children.child[c];
+      const CollapsedChild& child = children.child[c];
       part[c] = child.is_inner ? count(child.subtree, depth + 1)
                                : Counts{0, choices_.members_of(child.subtree).size()};
     };
@@ -67,12 +67,12 @@ class Collapser {
   // Below a node come its inner children side by side, then what is below the first, and so on; the
   // slots of its own leaves come before those below.
   void emit(std::uint32_t index, std::uint32_t to, std::uint32_t below, std::uint32_t slot) {
-    const WideChildren children = choices_.children_of(index);
+    const CollapsedChildren children = choices_.children_of(index);
     CwbvhChildren boxes;
     boxes.count = children.count;
     LeafMembers members[cwbvh_width];
     for (int c = 0; c < children.count; ++c) {
-      const WideChild& child = children.child[c];
+      const CollapsedChild& child = children.child[c];
       boxes.bounds[c] = child.bounds;
       if (!child.is_inner) members[c] = choices_.members_of(child.subtree);
       boxes.triangles[c] = child.is_inner ? 0 : members[c].size();

@@ -64,8 +64,7 @@ void try_axis(const std::array<Bin, bins_max>& bins, int axis, int count, Object
   Bin sum;
   for (int b = 1; b < count; ++b) {
     sum.add(bins[b - 1]);
-    left_cost[b] =
-        sum.count == 0 ? HUGE_VALF : sum.half_area() * static_cast<float>(sum.count);
+    left_cost[b] = sum.count == 0 ? HUGE_VALF : sum.half_area() * static_cast<float>(sum.count);
   }
   sum = {};
   for (int b = count - 1; b >= 1; --b) {
@@ -99,8 +98,8 @@ RangeHalves partition_serial(std::span<BuildReference> references, const Referen
   return halves;
 }
 
-ReferenceRange measured_in_parallel(std::span<const BuildReference> references,
-                                    std::uint32_t begin, std::uint32_t end) {
+ReferenceRange measured_in_parallel(std::span<const BuildReference> references, std::uint32_t begin,
+                                    std::uint32_t end) {
   ReferenceRange range = tbb::parallel_reduce(
       tbb::blocked_range<std::uint32_t>(begin, end, serial_block), ReferenceRange(),
       [&](const auto& part, ReferenceRange sum) {

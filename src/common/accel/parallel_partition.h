@@ -28,8 +28,8 @@ struct Runs {
 class Cursor {
  public:
   Cursor(const Runs& runs, std::size_t i) : runs_(runs), i_(i) {
-    run_ = static_cast<std::size_t>(
-        std::upper_bound(runs.before.begin(), runs.before.end(), i) - runs.before.begin() - 1);
+    run_ = static_cast<std::size_t>(std::upper_bound(runs.before.begin(), runs.before.end(), i) -
+                                    runs.before.begin() - 1);
   }
   std::size_t next() {
     if (run_ + 1 < runs_.before.size() && i_ == runs_.before[run_ + 1]) ++run_;

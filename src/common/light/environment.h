@@ -56,14 +56,6 @@ PT_HD std::uint32_t environment_texel(const Environment& env, const MapPoint& po
          (column < env.width ? column : env.width - 1);
 }
 
-/// (1 - t) a + t b, rounded alike in every kernel.
-PT_HD Color interpolate(const Color& a, const Color& b, float t) {
-  const auto one = [t](float p, float q) {
-    return fused_multiply_add(t, q, fused_multiply_add(-t, p, p));
-  };
-  return {one(a.x, b.x), one(a.y, b.y), one(a.z, b.z)};
-}
-
 /// Radiance at a place of the map, between four texels.
 PT_HD Color environment_lookup(const Environment& env, const MapPoint& point) {
   const float x = point.x - 0.5f, y = point.y - 0.5f;

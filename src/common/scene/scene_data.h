@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "common/accel/triangle_tree_data.h"
+#include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
 #include "common/scene/scene.h"
 
 namespace pt {
-
-/// A group of meshes placed in the world.
-struct Instance {
-  std::uint32_t group = 0;  ///< Mesh::group, not 0
-  Affine to_world;
-};
 
 /// A light without extent.
 struct DeltaLight {
