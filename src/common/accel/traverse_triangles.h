@@ -15,10 +15,8 @@ PT_HD Hit closest_triangle(const TriangleTree& tree, const Ray& ray, float t_min
     return closest_triangle_brute<instanced>(tree, ray, t_min, t_max);
   } else if constexpr (accel == Accel::bvh2) {
     return closest_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh) {
-    return closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
   } else {
-    return closest_triangle_embree(tree, ray, t_min, t_max);
+    return closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
   }
 }
 
@@ -29,10 +27,8 @@ PT_HD bool any_triangle(const TriangleTree& tree, const Ray& ray, float t_min, f
     return any_triangle_brute<instanced>(tree, ray, t_min, t_max);
   } else if constexpr (accel == Accel::bvh2) {
     return any_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh) {
-    return any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
   } else {
-    return any_triangle_embree(tree, ray, t_min, t_max);
+    return any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/render/options.h"
 #include "common/scene/scene_data.h"
 #include "common/scene/sphere_world.h"
 
