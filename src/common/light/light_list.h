@@ -1,6 +1,7 @@
 // All lights of a scene in one list, and the choice of one of them.
 #pragma once
 
+#include "common/light/delta_light.h"
 #include "common/light/environment.h"
 #include "common/sampling/alias_table.h"
 
@@ -16,12 +17,18 @@ struct alignas(16) Light {
   LightKind kind;
   Vec3 b;  ///< triangle: a vertex; spot, directional: where the light goes
   float weight;
-  Vec3 c;                  ///< triangle: a vertex; spot: cosines of the inner and outer angle
+  Vec3 c;                  ///< triangle: a vertex; spot: cosines of both angles, falloff; sphere:
+                           ///< square of the radius
   std::uint32_t triangle;  ///< its id, where the emission has a texture; else no_texture
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;
 
   PT_HD bool is_delta() const { return kind >= LightKind::point; }
+  PT_HD DeltaLight delta() const {
+    return {static_cast<DeltaLight::Kind>(static_cast<std::uint32_t>(kind) -
+                                          static_cast<std::uint32_t>(LightKind::point)),
+            a, b, radiance, c.x, c.y, static_cast<SpotFalloff>(float_to_bits(c.z))};
+  }
 };
 
 /// A view. One of the lights is chosen with a probability proportional to its weight, about its

@@ -65,7 +65,7 @@ class Lister {
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
       light.a = v[0], light.b = v[turned ? 2 : 1], light.c = v[turned ? 1 : 2];
-      light.weight = emitter_weight(material.emission, triangle_area(v[0], v[1], v[2]));
+      light.weight = emitter_weight(material.emission, 0.5f * glm::length(glm::cross(v[1] - v[0], v[2] - v[0])));
       light.triangle = mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
       light.radiance = material.emission;
       light.emission_texture = texture;
@@ -91,24 +91,13 @@ class Lister {
     Light light{};
     light.a = delta.position;
     light.b = delta.direction;
-    light.c = {delta.cos_inner, delta.cos_outer, 0.0f};
+    light.c = {delta.cos_inner, delta.cos_outer,
+               bits_to_float(static_cast<std::uint32_t>(delta.falloff))};
     light.radiance = delta.intensity;
     light.triangle = light.emission_texture = no_texture;
-    const float power = luminance(delta.intensity);
-    switch (delta.kind) {
-      case DeltaLight::Kind::point:
-        light.kind = LightKind::point;
-        light.weight = 4.0f * power;
-        break;
-      case DeltaLight::Kind::spot:
-        light.kind = LightKind::spot;
-        light.weight = 2.0f * power * (1.0f - 0.5f * (delta.cos_inner + delta.cos_outer));
-        break;
-      case DeltaLight::Kind::directional:
-        light.kind = LightKind::directional;
-        light.weight = power * radius_ * radius_;
-        break;
-    }
+    light.kind = static_cast<LightKind>(static_cast<std::uint32_t>(LightKind::point) +
+                                        static_cast<std::uint32_t>(delta.kind));
+    light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
     add(light);
   }
 

@@ -9,20 +9,11 @@
 #include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
+#include "common/light/delta_light.h"
 #include "common/math/transform.h"
 #include "common/scene/scene.h"
 
 namespace pt {
-
-/// A light without extent.
-struct DeltaLight {
-  enum class Kind : std::uint32_t { point, spot, directional } kind = Kind::point;
-  Vec3 position{0.0f};       ///< point, spot: world space
-  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
-  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
-  float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
-  float cos_outer = -1.0f;   ///< none beyond this one, in between as the format asks
-};
 
 /// Light from infinitely far: a picture of all directions, latitude by longitude.
 struct EnvironmentData {

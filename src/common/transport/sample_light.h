@@ -45,16 +45,16 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
                                         float u0, float u1) {
   if (light.kind <= LightKind::turned_triangle) {
     const TriangleLightSample s = sample_triangle(light.a, light.b, light.c, from, u0, u1);
-    Vec3 b = s.barycentric;
+    Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
     if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
-    return {s.wi, s.distance, textured_radiance(scene, light, b), s.pdf};
+    return {s.light.wi, s.light.distance, textured_radiance(scene, light, b), s.light.pdf};
   }
   if (light.kind == LightKind::sphere) {
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
     return {s.wi, s.distance, light.radiance, s.pdf};
   }
-  const DeltaLightSample s = sample_delta_light(light, from);
-  return {s.wi, s.distance, s.radiance, 1.0f, true};
+  const DeltaLightSample s = sample_delta_light(light.delta(), from);
+  return {s.wi, s.distance, s.irradiance, 1.0f, true};
 }
 
 PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
@@ -86,10 +86,12 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
     const Triangle t = world_triangle<Traits>(scene, hit);
-    const float area = triangle_area(t.v0, t.v1, t.v2);
+    const Vec3 normal = glm::cross(t.v1 - t.v0, t.v2 - t.v0);
     const Color& emission = scene.materials[t.material].emission;
-    return scene.light_list.probability(emitter_weight(emission, area)) *
-           triangle_solid_angle_pdf(t.v0, t.v1, t.v2, ray.direction, hit.t);
+    // The side is the caller's affair: in an instance that mirrors, this normal is turned.
+    const float side = glm::dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
+    return scene.light_list.probability(emitter_weight(emission, 0.5f * glm::length(normal))) *
+           triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);
   }
 }
 
