@@ -9,6 +9,7 @@
 
 #include "common/accel/append_nodes.h"
 #include "common/accel/build_sah.h"
+#include "common/accel/build_sbvh.h"
 #include "common/accel/collapse_cwbvh.h"
 #include "common/accel/instance_tree.h"
 #include "common/accel/merge_leaves.h"
@@ -25,6 +26,9 @@ BinaryTree build_binary(const MeshTriangles& triangles, const TreeOptions& optio
     case TreeBuilder::automatic:
     case TreeBuilder::sah:
       return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+    case TreeBuilder::sbvh:
+      return build_sbvh(
+          triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
     default:
       throw Error(fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh",
                               to_string(options.builder)));

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/accel/binary_tree.h"
+#include "common/accel/build_sbvh.h"
 #include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
@@ -14,6 +14,7 @@ namespace pt {
 struct TreeOptions {
   AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
   TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
+  SbvhOptions sbvh;
   TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
   TreeCosts cwbvh_costs = {1.0f, 0.3f, cwbvh_leaf_max};
 };

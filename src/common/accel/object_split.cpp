@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <array>
 
-#include "common/accel/parallel_partition.h"
-
 namespace pt {
 
 namespace {
 
 constexpr int bins_max = 32;
-constexpr std::uint32_t serial_max = 1 << 16;  // more references than this are shared by threads
-constexpr std::uint32_t serial_block = 1 << 13;
 
 int bin_count_for(std::uint32_t size) { return size < 32 ? 8 : size < 1024 ? 16 : bins_max; }
 
@@ -45,13 +41,13 @@ void fill_bins(std::span<const BuildReference> references, const BinMapping& map
 
 // Minima, maxima and integer sums do not depend on the order of the parts.
 Bins make_bins(std::span<const BuildReference> references, const BinMapping& mapping, int count) {
-  if (references.size() <= serial_max) {
+  if (references.size() <= serial_range_max) {
     Bins bins(count);
     fill_bins(references, mapping, bins);
     return bins;
   }
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, references.size(), serial_block), Bins(count),
+      tbb::blocked_range<std::size_t>(0, references.size(), range_block), Bins(count),
       [&](const auto& part, Bins bins) {
         fill_bins(references.subspan(part.begin(), part.size()), mapping, bins);
         return bins;
@@ -60,55 +56,17 @@ Bins make_bins(std::span<const BuildReference> references, const BinMapping& map
 }
 
 void try_axis(const std::array<Bin, bins_max>& bins, int axis, int count, ObjectSplit& best) {
-  std::array<float, bins_max> left_cost;
-  Bin sum;
-  for (int b = 1; b < count; ++b) {
-    sum.add(bins[b - 1]);
-    left_cost[b] = sum.count == 0 ? HUGE_VALF : sum.half_area() * static_cast<float>(sum.count);
-  }
-  sum = {};
+  std::array<Bin, bins_max> left;  // of the bins below
+  left[0] = {};
+  for (int b = 1; b < count; ++b) left[b] = left[b - 1], left[b].add(bins[b - 1]);
+  Bin right;
   for (int b = count - 1; b >= 1; --b) {
-    sum.add(bins[b]);
-    if (sum.count == 0) continue;
-    const float cost = left_cost[b] + sum.half_area() * static_cast<float>(sum.count);
-    if (cost < best.cost) best = {cost, axis, b, count};
+    right.add(bins[b]);
+    if (right.count == 0 || left[b].count == 0) continue;
+    const float cost = left[b].half_area() * static_cast<float>(left[b].count) +
+                       right.half_area() * static_cast<float>(right.count);
+    if (cost < best.cost) best = {cost, axis, b, count, left[b], right};
   }
-}
-
-ReferenceRange measured(std::span<const BuildReference> references, std::uint32_t begin,
-                        std::uint32_t end) {
-  ReferenceRange range{begin, end, {}, {}};
-  for (std::uint32_t i = begin; i < end; ++i) range.grow(references[i]);
-  return range;
-}
-
-template <class GoesLeft>
-RangeHalves partition_serial(std::span<BuildReference> references, const ReferenceRange& range,
-                             GoesLeft goes_left) {
-  RangeHalves halves;
-  std::uint32_t i = range.begin, j = range.end;
-  for (;;) {
-    for (; i < j && goes_left(references[i]); ++i) halves.left.grow(references[i]);
-    for (; i < j && !goes_left(references[j - 1]); --j) halves.right.grow(references[j - 1]);
-    if (i >= j) break;
-    std::swap(references[i], references[j - 1]);
-  }
-  halves.left.begin = range.begin, halves.left.end = halves.right.begin = i;
-  halves.right.end = range.end;
-  return halves;
-}
-
-ReferenceRange measured_in_parallel(std::span<const BuildReference> references, std::uint32_t begin,
-                                    std::uint32_t end) {
-  ReferenceRange range = tbb::parallel_reduce(
-      tbb::blocked_range<std::uint32_t>(begin, end, serial_block), ReferenceRange(),
-      [&](const auto& part, ReferenceRange sum) {
-        sum.grow(measured(references, part.begin(), part.end()));
-        return sum;
-      },
-      [](ReferenceRange a, const ReferenceRange& b) { return a.grow(b), a; });
-  range.begin = begin, range.end = end;
-  return range;
 }
 
 }  // namespace
@@ -141,12 +99,7 @@ RangeHalves partition_references(std::span<BuildReference> references, const Ref
   const auto goes_left = [&](const BuildReference& r) {
     return mapping(r.twice_center())[split.axis] < split.bin;
   };
-  if (range.size() <= serial_max) return partition_serial(references, range, goes_left);
-  const std::size_t left =
-      parallel_partition(references.subspan(range.begin, range.size()), goes_left);
-  const std::uint32_t middle = range.begin + static_cast<std::uint32_t>(left);
-  return {measured_in_parallel(references, range.begin, middle),
-          measured_in_parallel(references, middle, range.end)};
+  return partition_range(references, range.begin, range.end, goes_left);
 }
 
 RangeHalves split_in_halves(std::span<BuildReference> references, const ReferenceRange& range) {
@@ -159,7 +112,8 @@ RangeHalves split_in_halves(std::span<BuildReference> references, const Referenc
                      const float x = a.twice_center()[axis], y = b.twice_center()[axis];
                      return x < y || (x == y && a.id() < b.id());
                    });
-  return {measured(references, range.begin, middle), measured(references, middle, range.end)};
+  return {measured_range(references, range.begin, middle),
+          measured_range(references, middle, range.end)};
 }
 
 }  // namespace pt
