@@ -1,4 +1,5 @@
-// Mitsuba's .serialized, written here by zlib from the format's description.
+// Mitsuba's .serialized, written here by zlib. Mitsuba 3.9.1 reads files of this layout, both
+// versions and precisions, as these tests expect.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
