@@ -42,7 +42,10 @@ SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions&
   const mitsuba::Element root = mitsuba::read_document(path, options);
   const mitsuba::ObjectGraph graph(root, options);
   SceneData scene;
-  scene.name = path.stem().string();
+  // Many scenes are FOLDER/scene.xml.
+  const std::string stem = path.stem().string();
+  scene.name =
+      stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
   context.report_unused(graph);

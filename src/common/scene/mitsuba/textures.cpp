@@ -30,11 +30,11 @@ UvMap read_uv_map(const Object& texture) {
 
 // Mitsuba counts v from the image's head, we count it from its foot: v = 1 - v' on both sides for
 // an image. A checkerboard has no head, so its squares stay in Mitsuba's coordinates.
-void set_uv_map(Texture& texture, const UvMap& map, double squares) {
+void set_uv_map(Texture& texture, const UvMap& map) {
   const auto row = [&](const double(&from)[3], float(&to)[3]) {
-    to[0] = static_cast<float>(squares * from[0]);
-    to[1] = static_cast<float>(-squares * from[1]);
-    to[2] = static_cast<float>(squares * (from[1] + from[2]));
+    to[0] = static_cast<float>(from[0]);
+    to[1] = static_cast<float>(-from[1]);
+    to[2] = static_cast<float>(from[1] + from[2]);
   };
   row(map.u, texture.u_row);
   row(map.v, texture.v_row);
@@ -82,7 +82,7 @@ ColorTexture read_bitmap(Context& context, const Object& object) {
   const std::string wrap = object.text("wrap_mode", "repeat");
   look.wrap_u = wrap_of(context, object, object.text("wrap_mode_u", wrap));
   look.wrap_v = wrap_of(context, object, object.text("wrap_mode_v", wrap));
-  set_uv_map(look, read_uv_map(object), 1.0);
+  set_uv_map(look, read_uv_map(object));
   object.ignore({"cache", "max_anisotropy", "accel", "format"});
   const Element* filename = object.find("filename");
   if (!filename) fail(object.element(), "texture 'bitmap' has no filename");
@@ -101,8 +101,7 @@ ColorTexture read_checkerboard(Context& context, const Object& object) {
   texture.kind = TextureKind::checkerboard;
   texture.color0 = read_plain_color(context, object, "color0", Color(0.4f), Quantity::reflectance);
   texture.color1 = read_plain_color(context, object, "color1", Color(0.2f), Quantity::reflectance);
-  // Squares are half a unit of (u, v) wide there and a whole one here.
-  set_uv_map(texture, read_uv_map(object), 2.0);
+  set_uv_map(texture, read_uv_map(object));
   return {Color(1.0f), context.textures.add_plain(texture)};
 }
 
