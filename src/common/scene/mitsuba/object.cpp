@@ -99,6 +99,11 @@ void Object::ignore(std::initializer_list<std::string_view> names) const {
   for (const std::string_view name : names) find(name);
 }
 
+void Object::ignore_all() const {
+  for (const auto& [name, property] : properties_) property.used = true;
+  for (const Nested& nested : nested_) nested.used = true;
+}
+
 const Object* Object::child(std::string_view tag) const {
   const std::vector<const Object*> all = children(tag);
   return all.empty() ? nullptr : all.front();

@@ -51,6 +51,7 @@ class Object {
   Vec3 vector(std::string_view name, const Vec3& fallback) const;
   Affine transform(std::string_view name) const;  ///< invertible; the identity where absent
   void ignore(std::initializer_list<std::string_view> names) const;
+  void ignore_all() const;  ///< properties and objects inside: nothing is reported as unused
 
   // Objects inside.
   const Object* child(std::string_view tag) const;  ///< the first of this tag, or nullptr
