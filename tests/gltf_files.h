@@ -118,6 +118,14 @@ inline GltfMaker triangle_file() {
   return maker;
 }
 
+/// The triangle with a material.
+inline GltfMaker with_material(const Json& material) {
+  GltfMaker maker = triangle_file();
+  maker.root["materials"] = {material};
+  maker.root["meshes"][0]["primitives"][0]["material"] = 0;
+  return maker;
+}
+
 /// Loads `content` and keeps what was said.
 struct Loaded {
   std::vector<std::string> messages;
