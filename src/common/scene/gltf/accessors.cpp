@@ -1,7 +1,8 @@
 #include "common/scene/gltf/accessors.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "common/scene/gltf/elements.h"
 
 namespace pt::gltf {
 
@@ -9,67 +10,6 @@ namespace {
 
 /// An accessor without a buffer view is all zeros; a file of a few bytes must not fill the memory.
 constexpr std::size_t max_zeros = std::size_t{1} << 24;
-
-/// Strided elements, checked to lie within their buffer.
-struct Elements {
-  const unsigned char* first = nullptr;  ///< null: all zeros
-  std::size_t count = 0, stride = 0;
-  int component_type = 0;
-  int components = 1;
-
-  template <class T>
-  T component(std::size_t element, int i) const {
-    T value;
-    std::memcpy(&value, first + element * stride + static_cast<std::size_t>(i) * sizeof(T),
-                sizeof value);
-    return value;
-  }
-};
-
-std::size_t component_size(const File& file, int component_type, const std::string& place) {
-  switch (component_type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-      return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-      return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
-      return 4;
-    default:
-      file.fail(place, fmt::format("componentType {}: expected 5120 to 5123, 5125 or 5126",
-                                   component_type));
-  }
-}
-
-/// `count` elements from `byte_offset` of a buffer view on.
-Elements locate(const File& file, int view_index, std::size_t byte_offset, std::size_t count,
-                int component_type, int components, const std::string& place) {
-  const auto& view = file.at(file.model.bufferViews, view_index, "bufferViews", place);
-  const auto& buffer = file.at(file.model.buffers, view.buffer, "buffers", place);
-  const std::size_t size =
-      component_size(file, component_type, place) * static_cast<std::size_t>(components);
-  const std::size_t stride = view.byteStride == 0 ? size : view.byteStride;
-  if (stride < size) {
-    file.fail(place, fmt::format("byteStride {} of bufferViews[{}] is less than an element's {} "
-                                 "bytes",
-                                 stride, view_index, size));
-  }
-  const std::size_t end = view.byteOffset > buffer.data.size()
-                              ? 0
-                              : std::min(view.byteLength, buffer.data.size() - view.byteOffset);
-  // byte_offset + (count - 1) * stride + size <= end, without overflow
-  const bool fits = count == 0 || (size <= end && byte_offset <= end - size &&
-                                   (count - 1) <= (end - size - byte_offset) / stride);
-  if (!fits) {
-    file.fail(place, fmt::format("{} elements of {} bytes from byte {} on exceed the {} bytes of "
-                                 "bufferViews[{}]",
-                                 count, size, byte_offset, end, view_index));
-  }
-  return {buffer.data.data() + view.byteOffset + byte_offset, count, stride, component_type,
-          components};
-}
 
 /// (specification, section 3.6.2.2 and, for the division, KHR_mesh_quantization)
 float to_float(const Elements& elements, std::size_t element, int i, bool normalized) {
