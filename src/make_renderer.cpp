@@ -1,5 +1,7 @@
 #include "make_renderer.h"
 
+#include <algorithm>
+
 #include "common/error.h"
 #include "common/scene/builtin_scenes.h"
 #include "common/scene/load_scene.h"
@@ -13,6 +15,18 @@
 #endif
 
 namespace pt {
+namespace {
+
+/// What is no built-in scene and looks like a path; other names get the list of scenes.
+bool is_scene_file(const std::string& scene) {
+  const std::string name = scene.substr(0, scene.find(':'));
+  const auto& list = scene_list();
+  const bool built_in = std::any_of(list.begin(), list.end(),
+                                    [&](const SceneInfo& info) { return info.name == name; });
+  return !built_in && scene.find_first_of("./") != std::string::npos;
+}
+
+}  // namespace
 
 SceneData make_scene_for(const Options& options, const DeviceInfo& device,
                          const std::function<void(const std::string&)>& warn) {
