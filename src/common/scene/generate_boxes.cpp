@@ -14,7 +14,7 @@ constexpr Vec3 camera_position{-8.6f, 6.5f, 9.2f};
 
 /// A box of random width and height that stands on the floor, turned about its vertical axis.
 Affine standing_box(WorldRandom& random, int column, int row) {
-  const Vec3 half{random.next(0.2f, 0.5f), random.next(0.1f, 0.9f), random.next(0.2f, 0.5f)};
+  const Vec3 half{random.next(0.2f, 0.43f), random.next(0.1f, 0.9f), random.next(0.2f, 0.43f)};
   const float pitch = 2 * room_half.x / grid;
   const Vec3 place{(static_cast<float>(column) + 0.5f) * pitch - room_half.x, half.y,
                    (static_cast<float>(row) + 0.5f) * pitch - room_half.z};

@@ -4,28 +4,18 @@
 
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "common/error.h"
 
 namespace pt {
 namespace {
 
-/// The number at the head of `text`; what follows it is left in `text`. -1: there is none.
-double take_number(std::string_view& text) {
-  double value = 0;
-  const bool digit = !text.empty() && (text[0] == '.' || (text[0] >= '0' && text[0] <= '9'));
-  if (!digit) return -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{}) return -1;
-  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-  return value;
-}
-
-/// 1, or what a suffix that ends the text multiplies with; 0 for anything else.
-double suffix_factor(std::string_view text) {
-  if (text.empty()) return 1;
-  if (text.size() > 1) return 0;
-  switch (text[0]) {
+/// 1, or what a suffix multiplies with; 0 for anything else.
+double suffix_factor(std::string_view suffix) {
+  if (suffix.empty()) return 1;
+  if (suffix.size() > 1) return 0;
+  switch (suffix[0]) {
     case 'k':
     case 'K':
       return 1e3;
@@ -38,6 +28,19 @@ double suffix_factor(std::string_view text) {
     default:
       return 0;
   }
+}
+
+/// A number without a sign and perhaps a suffix; -1 for anything else.
+double read_number(std::string_view text) {
+  double value = 0;
+  const bool unsigned_number =
+      !text.empty() && (text[0] == '.' || (text[0] >= '0' && text[0] <= '9'));
+  if (!unsigned_number) return -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return -1;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  const double factor = suffix_factor(text);
+  return factor > 0 ? value * factor : -1;
 }
 
 }  // namespace
@@ -54,13 +57,11 @@ SceneName parse_scene_name(const std::string& text) {
 std::uint64_t parse_count(const SceneName& scene, std::uint64_t standard, std::uint64_t least,
                           std::uint64_t most) {
   if (scene.parameter.empty()) return standard;
-  std::string_view rest = scene.parameter;
-  const double number = take_number(rest);
-  const double value = number * suffix_factor(rest);
+  const double value = read_number(scene.parameter);
   // 2.5M is whole although 2.3 * 1e6 may not be so by rounding.
   const double whole = std::round(value);
   const bool is_whole = std::abs(value - whole) <= 1e-9 * whole;
-  if (!(number >= 0 && is_whole && whole >= static_cast<double>(least) &&
+  if (!(value >= 0 && is_whole && whole >= static_cast<double>(least) &&
         whole <= static_cast<double>(most))) {
     throw Error(
         fmt::format("--scene {}: expected {}:N with a whole number N from {} to {}, "
@@ -72,8 +73,7 @@ std::uint64_t parse_count(const SceneName& scene, std::uint64_t standard, std::u
 
 double parse_scale(const SceneName& scene) {
   if (scene.parameter.empty()) return 1;
-  std::string_view rest = scene.parameter;
-  const double value = take_number(rest) * suffix_factor(rest);
+  const double value = read_number(scene.parameter);
   if (!(value >= 1e-6 && value <= 1e6)) {
     throw Error(fmt::format("--scene {}: expected {}:SCALE with a factor from 1e-6 to 1e6",
                             scene.full, scene.name));
