@@ -188,20 +188,28 @@ struct Quality {
   TreeQuality sah, sbvh;
 };
 
-Quality compare_builders(const Mesh& mesh) {
+Quality compare_builders(const Mesh& mesh, const SbvhOptions& options = {}) {
   const MeshTriangles triangles({&mesh, 1});
   const TreeCosts costs = {1, 1, 4};
   const Bvh2 sah = merge_leaves(binary_tree(mesh), costs);
-  const Bvh2 sbvh = merge_leaves(
-      build_sbvh(triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, {}), costs);
+  const Bvh2 sbvh =
+      merge_leaves(build_sbvh(
+                       triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options),
+                   costs);
   return {measure_tree(sah.nodes, 0), measure_tree(sbvh.nodes, 0)};
 }
 
-TEST(SpatialSplits, PayForNeedlesAndStayWithinTheBudget) {
-  const Quality quality = compare_builders(make_needles(1000));
-  EXPECT_LT(quality.sbvh.sah_cost(1), 0.8 * quality.sah.sah_cost(1));
-  EXPECT_GT(quality.sbvh.slots, 1000u);
-  EXPECT_LE(quality.sbvh.slots, 1500u);
+TEST(SpatialSplits, PayForSlantedNeedlesAndStayWithinTheBudget) {
+  double last = HUGE_VAL;
+  for (const float budget : {1.0f, 8.0f, 30.0f}) {
+    const Quality quality = compare_builders(make_slanted(1000), {1e-5f, budget});
+    const double cost = quality.sbvh.sah_cost(1);
+    EXPECT_LT(cost, 0.9 * quality.sah.sah_cost(1));
+    EXPECT_LT(cost, 0.9 * last);
+    EXPECT_GT(quality.sbvh.slots, 1000u);
+    EXPECT_LE(static_cast<float>(quality.sbvh.slots), 1000 * (1 + budget));
+    last = cost;
+  }
 }
 
 TEST(SpatialSplits, AreNotMadeWhereTheyDoNotPay) {

@@ -91,6 +91,17 @@ inline Mesh make_needles(int count) {
   return mesh;
 }
 
+/// Needles side by side along a diagonal: boxes of whole ones overlap, those of their parts do not.
+inline Mesh make_slanted(int count) {
+  TestRandom random(5);
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 a = point_in_cube(random, 2) - Vec3(10.0f), b = a + Vec3(20.0f);
+    add_triangle(mesh, a, b, 0.5f * (a + b) + point_in_cube(random, 0.02));
+  }
+  return mesh;
+}
+
 /// Every triangle several times.
 inline Mesh make_coincident(int count) {
   Mesh mesh = make_soup((count + 4) / 5, 3);
@@ -139,6 +150,7 @@ inline const MeshKind mesh_kinds[] = {
     {"closed_sphere", [](int n) { return make_closed_sphere(strips(n)); }},
     {"flat_grid", [](int n) { return make_flat_grid(strips(2 * n)); }},
     {"needles", [](int n) { return make_needles(n); }},
+    {"slanted", [](int n) { return make_slanted(n); }},
     {"coincident", [](int n) { return make_coincident(n); }},
     {"degenerate", [](int n) { return make_degenerate(n); }},
 };
