@@ -1,3 +1,4 @@
+#include "common/error_context.h"
 #include "common/files/obj_material.h"
 #include "fuzz.h"
 
@@ -8,7 +9,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   pt::expect_result_or_error([&] {
     pt::ObjFile file;
-    pt::decode_mtl(pt::as_bytes(data, size), "folder/a.mtl", file);
+    pt::explaining("input", [&] {  // as its callers do
+      pt::decode_mtl(pt::as_bytes(data, size), "folder/a.mtl", file);
+    });
     for (const pt::ObjMaterial& material : file.materials) {
       const pt::Color& albedo = material.material.albedo;
       for (int c = 0; c < 3; ++c) {
