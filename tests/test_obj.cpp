@@ -18,7 +18,7 @@ const std::string two_triangles =
     "f 1/1/1 2/2/1 3/3/1\nf 1/1/1 -1/-2/-1 2/3/1\n";
 
 TEST(Obj, EqualCornersShareAVertex) {
-  const Mesh mesh = decode_obj(two_triangles);
+  const Mesh mesh = decode_obj(two_triangles, "a.obj");
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
   EXPECT_EQ(mesh.positions, positions);
   const std::vector<Vec2> uvs = {{0, 0.25f}, {1, 0}, {0, 1}, {1, 0}, {0, 1}};
@@ -31,20 +31,21 @@ TEST(Obj, EqualCornersShareAVertex) {
 }
 
 TEST(Obj, LinesMayEndAsTheyLikeAndGoOn) {
-  const Mesh expected = decode_obj(two_triangles);
+  const Mesh expected = decode_obj(two_triangles, "a.obj");
   for (const std::string end : {"\r\n", "\r", "\n\n", " \t\n"}) {
     std::string text;
     for (const char c : two_triangles) text += c == '\n' ? end : std::string(1, c);
-    const Mesh mesh = decode_obj(text);
+    const Mesh mesh = decode_obj(text, "a.obj");
     EXPECT_EQ(mesh.positions, expected.positions);
     EXPECT_EQ(mesh.triangles.size(), 2u);
   }
-  EXPECT_EQ(decode_obj("v 0 0 0\nv 1 \\\n0 0\nv 0 1 0\nf 1 2 \\\r\n 3").triangles.size(), 1u);
+  EXPECT_EQ(decode_obj("v 0 0 0\nv 1 \\\n0 0\nv 0 1 0\nf 1 2 \\\r\n 3", "a.obj").triangles.size(),
+            1u);
 }
 
 TEST(Obj, PolygonsBecomeFans) {
   const Mesh mesh =
-      decode_obj("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5 # pentagon\n");
+      decode_obj("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv 0 1 0\nf 1 2 3 4 5 # pentagon\n", "a.obj");
   ASSERT_EQ(mesh.triangles.size(), 3u);
   for (std::uint32_t i = 0; i < 3; ++i) {
     EXPECT_EQ(mesh.triangles[i].v[0], 0u);
@@ -56,15 +57,15 @@ TEST(Obj, PolygonsBecomeFans) {
 }
 
 TEST(Obj, CornersWithoutANormalGetTheTriangles) {
-  const Mesh mesh = decode_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2 3\n");
+  const Mesh mesh = decode_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nf 1//1 2 3\n", "a.obj");
   ASSERT_EQ(mesh.normals.size(), 3u);
   EXPECT_EQ(mesh.normals[0], Vec3(1, 0, 0));
   EXPECT_EQ(mesh.normals[1], Vec3(0, 0, 1));
 }
 
 TEST(Obj, Options) {
-  EXPECT_TRUE(decode_obj(two_triangles, {.face_normals = true}).normals.empty());
-  EXPECT_EQ(decode_obj(two_triangles, {.flip_v = true}).uvs[0], Vec2(0, 0.75f));
+  EXPECT_TRUE(decode_obj(two_triangles, "a.obj", {.face_normals = true}).normals.empty());
+  EXPECT_EQ(decode_obj(two_triangles, "a.obj", {.flip_v = true}).uvs[0], Vec2(0, 0.75f));
 }
 
 TEST(Obj, BrokenFilesAreRefusedWithTheirLine) {
@@ -73,7 +74,7 @@ TEST(Obj, BrokenFilesAreRefusedWithTheirLine) {
   write_text(folder.file("a.obj"), "v 1 2\n");
   expect_error([&] { read_obj(folder.file("a.obj")); }, "a.obj: line 1: expected a number");
   const auto expect_error_of = [](const std::string& text, const std::string& part) {
-    expect_error([&] { decode_obj(text); }, part);
+    expect_error([&] { decode_obj(text, "a.obj"); }, part);
   };
   const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   expect_error_of(points + "v 1 x 1\n", "line 4: expected a number, found 'x'");

@@ -244,6 +244,11 @@ TEST_F(Ply, BrokenFilesAreRefusedWithTheirPlace) {
   expect_error_of(replaced(square, "1 1 0\n", "1 1e39 0\n"), "vertex 2: position");
 }
 
+TEST_F(Ply, ErrorsAreOneLineWhateverTheFileSays) {
+  // Found by fuzzing: where lines end with \r, a \n may stand in a word.
+  expect_error_of("ply\rformat as\ncii 1.0\rend_header\r", "unknown encoding 'as cii'");
+}
+
 TEST_F(Ply, AnnouncedCountsAreCheckedBeforeMemoryIsTaken) {
   for (const std::string count : {"1000000000000", "4000000000", "18446744073709551615"}) {
     expect_error_of(replaced(square, "vertex 4", "vertex " + count), "cannot hold");
@@ -260,7 +265,7 @@ TEST_F(Ply, EveryTruncationIsRefused) {
   for (int kind = 0; kind < 8; ++kind) {
     const std::string bytes = odd_file(kind & 1, kind & 2, kind & 4);
     for (std::size_t size = 0; size < bytes.size(); ++size) {
-      expect_error([&] { decode_ply(bytes.substr(0, size)); }, "");
+      expect_error([&] { decode_ply(bytes.substr(0, size), "a.ply"); }, "");
     }
   }
 }

@@ -68,7 +68,7 @@ TEST(Serialized, EveryKindOfShape) {
       for (const std::uint32_t flags : {0u, 1u, 2u, 8u, 11u, 27u}) {
         const std::string bytes = file_of({version, in_double, flags});
         for (int i = 0; i < 3; ++i) {
-          const Mesh mesh = decode_serialized(bytes, i);
+          const Mesh mesh = decode_serialized(bytes, "a.serialized", i);
           const auto z = static_cast<float>(i);
           EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{0, 0, z}, {1, 0, z}, {0, 1, z}}));
           ASSERT_EQ(mesh.triangles.size(), 1u);
@@ -93,15 +93,15 @@ TEST(Serialized, BrokenFilesAreRefused) {
   expect_error([&] { read_serialized(path, 0); }, "No such file");
   write_text(path, good);
   expect_error([&] { read_serialized(path, 3); }, "cannot read shape 3 of " + path);
-  expect_error([&] { decode_serialized(good, -1); }, "shape -1, expected 0 to 2");
-  expect_error([&] { decode_serialized("", 0); }, "truncated");
-  expect_error([&] { decode_serialized("not a mesh", 0); }, "wrong magic number");
-  expect_error([&] { decode_serialized(file_of({.version = 5}), 0); }, "version 5");
-  expect_error([&] { decode_serialized(file_of({.last_index = 3}), 0); },
+  expect_error([&] { decode_serialized(good, "a.serialized", -1); }, "shape -1, expected 0 to 2");
+  expect_error([&] { decode_serialized("", "a.serialized", 0); }, "truncated");
+  expect_error([&] { decode_serialized("not a mesh", "a.serialized", 0); }, "wrong magic number");
+  expect_error([&] { decode_serialized(file_of({.version = 5}), "a.serialized", 0); }, "version 5");
+  expect_error([&] { decode_serialized(file_of({.last_index = 3}), "a.serialized", 0); },
                "triangle 0: indices 0, 1 and 3 into 3 vertices");
   for (const std::uint64_t huge : {std::uint64_t{4'000'000'000}, ~std::uint64_t{0}}) {
-    expect_error([&] { decode_serialized(file_of({.vertices = huge}), 0); }, "");
-    expect_error([&] { decode_serialized(file_of({.triangles = huge}), 0); }, "");
+    expect_error([&] { decode_serialized(file_of({.vertices = huge}), "a.serialized", 0); }, "");
+    expect_error([&] { decode_serialized(file_of({.triangles = huge}), "a.serialized", 0); }, "");
   }
 }
 

@@ -54,11 +54,13 @@ ObjFile read_obj_with_materials(const std::filesystem::path& path,
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options = {});
 
-// The same of a file's content in memory. Their errors name no file.
+// The same of a file's content in memory, for which `name` stands in errors.
 
-Mesh decode_ply(std::string_view bytes, const MeshFileOptions& options = {});
-Mesh decode_obj(std::string_view bytes, const MeshFileOptions& options = {});
-Mesh decode_serialized(std::string_view bytes, int shape_index,
+Mesh decode_ply(std::string_view bytes, const std::string& name,
+                const MeshFileOptions& options = {});
+Mesh decode_obj(std::string_view bytes, const std::string& name,
+                const MeshFileOptions& options = {});
+Mesh decode_serialized(std::string_view bytes, const std::string& name, int shape_index,
                        const MeshFileOptions& options = {});
 
 /// Normals by vertex, the mean of the triangles' weighted by their angles (Thuermer and Wuethrich

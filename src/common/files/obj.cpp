@@ -83,9 +83,7 @@ class MeshesByMaterial : public ObjSink {
   std::uint32_t material_ = 0;
 };
 
-}  // namespace
-
-Mesh decode_obj(std::string_view bytes, const MeshFileOptions& options) {
+Mesh decode(std::string_view bytes, const MeshFileOptions& options) {
   OneMesh sink;
   parse_obj(bytes, sink);
   Mesh mesh = std::move(sink.builder).finish();
@@ -93,9 +91,15 @@ Mesh decode_obj(std::string_view bytes, const MeshFileOptions& options) {
   return mesh;
 }
 
+}  // namespace
+
+Mesh decode_obj(std::string_view bytes, const std::string& name, const MeshFileOptions& options) {
+  return explaining("cannot read " + name, [&] { return decode(bytes, options); });
+}
+
 Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode_obj(MappedFile(path).bytes(), options); });
+                    [&] { return decode(MappedFile(path).bytes(), options); });
 }
 
 ObjFile read_obj_with_materials(const std::filesystem::path& path, const MeshFileOptions& options) {

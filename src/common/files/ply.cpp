@@ -51,9 +51,7 @@ Mesh read_text(std::string_view body, const PlyHeader& header) {
   }
 }
 
-}  // namespace
-
-Mesh decode_ply(std::string_view bytes, const MeshFileOptions& options) {
+Mesh decode(std::string_view bytes, const MeshFileOptions& options) {
   const PlyHeader header = read_ply_header(bytes);
   const std::string_view body = bytes.substr(header.bytes);
   Mesh mesh;
@@ -67,9 +65,15 @@ Mesh decode_ply(std::string_view bytes, const MeshFileOptions& options) {
   return mesh;
 }
 
+}  // namespace
+
+Mesh decode_ply(std::string_view bytes, const std::string& name, const MeshFileOptions& options) {
+  return explaining("cannot read " + name, [&] { return decode(bytes, options); });
+}
+
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode_ply(MappedFile(path).bytes(), options); });
+                    [&] { return decode(MappedFile(path).bytes(), options); });
 }
 
 }  // namespace pt

@@ -109,19 +109,28 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset) {
   return mesh;
 }
 
-}  // namespace
-
-Mesh decode_serialized(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
+Mesh decode(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
   Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index));
   finish_mesh(mesh, options);
   return mesh;
 }
 
+std::string cannot_read(int shape_index, const std::string& name) {
+  return fmt::format("cannot read shape {} of {}", shape_index, name);
+}
+
+}  // namespace
+
+Mesh decode_serialized(std::string_view bytes, const std::string& name, int shape_index,
+                       const MeshFileOptions& options) {
+  return explaining(cannot_read(shape_index, name),
+                    [&] { return decode(bytes, shape_index, options); });
+}
+
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options) {
-  return explaining(fmt::format("cannot read shape {} of {}", shape_index, path.string()), [&] {
-    return decode_serialized(MappedFile(path).bytes(), shape_index, options);
-  });
+  return explaining(cannot_read(shape_index, path.string()),
+                    [&] { return decode(MappedFile(path).bytes(), shape_index, options); });
 }
 
 }  // namespace pt
