@@ -63,8 +63,9 @@ def our_probes(scene, rays, folder):
 
 
 def film_points(count):
-    steps = [(i + 0.5) / count for i in range(count)]
-    return [(x, y) for y in steps for x in steps]
+    """Off the diagonals, where symmetric scenes have their edges."""
+    steps = range(count)
+    return [((x + 0.37) / count, (y + 0.61) / count) for y in steps for x in steps]
 
 
 def random_rays(scene, count):
@@ -107,7 +108,7 @@ class Comparison:
             return self.sky_problem(numbers, direction)
         self.hits += 1
         t, side, shading, kind = numbers[0], numbers[1:4], numbers[4:7], int(numbers[7])
-        albedo, emission, uv = numbers[8:11], numbers[11:14], numbers[15:]
+        albedo, emission, uv = numbers[8:11], numbers[11:14], numbers[14:]
         normal = list(si.sh_frame.n)
         if abs(t - si.t) > 2e-4 * max(1.0, si.t):
             return f"t is {t}, Mitsuba's {si.t}"
