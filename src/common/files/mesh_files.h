@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/geometry/mesh.h"
@@ -52,6 +53,13 @@ ObjFile read_obj_with_materials(const std::filesystem::path& path,
 /// Shape number `shape_index` (0 is the first) of Mitsuba's .serialized, version 3 or 4.
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options = {});
+
+// The same of a file's content in memory. Their errors name no file.
+
+Mesh decode_ply(std::string_view bytes, const MeshFileOptions& options = {});
+Mesh decode_obj(std::string_view bytes, const MeshFileOptions& options = {});
+Mesh decode_serialized(std::string_view bytes, int shape_index,
+                       const MeshFileOptions& options = {});
 
 /// Normals by vertex, the mean of the triangles' weighted by their angles (Thuermer and Wuethrich
 /// 1998): what Mitsuba gives meshes that have none and do not ask for face_normals.

@@ -85,14 +85,17 @@ class MeshesByMaterial : public ObjSink {
 
 }  // namespace
 
+Mesh decode_obj(std::string_view bytes, const MeshFileOptions& options) {
+  OneMesh sink;
+  parse_obj(bytes, sink);
+  Mesh mesh = std::move(sink.builder).finish();
+  finish_mesh(mesh, options);
+  return mesh;
+}
+
 Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options) {
-  return explaining("cannot read " + path.string(), [&] {
-    OneMesh sink;
-    parse_obj(MappedFile(path).bytes(), sink);
-    Mesh mesh = std::move(sink.builder).finish();
-    finish_mesh(mesh, options);
-    return mesh;
-  });
+  return explaining("cannot read " + path.string(),
+                    [&] { return decode_obj(MappedFile(path).bytes(), options); });
 }
 
 ObjFile read_obj_with_materials(const std::filesystem::path& path, const MeshFileOptions& options) {

@@ -90,9 +90,8 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
 
 }  // namespace
 
-void read_mtl(const std::filesystem::path& path, ObjFile& file) {
-  const MappedFile mapped(path);  // says why a file cannot be read, where a stream would not
-  std::istringstream stream{std::string(mapped.bytes())};
+void decode_mtl(std::string_view bytes, const std::filesystem::path& path, ObjFile& file) {
+  std::istringstream stream{std::string(bytes)};
   std::map<std::string, int> numbers;
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;
@@ -101,6 +100,10 @@ void read_mtl(const std::filesystem::path& path, ObjFile& file) {
   for (const tinyobj::material_t& material : materials) {
     if (!material.name.empty()) file.materials.push_back(convert(material, path, file.warnings));
   }
+}
+
+void read_mtl(const std::filesystem::path& path, ObjFile& file) {
+  decode_mtl(MappedFile(path).bytes(), path, file);
 }
 
 }  // namespace pt

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
+#include <string_view>
 
 #include "common/files/mesh_files.h"
 
@@ -13,5 +13,8 @@ namespace pt {
 /// metallic > 0.5), else diffuse. What is left out becomes a warning. Throws Error, without the
 /// file's name, for one that cannot be read.
 void read_mtl(const std::filesystem::path& path, ObjFile& file);
+
+/// The same of a file's content in memory; textures are beside `path`.
+void decode_mtl(std::string_view bytes, const std::filesystem::path& path, ObjFile& file);
 
 }  // namespace pt

@@ -53,21 +53,23 @@ Mesh read_text(std::string_view body, const PlyHeader& header) {
 
 }  // namespace
 
+Mesh decode_ply(std::string_view bytes, const MeshFileOptions& options) {
+  const PlyHeader header = read_ply_header(bytes);
+  const std::string_view body = bytes.substr(header.bytes);
+  Mesh mesh;
+  if (header.encoding == PlyEncoding::ascii) {
+    mesh = read_text(body, header);
+  } else {
+    PlyBinaryValues values(body, header.encoding == PlyEncoding::big_endian);
+    mesh = read_body(values, header);
+  }
+  finish_mesh(mesh, options);
+  return mesh;
+}
+
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options) {
-  return explaining("cannot read " + path.string(), [&] {
-    const MappedFile file(path);
-    const PlyHeader header = read_ply_header(file.bytes());
-    const std::string_view body = file.bytes().substr(header.bytes);
-    Mesh mesh;
-    if (header.encoding == PlyEncoding::ascii) {
-      mesh = read_text(body, header);
-    } else {
-      PlyBinaryValues values(body, header.encoding == PlyEncoding::big_endian);
-      mesh = read_body(values, header);
-    }
-    finish_mesh(mesh, options);
-    return mesh;
-  });
+  return explaining("cannot read " + path.string(),
+                    [&] { return decode_ply(MappedFile(path).bytes(), options); });
 }
 
 }  // namespace pt

@@ -111,13 +111,16 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset) {
 
 }  // namespace
 
+Mesh decode_serialized(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
+  Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index));
+  finish_mesh(mesh, options);
+  return mesh;
+}
+
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options) {
   return explaining(fmt::format("cannot read shape {} of {}", shape_index, path.string()), [&] {
-    const MappedFile file(path);
-    Mesh mesh = read_shape(file.bytes(), offset_of(file.bytes(), shape_index));
-    finish_mesh(mesh, options);
-    return mesh;
+    return decode_serialized(MappedFile(path).bytes(), shape_index, options);
   });
 }
 
