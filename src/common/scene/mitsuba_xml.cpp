@@ -48,7 +48,7 @@ SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions&
       stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
-  context.report_unused(graph);
+  context.report_unused();
   return scene;
 }
 

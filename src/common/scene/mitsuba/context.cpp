@@ -44,21 +44,31 @@ std::filesystem::path Context::resolve(const Element& at, const std::string& nam
   return beside;
 }
 
-void Context::report_unused(const ObjectGraph& graph) {
-  for (const auto& object : graph.objects()) {
-    if (!object->touched()) continue;
-    const std::string whose = fmt::format("{} '{}'", object->tag(), object->type());
-    for (const auto& [name, property] : object->properties()) {
-      if (property.used) continue;
-      warn_once(fmt::format("unused {} {}", whose, name), *property.element,
-                fmt::format("'{}' of {} is not supported: it is ignored", name, whose));
-    }
-    for (const Object::Nested& nested : object->nested()) {
-      if (nested.used || object->tag() == "scene") continue;
-      const std::string what = fmt::format("{} '{}'", nested.object->tag(), nested.object->type());
-      warn_once(fmt::format("unused {} {}", whose, what), *nested.element,
-                fmt::format("{} in {} is not supported: it is ignored", what, whose));
-    }
+void Context::report_unused() {
+  for (const auto& object : graph_.objects()) {
+    if (object->touched() && object->tag() != "scene") report_unused(*object);
+  }
+}
+
+void Context::report_unused(const Object& object) {
+  const std::string whose = fmt::format("{} '{}'", object.tag(), object.type());
+  const Element* first = nullptr;
+  std::string names;
+  const auto add = [&](const std::string& name, const Element* at) {
+    if (!warned_.insert(fmt::format("unused {} {}", whose, name)).second) return;
+    names += (first ? ", " : "") + name;
+    if (!first || at->line < first->line) first = at;
+  };
+  for (const auto& [name, property] : object.properties()) {
+    if (!property.used) add(name, property.element);
+  }
+  for (const Object::Nested& nested : object.nested()) {
+    if (nested.used) continue;
+    add(fmt::format("{} '{}'", nested.object->tag(), nested.object->type()), nested.element);
+  }
+  if (first) {
+    options_.report(
+        fmt::format("{}: not supported in {} and ignored: {}", first->place(), whose, names));
   }
 }
 

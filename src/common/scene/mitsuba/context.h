@@ -31,14 +31,16 @@ class Context {
   /// or on a <path>. Where there is none: the first of these, for an error that names it.
   std::filesystem::path resolve(const Element& at, const std::string& name) const;
 
-  /// Reports the properties that nothing asked for.
-  void report_unused(const ObjectGraph& graph);
+  /// Reports what is inside of objects in use and nothing asked for.
+  void report_unused();
 
   /// Numbers of materials by bsdf and emitter, of groups by shapegroup.
   std::map<std::pair<const Object*, const Object*>, std::uint32_t> materials;
   std::map<const Object*, std::uint32_t> groups;
 
  private:
+  void report_unused(const Object& object);
+
   const LoadOptions& options_;
   const ObjectGraph& graph_;
   std::set<std::string> warned_;

@@ -40,7 +40,8 @@ Map rotation_of(const Element& element) {
   const double angle = number_attribute(element, "angle", 0.0) * (std::acos(-1.0) / 180.0);
   const double c = std::cos(angle), s = std::sin(angle);
   const DVec3 k = axis / length;
-  // Rodrigues' formula, column by column.
+  // Rodrigues' formula, column by column. (Mitsuba 3.9.1 leaves the axis as long as it is, and so
+  // does not rotate where that is not 1; 0.6 normalised it.)
   const auto turned = [&](const DVec3& v) {
     return c * v + s * glm::cross(k, v) + (1.0 - c) * glm::dot(k, v) * k;
   };
