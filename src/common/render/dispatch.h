@@ -31,7 +31,8 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
                                     Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
                                     Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>>;
 using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
-using CpuSceneKinds = SceneKinds;
+using CpuSceneKinds = decltype(concatenate(
+    SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>>{}));
 
 /// function(Traits<...>{}) for the member of the list that has these traits.
 template <class Function, class... T>

@@ -114,12 +114,6 @@ void make_scan(SceneData& scene) {
 
 }  // namespace
 
-Bounds primitives_bounds(const SceneData& scene) {
-  Bounds all;
-  for (const Bounds& b : primitive_bounds(scene)) all.grow(b);
-  return all;
-}
-
 void prepare_primitives(SceneData& scene, bool tree, const Bounds& others) {
   join_materials(scene);
   list_emitters(scene);

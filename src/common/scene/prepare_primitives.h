@@ -6,11 +6,8 @@
 
 namespace pt {
 
-/// Of all spheres and quads.
-Bounds primitives_bounds(const SceneData& scene);
-
-/// Lists the emitters, joins the material numbers, makes the spheres of the scan and, if `tree`, the
-/// binary BVH, which reorders the primitives. `others`: where else rays may begin.
+/// Lists the emitters, joins the material numbers, makes the spheres of the scan and, if `tree`,
+/// the binary BVH, which reorders the primitives. `others`: where else rays may begin.
 void prepare_primitives(SceneData& scene, bool tree, const Bounds& others = {});
 
 }  // namespace pt

@@ -21,9 +21,10 @@ bool has_primitives_only(const SceneData& scene) {
 
 void prepare_primitives_only(SceneData& scene, const Options& options) {
   if (options.accel == AccelKind::cwbvh || options.accel == AccelKind::embree) {
-    throw Error(fmt::format(
-        "--accel {}: holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2",
-        options.accel == AccelKind::cwbvh ? "cwbvh" : "embree", scene.name));
+    throw Error(
+        fmt::format("--accel {}: holds triangles; scene '{}' has spheres and quads only, expected "
+                    "brute or bvh2",
+                    options.accel == AccelKind::cwbvh ? "cwbvh" : "embree", scene.name));
   }
   const bool brute =
       options.accel == AccelKind::brute ||
@@ -69,6 +70,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.lights = scene.lights.data();
   view.light_count = static_cast<std::uint32_t>(scene.lights.size());
   view.triangles = scene.tree.view();
+  view.triangles.embree = scene.embree.get();
   view.attributes = {scene.attributes.triangles.data(), scene.attributes.normals.data(),
                      scene.attributes.uvs.data()};
   view.to_world = scene.to_world.data();

@@ -5,9 +5,11 @@
 #include <algorithm>
 
 #include "common/accel/build_triangle_tree.h"
+#include "common/accel/embree_tree.h"
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/convert_quads.h"
+#include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
 #include "common/scene/prepare_primitives.h"
 
@@ -53,29 +55,6 @@ MeshAttributes join_attributes(const std::vector<Mesh>& meshes) {
   return all;
 }
 
-Bounds placed(const Bounds& box, const Affine& to_world) {
-  Bounds bounds;
-  for (int i = 0; i < 8; ++i) {
-    bounds.grow(to_world.point({i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y,
-                                i & 4 ? box.max.z : box.min.z}));
-  }
-  return bounds;
-}
-
-Bounds scene_bounds(const SceneData& scene) {
-  Bounds bounds = primitives_bounds(scene);
-  for (const Mesh& mesh : scene.meshes) {
-    Bounds box;
-    for (const Vec3& p : mesh.positions) box.grow(p);
-    if (box.is_empty()) continue;
-    if (mesh.group == 0) bounds.grow(box);
-    for (const Instance& instance : scene.instances) {
-      if (mesh.group == instance.group) bounds.grow(placed(box, instance.to_world));
-    }
-  }
-  return bounds;
-}
-
 /// In the order of InstanceRecord::number: the meshes of group 0 come last.
 std::vector<Affine> instance_transforms(const SceneData& scene) {
   std::vector<Affine> transforms;
@@ -92,22 +71,23 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
   const Accel accel = structure_of(options.accel);
-  const bool mixed = !scene.instances.empty() || !scene.spheres.empty() ||
-                     accel == Accel::brute || accel == Accel::embree;
+  const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
+                     accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
   if (!is_device_builder(options.builder)) {
     TreeOptions tree;
     tree.accel = options.accel;
     tree.builder = options.builder;
+    if (accel == Accel::embree) tree.accel = AccelKind::brute;  // the triangles alone
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
+    if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
   scene.attributes = join_attributes(scene.meshes);
   scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds);
   if (scene.environment.width > 0) {
-    scene.environment_map =
-        make_environment(scene.environment.width, scene.environment.height,
-                         scene.environment.pixels, scene.environment.to_world);
+    scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
+                                             scene.environment.pixels, scene.environment.to_world);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,9 +68,10 @@ struct SceneData {
   std::vector<Sphere> scan_spheres;        ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
   // In scenes with triangles:
-  TriangleTreeData tree;           ///< empty where the device builds it
+  TriangleTreeData tree;                     ///< empty where the device builds it
+  std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`
   MeshAttributes attributes;
-  std::vector<Affine> to_world;    ///< by instance
+  std::vector<Affine> to_world;  ///< by instance
   LightListData light_list;
   EnvironmentMap environment_map;
 
