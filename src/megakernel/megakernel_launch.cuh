@@ -26,14 +26,14 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
                               static_cast<std::uint32_t>(options_.height), next_path_};
   // Only the paper's scenes have their spheres elsewhere than in global memory.
-  using Kinds = std::conditional_t<memory == SceneMemory::global, SceneKinds, SphereSceneKinds>;
+  using Kinds = std::conditional_t<memory == SceneMemory::global, KindsWith<Source, SceneKinds>,
+                                   SphereSceneKinds>;
   dispatch_traits(Kinds{}, traits_, [&](auto traits) {
     dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
       launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch.sample_count),
-             block, shared_bytes, storage, batch, division, source,
-             limits_, clock());
+             block, shared_bytes, storage, batch, division, source, limits_, clock());
     });
   });
 }

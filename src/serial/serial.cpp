@@ -17,12 +17,12 @@ Color trace_path(const Scene& scene, std::uint32_t pixel, PathState& path, Strea
   for (;;) {
     const Hit hit = intersect_closest<Traits>(scene, ray);
     ++path.rays;
-    if (hit.is_miss()) return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
+    if (hit.is_miss())
+      return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
 
     const Vec4 u = random.draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
-    const Scattering scattering =
-        shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
+    const Scattering scattering = shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
     radiance = add_rounded(radiance, scattering.emitted);
     if (!is_black(scattering.shadow.radiance) &&
         !intersect_shadow<Traits>(scene, scattering.shadow)) {
@@ -40,7 +40,8 @@ class SerialRenderer : public CpuRenderer {
  private:
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
-      dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
+      using Source = std::remove_cvref_t<decltype(source)>;
+      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
         timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
       });
     });

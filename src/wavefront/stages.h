@@ -196,8 +196,7 @@ struct FinishPaths {
         radiance = add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
         break;
       }
-      const Scattering scattering =
-          scatter_path<Traits, branching>(scene, context, ray, hit, path);
+      const Scattering scattering = scatter_path<Traits, branching>(scene, context, ray, hit, path);
       radiance = add_rounded(radiance, scattering.emitted);
       if (has_lights && !is_black(scattering.shadow.radiance) &&
           !intersect_shadow<Traits>(scene, scattering.shadow)) {

@@ -73,7 +73,8 @@ class WavefrontCpu : public CpuRenderer {
     slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
     buffers_.slot_count = &slot_count_;
     buffers_.counters = &counters_;
-    pool.allocate_arrays(parts, [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
+    pool.allocate_arrays(parts,
+                         [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
     if (options_.compaction != Compaction::none) {
       for (std::uint32_t*& queue : buffers_.queues) queue = array<std::uint32_t>();
     }
@@ -89,7 +90,8 @@ class WavefrontCpu : public CpuRenderer {
 
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
-      dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
+      using Source = std::remove_cvref_t<decltype(source)>;
+      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
         dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
           run_waves<decltype(traits), branching()>(source, batch);
         });
@@ -106,12 +108,8 @@ class WavefrontCpu : public CpuRenderer {
       std::iota(free, free + slot_count_, 0u);
       *buffers_.waiting(QueueId::free) = slot_count_;
     }
-    const StageContext<Source> context{buffers_.pool,
-                                       batch,
-                                       source,
-                                       &counters_,
-                                       buffers_.queue(QueueId::intersect),
-                                       limits_};
+    const StageContext<Source> context{
+        buffers_.pool, batch, source, &counters_, buffers_.queue(QueueId::intersect), limits_};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
     run_finish<Traits, branching>(execute, buffers_, context);

@@ -113,6 +113,35 @@ void WavefrontCuda::start_queues() {
   copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
 }
 
+template <class Function>
+void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
+  with_random_source([&](const auto& source) {
+    using Source = std::remove_cvref_t<decltype(source)>;
+    const StageContext<Source> context{
+        buffers_.pool, batch, source, buffers_.counters, buffers_.queue(QueueId::intersect),
+        limits_};
+    if (traits_.geometry == Geometry::spheres_and_quads) {
+      function(SphereSceneKinds{}, context);
+    } else if constexpr (draws_in_all_scenes<Source>) {
+      function(TriangleSceneKinds{}, context);
+    }
+  });
+}
+
+void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
+                                 bool starts_paths) {
+  path_count_ = batch.path_count;
+  loop_ = loop;
+  with_context(batch, [&](auto kinds, const auto& context) {
+    enqueue_wave_of<decltype(kinds)>(context, starts_paths);
+  });
+}
+
+void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
+  with_context(
+      batch, [&](auto kinds, const auto& context) { enqueue_finish_of<decltype(kinds)>(context); });
+}
+
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
   if (schedule_ != "graph") return;
   if (graph_exec_ != nullptr && batch.first_sample == graph_first_sample_ &&

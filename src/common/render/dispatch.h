@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/render/options.h"
+#include "common/sampling/random.h"
 #include "common/scene/scene.h"
 
 namespace pt {
@@ -33,6 +34,13 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
 using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
 using CpuSceneKinds = decltype(concatenate(
     SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>>{}));
+
+/// Random numbers with a stored state are the paper's, and kept for its scenes.
+template <class Source>
+inline constexpr bool draws_in_all_scenes = std::is_same_v<Source, PhiloxSource>;
+/// Of the list `All`, the kinds of scenes that have kernels with this source.
+template <class Source, class All>
+using KindsWith = std::conditional_t<draws_in_all_scenes<Source>, All, SphereSceneKinds>;
 
 /// function(Traits<...>{}) for the member of the list that has these traits.
 template <class Function, class... T>
