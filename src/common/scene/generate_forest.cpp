@@ -64,8 +64,10 @@ class Ground {
 /// Tree `index`: what it is and how it stands.
 Instance plant_tree(const Ground& ground, std::uint32_t index) {
   WorldRandom random(instance_seed + index);
-  const float x = static_cast<float>(ground.side()) * (to_unit_float(3242174889u * index) - 0.5f);
-  const float z = static_cast<float>(ground.side()) * (to_unit_float(2447445414u * index) - 0.5f);
+  const auto side = static_cast<float>(ground.side());
+  const std::uint32_t middle = 1u << 31;  // where tree 0 stands
+  const float x = side * (to_unit_float(middle + 3242174889u * index) - 0.5f);
+  const float z = side * (to_unit_float(middle + 2447445414u * index) - 0.5f);
   const auto y = static_cast<float>(ground.height(double{x}, double{z})) - 0.05f;
   const auto group = 1 + static_cast<std::uint32_t>(4 * random.next());
   const float size = random.next(3.0f, 5.0f), wide_x = random.next(0.8f, 1.25f);
@@ -102,7 +104,7 @@ SceneData make_forest_scene(std::uint64_t count) {
   const auto side = static_cast<float>(ground.side());
   scene.sky = {{0.05f, 0.08f, 0.12f}, {1.25f, 1.4f, 1.6f}};  // overcast: brightest above
   scene.camera = {{0, 0.1f * side + 4, 0.55f * side + 4},
-                  {0, 0.02f * side, 0.1f * side},
+                  {0, 0.02f * side + 2, 0.1f * side},
                   {0, 1, 0},
                   38.0f,
                   0.0f,
