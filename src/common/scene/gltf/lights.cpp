@@ -46,6 +46,7 @@ DeltaLight make_light(File& file, const tinygltf::Light& source, const Affine& t
   }
   if (source.type == "spot") {
     light.kind = DeltaLight::Kind::spot;
+    light.falloff = SpotFalloff::square_cosine;
     set_cone(file, source.spot, place, light);
   } else if (source.type == "directional") {
     light.kind = DeltaLight::Kind::directional;

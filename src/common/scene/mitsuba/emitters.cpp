@@ -29,6 +29,7 @@ float cosine(float degrees) { return std::cos(degrees * pi / 180.0f); }
 void add_spot(Context& context, const Object& emitter) {
   DeltaLight light;
   light.kind = DeltaLight::Kind::spot;
+  light.falloff = SpotFalloff::linear_angle;
   light.intensity = radiance_of(context, emitter, "intensity");
   const Affine to_world = emitter.transform("to_world");
   light.position = to_world.translation();
