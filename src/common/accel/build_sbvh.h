@@ -12,7 +12,7 @@ struct SbvhOptions {
   /// part of the root's area (Stich et al. 2009: 1e-5).
   float alpha = 1e-5f;
   /// References that may be added, as a part of the triangles' number.
-  float duplicates = 0.5f;
+  float duplicates = 1.0f;
 };
 
 /// As build_sah(), except that several leaves may name a triangle.

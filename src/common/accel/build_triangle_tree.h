@@ -30,10 +30,4 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);
 
-/// Fits a tree to meshes whose vertices have moved, and to instances whose transforms have changed;
-/// all else must be as it was when the tree was built with these options. Nodes keep their
-/// children, so that a tree gets worse as triangles part; the tree over instances is built anew.
-void refit(TriangleTreeData& tree, std::span<const Mesh> meshes,
-           std::span<const Instance> instances, const TreeOptions& options);
-
 }  // namespace pt
