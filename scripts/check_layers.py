@@ -23,7 +23,7 @@ PHYSICS = ["transport", "scene", *SCENE_PARTS]
 HOST = ["options", "error"]
 FILES = ["files", "image"]
 AROUND = ["render", "film", *FILES, *PHYSICS, *HOST]
-COMMON = ["device_builders", "device", *AROUND]
+COMMON = ["trace", "device_builders", "device", *AROUND]
 
 LAYERS = [
     # Mains and schedules. A schedule never includes another one.
@@ -31,6 +31,8 @@ LAYERS = [
     ("megakernel", ["megakernel/*"], COMMON),
     ("wavefront", ["wavefront/*"], COMMON),
     ("metropolis", ["metropolis/*"], COMMON),
+    # Tracing arrays of rays: files of rays, and the kernels that wavefronts use too.
+    ("trace", ["common/trace/*"], ["device_builders", "device", *AROUND]),
     # The few files among the physics that launch kernels: they build what the physics reads.
     ("device_builders", ["common/accel/build_*.cu", "common/scene/*.cu", "common/scene/*_cuda.cpp"],
      ["device", "scene", *SCENE_PARTS, *HOST]),

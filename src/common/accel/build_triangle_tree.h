@@ -16,7 +16,7 @@ struct TreeOptions {
   TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
   SbvhOptions sbvh;
   TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
-  TreeCosts cwbvh_costs = {1.0f, 0.3f, cwbvh_leaf_max};
+  TreeCosts cwbvh_costs = {1.0f, 0.5f, cwbvh_leaf_max};
 };
 
 /// Triangles are numbered through the meshes in their order, those of groups included. Without

@@ -8,17 +8,18 @@ namespace pt {
 template <bool instanced, class Query>
 PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || tree.triangle_count == 0) return;
-  if constexpr (!instanced) {
+  if constexpr (instanced) {
+    for (std::uint32_t i = 0; i < tree.instance_count; ++i) {
+      const InstanceRecord& instance = tree.instances[i];
+      const Ray local = object_ray(instance, ray);
+      if (!is_traceable(local)) continue;
+      const TriangleRay triangle_ray = make_triangle_ray(local.origin, local.direction);
+      if (offer_slots(tree, triangle_ray, instance.first_slot, instance.slot_count, i, query))
+        return;
+    }
+  } else {
     const TriangleRay triangle_ray = make_triangle_ray(ray.origin, ray.direction);
     offer_slots(tree, triangle_ray, 0, tree.triangle_count, 0, query);
-    return;
-  }
-  for (std::uint32_t i = 0; i < tree.instance_count; ++i) {
-    const InstanceRecord& instance = tree.instances[i];
-    const Ray local = object_ray(instance, ray);
-    if (!is_traceable(local)) continue;
-    const TriangleRay triangle_ray = make_triangle_ray(local.origin, local.direction);
-    if (offer_slots(tree, triangle_ray, instance.first_slot, instance.slot_count, i, query)) return;
   }
 }
 

@@ -1,171 +1,195 @@
-// Persistent threads on a compressed wide tree: warps that never wait for their slowest ray.
+// Persistent warps on a compressed wide tree, for rays that have nothing in common.
+//
+// Rays differ in how many nodes they visit; a warp that waited for the slowest of 32 would be idle
+// for most of its time. So a lane whose ray is done takes another one, as soon as `refill` lanes
+// are idle. And the warp does one thing at a time: steps down the tree while at least
+// `nodes_least` lanes have one to do, then triangles while at least `triangles_least` lanes have
+// some. A lane that has found triangles waits until they are tested: going on without knowing the
+// hit would visit nodes behind it. All votes are explicit and by the whole warp: since Volta,
+// threads that part do not meet again by themselves.
 #pragma once
 
 #include "common/trace/cwbvh_step.cuh"
-#include "common/trace/ray_record.h"
+#include "common/trace/prepared_rays.cuh"
+#include "common/trace/slot_order.cuh"
 
 namespace pt {
 
-/// For an octant and a set of slots: the slot to visit first. In shared memory.
-struct SlotOrder {
-  std::uint8_t first[8][256];
-
-  /// By all threads of the block; they must meet before the table is read.
-  __device__ void fill() {
-    for (std::uint32_t i = threadIdx.x; i < 8 * 256; i += blockDim.x) {
-      const std::uint32_t octant = i >> 8, slots = i & 255u;
-      std::uint32_t best = 0;
-      for (std::uint32_t k = 8; k-- > 0;)
-        if (slots >> (k ^ octant) & 1u) best = k ^ octant;
-      first[octant][slots] = static_cast<std::uint8_t>(best);
-    }
-  }
-};
-
-/// Rays that a warp has prepared for its lanes, in shared memory.
-struct alignas(16) RayPool {
-  float4 part[5][32];
+/// What the threads of a block share.
+template <int block_size>
+struct PersistentMemory {
+  SlotOrder order;
+  PreparedRays rays[block_size / 32];
 };
 
 /// What is left of a node: bits 0..7 slots of inner children to visit, bits 8..15 its inner_mask.
 struct SlotGroup {
   std::uint32_t base;
   std::uint32_t bits;
+
+  __device__ bool has_slots() const { return (bits & 0xffu) != 0; }
 };
 
-template <class Query, int block_size, int stack_shared, int refill, int nodes_least,
-          int triangles_least, class Work>
-__device__ void trace_persistent(const TriangleTree& tree, Work& work) {
-  constexpr unsigned whole_warp = 0xffffffffu;
-  __shared__ SlotOrder order;
-  __shared__ RayPool pools[block_size / 32];
-  __shared__ uint2 shared_stack[stack_shared > 0 ? stack_shared * block_size : 1];
-  order.fill();
-  __syncthreads();
-  RayPool& pool = pools[threadIdx.x / 32];
-  const unsigned lane = threadIdx.x & 31;
-  uint2 local_stack[bvh_depth_max];
-  int depth = 0;
-  const auto push = [&](const SlotGroup& g) {
-    if (depth < stack_shared) {
-      shared_stack[depth * block_size + threadIdx.x] = {g.base, g.bits};
-    } else {
-      local_stack[depth - stack_shared] = {g.base, g.bits};
-    }
-    ++depth;
-  };
-  const auto pop = [&]() -> SlotGroup {
-    --depth;
-    const uint2 g = depth < stack_shared ? shared_stack[depth * block_size + threadIdx.x]
-                                         : local_stack[depth - stack_shared];
-    return {g.x, g.y};
-  };
+struct PersistentTuning {
+  static constexpr int refill = 8;
+  static constexpr int nodes_least = 16;
+};
 
-  int pool_next = 0, pool_size = 0;  // the same in all lanes
-  bool dry = false;
-  bool active = false, has_result = false;
-  std::uint32_t index = 0;
-  Query query(0, 0);
-  Vec3 origin{}, inverse{};
-  TriangleRay triangle_ray{};
-  const std::uint8_t* slot_order = order.first[0];
-  SlotGroup nodes{0, 0};
-  std::uint32_t triangle_base = 0, triangle_bits = 0, leaf_slots = 0;
-  uint2 meta{0, 0};
+/// Traces what `work` hands out, one lane's view. Query: ClosestTriangle or AnyTriangle. Work has
+///   std::uint32_t fetch(unsigned lane, RayRecord&, int& count)  by the whole warp: up to 32 rays
+///     with successive numbers, one each for the first `count` lanes; returns the first's number;
+///     count 0: there is none left
+///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
+template <class Query, int triangles_least, class Work>
+class PersistentTracer {
+ public:
+  __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
+                              PreparedRays& prepared, uint2* stack)
+      : tree_(tree), work_(work), order_(order), prepared_(prepared), stack_(stack) {}
 
-  while (true) {
-    const unsigned idle = __ballot_sync(whole_warp, !active);
-    if (__popc(idle) >= (dry ? 32 : refill)) {
-      if (has_result) {
-        work.finish(index, query);
-        has_result = false;
-      }
-      if (pool_next >= pool_size) {
-        __syncwarp();
-        RayRecord record;
-        const std::uint32_t first = work.fetch(lane, record, pool_size);
-        pool_next = 0;
-        if (static_cast<int>(lane) < pool_size) {
-          const Ray ray = record.ray();
-          const CwbvhRay r = make_cwbvh_ray(ray);
-          const TriangleRay& t = r.triangles;
-          const float t_max = is_traceable(ray) ? record.t_max : -1.0f;
-          pool.part[0][lane] = {r.origin.x, r.origin.y, r.origin.z, record.t_min};
-          pool.part[1][lane] = {r.inverse.x, r.inverse.y, r.inverse.z, t_max};
-          pool.part[2][lane] = {t.x_axis.x, t.x_axis.y, t.x_axis.z, __uint_as_float(first + lane)};
-          pool.part[3][lane] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(7 - r.octant)};
-          pool.part[4][lane] = {t.along.x, t.along.y, t.along.z, 0.0f};
-        }
-        __syncwarp();
-        if (pool_size == 0) {
-          dry = true;
-          if (idle == whole_warp) return;
-        }
-      }
-      const int place = pool_next + __popc(idle & ((1u << lane) - 1));
-      if (!active && place < pool_size) {
-        const float4 a = pool.part[0][place], b = pool.part[1][place], c = pool.part[2][place],
-                     d = pool.part[3][place], e = pool.part[4][place];
-        origin = {a.x, a.y, a.z};
-        inverse = {b.x, b.y, b.z};
-        triangle_ray = {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, {e.x, e.y, e.z}};
-        query = Query(a.w, b.w);
-        index = __float_as_uint(c.w);
-        slot_order = order.first[__float_as_uint(d.w)];
-        nodes = {tree.root, 1u};
-        has_result = true;
-        active = b.w > 0.0f;
-      }
-      pool_next += __popc(idle);
-    }
-    // Down the tree.
-    for (bool first = true;; first = false) {
-      const bool steps = (nodes.bits & 0xffu) != 0 && leaf_slots == 0 && triangle_bits == 0 && active;
-      const unsigned stepping = __ballot_sync(whole_warp, steps);
-      if (stepping == 0 || (!first && __popc(stepping) < nodes_least)) break;
-      if (steps) {
-        const std::uint32_t slot = slot_order[nodes.bits & 0xffu];
-        const std::uint32_t bit = 1u << slot;
-        const std::uint32_t child =
-            nodes.base + __popc((nodes.bits >> 8) & (bit - 1));
-        nodes.bits ^= bit;
-        if ((nodes.bits & 0xffu) != 0) push(nodes);
-        const CwbvhWords node = load_cwbvh_words(&tree.cwbvh[child]);
-        const std::uint32_t hits = hit_slots(node, origin, inverse, query.t_max());
-        const std::uint32_t inner = node.inner_mask();
-        nodes = {node.child_base(), (hits & inner) | inner << 8};
-        leaf_slots = hits & ~inner;
-        triangle_base = node.triangle_base();
-        meta = node.meta();
-        if ((nodes.bits & 0xffu) == 0 && depth > 0) nodes = pop();
-      }
-    }
-    // Triangles.
-    while (leaf_slots != 0) {
-      const std::uint32_t slot = __ffs(static_cast<int>(leaf_slots)) - 1;
-      leaf_slots &= leaf_slots - 1;
-      const std::uint32_t m = __byte_perm(meta.x, meta.y, slot) & 0xffu;
-      triangle_bits |= (m >> 5) << (m & 31u);
-    }
+  /// By the whole warp; returns when all rays are done.
+  __device__ void run() {
     while (true) {
-      const unsigned testing = __ballot_sync(whole_warp, triangle_bits != 0);
-      if (testing == 0) break;
-      if (triangle_bits != 0) {
-        const int bit = __ffs(static_cast<int>(triangle_bits)) - 1;
-        triangle_bits &= triangle_bits - 1;
-        const std::uint32_t triangle = triangle_base + static_cast<std::uint32_t>(bit);
-        const Triangle t = load_wide(&tree.triangles[triangle]);
-        const TriangleHit hit = intersect_triangle(triangle_ray, t.v0, t.v1, t.v2);
-        if (query.offer(tree, hit.t, triangle, 0)) {
-          nodes.bits = 0;
-          triangle_bits = 0;
-          depth = 0;
-        }
+      const unsigned idle = __ballot_sync(whole_warp, !is_active_);
+      if (__popc(idle) >= (is_dry_ ? 32 : PersistentTuning::refill)) {
+        refill(idle);
+        if (is_dry_ && idle == whole_warp) return;
       }
-      if (__popc(testing) < triangles_least) break;
+      step_down();
+      gather_triangles();
+      test_triangles();
+      if (!nodes_.has_slots() && triangles_ == 0) is_active_ = false;
     }
-    if ((nodes.bits & 0xffu) == 0 && triangle_bits == 0) active = false;
   }
+
+ private:
+  static constexpr unsigned whole_warp = 0xffffffffu;
+
+  __device__ void refill(unsigned idle) {
+    if (!is_active_ && has_result_) {
+      work_.finish(number_, query_);
+      has_result_ = false;
+    }
+    const unsigned lane = threadIdx.x & 31;
+    if (next_prepared_ >= prepared_count_) {
+      RayRecord record;
+      const std::uint32_t first = work_.fetch(lane, record, prepared_count_);
+      next_prepared_ = 0;
+      is_dry_ = prepared_count_ == 0;
+      __syncwarp();
+      if (static_cast<int>(lane) < prepared_count_) prepared_.store(lane, record, first + lane);
+      __syncwarp();
+    }
+    const int place = next_prepared_ + __popc(idle & ((1u << lane) - 1));
+    next_prepared_ += __popc(idle);
+    if (!is_active_ && place < prepared_count_) begin(prepared_.load(static_cast<unsigned>(place)));
+  }
+
+  __device__ void begin(const PreparedRay& ray) {
+    origin_ = ray.origin;
+    inverse_ = ray.inverse;
+    triangle_ray_ = ray.triangles;
+    query_ = Query(ray.t_min, ray.t_max);
+    number_ = ray.number;
+    slot_order_ = order_.first[ray.octant];
+    has_result_ = true;
+    is_active_ = ray.t_max > 0.0f;
+    nodes_ = {tree_.root, is_active_ ? 1u : 0u};  // the root as the only child, in slot 0
+  }
+
+  /// Steps until too few lanes have one to do; at least one, if any lane has.
+  __device__ void step_down() {
+    for (bool is_first = true;; is_first = false) {
+      const bool steps = nodes_.has_slots() && leaf_slots_ == 0 && triangles_ == 0;
+      const unsigned stepping = __ballot_sync(whole_warp, steps);
+      if (stepping == 0) return;
+      if (!is_first && __popc(stepping) < PersistentTuning::nodes_least) return;
+      if (steps) step();
+    }
+  }
+
+  __device__ void step() {
+    const std::uint32_t slot = slot_order_[nodes_.bits & 0xffu];
+    const std::uint32_t bit = 1u << slot;
+    const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 8 & (bit - 1));
+    nodes_.bits ^= bit;
+    if (nodes_.has_slots()) stack_[depth_++] = {nodes_.base, nodes_.bits};
+    const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
+    const std::uint32_t hits = hit_slots(node, origin_, inverse_, query_.t_max());
+    const std::uint32_t inner = node.inner_mask();
+    nodes_ = {node.child_base(), (hits & inner) | inner << 8};
+    leaf_slots_ = hits & ~inner;
+    triangle_base_ = node.triangle_base();
+    meta_ = node.meta();
+    if (!nodes_.has_slots() && depth_ > 0) {
+      const uint2 top = stack_[--depth_];
+      nodes_ = {top.x, top.y};
+    }
+  }
+
+  /// From slots of leaves to triangles: bit i is the one in slot triangle_base_ + i.
+  __device__ void gather_triangles() {
+    while (leaf_slots_ != 0) {
+      const int slot = __ffs(static_cast<int>(leaf_slots_)) - 1;
+      leaf_slots_ &= leaf_slots_ - 1;
+      const std::uint32_t meta = __byte_perm(meta_.x, meta_.y, slot) & 0xffu;
+      triangles_ |= (meta >> 5) << (meta & 31u);
+    }
+  }
+
+  __device__ void test_triangles() {
+    while (true) {
+      const unsigned testing = __ballot_sync(whole_warp, triangles_ != 0);
+      if (testing == 0) return;
+      if (triangles_ != 0) test_triangle();
+      if (__popc(testing) < triangles_least) return;
+    }
+  }
+
+  __device__ void test_triangle() {
+    const int bit = __ffs(static_cast<int>(triangles_)) - 1;
+    triangles_ &= triangles_ - 1;
+    const std::uint32_t slot = triangle_base_ + static_cast<std::uint32_t>(bit);
+    const Triangle triangle = load_wide(&tree_.triangles[slot]);
+    const TriangleHit hit =
+        intersect_triangle(triangle_ray_, triangle.v0, triangle.v1, triangle.v2);
+    if (query_.offer(tree_, hit.t, slot, 0)) {
+      nodes_.bits = triangles_ = 0;
+      depth_ = 0;
+    }
+  }
+
+  const TriangleTree& tree_;
+  Work& work_;
+  const SlotOrder& order_;
+  PreparedRays& prepared_;
+  int next_prepared_ = 0, prepared_count_ = 0;  // the same in all lanes, as is is_dry_
+  bool is_dry_ = false;
+  bool is_active_ = false, has_result_ = false;
+  std::uint32_t number_ = 0;
+  Query query_{0.0f, 0.0f};
+  Vec3 origin_{}, inverse_{};
+  TriangleRay triangle_ray_{};
+  const std::uint8_t* slot_order_ = nullptr;
+  SlotGroup nodes_{0, 0};
+  std::uint32_t leaf_slots_ = 0, triangle_base_ = 0, triangles_ = 0;
+  uint2 meta_{0, 0};
+  uint2* stack_;  ///< no member itself: an array would keep the members beside it out of registers
+  int depth_ = 0;
+};
+
+/// Traces what `work` hands out until there is nothing left. All threads of the block call it.
+template <class Query, int block_size, class Work>
+__device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
+                                 Work& work) {
+  // Any hit ends a ray, so its triangles are tested at once; the closest one waits for company.
+  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 8;
+  memory.order.fill();
+  __syncthreads();
+  uint2 stack[bvh_depth_max];
+  PersistentTracer<Query, triangles_least, Work> tracer(tree, work, memory.order,
+                                                        memory.rays[threadIdx.x / 32], stack);
+  tracer.run();
 }
 
 }  // namespace pt

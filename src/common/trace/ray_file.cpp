@@ -11,7 +11,7 @@
 
 #include "common/accel/triangle_query.h"
 #include "common/error.h"
-#include "common/film/atomic_file.h"
+#include "common/image/atomic_file.h"
 
 namespace pt {
 namespace {

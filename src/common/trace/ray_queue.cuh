@@ -1,17 +1,9 @@
 // Hands the rays of an array to persistent warps, and takes their hits.
 #pragma once
 
-#include "common/trace/ray_record.h"
+#include "common/trace/ray_arrays.h"
 
 namespace pt {
-
-/// Rays in device memory. `next` counts those handed out; it starts at 0.
-struct RayArrays {
-  const RayRecord* rays;
-  HitRecord* hits;
-  std::uint32_t count;
-  std::uint32_t* next;
-};
 
 __device__ inline RayRecord load_ray(const RayRecord* ray) {
   const float4 a = __ldcs(reinterpret_cast<const float4*>(ray));

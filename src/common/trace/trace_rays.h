@@ -7,16 +7,9 @@
 #include "common/accel/triangle_tree_data.h"
 #include "common/render/options.h"
 #include "common/trace/ray_file.h"
+#include "common/trace/trace_variant.h"
 
 namespace pt {
-
-/// How a CUDA device traces. On the CPU there is one way.
-enum class TraceVariant {
-  automatic,   ///< beam for coherent rays, else persistent; threads for other trees than cwbvh
-  threads,     ///< a thread for every ray
-  persistent,  ///< persistent warps that fetch rays when lanes are idle
-  beam,        ///< 32 coherent rays together; rays that are not go by themselves
-};
 
 struct TraceRuns {
   TraceVariant variant = TraceVariant::automatic;
@@ -25,8 +18,8 @@ struct TraceRuns {
 };
 
 struct TraceResult {
-  std::vector<HitRecord> hits;          ///< by ray
-  std::vector<double> times_ms;         ///< of the measured runs: of kernels on CUDA
+  std::vector<HitRecord> hits;                     ///< by ray
+  std::vector<double> times_ms;                    ///< of the measured runs: of kernels on CUDA
   TraceVariant variant = TraceVariant::automatic;  ///< what ran; automatic on the CPU
 };
 

@@ -1,0 +1,13 @@
+// How a CUDA device traces an array of rays.
+#pragma once
+
+namespace pt {
+
+enum class TraceVariant {
+  automatic,   ///< beam for rays that are coherent, else persistent; threads for other trees
+  threads,     ///< a thread for every ray
+  persistent,  ///< warps that take new rays when lanes are idle
+  beam,        ///< 32 coherent rays together; rays that are not go by themselves
+};
+
+}  // namespace pt
