@@ -171,7 +171,7 @@ TEST(Energy, IsNeverCreated) {
 }
 
 TEST(Accel, DoesNotChangeTheImage) {
-  for (const std::string& name : small_scenes()) {
+  for (const std::string& name : primitive_scenes()) {
     Options options = image_options(48, 24, 8);
     options.scene = name;
     std::vector<Render> renders;
