@@ -110,7 +110,7 @@ PT_HD float fast_sqrt(float x) {
 #endif
 }
 
-/// 1 / x for 2^-100 < |x| < 2^100: within 1 ulp on CUDA, rounded on the CPU.
+/// 1 / x: within 1 ulp on CUDA, where results or x below 2^-126 count as 0; rounded on the CPU.
 PT_HD float approximate_inverse(float x) {
 #ifdef __CUDA_ARCH__
   float result;

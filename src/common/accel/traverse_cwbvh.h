@@ -21,7 +21,10 @@ struct CwbvhRay {
 };
 
 PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
-  CwbvhRay result{ray.origin, {}, 7, make_triangle_ray(ray.origin, ray.direction)};
+  CwbvhRay result;
+  result.origin = ray.origin;
+  result.octant = 7;
+  result.triangles = make_triangle_ray(ray.origin, ray.direction);
   PT_UNROLL(3)
   for (int axis = 0; axis < 3; ++axis) {
     const float d = ray.direction[axis];

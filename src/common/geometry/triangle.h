@@ -97,7 +97,7 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float most = fmaxf(fmaxf(u, v), w);
   const float determinant = add_rounded(add_rounded(u, v), w);
   const bool miss = (least < 0.0f && most > 0.0f) || determinant == 0.0f;
-  const float inverse = 1.0f / determinant;
+  const float inverse = approximate_inverse(determinant);
   const float az = project(ray.along, a), bz = project(ray.along, b), cz = project(ray.along, c);
   const float sum = fused_multiply_add(u, az, fused_multiply_add(v, bz, multiply_rounded(w, cz)));
   return {miss ? bits_to_float(0x7fffffffu) : multiply_rounded(sum, inverse),

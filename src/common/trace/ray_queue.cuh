@@ -1,7 +1,6 @@
 // Hands the rays of an array to persistent warps, and takes their hits.
 #pragma once
 
-#include "common/accel/triangle_query.h"
 #include "common/trace/ray_record.h"
 
 namespace pt {
@@ -24,63 +23,44 @@ __device__ inline void store_hit(HitRecord* hit, float t, std::uint32_t primitiv
   __stcs(reinterpret_cast<float2*>(hit), make_float2(t, __uint_as_float(primitive)));
 }
 
-__device__ inline void store_result(const TriangleTree& tree, const ClosestTriangle& query,
-                                    HitRecord* record) {
-  const Hit hit = query.result();
-  const bool miss = hit.is_miss();
-  store_hit(record, miss ? -1.0f : hit.t, miss ? no_primitive : tree.triangles[hit.primitive].id);
+template <class Query>
+__device__ void store_result(const TriangleTree& tree, const Query& query, HitRecord* record) {
+  const HitRecord hit = hit_record(tree, query);
+  store_hit(record, hit.t, hit.primitive);
 }
 
-__device__ inline void store_result(const TriangleTree&, const AnyTriangle& query,
-                                    HitRecord* record) {
-  store_hit(record, query.result() ? 0.0f : -1.0f, no_primitive);
-}
-
-/// A thread's share of the array. Warps take `batch` rays at once: few atomic operations.
+/// A warp's share of the array. Warps take `batch` rays at once, a multiple of 32: few atomic
+/// operations.
 template <std::uint32_t batch>
 class RayQueue {
  public:
   __device__ RayQueue(const TriangleTree& tree, const RayArrays& arrays)
       : tree_(tree), arrays_(arrays) {}
 
-  /// No ray is left for this warp.
-  __device__ bool is_dry() const { return next_ >= arrays_.count; }
-
-  /// All threads of the warp call it together. False for a thread that wants a ray and gets none.
-  __device__ bool fetch(bool wanted, Ray& ray, float& t_min, float& t_max) {
-    const unsigned asking = __ballot_sync(0xffffffffu, wanted);
-    const unsigned lane = threadIdx.x & 31;
-    const std::uint32_t rank = __popc(asking & ((1u << lane) - 1));
-    const std::uint32_t count = __popc(asking);
-    const std::uint32_t left = end_ - next_;
-    index_ = wanted ? next_ + rank : index_;
-    next_ += count;
-    if (count > left) {
-      std::uint32_t first = 0;
-      if (lane == 0) first = atomicAdd(arrays_.next, batch);
-      first = __shfl_sync(0xffffffffu, first, 0);
-      if (wanted && rank >= left) index_ = first + (rank - left);
-      next_ = first + (count - left);
-      end_ = first + batch;
+  /// All threads of the warp call it together and get up to 32 rays with successive numbers, one
+  /// each; the first one's number is returned.
+  __device__ std::uint32_t fetch(unsigned lane, RayRecord& ray, int& count) {
+    if (next_ == end_) {
+      if (lane == 0) next_ = atomicAdd(arrays_.next, batch);
+      next_ = __shfl_sync(0xffffffffu, next_, 0);
+      end_ = next_ + batch;
     }
-    if (!wanted || index_ >= arrays_.count) return false;
-    const RayRecord record = load_ray(arrays_.rays + index_);
-    ray = record.ray();
-    t_min = record.t_min;
-    t_max = record.t_max;
-    return true;
+    const std::uint32_t first = next_;
+    next_ += 32;
+    count = first < arrays_.count ? static_cast<int>(min(32u, arrays_.count - first)) : 0;
+    if (static_cast<int>(lane) < count) ray = load_ray(arrays_.rays + first + lane);
+    return first;
   }
 
   template <class Query>
-  __device__ void finish(const Query& query) {
-    store_result(tree_, query, arrays_.hits + index_);
+  __device__ void finish(std::uint32_t number, const Query& query) {
+    store_result(tree_, query, arrays_.hits + number);
   }
 
  private:
   const TriangleTree& tree_;
   const RayArrays& arrays_;
-  std::uint32_t index_ = 0;
-  std::uint32_t next_ = 0, end_ = 0;  ///< the warp's share, the same in all of its threads
+  std::uint32_t next_ = 0, end_ = 0;  ///< the same in all threads of the warp
 };
 
 }  // namespace pt

@@ -1,7 +1,7 @@
 // Rays and hits as they lie in files and in device memory.
 #pragma once
 
-#include "common/geometry/ray.h"
+#include "common/accel/triangle_query.h"
 
 namespace pt {
 
@@ -23,6 +23,16 @@ struct HitRecord {
   std::uint32_t primitive;
 };
 static_assert(sizeof(HitRecord) == 8);
+
+PT_HD HitRecord hit_record(const TriangleTree& tree, const ClosestTriangle& query) {
+  const Hit hit = query.result();
+  if (hit.is_miss()) return {-1.0f, no_primitive};
+  return {hit.t, tree.triangles[hit.primitive].id};
+}
+
+PT_HD HitRecord hit_record(const TriangleTree&, const AnyTriangle& query) {
+  return {query.result() ? 0.0f : -1.0f, no_primitive};
+}
 
 enum class RayType : std::uint32_t { closest = 0, any = 1 };
 

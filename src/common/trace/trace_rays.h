@@ -1,0 +1,41 @@
+// Traces a set of rays against a tree, and measures how long that takes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/accel/triangle_tree_data.h"
+#include "common/render/options.h"
+#include "common/trace/ray_file.h"
+
+namespace pt {
+
+/// How a CUDA device traces. On the CPU there is one way.
+enum class TraceVariant {
+  automatic,   ///< beam for coherent rays, else persistent; threads for other trees than cwbvh
+  threads,     ///< a thread for every ray
+  persistent,  ///< persistent warps that fetch rays when lanes are idle
+  beam,        ///< 32 coherent rays together; rays that are not go by themselves
+};
+
+struct TraceRuns {
+  TraceVariant variant = TraceVariant::automatic;
+  int warmup = 0;  ///< runs that are not measured
+  int repeat = 1;  ///< >= 1
+};
+
+struct TraceResult {
+  std::vector<HitRecord> hits;          ///< by ray
+  std::vector<double> times_ms;         ///< of the measured runs: of kernels on CUDA
+  TraceVariant variant = TraceVariant::automatic;  ///< what ran; automatic on the CPU
+};
+
+/// On all threads of the processor.
+TraceResult trace_rays_cpu(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs);
+
+/// On the CUDA device `index`; only in a build with CUDA. Throws Error where it has too little
+/// memory, or where the tree is not one that the variant can traverse.
+TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
+                            int index);
+
+}  // namespace pt
