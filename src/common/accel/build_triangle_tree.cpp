@@ -101,6 +101,10 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   }
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
   tree.build_ms = time.count();
+  const bool sah = chosen.builder == TreeBuilder::automatic;
+  if (chosen.accel != AccelKind::brute) {
+    tree.builder = to_string(sah ? TreeBuilder::sah : chosen.builder);
+  }
   return tree;
 }
 
