@@ -54,7 +54,7 @@ struct SceneData {
   std::vector<Mesh> meshes;         ///< those of group 0 in world space
   std::vector<Instance> instances;  ///< of the other groups
   std::vector<Material> materials;
-  std::vector<MaterialTextures> material_textures = {{}};  ///< 0: none
+  std::vector<MaterialTextures> material_textures = std::vector<MaterialTextures>(1);  ///< 0: none
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
