@@ -20,20 +20,24 @@ namespace {
 /// outside.
 class JpegReader {
  public:
-  explicit JpegReader(std::string_view bytes) {
+  JpegReader() {
     jpeg.err = jpeg_std_error(&errors_);
     errors_.error_exit = on_error;
     errors_.emit_message = on_message;
     jpeg.client_data = this;
+  }
+  JpegReader(const JpegReader&) = delete;
+  JpegReader& operator=(const JpegReader&) = delete;
+  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
+
+  /// Reads the header. Not the constructor's work: libjpeg's memory is the destructor's to free.
+  void open(std::string_view bytes) {
     attempt([&] {
       jpeg_create_decompress(&jpeg);
       jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
       jpeg_read_header(&jpeg, TRUE);
     });
   }
-  JpegReader(const JpegReader&) = delete;
-  JpegReader& operator=(const JpegReader&) = delete;
-  ~JpegReader() { jpeg_destroy_decompress(&jpeg); }
 
   /// Runs `step`. Throws Error with libjpeg's message.
   template <class Step>
@@ -73,7 +77,8 @@ class JpegReader {
 }  // namespace
 
 Rgba8Image decode_jpeg(std::string_view bytes) {
-  JpegReader reader(bytes);
+  JpegReader reader;
+  reader.open(bytes);
   jpeg_decompress_struct& jpeg = reader.jpeg;
   // A block of 64 pixels takes a bit or more, of one component or several.
   const double pixels = static_cast<double>(jpeg.image_width) * jpeg.image_height;
