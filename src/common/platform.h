@@ -74,6 +74,24 @@ PT_HD void store_wide(T* p, const T& value) {
 #endif
 }
 
+/// The smaller, or `b` where `a` is NaN; `b` is a number. One instruction.
+PT_HD float min_number(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return fminf(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+
+/// The larger, or `b` where `a` is NaN; `b` is a number. One instruction.
+PT_HD float max_number(float a, float b) {
+#ifdef __CUDA_ARCH__
+  return fmaxf(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+
 /// 1 / sqrt(x): within 2 ulp on CUDA, correctly rounded in two steps on the CPU.
 PT_HD float inverse_sqrt(float x) {
 #ifdef __CUDA_ARCH__
@@ -139,6 +157,14 @@ PT_HD int count_leading_zeros(std::uint32_t x) {
   return __clz(static_cast<int>(x));
 #else
   return x == 0 ? 32 : __builtin_clz(x);
+#endif
+}
+
+PT_HD int count_bits(std::uint32_t x) {
+#ifdef __CUDA_ARCH__
+  return __popc(x);
+#else
+  return __builtin_popcount(x);
 #endif
 }
 

@@ -14,7 +14,7 @@ struct alignas(16) InstanceRecord {
   Affine to_object;    ///< from world space
   std::uint32_t root;  ///< the group's root among the nodes
   std::uint32_t number;
-  std::uint32_t padding[2];
+  std::uint32_t first_slot, slot_count;  ///< the group's triangles
 };
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are

@@ -45,8 +45,19 @@ template <>
 inline constexpr auto enum_names<RngKind> =
     std::to_array<EnumName<RngKind>>({{RngKind::philox, "philox"}, {RngKind::xorwow, "xorwow"}});
 template <>
-inline constexpr auto enum_names<AccelKind> = std::to_array<EnumName<AccelKind>>(
-    {{AccelKind::automatic, "auto"}, {AccelKind::brute, "brute"}, {AccelKind::bvh2, "bvh2"}});
+inline constexpr auto enum_names<AccelKind> =
+    std::to_array<EnumName<AccelKind>>({{AccelKind::automatic, "auto"},
+                                        {AccelKind::brute, "brute"},
+                                        {AccelKind::bvh2, "bvh2"},
+                                        {AccelKind::cwbvh, "cwbvh"},
+                                        {AccelKind::embree, "embree"}});
+template <>
+inline constexpr auto enum_names<TreeBuilder> =
+    std::to_array<EnumName<TreeBuilder>>({{TreeBuilder::automatic, "auto"},
+                                          {TreeBuilder::sah, "sah"},
+                                          {TreeBuilder::sbvh, "sbvh"},
+                                          {TreeBuilder::lbvh, "lbvh"},
+                                          {TreeBuilder::hploc, "hploc"}});
 template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});

@@ -16,7 +16,8 @@ enum class Schedule { automatic, host, graph };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
-enum class AccelKind { automatic, brute, bvh2 };
+enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
+enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
 enum class WorldBuilder { host, device };
 
 /// The wavefront's kernels, in the order in which a wave runs them.

@@ -6,18 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
 #include "common/render/options.h"
 #include "common/scene/scene.h"
 
 namespace pt {
-
-/// A group of meshes placed in the world.
-struct Instance {
-  std::uint32_t group = 0;  ///< Mesh::group, not 0
-  Affine to_world;
-};
 
 /// A light without extent.
 struct DeltaLight {

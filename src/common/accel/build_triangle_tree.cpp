@@ -1,0 +1,102 @@
+#include "common/accel/build_triangle_tree.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "common/accel/append_nodes.h"
+#include "common/accel/build_sah.h"
+#include "common/accel/collapse_cwbvh.h"
+#include "common/accel/instance_tree.h"
+#include "common/accel/merge_leaves.h"
+#include "common/accel/mesh_triangles.h"
+#include "common/error.h"
+#include "common/render/option_names.h"
+
+namespace pt {
+
+namespace {
+
+BinaryTree build_binary(const MeshTriangles& triangles, const TreeOptions& options) {
+  switch (options.builder) {
+    case TreeBuilder::automatic:
+    case TreeBuilder::sah:
+      return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+    default:
+      throw Error(fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh",
+                              to_string(options.builder)));
+  }
+}
+
+/// Appends the group's tree, and its triangles in the order of the tree's slots.
+void add_group(TriangleTreeData& tree, std::span<const Mesh> meshes, std::uint32_t number,
+               const TreeOptions& options) {
+  const MeshTriangles triangles(meshes, number);
+  if (triangles.count() == 0) return;
+  GroupTree group;
+  group.group = number;
+  group.first_slot = static_cast<std::uint32_t>(tree.triangles.size());
+  std::vector<std::uint32_t> order;
+  if (options.accel == AccelKind::bvh2) {
+    BinaryTree binary = build_binary(triangles, options);
+    group.bounds = binary.bounds;
+    Bvh2 bvh = merge_leaves(std::move(binary), options.bvh2_costs);
+    order = std::move(bvh.order);
+    group.node_count = static_cast<std::uint32_t>(bvh.nodes.size());
+    group.root = append_nodes(tree.bvh2, std::move(bvh.nodes), group.first_slot);
+  } else if (options.accel == AccelKind::cwbvh) {
+    const BinaryTree binary = build_binary(triangles, options);
+    group.bounds = binary.bounds;
+    Cwbvh bvh = collapse_cwbvh(binary, options.cwbvh_costs);
+    order = std::move(bvh.order);
+    group.node_count = static_cast<std::uint32_t>(bvh.nodes.size());
+    group.root = append_nodes(tree.cwbvh, std::move(bvh.nodes), group.first_slot);
+  } else {
+    order.resize(triangles.count());
+    std::iota(order.begin(), order.end(), 0u);
+  }
+  group.first_node = group.root;
+  group.slot_count = static_cast<std::uint32_t>(order.size());
+  tree.triangles.resize(tree.triangles.size() + order.size());
+  tbb::parallel_for(0u, group.slot_count, [&](std::uint32_t i) {
+    tree.triangles[group.first_slot + i] = triangles[order[i]];
+  });
+  tree.groups.push_back(group);
+}
+
+std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
+  std::vector<std::uint32_t> groups = {0};
+  for (const Instance& instance : instances) groups.push_back(instance.group);
+  std::sort(groups.begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  return groups;
+}
+
+}  // namespace
+
+TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
+                                     std::span<const Instance> instances,
+                                     const TreeOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  MeshTriangles(meshes).check();
+  check_instances(instances);
+  TreeOptions chosen = options;
+  if (chosen.accel == AccelKind::automatic) chosen.accel = AccelKind::cwbvh;
+  TriangleTreeData tree;
+  for (const std::uint32_t group : groups_in_use(instances)) {
+    add_group(tree, meshes, group, chosen);
+  }
+  if (!instances.empty()) {
+    add_instance_tree(tree, instances, chosen.accel);
+  } else if (!tree.groups.empty()) {
+    tree.root = tree.groups.front().root;
+  }
+  const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
+  tree.build_ms = time.count();
+  return tree;
+}
+
+}  // namespace pt

@@ -1,0 +1,38 @@
+// Builds what rays are traced against in scenes made of triangles, on the CPU.
+#pragma once
+
+#include <span>
+
+#include "common/accel/binary_tree.h"
+#include "common/accel/triangle_tree_data.h"
+#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
+#include "common/render/options.h"
+
+namespace pt {
+
+struct TreeOptions {
+  AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
+  TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
+  TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
+  TreeCosts cwbvh_costs = {1.0f, 0.3f, cwbvh_leaf_max};
+};
+
+/// Triangles are numbered through the meshes in their order, those of groups included. Without
+/// instances the tree is over the meshes of group 0; with instances it is one of two levels, with a
+/// tree for each group that is used and one over the instances, the meshes of group 0 being an
+/// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
+/// slots are in the order of the triangles' numbers.
+/// Throws Error for vertices that are not finite, indices that name no vertex, instances of group 0
+/// or with a singular transform, and for builders and structures that are not the CPU's.
+TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
+                                     std::span<const Instance> instances,
+                                     const TreeOptions& options);
+
+/// Fits a tree to meshes whose vertices have moved, and to instances whose transforms have changed;
+/// all else must be as it was when the tree was built with these options. Nodes keep their
+/// children, so that a tree gets worse as triangles part; the tree over instances is built anew.
+void refit(TriangleTreeData& tree, std::span<const Mesh> meshes,
+           std::span<const Instance> instances, const TreeOptions& options);
+
+}  // namespace pt

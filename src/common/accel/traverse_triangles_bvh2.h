@@ -1,0 +1,99 @@
+// Traversal of binary BVHs of triangles, in one level or two: the nearest child first (Aila and
+// Laine 2009). Both levels share a stack: the ray is back in the world when the stack is as low as
+// it was on entering the instance.
+#pragma once
+
+#include "common/accel/bvh2.h"
+#include "common/accel/slab_test.h"
+#include "common/accel/triangle_query.h"
+
+namespace pt {
+
+/// A ray as a tree needs it.
+struct Bvh2Ray {
+  SlabTestRay slabs;
+  TriangleRay triangles;
+};
+
+PT_HD Bvh2Ray make_bvh2_ray(const Ray& ray) {
+  return {make_slab_test_ray(ray), make_triangle_ray(ray.origin, ray.direction)};
+}
+
+/// What to visit next below a node: `children` of them, the nearer one first.
+struct Bvh2Step {
+  int children;
+  std::uint32_t first, second;
+};
+
+PT_HD Bvh2Step step_bvh2(const Bvh2Node& node, const SlabTestRay& ray, float t_min, float t_max) {
+  const SlabInterval a = intersect_box(ray, {node.xy[0].x, node.xy[0].z, node.z.x},
+                                       {node.xy[0].y, node.xy[0].w, node.z.y}, t_min, t_max);
+  const SlabInterval b = intersect_box(ray, {node.xy[1].x, node.xy[1].z, node.z.z},
+                                       {node.xy[1].y, node.xy[1].w, node.z.w}, t_min, t_max);
+  const bool a_first = a.is_hit() && !(b.is_hit() && b.near < a.near);
+  return {static_cast<int>(a.is_hit()) + static_cast<int>(b.is_hit()),
+          a_first ? node.child[0] : node.child[1], a_first ? node.child[1] : node.child[0]};
+}
+
+template <bool instanced, class Query>
+PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Query& query) {
+  if (!is_traceable(ray) || tree.triangle_count == 0) return;
+  constexpr int in_world = -1;
+  std::uint32_t stack[instanced ? 2 * bvh_depth_max + 1 : bvh_depth_max];
+  int depth = 0;
+  int entered = in_world;  // the stack's depth on entering the instance
+  std::uint32_t instance = 0;
+  Bvh2Ray local = make_bvh2_ray(ray);
+  std::uint32_t current = tree.root;
+  while (true) {
+    if (!is_leaf(current)) {
+      const Bvh2Node node = load_wide(&tree.bvh2[current]);
+      const Bvh2Step step = step_bvh2(node, local.slabs, query.t_min(), query.t_max());
+      if (step.children > 1) stack[depth++] = step.second;
+      if (step.children > 0) {
+        current = step.first;
+        continue;
+      }
+    } else if (instanced && entered == in_world) {
+      instance = leaf_first(current);
+      if (leaf_count(current) > 1) {
+        stack[depth++] = make_leaf(instance + 1, leaf_count(current) - 1);
+      }
+      const Ray inner = object_ray(tree.instances[instance], ray);
+      if (is_traceable(inner)) {
+        entered = depth;
+        local = make_bvh2_ray(inner);
+        current = tree.instances[instance].root;
+        continue;
+      }
+    } else if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current),
+                           instance, query)) {
+      return;
+    }
+    if (depth == 0) return;
+    if (instanced && depth == entered) {
+      entered = in_world;
+      local = make_bvh2_ray(ray);
+    }
+    current = stack[--depth];
+  }
+}
+
+/// The closest hit with t_min < t < t_max; t_min >= 0.
+template <bool instanced>
+PT_HD Hit closest_triangle_bvh2(const TriangleTree& tree, const Ray& ray, float t_min,
+                                float t_max) {
+  ClosestTriangle query(t_min, t_max);
+  traverse_triangles_bvh2<instanced>(tree, ray, query);
+  return query.result();
+}
+
+/// Whether there is a hit with t_min < t < t_max; t_min >= 0.
+template <bool instanced>
+PT_HD bool any_triangle_bvh2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
+  AnyTriangle query(t_min, t_max);
+  traverse_triangles_bvh2<instanced>(tree, ray, query);
+  return query.result();
+}
+
+}  // namespace pt

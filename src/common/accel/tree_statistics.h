@@ -1,0 +1,30 @@
+// How good and how large a tree is.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/accel/bvh2.h"
+#include "common/accel/cwbvh.h"
+
+namespace pt {
+
+struct TreeQuality {
+  /// Expected number of nodes that a ray visits, and of triangles that it tests, given that it
+  /// meets the root's box: sums of areas relative to the root's (the surface area heuristic).
+  double nodes_per_ray = 0, triangles_per_ray = 0;
+  std::uint64_t nodes = 0, leaves = 0;
+  std::uint64_t slots = 0;  ///< in leaves; more than triangles where these are split
+  int depth = 0;            ///< nodes from the root to the deepest one, both counted
+
+  /// In units of one node's visit.
+  double sah_cost(double triangle_cost) const {
+    return nodes_per_ray + triangle_cost * triangles_per_ray;
+  }
+};
+
+/// Of the tree below `root`.
+TreeQuality measure_tree(std::span<const Bvh2Node> nodes, std::uint32_t root);
+TreeQuality measure_tree(std::span<const CwbvhNode> nodes, std::uint32_t root);
+
+}  // namespace pt

@@ -1,0 +1,89 @@
+// What a traversal of triangles looks for: the closest hit, or any. And how a ray is prepared for
+// it.
+#pragma once
+
+#include "common/accel/triangle_tree.h"
+#include "common/geometry/ray.h"
+
+namespace pt {
+
+/// The closest hit with t_min < t < t_max. Of several at the same t the one of the lowest triangle
+/// number wins, then of the lowest instance number, so that the answer does not depend on the order
+/// in which a structure finds them.
+class ClosestTriangle {
+ public:
+  PT_HD ClosestTriangle(float t_min, float t_max) : t_min_(t_min) { hit_.t = t_max; }
+
+  /// Boxes that the ray enters beyond this need no visit. Those that it enters just here do.
+  PT_HD float t_max() const { return hit_.t; }
+  PT_HD float t_min() const { return t_min_; }
+
+  /// A triangle was met at `t`, NaN for none. True: there is no need to look any further.
+  PT_HD bool offer(const TriangleTree& tree, float t, std::uint32_t slot, std::uint32_t instance) {
+    if (t > t_min_ && t <= hit_.t && (t < hit_.t || wins_tie(tree, slot, instance))) {
+      hit_ = {t, slot, instance};
+    }
+    return false;
+  }
+
+  PT_HD Hit result() const { return hit_.is_miss() ? Hit() : hit_; }
+
+ private:
+  PT_HD bool wins_tie(const TriangleTree& tree, std::uint32_t slot, std::uint32_t instance) const {
+    if (hit_.is_miss()) return false;
+    const std::uint32_t id = tree.triangles[slot].id, best = tree.triangles[hit_.primitive].id;
+    if (id != best || tree.instance_count == 0) return id < best;
+    return tree.instances[instance].number < tree.instances[hit_.instance].number;
+  }
+
+  float t_min_;
+  Hit hit_;
+};
+
+/// Whether there is a hit with t_min < t < t_max.
+class AnyTriangle {
+ public:
+  PT_HD AnyTriangle(float t_min, float t_max) : t_min_(t_min), t_max_(t_max) {}
+
+  PT_HD float t_max() const { return t_max_; }
+  PT_HD float t_min() const { return t_min_; }
+
+  PT_HD bool offer(const TriangleTree&, float t, std::uint32_t, std::uint32_t) {
+    found_ = t > t_min_ && t < t_max_;
+    return found_;
+  }
+
+  PT_HD bool result() const { return found_; }
+
+ private:
+  float t_min_, t_max_;
+  bool found_ = false;
+};
+
+/// A ray that is not finite or has no direction meets nothing. It must be sorted out before the
+/// traversal, in which such a ray would pass every box.
+PT_HD bool is_traceable(const Ray& ray) {
+  const float size = max_abs(ray.direction);
+  const float sum = fabsf(ray.origin.x) + fabsf(ray.origin.y) + fabsf(ray.origin.z) +
+                    fabsf(ray.direction.x) + fabsf(ray.direction.y) + fabsf(ray.direction.z);
+  return sum < HUGE_VALF && size > 0.0f;
+}
+
+/// The ray in an instance's own space. The direction keeps its new length, and so t its meaning.
+PT_HD Ray object_ray(const InstanceRecord& instance, const Ray& ray) {
+  return {instance.to_object.point(ray.origin), instance.to_object.vector(ray.direction)};
+}
+
+/// Offers the triangles of `count` slots to the query; true: the traversal ends.
+template <class Query>
+PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::uint32_t first,
+                       std::uint32_t count, std::uint32_t instance, Query& query) {
+  for (std::uint32_t slot = first; slot < first + count; ++slot) {
+    const Triangle triangle = load_wide(&tree.triangles[slot]);
+    const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
+    if (query.offer(tree, hit.t, slot, instance)) return true;
+  }
+  return false;
+}
+
+}  // namespace pt
