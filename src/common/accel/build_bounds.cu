@@ -1,11 +1,12 @@
 // Boxes of the primitives, of their centers and of the scene; the triangles' records.
+#include "common/accel/binary_tree.h"
 #include "common/accel/build_kernels.cuh"
 #include "common/accel/build_launch.cuh"
 
 namespace pt::device_build {
 namespace {
 
-constexpr float coordinate_max = 1e30f;  // what the wide nodes' grid can hold
+constexpr float coordinate_max = 1e15f;  // larger ones have areas that are not finite
 
 __device__ MeshRange range_of(const TriangleSource& source, std::uint32_t triangle) {
   if (source.ranges == nullptr) return {};
@@ -37,7 +38,7 @@ __device__ Bounds load_bounds(const PrimitiveSource& source, std::uint32_t i) {
 }
 
 __device__ bool is_usable(const Bounds& box) {
-  return max_abs(box.min) < coordinate_max && max_abs(box.max) < coordinate_max;
+  return max_abs(box.min) <= coordinate_max && max_abs(box.max) <= coordinate_max;
 }
 
 // Lower bounds first, then inverted upper ones; all shrink.
@@ -59,7 +60,8 @@ __global__ void __launch_bounds__(block_size)
   const std::uint32_t step = gridDim.x * blockDim.x;
   for (std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x; i < count; i += step) {
     const Bounds box = load_bounds(source, i);
-    store_wide(&primitives[i], BuildNode{box.min, 0, box.max, 0});
+    const Bounds wider = widened(box);
+    store_wide(&primitives[i], BuildNode{wider.min, 0, wider.max, 0});
     if (is_usable(box)) {
       shrink(bits, 0, box.center(), box.center());
       shrink(bits, 6, box.min, box.max);

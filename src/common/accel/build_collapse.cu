@@ -107,7 +107,7 @@ struct WideMaker {
 
   __device__ Children choose(TreeRef ref) const {
     return collapse == Collapse::optimal ? optimal_children(job.tree, job.costs, ref)
-                                         : greedy_children(job.tree, ref);
+                                         : greedy_children(job.tree, job.costs, ref);
   }
   __device__ void count(const Children& c, std::uint32_t& inner, std::uint32_t& slots) const {
     inner = static_cast<std::uint32_t>(c.count - __popc(c.leaf_mask));
@@ -152,8 +152,8 @@ struct BinaryMaker {
     if (is_primitive(ref)) return {{ref, ref}, {true, true}};  // the whole tree
     const BuildNode node = load_node(job.tree, ref);
     return {{node.left, node.right},
-            {is_binary_leaf(job.tree, job.costs, node.left, job.leaf_max),
-             is_binary_leaf(job.tree, job.costs, node.right, job.leaf_max)}};
+            {is_binary_leaf(job.tree, job.costs, node.left),
+             is_binary_leaf(job.tree, job.costs, node.right)}};
   }
   __device__ void count(const Children& c, std::uint32_t& inner, std::uint32_t& slots) const {
     PT_UNROLL(2)
@@ -168,11 +168,10 @@ struct BinaryMaker {
     node.padding[0] = node.padding[1] = 0;
     PT_UNROLL(2)
     for (int i = 0; i < 2; ++i) {
-      const Bounds box = load_node(job.tree, c.ref[i]).bounds();
-      node.xy[i] = {box.min.x, box.max.x, box.min.y, box.max.y};
-      node.z[2 * i] = box.min.z;
-      node.z[2 * i + 1] = box.max.z;
-      if (i == 1 && c.ref[0] == c.ref[1]) {
+      const bool is_unused = i == 1 && c.ref[0] == c.ref[1];
+      set_child_bounds(node, i,
+                       is_unused ? unreachable_bounds() : load_node(job.tree, c.ref[i]).bounds());
+      if (is_unused) {
         node.child[1] = node.child[0];
       } else if (c.is_leaf[i]) {
         node.child[i] = make_leaf(job.first_slot + queue.places.slot, ref_count(c.ref[i]));

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "common/accel/binary_tree.h"
 #include "common/accel/bvh2.h"
-#include "common/accel/collapse_cost.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/tree_statistics.h"
 #include "common/geometry/mesh.h"
 #include "common/geometry/triangle.h"
 
@@ -45,9 +46,8 @@ struct DeviceBuildOptions {
   DeviceBuilder builder = DeviceBuilder::hploc;
   TreeFormat format = TreeFormat::cwbvh;
   Collapse collapse = Collapse::optimal;
-  CollapseCosts costs;
-  std::uint32_t leaf_max = 4;  ///< primitives in a leaf of a binary tree, 1..leaf_size_max
-  int morton_bits = 21;        ///< per axis, 1..morton_bits_max; up to 10 make 32-bit keys
+  TreeCosts costs = {1.0f, 0.3f, cwbvh_leaf_max};  ///< for binary trees {1, 1, 4} is good
+  int morton_bits = 21;  ///< per axis, 1..morton_bits_max; up to 10 make 32-bit keys
   int depth_max = bvh_depth_max;
   std::uint32_t first_node = 0;  ///< added to node numbers: for trees that share arrays
   std::uint32_t first_slot = 0;  ///< added to slot numbers
@@ -82,12 +82,6 @@ struct DeviceTree {
   std::uint64_t scratch_bytes = 0;  ///< of temporary memory
 };
 
-/// What a tree's nodes hold, and what tracing it should cost.
-struct TreeStatistics {
-  double sah_cost = 0;  ///< expected cost of a ray that hits the scene's box, in units of `costs`
-  std::uint64_t inner_children = 0, leaves = 0, leaf_primitives = 0;
-};
-
 /// Gives `size_bytes` of device memory, aligned to 256, or throws Error.
 using DeviceAllocator = std::function<void*(const std::string& name, std::uint64_t size_bytes)>;
 
@@ -99,7 +93,7 @@ class DeviceTreeBuilder {
   ~DeviceTreeBuilder();
 
   /// The tree over `count` triangles, 0..tree_primitives_max; none has no nodes. Throws Error for
-  /// more, for coordinates that are not finite or beyond 1e30, and for trees deeper than allowed.
+  /// more, for coordinates that are not finite or beyond 1e15, and for trees deeper than allowed.
   DeviceTree build(const TriangleSource& source, std::uint32_t count,
                    const DeviceBuildOptions& options);
 
@@ -112,7 +106,7 @@ class DeviceTreeBuilder {
   void refit(DeviceTree& tree, const TriangleSource& source, const DeviceBuildOptions& options);
   void refit(DeviceTree& tree, const Bounds* boxes, const DeviceBuildOptions& options);
 
-  TreeStatistics statistics(const DeviceTree& tree, const CollapseCosts& costs);
+  TreeQuality measure(const DeviceTree& tree);
 
   /// Frees the temporary memory.
   void release();

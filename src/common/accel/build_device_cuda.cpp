@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "common/accel/build_device.h"
@@ -30,8 +31,8 @@ void check_options(std::uint32_t count, const DeviceBuildOptions& options) {
   expect(count <= tree_primitives_max, "the number of primitives", count, 0, tree_primitives_max);
   expect(options.morton_bits >= 1 && options.morton_bits <= morton_bits_max, "morton_bits",
          options.morton_bits, 1, morton_bits_max);
-  expect(options.leaf_max >= 1 && options.leaf_max <= leaf_size_max, "leaf_max", options.leaf_max,
-         1, leaf_size_max);
+  expect(options.costs.leaf_max >= 1 && options.costs.leaf_max <= leaf_size_max, "leaf_max",
+         options.costs.leaf_max, 1, leaf_size_max);
 }
 
 /// The builder to try when a tree is too deep.
@@ -64,7 +65,7 @@ class DeviceTreeBuilder::Work {
     const CollapseCounters counters = build_nodes(tree);
     const SharedBounds shared = download(bounds_, "reading the scene's bounds");
     if (shared.is_bad == 0) {
-      throw Error("building a tree: coordinates must be finite and smaller than 1e30");
+      throw Error("building a tree: coordinates must be finite and within 1e15");
     }
     tree.bounds = read_bounds(shared, 6);
     tree.depth = static_cast<int>(counters.depth);
@@ -93,16 +94,22 @@ class DeviceTreeBuilder::Work {
     tree.bounds = download(job.bounds, "refitting a tree").bounds();
   }
 
-  TreeStatistics statistics(const DeviceTree& tree, const CollapseCosts& costs) {
-    if (tree.node_count == 0) return {};
-    StatisticsSums* sums = nullptr;
-    scratch_.divide([&](Scratch& s) { sums = s.take<StatisticsSums>(1); });
-    tree.bvh2 != nullptr ? enqueue_statistics(tree.bvh2, tree.node_count, costs, sums)
-                         : enqueue_statistics(tree.cwbvh, tree.node_count, costs, sums);
-    const StatisticsSums sum = download(sums, "statistics of a tree");
-    const double area = tree.bounds.half_area();
-    return {area > 0 ? sum.area_cost / area + static_cast<double>(costs.node) : 0,
-            sum.inner_children, sum.leaves, sum.leaf_primitives};
+  TreeQuality measure(const DeviceTree& tree) {
+    TreeQuality quality;
+    if (tree.node_count == 0) return quality;
+    QualitySums* sums = nullptr;
+    scratch_.divide([&](Scratch& s) { sums = s.take<QualitySums>(1); });
+    tree.bvh2 != nullptr ? enqueue_quality(tree.bvh2, tree.node_count, sums)
+                         : enqueue_quality(tree.cwbvh, tree.node_count, sums);
+    const QualitySums sum = download(sums, "measuring a tree");
+    const double area = std::max(tree.bounds.half_area(), 1e-37f);  // of a root without area
+    quality.nodes_per_ray = 1 + sum.node_area / area;
+    quality.triangles_per_ray = sum.triangle_area / area;
+    quality.nodes = tree.node_count;
+    quality.leaves = sum.leaves;
+    quality.slots = sum.slots;
+    quality.depth = tree.depth;
+    return quality;
   }
 
   void release() {
@@ -190,7 +197,6 @@ class DeviceTreeBuilder::Work {
     job.count = job_.count;
     job.capacity = node_capacity_;
     job.costs = options_.costs;
-    job.leaf_max = options_.leaf_max;
     job.first_node = options_.first_node, job.first_slot = options_.first_slot;
     job.queue = queue_;
     job.order = order_;
@@ -270,9 +276,7 @@ void DeviceTreeBuilder::refit(DeviceTree& tree, const Bounds* boxes,
   work_->refit(tree, {{}, boxes}, options);
 }
 
-TreeStatistics DeviceTreeBuilder::statistics(const DeviceTree& tree, const CollapseCosts& costs) {
-  return work_->statistics(tree, costs);
-}
+TreeQuality DeviceTreeBuilder::measure(const DeviceTree& tree) { return work_->measure(tree); }
 
 void DeviceTreeBuilder::release() { work_->release(); }
 

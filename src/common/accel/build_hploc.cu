@@ -13,6 +13,7 @@
 // leaves' order, and without an atomic operation.
 #include "common/accel/build_kernels.cuh"
 #include "common/accel/build_launch.cuh"
+#include "common/accel/collapse_cost.h"
 #include "common/accel/ploc_pair.h"
 
 namespace pt::device_build {

@@ -69,7 +69,7 @@ struct HierarchyJob {
   const BuildNode* primitives = nullptr;
   BuildNode* nodes = nullptr;       ///< [count]
   CollapseTable* tables = nullptr;  ///< [count] or null
-  CollapseCosts costs;
+  TreeCosts costs;
   std::uint64_t* pairs = nullptr;   ///< [count], for the builder's use
   std::uint32_t* ranges = nullptr;  ///< [count], likewise, for H-PLOC
   TreeRef* root = nullptr;
@@ -90,8 +90,7 @@ struct CollapseJob {
   const TreeRef* root = nullptr;
   std::uint32_t count = 0;     ///< primitives
   std::uint32_t capacity = 0;  ///< nodes
-  CollapseCosts costs;
-  std::uint32_t leaf_max = 0;
+  TreeCosts costs;
   std::uint32_t first_node = 0, first_slot = 0;
   std::uint64_t* queue = nullptr;  ///< [capacity], starts as ones
   std::uint32_t* order = nullptr;  ///< [count]: slot -> primitive
@@ -119,15 +118,13 @@ struct RefitJob {
 void enqueue_refit(const RefitJob& job, Bvh2Node* nodes);
 void enqueue_refit(const RefitJob& job, CwbvhNode* nodes);
 
-/// Sums over the nodes; starts as zeros.
-struct StatisticsSums {
-  double area_cost;
-  unsigned long long inner_children, leaves, leaf_primitives;
+/// Sums over the nodes of a tree; starts as zeros. Areas are halves, of the children's boxes.
+struct QualitySums {
+  double node_area, triangle_area;
+  unsigned long long leaves, slots;
 };
 
-void enqueue_statistics(const Bvh2Node* nodes, std::uint32_t count, const CollapseCosts& costs,
-                        StatisticsSums* sums);
-void enqueue_statistics(const CwbvhNode* nodes, std::uint32_t count, const CollapseCosts& costs,
-                        StatisticsSums* sums);
+void enqueue_quality(const Bvh2Node* nodes, std::uint32_t count, QualitySums* sums);
+void enqueue_quality(const CwbvhNode* nodes, std::uint32_t count, QualitySums* sums);
 
 }  // namespace pt::device_build

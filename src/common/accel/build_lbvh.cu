@@ -2,6 +2,7 @@
 // 'Fast and Simple Agglomerative LBVH Construction').
 #include "common/accel/build_kernels.cuh"
 #include "common/accel/build_launch.cuh"
+#include "common/accel/collapse_cost.h"
 
 namespace pt::device_build {
 namespace {

@@ -1,7 +1,9 @@
 // Fits the boxes of finished trees to moved primitives: from the nodes that have leaves only, each
 // thread climbs; at a node with several inner children the last thread to arrive goes on.
+#include "common/accel/binary_tree.h"
 #include "common/accel/build_kernels.cuh"
 #include "common/accel/build_launch.cuh"
+#include "common/accel/encode_cwbvh.h"
 
 namespace pt::device_build {
 namespace {
@@ -12,10 +14,10 @@ __device__ Bounds slot_bounds(const RefitJob& job, std::uint32_t first, std::uin
   Bounds box;
   for (std::uint32_t slot = first - job.first_slot; slot < first - job.first_slot + count; ++slot) {
     if (job.boxes != nullptr) {
-      box.grow(job.boxes[job.order[slot]]);
+      box.grow(widened(job.boxes[job.order[slot]]));
     } else {
       const Triangle t = load_wide(&job.triangles[slot]);
-      box.grow(triangle_bounds(t.v0, t.v1, t.v2));
+      box.grow(widened(triangle_bounds(t.v0, t.v1, t.v2)));
     }
   }
   return box;
@@ -43,11 +45,10 @@ __device__ Bounds refit_node(const RefitJob& job, Bvh2Node& node) {
   PT_UNROLL(2)
   for (int i = 0; i < 2; ++i) {
     const std::uint32_t child = node.child[i];
+    if (i == 1 && child == node.child[0]) continue;  // unused: the tree is one primitive
     const Bounds box = is_leaf(child) ? slot_bounds(job, leaf_first(child), leaf_count(child))
                                       : inner_bounds(job, child);
-    node.xy[i] = {box.min.x, box.max.x, box.min.y, box.max.y};
-    node.z[2 * i] = box.min.z;
-    node.z[2 * i + 1] = box.max.z;
+    set_child_bounds(node, i, box);
     all.grow(box);
   }
   return all;

@@ -1,10 +1,30 @@
-// Sums over the nodes of a finished tree.
+// Sums over the nodes of a finished tree: the device's share of measure_tree.
+#include "common/accel/binary_tree.h"
 #include "common/accel/build_kernels.cuh"
 #include "common/accel/build_launch.cuh"
-#include "common/accel/tree_cost.h"
+#include "common/accel/encode_cwbvh.h"
 
 namespace pt::device_build {
 namespace {
+
+// Calls visit(half area, triangles) for each child; an inner one has 0 triangles.
+template <class Visit>
+__device__ void for_each_child(const Bvh2Node& node, Visit&& visit) {
+  const bool has_one = node.child[0] == node.child[1];
+  for (int i = 0; i < (has_one ? 1 : 2); ++i) {
+    const std::uint32_t child = node.child[i];
+    visit(child_bounds(node, i).half_area(), is_leaf(child) ? leaf_count(child) : 0u);
+  }
+}
+template <class Visit>
+__device__ void for_each_child(const CwbvhNode& node, Visit&& visit) {
+  for (int s = 0; s < cwbvh_width; ++s) {
+    if (node.meta[s] == 0) continue;
+    const bool is_inner = (node.inner_mask >> s & 1) != 0;
+    visit(decode_cwbvh_bounds(node, s).half_area(),
+          is_inner ? 0u : static_cast<std::uint32_t>(__popc(node.meta[s] >> 5)));
+  }
+}
 
 template <class T>
 __device__ void add_from_warp(T value, T* sum) {
@@ -14,39 +34,37 @@ __device__ void add_from_warp(T value, T* sum) {
 
 template <class Node>
 __global__ void __launch_bounds__(block_size)
-    sum_costs(const Node* nodes, std::uint32_t count, CollapseCosts costs, StatisticsSums* sums) {
-  double area_cost = 0;
-  unsigned long long inner = 0, leaves = 0, primitives = 0;
+    sum_quality(const Node* nodes, std::uint32_t count, QualitySums* sums) {
+  QualitySums mine{};
   const std::uint32_t step = gridDim.x * blockDim.x;
   for (std::uint32_t k = blockIdx.x * blockDim.x + threadIdx.x; k < count; k += step) {
-    const NodeCost cost = node_cost(load_wide(&nodes[k]), costs);
-    area_cost += cost.area_cost;
-    inner += cost.inner_children;
-    leaves += cost.leaves;
-    primitives += cost.leaf_primitives;
+    for_each_child(load_wide(&nodes[k]), [&](float half_area, std::uint32_t triangles) {
+      if (triangles == 0) mine.node_area += static_cast<double>(half_area);
+      mine.triangle_area += static_cast<double>(half_area) * triangles;
+      mine.leaves += triangles > 0 ? 1 : 0;
+      mine.slots += triangles;
+    });
   }
-  add_from_warp(area_cost, &sums->area_cost);
-  add_from_warp(inner, &sums->inner_children);
-  add_from_warp(leaves, &sums->leaves);
-  add_from_warp(primitives, &sums->leaf_primitives);
+  add_from_warp(mine.node_area, &sums->node_area);
+  add_from_warp(mine.triangle_area, &sums->triangle_area);
+  add_from_warp(mine.leaves, &sums->leaves);
+  add_from_warp(mine.slots, &sums->slots);
 }
 
 template <class Node>
-void sum(const Node* nodes, std::uint32_t count, const CollapseCosts& costs, StatisticsSums* sums) {
-  check_cuda(cudaMemsetAsync(sums, 0, sizeof(StatisticsSums)), "clear sums");
-  sum_costs<<<resident_blocks(sum_costs<Node>, count), block_size>>>(nodes, count, costs, sums);
-  check_cuda(cudaGetLastError(), "statistics");
+void enqueue(const Node* nodes, std::uint32_t count, QualitySums* sums) {
+  check_cuda(cudaMemsetAsync(sums, 0, sizeof(QualitySums)), "clear sums");
+  sum_quality<<<resident_blocks(sum_quality<Node>, count), block_size>>>(nodes, count, sums);
+  check_cuda(cudaGetLastError(), "sum_quality");
 }
 
 }  // namespace
 
-void enqueue_statistics(const Bvh2Node* nodes, std::uint32_t count, const CollapseCosts& costs,
-                        StatisticsSums* sums) {
-  sum(nodes, count, costs, sums);
+void enqueue_quality(const Bvh2Node* nodes, std::uint32_t count, QualitySums* sums) {
+  enqueue(nodes, count, sums);
 }
-void enqueue_statistics(const CwbvhNode* nodes, std::uint32_t count, const CollapseCosts& costs,
-                        StatisticsSums* sums) {
-  sum(nodes, count, costs, sums);
+void enqueue_quality(const CwbvhNode* nodes, std::uint32_t count, QualitySums* sums) {
+  enqueue(nodes, count, sums);
 }
 
 }  // namespace pt::device_build

@@ -2,25 +2,25 @@
 // node's child. Costs are areas (half areas, as Bounds has them) times the cost of one step.
 #pragma once
 
+#include "common/accel/binary_tree.h"
 #include "common/accel/build_tree.h"
 #include "common/accel/cwbvh.h"
 #include "common/accel/encode_cwbvh.h"
 
 namespace pt {
 
-struct CollapseCosts {
-  float node = 1.0f;      ///< of visiting a node
-  float triangle = 0.3f;  ///< of testing one triangle
-};
+PT_HD std::uint32_t wide_leaf_max(const TreeCosts& costs) {
+  return costs.leaf_max < cwbvh_leaf_max ? costs.leaf_max : cwbvh_leaf_max;
+}
 
 /// The cost of a subtree as a leaf of a wide node; infinite when it has too many triangles.
-PT_HD float wide_leaf_cost(const CollapseCosts& costs, float area, std::uint32_t count) {
-  return count <= cwbvh_leaf_max
+PT_HD float wide_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
+  return count <= wide_leaf_max(costs)
              ? multiply_rounded(multiply_rounded(area, static_cast<float>(count)), costs.triangle)
              : HUGE_VALF;
 }
 
-PT_HD CollapseTable primitive_table(const CollapseCosts& costs, float area) {
+PT_HD CollapseTable primitive_table(const TreeCosts& costs, float area) {
   CollapseTable table;
   for (float& cost : table.cost) cost = wide_leaf_cost(costs, area, 1);
   return table;
@@ -45,7 +45,7 @@ PT_HD ChildSplit split_children(const CollapseTable& a, const CollapseTable& b, 
 }
 
 /// The table of the node that joins two subtrees.
-PT_HD CollapseTable join_tables(const CollapseCosts& costs, const CollapseTable& a,
+PT_HD CollapseTable join_tables(const TreeCosts& costs, const CollapseTable& a,
                                 const CollapseTable& b, float area, std::uint32_t count) {
   CollapseTable table;
   const float inner =
@@ -60,10 +60,9 @@ PT_HD CollapseTable join_tables(const CollapseCosts& costs, const CollapseTable&
 }
 
 /// Whether a subtree is cheaper as one leaf of a binary node than as the best tree below it.
-/// `leaf_max` < many_primitives.
-PT_HD bool is_binary_leaf(const BuildTree& tree, const CollapseCosts& costs, TreeRef root,
-                          std::uint32_t leaf_max) {
-  if (ref_count(root) > leaf_max) return false;
+/// costs.leaf_max < many_primitives.
+PT_HD bool is_binary_leaf(const BuildTree& tree, const TreeCosts& costs, TreeRef root) {
+  if (ref_count(root) > costs.leaf_max) return false;
   if (is_primitive(root)) return true;
   struct Entry {
     TreeRef ref;

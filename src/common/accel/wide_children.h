@@ -30,8 +30,9 @@ PT_HD T get_at(const T (&array)[cwbvh_width], int place) {
 
 }  // namespace detail
 
-/// Opens the largest child until there are eight: subtrees of three triangles or fewer are leaves.
-PT_HD WideChildren greedy_children(const BuildTree& tree, TreeRef root) {
+/// Opens the largest child until there are eight; subtrees that may be leaves are leaves.
+PT_HD WideChildren greedy_children(const BuildTree& tree, const TreeCosts& costs, TreeRef root) {
+  const std::uint32_t leaf_max = wide_leaf_max(costs);
   WideChildren children;
   float area[cwbvh_width];  // negative: stays closed
   PT_UNROLL(8)
@@ -48,7 +49,7 @@ PT_HD WideChildren greedy_children(const BuildTree& tree, TreeRef root) {
     if (!(best_area >= 0.0f)) break;
     const BuildNode node = load_node(tree, detail::get_at(children.ref, best));
     const auto area_of = [&](TreeRef ref) {
-      if (ref_count(ref) <= cwbvh_leaf_max) return -1.0f;
+      if (ref_count(ref) <= leaf_max) return -1.0f;
       return fmaxf(load_node(tree, ref).bounds().half_area(), 0.0f);  // NaN counts as 0
     };
     detail::set_at(children.ref, best, node.left);
@@ -59,14 +60,14 @@ PT_HD WideChildren greedy_children(const BuildTree& tree, TreeRef root) {
   }
   PT_UNROLL(8)
   for (int i = 0; i < cwbvh_width; ++i) {
-    if (i < children.count && ref_count(children.ref[i]) <= cwbvh_leaf_max) {
+    if (i < children.count && ref_count(children.ref[i]) <= leaf_max) {
       children.leaf_mask |= 1u << i;
     }
   }
   return children;
 }
 
-PT_HD CollapseTable load_table(const BuildTree& tree, const CollapseCosts& costs, TreeRef ref) {
+PT_HD CollapseTable load_table(const BuildTree& tree, const TreeCosts& costs, TreeRef ref) {
   if (is_primitive(ref)) {
     return primitive_table(costs, load_node(tree, ref).bounds().half_area());
   }
@@ -74,8 +75,7 @@ PT_HD CollapseTable load_table(const BuildTree& tree, const CollapseCosts& costs
 }
 
 /// The children that the tables found cheapest.
-PT_HD WideChildren optimal_children(const BuildTree& tree, const CollapseCosts& costs,
-                                    TreeRef root) {
+PT_HD WideChildren optimal_children(const BuildTree& tree, const TreeCosts& costs, TreeRef root) {
   WideChildren children;
   int share[cwbvh_width];  // children that a subtree may still become
   PT_UNROLL(8)
@@ -109,7 +109,7 @@ PT_HD WideChildren optimal_children(const BuildTree& tree, const CollapseCosts& 
   PT_UNROLL(8)
   for (int i = 0; i < cwbvh_width; ++i) {
     const TreeRef ref = children.ref[i];
-    if (i >= children.count || ref_count(ref) > cwbvh_leaf_max) continue;
+    if (i >= children.count || ref_count(ref) > wide_leaf_max(costs)) continue;
     const float leaf =
         wide_leaf_cost(costs, load_node(tree, ref).bounds().half_area(), ref_count(ref));
     if (is_primitive(ref) || leaf <= load_wide(&tree.tables[ref_index(ref)]).cost[0]) {
