@@ -21,22 +21,32 @@ inline Triangle triangle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {a, 0, b, 0, c, 0};
 }
 
-/// A grid over [0, 1]^2 with hills; about `count` triangles, at least as many.
+/// A grid over [0, 1]^2 with hills of eight sizes; about `count` triangles, at least as many.
 inline Mesh make_hills(std::uint32_t count) {
   const auto side = static_cast<std::uint32_t>(std::ceil(std::sqrt(count / 2.0)));
+  constexpr int octaves = 8;
+  struct Waves {
+    float at[octaves];
+  };
+  std::vector<Waves> along_x(side + 1), along_y(side + 1);
+  for (std::uint32_t i = 0; i <= side; ++i) {
+    float size = 0.1f, frequency = 7;
+    for (int octave = 0; octave < octaves; ++octave, size *= 0.5f, frequency *= 2.3f) {
+      const float phase = frequency * static_cast<float>(i) / static_cast<float>(side);
+      along_x[i].at[octave] = size * std::sin(phase + static_cast<float>(octave));
+      along_y[i].at[octave] = std::cos(phase);
+    }
+  }
   Mesh mesh;
   mesh.positions.reserve(std::size_t{side + 1} * (side + 1));
   mesh.triangles.reserve(std::size_t{side} * side * 2);
   for (std::uint32_t j = 0; j <= side; ++j) {
     for (std::uint32_t i = 0; i <= side; ++i) {
-      const float x = static_cast<float>(i) / static_cast<float>(side);
-      const float y = static_cast<float>(j) / static_cast<float>(side);
-      float height = 0, size = 0.1f, frequency = 7;
-      for (int octave = 0; octave < 8; ++octave, size *= 0.5f, frequency *= 2.1f) {
-        height += size * std::sin(frequency * x + static_cast<float>(octave)) *
-                  std::cos(frequency * y + 0.3f * height);
-      }
-      mesh.positions.push_back({x, y, height});
+      float height = 0;
+      for (int octave = 0; octave < octaves; ++octave)
+        height += along_x[i].at[octave] * along_y[j].at[octave];
+      mesh.positions.push_back({static_cast<float>(i) / static_cast<float>(side),
+                                static_cast<float>(j) / static_cast<float>(side), height});
     }
   }
   for (std::uint32_t j = 0; j < side; ++j) {

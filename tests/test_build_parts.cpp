@@ -39,7 +39,9 @@ TEST(Morton, GridsOfAllSizesHoldTheirBox) {
       EXPECT_EQ(morton_code(grid, Vec3(-size)), 0u);
       const std::uint64_t last = morton_code(grid, Vec3(size));
       EXPECT_LT(last, 1ull << 3 * bits);
-      if (size > 1e-30f) EXPECT_EQ(last, (1ull << 3 * bits) - 1) << size;
+      if (size > 1e-30f) {
+        EXPECT_EQ(last, (1ull << 3 * bits) - 1) << size;
+      }
     }
   }
   EXPECT_EQ(morton_code(make_morton_grid({}, 21), Vec3(5)), 0u);
@@ -88,13 +90,15 @@ TEST(PlocPair, SmallerBoxesComeFirstAndStrangeOnesLast) {
 struct RandomTree {
   std::vector<BuildNode> primitives, nodes;
   std::vector<CollapseTable> tables;
+  std::vector<float> binary_costs;
   TreeCosts costs;
   TreeRef root = 0;
 
-  RandomTree(std::uint32_t count, const TreeCosts& with, std::uint64_t seed) : costs(with) {
+  RandomTree(std::uint32_t count, const TreeCosts& with, std::uint64_t seed, double extent = 10)
+      : costs(with) {
     TestRandom random(seed);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3 p = point_in_cube(random, 10);
+      const Vec3 p = point_in_cube(random, extent);
       primitives.push_back({p, 0, p + 0.5f + point_in_cube(random, 0.5), 0});
     }
     root = build(random, 0, count);
@@ -110,11 +114,17 @@ struct RandomTree {
     const auto place = static_cast<std::uint32_t>(nodes.size());
     tables.push_back(join_tables(costs, load_table(view(), costs, left),
                                  load_table(view(), costs, right), box.half_area(), last - first));
+    const auto cost_of = [&](TreeRef ref, const BuildNode& node) {
+      return is_primitive(ref) ? binary_leaf_cost(costs, node.bounds().half_area(), 1)
+                               : binary_costs[ref_index(ref)];
+    };
+    binary_costs.push_back(
+        binary_cost(costs, cost_of(left, a), cost_of(right, b), box.half_area(), last - first));
     nodes.push_back({box.min, left, box.max, right});
     return make_ref(last - first, place);
   }
 
-  BuildTree view() const { return {primitives.data(), nodes.data(), tables.data()}; }
+  BuildTree view() const { return {primitives.data(), nodes.data(), tables.data(), nullptr}; }
 };
 
 /// The cost of the wide tree below an inner child.
@@ -196,29 +206,33 @@ TEST(WideChildren, OptimumIsTheCpuBuilders) {
   EXPECT_EQ(nodes, reference.nodes.size());
 }
 
+// Leaves as the CPU builder's are: by an independent recursion over all choices.
 TEST(BinaryLeaf, IsALeafWhereThatIsCheaper) {
-  const auto best_cost = [](const auto& self, const RandomTree& t, TreeRef ref) -> double {
+  const auto visit = [](const auto& self, const RandomTree& t, TreeRef ref,
+                        auto&& check) -> double {
     const BuildNode node = load_node(t.view(), ref);
-    const double area = node.bounds().half_area();
-    const double leaf = area * ref_count(ref) * t.costs.triangle;
+    const float area = node.bounds().half_area();
+    const double leaf = ref_count(ref) <= t.costs.leaf_max
+                            ? double(area) * ref_count(ref) * double(t.costs.triangle)
+                            : 1e30;
     if (is_primitive(ref)) return leaf;
-    const double inner = area * t.costs.node + self(self, t, node.left) + self(self, t, node.right);
-    return ref_count(ref) <= t.costs.leaf_max ? std::min(leaf, inner) : inner;
+    const double inner = double(area) * double(t.costs.node) + self(self, t, node.left, check) +
+                         self(self, t, node.right, check);
+    if (std::abs(leaf / inner - 1) > 1e-5) check(ref, area, leaf < inner);
+    return std::min(leaf, inner);
   };
   int leaves = 0, others = 0;
-  for (std::uint64_t seed = 0; seed < 300; ++seed) {
-    RandomTree tree(2 + seed % 7, {1.0f, 0.7f, 8}, seed);
-    const double best = best_cost(best_cost, tree, tree.root);
-    const BuildNode node = load_node(tree.view(), tree.root);
-    const double as_leaf = node.bounds().half_area() * ref_count(tree.root) * tree.costs.triangle;
-    const bool expected = as_leaf <= best;
-    EXPECT_EQ(is_binary_leaf(tree.view(), tree.costs, tree.root), expected);
-    (expected ? leaves : others) += 1;
-    tree.costs.leaf_max = 1;
-    EXPECT_FALSE(is_binary_leaf(tree.view(), tree.costs, tree.root));
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    RandomTree tree(2 + seed % 40, {1.0f, 0.7f, 8}, seed, 0.3);
+    BuildTree view = tree.view();
+    view.binary_costs = tree.binary_costs.data();
+    visit(visit, tree, tree.root, [&](TreeRef ref, float area, bool expected) {
+      EXPECT_EQ(is_binary_leaf(view, tree.costs, ref, area), expected);
+      (expected ? leaves : others) += 1;
+    });
   }
-  EXPECT_GT(leaves, 20);
-  EXPECT_GT(others, 20);
+  EXPECT_GT(leaves, 200);
+  EXPECT_GT(others, 200);
 }
 
 }  // namespace

@@ -143,17 +143,25 @@ struct WideMaker {
 struct BinaryMaker {
   struct Children {
     TreeRef ref[2];
+    Bounds box[2];
     bool is_leaf[2];
   };
   const CollapseJob& job;
   Bvh2Node* nodes;
 
   __device__ Children choose(TreeRef ref) const {
-    if (is_primitive(ref)) return {{ref, ref}, {true, true}};  // the whole tree
     const BuildNode node = load_node(job.tree, ref);
-    return {{node.left, node.right},
-            {is_binary_leaf(job.tree, job.costs, node.left),
-             is_binary_leaf(job.tree, job.costs, node.right)}};
+    if (is_primitive(ref)) {  // the whole tree
+      return {{ref, ref}, {node.bounds(), unreachable_bounds()}, {true, true}};
+    }
+    Children c;
+    c.ref[0] = node.left, c.ref[1] = node.right;
+    PT_UNROLL(2)
+    for (int i = 0; i < 2; ++i) {
+      c.box[i] = load_node(job.tree, c.ref[i]).bounds();
+      c.is_leaf[i] = is_binary_leaf(job.tree, job.costs, c.ref[i], c.box[i].half_area());
+    }
+    return c;
   }
   __device__ void count(const Children& c, std::uint32_t& inner, std::uint32_t& slots) const {
     PT_UNROLL(2)
@@ -168,10 +176,8 @@ struct BinaryMaker {
     node.padding[0] = node.padding[1] = 0;
     PT_UNROLL(2)
     for (int i = 0; i < 2; ++i) {
-      const bool is_unused = i == 1 && c.ref[0] == c.ref[1];
-      set_child_bounds(node, i,
-                       is_unused ? unreachable_bounds() : load_node(job.tree, c.ref[i]).bounds());
-      if (is_unused) {
+      set_child_bounds(node, i, c.box[i]);
+      if (i == 1 && c.ref[0] == c.ref[1]) {
         node.child[1] = node.child[0];
       } else if (c.is_leaf[i]) {
         node.child[i] = make_leaf(job.first_slot + queue.places.slot, ref_count(c.ref[i]));

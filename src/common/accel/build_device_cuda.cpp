@@ -137,6 +137,7 @@ class DeviceTreeBuilder::Work {
       prefixes_ = s.take<std::uint8_t>(count + 1);
       job_.nodes = s.take<BuildNode>(count);
       job_.tables = has_tables ? s.take<CollapseTable>(count) : nullptr;
+      job_.binary_costs = is_wide() ? nullptr : s.take<float>(count);
       job_.pairs = s.take<std::uint64_t>(count);
       job_.ranges = s.take<std::uint32_t>(count);
     });
@@ -192,7 +193,7 @@ class DeviceTreeBuilder::Work {
 
   CollapseCounters collapse(DeviceBuildTimes& times) {
     CollapseJob job;
-    job.tree = {primitives_, job_.nodes, job_.tables};
+    job.tree = {primitives_, job_.nodes, job_.tables, job_.binary_costs};
     job.root = job_.root;
     job.count = job_.count;
     job.capacity = node_capacity_;

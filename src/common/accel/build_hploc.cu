@@ -11,9 +11,7 @@
 // first its leaf's. A merged node takes the lower member's place, and the cluster keeps the other
 // one's. So the tree lies in memory in the same way whatever the order of the threads, close to the
 // leaves' order, and without an atomic operation.
-#include "common/accel/build_kernels.cuh"
-#include "common/accel/build_launch.cuh"
-#include "common/accel/collapse_cost.h"
+#include "common/accel/build_costs.cuh"
 #include "common/accel/ploc_pair.h"
 
 namespace pt::device_build {
@@ -68,19 +66,13 @@ __device__ int find_partner(const WarpClusters& c, int lane) {
   return best == no_pair ? lane : pair_partner(best, lane);
 }
 
-template <bool with_tables>
-__device__ CollapseTable table_of(const HierarchyJob& job, TreeRef ref, const Bounds& box) {
-  return is_primitive(ref) ? primitive_table(job.costs, box.half_area())
-                           : load_fresh(&job.tables[ref_index(ref)]);
-}
-
 // Joins the pairs that chose each other, and closes the gaps. Never none: the pair of the least
 // rank has chosen each other.
-template <bool with_tables>
+template <class Costs>
 __device__ void merge_pairs(const HierarchyJob& job, WarpClusters& c, int lane, int* gather) {
   const int partner = find_partner(c, lane);
-  const bool pairs =
-      partner != lane && __shfl_sync(all_lanes, partner, partner & 31) == lane && lane < c.count;
+  const int its_partner = __shfl_sync(all_lanes, partner, partner & 31);
+  const bool pairs = partner != lane && its_partner == lane && lane < c.count;
   const Cluster other = shuffle(c.cluster, partner & 31);
   const Bounds other_box = shuffle(c.box, partner & 31);
   if (pairs && lane < partner) {
@@ -89,11 +81,8 @@ __device__ void merge_pairs(const HierarchyJob& job, WarpClusters& c, int lane, 
     box.grow(other_box);
     const std::uint32_t place = c.cluster.place;
     store_wide(&job.nodes[place], BuildNode{box.min, c.cluster.ref, box.max, other.ref});
-    if (with_tables) {
-      const CollapseTable a = table_of<with_tables>(job, c.cluster.ref, c.box);
-      const CollapseTable b = table_of<with_tables>(job, other.ref, other_box);
-      store_wide(&job.tables[place], join_tables(job.costs, a, b, box.half_area(), size));
-    }
+    Costs::join(job, place, costs_of<Costs>(job, c.cluster.ref, c.box),
+                costs_of<Costs>(job, other.ref, other_box), box.half_area(), size);
     c.cluster = {make_ref(size, place), other.place};
     c.box = box;
   }
@@ -126,12 +115,12 @@ __device__ WarpClusters load_clusters(const HierarchyJob& job, std::uint32_t fir
   return c;
 }
 
-template <bool with_tables>
+template <class Costs>
 __device__ void merge_range(const HierarchyJob& job, std::uint32_t first, std::uint32_t split,
                             std::uint32_t last, int lane, int* gather) {
   const bool is_whole = last - first + 1 == job.count;
   WarpClusters c = load_clusters(job, first, split, last, lane);
-  while (c.count > (is_whole ? 1 : kept)) merge_pairs<with_tables>(job, c, lane, gather);
+  while (c.count > (is_whole ? 1 : kept)) merge_pairs<Costs>(job, c, lane, gather);
   if (is_whole) {
     if (lane == 0) *job.root = c.cluster.ref;
   } else if (lane < kept) {  // the range has more places than that
@@ -139,7 +128,7 @@ __device__ void merge_range(const HierarchyJob& job, std::uint32_t first, std::u
   }
 }
 
-template <bool with_tables>
+template <class Costs>
 __global__ void __launch_bounds__(hploc_block) cluster_ranges(HierarchyJob job) {
   __shared__ int gather_of_warp[hploc_block / 32][32];
   int* gather = gather_of_warp[threadIdx.x / 32];
@@ -166,9 +155,9 @@ __global__ void __launch_bounds__(hploc_block) cluster_ranges(HierarchyJob job) 
     __threadfence();  // what other warps left for these ranges
     for (; to_merge != 0; to_merge &= to_merge - 1) {
       const int from = __ffs(static_cast<int>(to_merge)) - 1;
-      merge_range<with_tables>(job, __shfl_sync(all_lanes, first, from),
-                               __shfl_sync(all_lanes, split, from),
-                               __shfl_sync(all_lanes, last, from), lane, gather);
+      merge_range<Costs>(job, __shfl_sync(all_lanes, first, from),
+                         __shfl_sync(all_lanes, split, from), __shfl_sync(all_lanes, last, from),
+                         lane, gather);
     }
     __threadfence();  // before the ranges are handed on
     __syncwarp();
@@ -192,11 +181,8 @@ void enqueue_hploc(const HierarchyJob& job) {
   check_cuda(cudaGetLastError(), "make_clusters");
   if (job.count == 1) return;
   const unsigned blocks = (job.count + hploc_block - 1) / hploc_block;
-  if (job.tables != nullptr) {
-    cluster_ranges<true><<<blocks, hploc_block>>>(job);
-  } else {
-    cluster_ranges<false><<<blocks, hploc_block>>>(job);
-  }
+  with_costs(job,
+             [&](auto costs) { cluster_ranges<decltype(costs)><<<blocks, hploc_block>>>(job); });
   check_cuda(cudaGetLastError(), "hploc");
 }
 

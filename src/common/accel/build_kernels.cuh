@@ -68,7 +68,8 @@ struct HierarchyJob {
   const std::uint8_t* prefixes = nullptr;
   const BuildNode* primitives = nullptr;
   BuildNode* nodes = nullptr;       ///< [count]
-  CollapseTable* tables = nullptr;  ///< [count] or null
+  CollapseTable* tables = nullptr;  ///< [count] or null: not needed
+  float* binary_costs = nullptr;    ///< likewise
   TreeCosts costs;
   std::uint64_t* pairs = nullptr;   ///< [count], for the builder's use
   std::uint32_t* ranges = nullptr;  ///< [count], likewise, for H-PLOC

@@ -40,7 +40,8 @@ struct alignas(32) CollapseTable {
 struct BuildTree {
   const BuildNode* primitives = nullptr;  ///< [primitive]
   const BuildNode* nodes = nullptr;
-  const CollapseTable* tables = nullptr;  ///< by inner node; null: not made
+  const CollapseTable* tables = nullptr;  ///< by inner node, for optimal wide nodes
+  const float* binary_costs = nullptr;    ///< by inner node, for binary trees: see binary_cost
 };
 
 PT_HD BuildNode load_node(const BuildTree& tree, TreeRef ref) {

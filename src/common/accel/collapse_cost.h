@@ -59,34 +59,25 @@ PT_HD CollapseTable join_tables(const TreeCosts& costs, const CollapseTable& a,
   return table;
 }
 
-/// Whether a subtree is cheaper as one leaf of a binary node than as the best tree below it.
+/// The cost of a subtree as a leaf of a binary tree; infinite when it has too many triangles.
 /// costs.leaf_max < many_primitives.
-PT_HD bool is_binary_leaf(const BuildTree& tree, const TreeCosts& costs, TreeRef root) {
-  if (ref_count(root) > costs.leaf_max) return false;
-  if (is_primitive(root)) return true;
-  struct Entry {
-    TreeRef ref;
-    float cost;  // a leaf's
-    int parent;
-  };
-  Entry entries[2 * many_primitives];  // parents come before their children
-  float below[2 * many_primitives];    // the sum of the children's costs
-  int count = 0;
-  entries[count++] = {root, 0.0f, -1};
-  for (int i = 0; i < count; ++i) {
-    const BuildNode node = load_node(tree, entries[i].ref);
-    const float area = node.bounds().half_area();
-    const TreeRef ref = entries[i].ref;
-    entries[i].cost = area * static_cast<float>(ref_count(ref)) * costs.triangle;
-    below[i] = is_primitive(ref) ? HUGE_VALF : area * costs.node;
-    if (is_primitive(ref)) continue;
-    entries[count++] = {node.left, 0.0f, i};
-    entries[count++] = {node.right, 0.0f, i};
-  }
-  for (int i = count - 1; i > 0; --i) {
-    below[entries[i].parent] += fminf(entries[i].cost, below[i]);
-  }
-  return entries[0].cost <= below[0];
+PT_HD float binary_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
+  return count <= costs.leaf_max
+             ? multiply_rounded(multiply_rounded(area, static_cast<float>(count)), costs.triangle)
+             : HUGE_VALF;
+}
+
+/// The least cost of the node that joins two subtrees of costs `a` and `b`, as a node or a leaf.
+PT_HD float binary_cost(const TreeCosts& costs, float a, float b, float area, std::uint32_t count) {
+  const float inner = add_rounded(add_rounded(a, b), multiply_rounded(area, costs.node));
+  return fminf(inner, binary_leaf_cost(costs, area, count));
+}
+
+/// Whether a subtree, whose box has half the surface `area`, is to be a leaf of the binary tree.
+PT_HD bool is_binary_leaf(const BuildTree& tree, const TreeCosts& costs, TreeRef ref, float area) {
+  if (ref_count(ref) > costs.leaf_max) return false;
+  return is_primitive(ref) ||
+         binary_leaf_cost(costs, area, ref_count(ref)) <= tree.binary_costs[ref_index(ref)];
 }
 
 }  // namespace pt
