@@ -7,6 +7,7 @@
 #include "build_cases.h"
 #include "common/accel/build_device.h"
 #include "common/accel/build_sah.h"
+#include "common/accel/build_triangle_tree.h"
 #include "common/accel/morton.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/accel/traverse_triangles_brute.h"
@@ -368,6 +369,20 @@ TEST_F(CudaBuild, TreesAreNearlyAsGoodAsTheCpuBuilders) {
   }
 }
 
+void print_cpu_trees(const Mesh& mesh) {
+  for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
+    TreeOptions options;
+    options.accel = accel;
+    const TriangleTreeData tree = build_triangle_tree(std::span(&mesh, 1), {}, options);
+    const bool is_wide = accel == AccelKind::cwbvh;
+    const TreeQuality quality =
+        is_wide ? measure_tree(std::span(tree.cwbvh), 0) : measure_tree(std::span(tree.bvh2), 0);
+    std::printf("%-88s %7.0f | %9llu %9.3f %5d\n", is_wide ? "cpu sah cwbvh" : "cpu sah bvh2",
+                tree.build_ms, static_cast<unsigned long long>(quality.nodes),
+                quality.sah_cost(is_wide ? 0.3 : 1.0), quality.depth);
+  }
+}
+
 // What a build costs: PTEXP_LARGE_TESTS=<triangles>[:part of a name] prints times of several
 // builds.
 TEST_F(CudaBuild, TimesOfALargeBuild) {
@@ -386,6 +401,7 @@ TEST_F(CudaBuild, TimesOfALargeBuild) {
       "%u triangles, ms: median of %d\n%-32s %7s %7s %7s %7s %7s %7s %7s | %9s %9s %5s %s\n", count,
       repeats, "", "bounds", "morton", "sort", "tree", "nodes", "records", "total", "nodes",
       "SAH cost", "depth", "scratch MB");
+  if (std::getenv("PTEXP_LARGE_SAH") != nullptr) print_cpu_trees(hills);
   for (const DeviceBuildOptions& base : all_options()) {
     for (const int bits : {10, 16, 21}) {
       DeviceBuildOptions options = base;

@@ -35,31 +35,29 @@ __device__ Cluster unpack(std::uint64_t bits) {
   return {static_cast<TreeRef>(bits), static_cast<std::uint32_t>(bits >> 32)};
 }
 
-__device__ Vec3 shuffle(const Vec3& v, int from) {
-  return {__shfl_sync(all_lanes, v.x, from), __shfl_sync(all_lanes, v.y, from),
-          __shfl_sync(all_lanes, v.z, from)};
-}
-__device__ Bounds shuffle(const Bounds& b, int from) {
-  return {shuffle(b.min, from), shuffle(b.max, from)};
-}
-__device__ Cluster shuffle(const Cluster& c, int from) {
-  return {__shfl_sync(all_lanes, c.ref, from), __shfl_sync(all_lanes, c.place, from)};
-}
-
-// One cluster per lane, in the lanes below `count`.
+// The clusters of a range in shared memory, one per lane: reading a neighbour's box there takes a
+// third of the instructions that shuffling it would. Places from `count` on hold anything.
 struct WarpClusters {
-  Cluster cluster;
-  Bounds box;
-  int count;
+  float4 low[32 + ploc_radius];   // min, and max.x
+  float2 high[32 + ploc_radius];  // max.y, max.z
+  Cluster cluster[32];
+
+  __device__ Bounds box(int i) const {
+    return {{low[i].x, low[i].y, low[i].z}, {low[i].w, high[i].x, high[i].y}};
+  }
+  __device__ void set(int i, const Cluster& c, const Bounds& b) {
+    low[i] = {b.min.x, b.min.y, b.min.z, b.max.x};
+    high[i] = {b.max.y, b.max.z};
+    cluster[i] = c;
+  }
 };
 
-__device__ int find_partner(const WarpClusters& c, int lane) {
+__device__ int find_partner(const WarpClusters& clusters, const Bounds& box, int count, int lane) {
   std::uint32_t best = no_pair;
   PT_UNROLL(8)
   for (int distance = 1; distance <= ploc_radius; ++distance) {
-    const Bounds other = shuffle(c.box, (lane + distance) & 31);
-    std::uint32_t rank = pair_rank(c.box, other, lane, distance);
-    if (lane + distance >= c.count) rank = no_pair;
+    std::uint32_t rank = pair_rank(box, clusters.box(lane + distance), lane, distance);
+    if (lane + distance >= count) rank = no_pair;
     const std::uint32_t below = __shfl_up_sync(all_lanes, rank, distance);
     best = min(best, lane >= distance ? min(rank, below) : rank);
   }
@@ -67,71 +65,67 @@ __device__ int find_partner(const WarpClusters& c, int lane) {
 }
 
 // Joins the pairs that chose each other, and closes the gaps. Never none: the pair of the least
-// rank has chosen each other.
+// rank has chosen each other. Returns how many clusters are left.
 template <class Costs>
-__device__ void merge_pairs(const HierarchyJob& job, WarpClusters& c, int lane, int* gather) {
-  const int partner = find_partner(c, lane);
+__device__ int merge_pairs(const HierarchyJob& job, WarpClusters& clusters, int count, int lane) {
+  Cluster mine = clusters.cluster[lane];
+  Bounds box = clusters.box(lane);
+  const int partner = find_partner(clusters, box, count, lane);
   const int its_partner = __shfl_sync(all_lanes, partner, partner & 31);
-  const bool pairs = partner != lane && its_partner == lane && lane < c.count;
-  const Cluster other = shuffle(c.cluster, partner & 31);
-  const Bounds other_box = shuffle(c.box, partner & 31);
+  const bool pairs = partner != lane && its_partner == lane && lane < count;
   if (pairs && lane < partner) {
-    const std::uint32_t size = ref_count(c.cluster.ref) + ref_count(other.ref);
-    Bounds box = c.box;
+    const Cluster other = clusters.cluster[partner];
+    const Bounds other_box = clusters.box(partner);
+    const std::uint32_t size = ref_count(mine.ref) + ref_count(other.ref);
+    const auto costs = costs_of<Costs>(job, mine.ref, box);
+    const auto other_costs = costs_of<Costs>(job, other.ref, other_box);
     box.grow(other_box);
-    const std::uint32_t place = c.cluster.place;
-    store_wide(&job.nodes[place], BuildNode{box.min, c.cluster.ref, box.max, other.ref});
-    Costs::join(job, place, costs_of<Costs>(job, c.cluster.ref, c.box),
-                costs_of<Costs>(job, other.ref, other_box), box.half_area(), size);
-    c.cluster = {make_ref(size, place), other.place};
-    c.box = box;
+    store_wide(&job.nodes[mine.place], BuildNode{box.min, mine.ref, box.max, other.ref});
+    Costs::join(job, mine.place, costs, other_costs, box.half_area(), size);
+    mine = {make_ref(size, mine.place), other.place};
   }
-  const bool stays = lane < c.count && !(pairs && lane > partner);
-  const unsigned staying = __ballot_sync(all_lanes, stays);
-  if (stays) gather[__popc(staying & ((1u << lane) - 1u))] = lane;
-  __syncwarp();
-  c.count = __popc(staying);
-  const int from = lane < c.count ? gather[lane] : lane;
-  __syncwarp();  // also makes the nodes and tables known to the other lanes
-  c.cluster = shuffle(c.cluster, from);
-  c.box = shuffle(c.box, from);
+  const bool stays = lane < count && !(pairs && lane > partner);
+  const unsigned staying = __ballot_sync(all_lanes, stays);  // all have read: boxes may move
+  if (stays) clusters.set(__popc(staying & ((1u << lane) - 1u)), mine, box);
+  __syncwarp();  // also makes the nodes and costs known to the other lanes
+  return __popc(staying);
 }
 
 // The clusters of leaves [first, split) and [split, last], closed up.
-__device__ WarpClusters load_clusters(const HierarchyJob& job, std::uint32_t first,
-                                      std::uint32_t split, std::uint32_t last, int lane) {
+__device__ int load_clusters(const HierarchyJob& job, std::uint32_t first, std::uint32_t split,
+                             std::uint32_t last, WarpClusters& clusters, int lane) {
   const bool is_left = lane < kept;
   const std::uint32_t place = is_left ? first + lane : split + (lane - kept);
   const bool is_inside = place < (is_left ? split : last + 1);
-  WarpClusters c;
-  c.cluster = is_inside ? unpack(__ldcg(&job.pairs[place])) : Cluster{nobody, 0};
-  const unsigned found = __ballot_sync(all_lanes, c.cluster.ref != nobody);
-  const int left = __popc(found & 0xffffu);  // each half's clusters come first in it
-  c.count = __popc(found);
-  c.cluster = shuffle(c.cluster, lane < left ? lane : (lane - left + kept) & 31);
-  if (lane < c.count) {
-    c.box = load_fresh(job.primitives, job.nodes, c.cluster.ref).bounds();
+  const Cluster mine = is_inside ? unpack(__ldcg(&job.pairs[place])) : Cluster{nobody, 0};
+  const bool is_found = mine.ref != nobody;
+  const unsigned found = __ballot_sync(all_lanes, is_found);
+  if (is_found) {
+    clusters.set(__popc(found & ((1u << lane) - 1u)), mine,
+                 load_fresh(job.primitives, job.nodes, mine.ref).bounds());
   }
-  return c;
+  __syncwarp();
+  return __popc(found);
 }
 
 template <class Costs>
 __device__ void merge_range(const HierarchyJob& job, std::uint32_t first, std::uint32_t split,
-                            std::uint32_t last, int lane, int* gather) {
+                            std::uint32_t last, WarpClusters& clusters, int lane) {
   const bool is_whole = last - first + 1 == job.count;
-  WarpClusters c = load_clusters(job, first, split, last, lane);
-  while (c.count > (is_whole ? 1 : kept)) merge_pairs<Costs>(job, c, lane, gather);
+  int count = load_clusters(job, first, split, last, clusters, lane);
+  while (count > (is_whole ? 1 : kept)) count = merge_pairs<Costs>(job, clusters, count, lane);
   if (is_whole) {
-    if (lane == 0) *job.root = c.cluster.ref;
+    if (lane == 0) *job.root = clusters.cluster[0].ref;
   } else if (lane < kept) {  // the range has more places than that
-    job.pairs[first + lane] = lane < c.count ? pack(c.cluster) : pack({nobody, 0});
+    job.pairs[first + lane] = pack(lane < count ? clusters.cluster[lane] : Cluster{nobody, 0});
   }
+  __syncwarp();  // the clusters may be overwritten
 }
 
 template <class Costs>
 __global__ void __launch_bounds__(hploc_block) cluster_ranges(HierarchyJob job) {
-  __shared__ int gather_of_warp[hploc_block / 32][32];
-  int* gather = gather_of_warp[threadIdx.x / 32];
+  __shared__ WarpClusters clusters_of_warp[hploc_block / 32];
+  WarpClusters& clusters = clusters_of_warp[threadIdx.x / 32];
   const int lane = threadIdx.x % 32;
   const std::uint32_t leaf = blockIdx.x * blockDim.x + threadIdx.x;
   std::uint32_t first = leaf, last = leaf, split = 0;
@@ -157,7 +151,7 @@ __global__ void __launch_bounds__(hploc_block) cluster_ranges(HierarchyJob job) 
       const int from = __ffs(static_cast<int>(to_merge)) - 1;
       merge_range<Costs>(job, __shfl_sync(all_lanes, first, from),
                          __shfl_sync(all_lanes, split, from), __shfl_sync(all_lanes, last, from),
-                         lane, gather);
+                         clusters, lane);
     }
     __threadfence();  // before the ranges are handed on
     __syncwarp();

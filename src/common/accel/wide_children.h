@@ -90,15 +90,17 @@ PT_HD WideChildren optimal_children(const BuildTree& tree, const TreeCosts& cost
       continue;
     }
     const BuildNode node = load_wide(&tree.nodes[ref_index(ref)]);
+    const CollapseTable own = load_wide(&tree.tables[ref_index(ref)]);
     const CollapseTable a = load_table(tree, costs, node.left);
     const CollapseTable b = load_table(tree, costs, node.right);
-    const ChildSplit split = split_children(a, b, j);
-    if (j < cwbvh_width) {  // fewer may cost less; the root has no choice
-      const CollapseTable own = load_wide(&tree.tables[ref_index(ref)]);
-      if (own.cost[j - 2] < split.cost) {
-        detail::set_at(share, i, j - 1);
-        continue;
-      }
+    ChildSplit split = split_children(a, b, j);
+    // Fewer children may cost less; the root has no choice.
+    while (j < cwbvh_width && j > 1 && own.cost[j - 2] < split.cost) {
+      split = split_children(a, b, --j);
+    }
+    if (j == 1) {
+      ++i;
+      continue;
     }
     detail::set_at(children.ref, i, node.left);
     detail::set_at(share, i, split.left);
