@@ -160,15 +160,12 @@ TEST_F(CudaBuild, TreesHoldEveryTriangleOnce) {
   }
 }
 
-Ray random_ray(TestRandom& random, const std::vector<Triangle>& triangles) {
-  const auto any = [&] {
-    return triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
-  };
-  const Triangle from = any(), to = any();
-  const Vec3 target = (to.v0 + to.v1 + to.v2) / 3.0f;
-  const float size = std::max(max_abs(target), max_abs(from.v0));
-  Ray ray{from.v0 + point_in_cube(random, size), {}};
-  ray.direction = target - ray.origin;
+/// From near the scene to a triangle, some along a plane of two axes.
+Ray random_ray(TestRandom& random, const std::vector<Triangle>& triangles, const Bounds& scene) {
+  const Vec3 size = scene.max - scene.min;
+  const Triangle to = triangles[random.below(static_cast<std::uint32_t>(triangles.size()))];
+  Ray ray{scene.center() + point_in_cube(random, std::max(max_abs(size), 1e-6f)), {}};
+  ray.direction = (to.v0 + to.v1 + to.v2) / 3.0f - ray.origin;
   if (random.bits() % 4 == 0) ray.direction[random.below(3)] = 0;
   if (!(max_abs(ray.direction) > 0)) ray.direction = {0, 0, 1};
   return ray;
@@ -179,10 +176,12 @@ void expect_brute_force_hits(const HostTree& tree, const std::vector<Triangle>& 
   TriangleTree plain;
   plain.triangles = triangles.data();
   plain.triangle_count = static_cast<std::uint32_t>(triangles.size());
+  Bounds scene;
+  for (const Triangle& t : triangles) scene.grow(triangle_bounds(t.v0, t.v1, t.v2));
   TestRandom random(11);
   int hits = 0;
   for (int i = 0; i < rays; ++i) {
-    const Ray ray = random_ray(random, triangles);
+    const Ray ray = random_ray(random, triangles, scene);
     const Hit expected = closest_triangle_brute<false>(plain, ray, 0.0f, infinite_distance);
     const Hit hit = tree.bvh2.empty()
                         ? closest_triangle_cwbvh<false>(tree.view(), ray, 0.0f, infinite_distance)

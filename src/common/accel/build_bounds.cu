@@ -31,14 +31,23 @@ __device__ Triangle load_triangle(const TriangleSource& source, std::uint32_t i)
           range.material,          positions[indices.v[2]], range.attributes};
 }
 
-__device__ Bounds load_bounds(const PrimitiveSource& source, std::uint32_t i) {
-  if (source.boxes != nullptr) return source.boxes[i];
-  const Triangle t = load_triangle(source.triangles, i);
-  return triangle_bounds(t.v0, t.v1, t.v2);
+__device__ bool is_usable(const Vec3& p) {  // false for NaN, too
+  return fabsf(p.x) <= coordinate_max && fabsf(p.y) <= coordinate_max &&
+         fabsf(p.z) <= coordinate_max;
 }
 
-__device__ bool is_usable(const Bounds& box) {
-  return max_abs(box.min) <= coordinate_max && max_abs(box.max) <= coordinate_max;
+struct Primitive {
+  Bounds box;
+  bool is_usable;
+};
+
+__device__ Primitive load_primitive(const PrimitiveSource& source, std::uint32_t i) {
+  if (source.boxes != nullptr) {
+    const Bounds box = source.boxes[i];
+    return {box, is_usable(box.min) && is_usable(box.max)};
+  }
+  const Triangle t = load_triangle(source.triangles, i);
+  return {triangle_bounds(t.v0, t.v1, t.v2), is_usable(t.v0) && is_usable(t.v1) && is_usable(t.v2)};
 }
 
 // Lower bounds first, then inverted upper ones; all shrink.
@@ -59,10 +68,10 @@ __global__ void __launch_bounds__(block_size)
   bool bad = false;
   const std::uint32_t step = gridDim.x * blockDim.x;
   for (std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x; i < count; i += step) {
-    const Bounds box = load_bounds(source, i);
+    const auto [box, usable] = load_primitive(source, i);
     const Bounds wider = widened(box);
     store_wide(&primitives[i], BuildNode{wider.min, 0, wider.max, 0});
-    if (is_usable(box)) {
+    if (usable) {
       shrink(bits, 0, box.center(), box.center());
       shrink(bits, 6, box.min, box.max);
     } else {

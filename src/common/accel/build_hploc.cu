@@ -85,7 +85,8 @@ __device__ int merge_pairs(const HierarchyJob& job, WarpClusters& clusters, int 
     mine = {make_ref(size, mine.place), other.place};
   }
   const bool stays = lane < count && !(pairs && lane > partner);
-  const unsigned staying = __ballot_sync(all_lanes, stays);  // all have read: boxes may move
+  const unsigned staying = __ballot_sync(all_lanes, stays);
+  __syncwarp();  // all have read: boxes may move
   if (stays) clusters.set(__popc(staying & ((1u << lane) - 1u)), mine, box);
   __syncwarp();  // also makes the nodes and costs known to the other lanes
   return __popc(staying);
