@@ -41,7 +41,6 @@ if(PTEXP_CUDA_FOUND)
   set(CMAKE_CUDA_STANDARD_REQUIRED ON)
   set(CMAKE_CUDA_EXTENSIONS OFF)
   add_library(ptexp_cuda_flags INTERFACE)
-  target_compile_definitions(ptexp_cuda_flags INTERFACE PTEXP_CUDA=1)
   # 20012: GLM 0.9.9 marks defaulted members __host__ __device__.
   target_compile_options(ptexp_cuda_flags INTERFACE
     $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 -lineinfo

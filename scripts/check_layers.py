@@ -21,7 +21,8 @@ SHAPES = ["geometry", *SAMPLING]
 SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
 PHYSICS = ["transport", "scene", *SCENE_PARTS]
 HOST = ["options", "error"]
-AROUND = ["render", "film", *PHYSICS, *HOST]
+FILES = ["files", "image"]
+AROUND = ["render", "film", *FILES, *PHYSICS, *HOST]
 COMMON = ["device_builders", "device", *AROUND]
 
 LAYERS = [
@@ -39,19 +40,22 @@ LAYERS = [
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stats.h"], []),
-    ("error", ["common/error.h", "common/build_info.h"], []),
+    ("error", ["common/error.h", "common/error_context.h", "common/build_info.h"], []),
     # Around the physics: renderers, batches, reports; what becomes of the samples.
-    ("render", ["common/render/*"], ["film", *PHYSICS, *HOST]),
-    ("film", ["common/film/*"], [*PHYSICS, *HOST]),
+    ("render", ["common/render/*"], ["film", *FILES, *PHYSICS, *HOST]),
+    ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
-    ("scene", ["common/scene/*"], [*SCENE_PARTS, *HOST]),
-    ("light", ["common/light/*"], ["material", "texture", *SHAPES]),
+    ("scene", ["common/scene/*"], [*SCENE_PARTS, *FILES, *HOST]),
+    # Meshes and textures in files; images and their formats.
+    ("files", ["common/files/*"], ["image", "material", "texture", *SHAPES, *HOST]),
+    ("image", ["common/image/*"], HOST),
+    ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
-    ("sampling", ["common/sampling/*"], MATHS),
+    ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
     ("platform", ["common/platform.h"], []),
 ]

@@ -113,8 +113,12 @@ RenderCommand parse_render(const Parser& parser) {
   for (const auto& [entry, option] : parser.options) {
     if (option->count() == 0) continue;
     const bool is_vector = entry->form == OptionForm::vector;
-    entry->set(command.options, is_vector ? CLI::detail::join(option->results(), ",")
-                                          : only_value(*option, entry->name));
+    if (entry->form == OptionForm::list) {
+      for (const std::string& value : option->results()) entry->set(command.options, value);
+    } else {
+      entry->set(command.options, is_vector ? CLI::detail::join(option->results(), ",")
+                                            : only_value(*option, entry->name));
+    }
     command.given.insert(entry->name);
   }
   check_consistent(command.options, command.given);

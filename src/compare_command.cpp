@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "common/film/compare.h"
-#include "common/film/image_io.h"
+#include "common/image/compare.h"
+#include "common/image/image_io.h"
 
 namespace pt {
 namespace {

@@ -24,7 +24,7 @@ int execute(const CompareCommand& command) {
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())
-    fmt::print("{:<10} {}\n", scene.name, scene.description);
+    fmt::print("{:<13} {}\n", scene.usage(), scene.description);
   return 0;
 }
 

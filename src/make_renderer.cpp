@@ -1,7 +1,14 @@
 #include "make_renderer.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "common/error.h"
+#include "common/render/option_names.h"
 #include "common/scene/builtin_scenes.h"
+#include "common/scene/load_scene.h"
+#include "common/scene/prepare_scene.h"
 #include "megakernel/megakernel.h"
 #include "serial/serial.h"
 #include "wavefront/wavefront.h"
@@ -11,8 +18,26 @@
 #endif
 
 namespace pt {
+namespace {
 
-SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
+/// What is no built-in scene and looks like a path; other names get the list of scenes.
+bool is_scene_file(const std::string& scene) {
+  const std::string name = scene.substr(0, scene.find(':'));
+  const auto& list = scene_list();
+  const bool built_in = std::any_of(list.begin(), list.end(),
+                                    [&](const SceneInfo& info) { return info.name == name; });
+  return !built_in && scene.find_first_of("./") != std::string::npos;
+}
+
+}  // namespace
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device,
+                         const std::function<void(const std::string&)>& warn) {
+  if (is_scene_file(options.scene)) {
+    SceneData scene = load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    prepare_scene(scene, options);
+    return scene;
+  }
   if (options.create_world == WorldBuilder::host) return make_scene(options);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda) {
@@ -22,8 +47,25 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device) {
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
 }
 
+namespace {
+
+/// The paper's toggles are for the paper's scenes.
+void check_scene_options(const Options& options, const SceneData& scene) {
+  if (scene.traits.geometry == Geometry::spheres_and_quads) return;
+  constexpr const char* text = "--{} {}: is for scenes of spheres and quads alone; '{}' is none";
+  if (options.rng != RngKind::philox) {
+    throw Error(fmt::format(text, "rng", to_string(options.rng), scene.name));
+  }
+  if (options.branching != Branching::divergent) {
+    throw Error(fmt::format(text, "branching", to_string(options.branching), scene.name));
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
                                         [[maybe_unused]] const DeviceInfo& device) {
+  check_scene_options(options, scene);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
     return options.mode == Mode::megakernel

@@ -7,11 +7,12 @@
 #include <optional>
 
 #include "common/device/devices.h"
-#include "common/film/atomic_file.h"
-#include "common/film/image_io.h"
+#include "common/image/atomic_file.h"
+#include "common/image/image_io.h"
 #include "common/render/csv_file.h"
 #include "common/render/option_names.h"
 #include "common/render/report.h"
+#include "common/scene/scene_facts.h"
 #include "interrupt.h"
 #include "make_renderer.h"
 #include "measure.h"
@@ -65,6 +66,20 @@ void write_outputs(const Options& options, const Image& image, RenderReport& rep
     append_csv_row(options.csv_file, report_csv_row(options, report));
 }
 
+void warn(const std::string& message) { fmt::print(stderr, "ptexp: warning: {}\n", message); }
+
+/// What the scene's file asks for holds where the command line says nothing.
+void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options) {
+  const auto apply = [&](const char* name, const std::optional<int>& value, int Options::*field) {
+    if (value && !given.contains(name)) options.*field = *value;
+  };
+  apply("width", defaults.width, &Options::width);
+  apply("height", defaults.height, &Options::height);
+  apply("spp", defaults.spp, &Options::spp);
+  apply("max-depth", defaults.max_depth, &Options::max_depth);
+  apply("rr", defaults.rr_depth, &Options::rr_depth);
+}
+
 void say_interrupted(const Options& options, const Measurement& measurement, bool has_image) {
   const std::string image = has_image
                                 ? fmt::format("image has {} of {} samples per pixel",
@@ -84,10 +99,16 @@ int render_command(const RenderCommand& command) {
   catch_interrupt();
 
   RenderReport report;
-  std::optional<SceneData> scene;
-  report.scene_ms = timed_ms([&] { scene = make_scene_for(options, device); });
-  report.primitives = scene->primitive_count();
-  const std::unique_ptr<Renderer> renderer = make_renderer(options, *scene, device);
+  SceneData scene;
+  report.scene_ms = timed_ms([&] { scene = make_scene_for(options, device, warn); });
+  apply_defaults(scene.defaults, command.given, options);
+  report.primitives = scene.primitive_count() + scene.triangle_count();
+  describe_scene(scene, report.scene);
+  if (!options.quiet) {
+    fmt::print("{}", scene_text(report.scene));
+    std::fflush(stdout);
+  }
+  const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
 
   Progress progress(stderr, progress_style(stderr, options.quiet));
   const Measurement measurement = measure(*renderer, options, progress, interrupted);

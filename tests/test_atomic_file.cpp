@@ -8,7 +8,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "common/film/atomic_file.h"
+#include "common/image/atomic_file.h"
 #include "temp_folder.h"
 
 namespace pt {

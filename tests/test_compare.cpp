@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "common/film/compare.h"
-#include "common/film/image_io.h"
+#include "common/image/compare.h"
+#include "common/image/image_io.h"
 #include "compare_command.h"
 #include "temp_folder.h"
 

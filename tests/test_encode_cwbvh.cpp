@@ -7,27 +7,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "check_tree.h"
 #include "common/accel/encode_cwbvh.h"
 #include "triangle_meshes.h"
 
 namespace pt {
 namespace {
-
-/// A child's box in exact arithmetic: 8 bits times a power of two plus a float fits a double here.
-struct ExactBox {
-  glm::dvec3 min, max;
-};
-
-ExactBox exact_box(const CwbvhNode& node, int slot) {
-  const int low[3] = {node.low_x[slot], node.low_y[slot], node.low_z[slot]};
-  const int high[3] = {node.high_x[slot], node.high_y[slot], node.high_z[slot]};
-  ExactBox box;
-  for (int i = 0; i < 3; ++i) {
-    box.min[i] = node.origin[i] + std::ldexp(low[i], node.exponent[i] - 127);
-    box.max[i] = node.origin[i] + std::ldexp(high[i], node.exponent[i] - 127);
-  }
-  return box;
-}
 
 CwbvhChildren random_children(TestRandom& random, float offset, float extent) {
   CwbvhChildren children;
@@ -48,7 +33,7 @@ void expect_tight_and_conservative(const CwbvhChildren& children) {
   for (int s = 0; s < cwbvh_width; ++s) {
     if (slots.child[s] == no_cwbvh_child) continue;
     const Bounds& box = children.bounds[slots.child[s]];
-    const ExactBox decoded = exact_box(node, s);
+    const ExactBox decoded = exact_child_box(node, s);
     for (int i = 0; i < 3; ++i) {
       const double step = std::ldexp(1.0, node.exponent[i] - 127);
       ASSERT_LE(decoded.min[i], static_cast<double>(box.min[i]));

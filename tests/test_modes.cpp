@@ -30,39 +30,29 @@ struct PixelSum {
   }
 };
 
-template <bool has_lights, Accel accel, class Draw>
-Color follow_path(const Scene& scene, std::uint32_t pixel, std::uint32_t max_depth,
+template <class Traits, class Draw>
+Color follow_path(const Scene& scene, std::uint32_t pixel, const PathLimits& limits,
                   const Draw& draw, PixelSum& sum) {
   PathState path;
   Color radiance(0.0f);
   Ray ray = generate_camera_path(scene, pixel, draw(scatter_block(0)));
   while (true) {
     sum.count_ray(path.rays++);
-    const Hit hit = intersect_closest<accel>(scene, ray);
-    if (hit.is_miss()) return radiance + shade_miss(scene, ray.direction, path);
+    const Hit hit = intersect_closest<Traits>(scene, ray);
+    if (hit.is_miss()) {
+      return radiance + shade_miss<Traits::lighting>(scene, ray.direction, path);
+    }
     const Vec4 u = draw(scatter_block(path.rays));
-    const Vec4 light = has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);
-    const Scattering s = shade_surface<has_lights>(scene, ray, hit, path, max_depth, u, light);
+    const Vec4 light = Traits::has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);
+    const Scattering s = shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
     radiance += s.emitted;
     if (!is_black(s.shadow.radiance)) {
       ++sum.shadow_rays;
-      if (!intersect_shadow<accel>(scene, s.shadow)) radiance += s.shadow.radiance;
+      if (!intersect_shadow<Traits>(scene, s.shadow)) radiance += s.shadow.radiance;
     }
     if (!s.alive) return radiance;
     ray = s.ray;
   }
-}
-
-template <class Draw>
-Color follow_path(const SceneTraits& traits, const Scene& scene, std::uint32_t pixel,
-                  std::uint32_t max_depth, const Draw& draw, PixelSum& sum) {
-  const bool brute = traits.accel == Accel::brute;
-  if (traits.has_lights) {
-    return brute ? follow_path<true, Accel::brute>(scene, pixel, max_depth, draw, sum)
-                 : follow_path<true, Accel::bvh2>(scene, pixel, max_depth, draw, sum);
-  }
-  return brute ? follow_path<false, Accel::brute>(scene, pixel, max_depth, draw, sum)
-               : follow_path<false, Accel::bvh2>(scene, pixel, max_depth, draw, sum);
 }
 
 PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32_t x,
@@ -81,8 +71,10 @@ PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32
       }
       return u;
     };
-    sum.radiance += glm::dvec3(follow_path(
-        scene.traits(), view, pixel, static_cast<std::uint32_t>(options.max_depth), draw, sum));
+    dispatch_traits(CpuSceneKinds{}, scene.traits(), [&](auto traits) {
+      sum.radiance += glm::dvec3(
+          follow_path<decltype(traits)>(view, pixel, path_limits_of(options), draw, sum));
+    });
   }
   return sum;
 }

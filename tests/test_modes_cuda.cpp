@@ -8,7 +8,7 @@
 
 #include "common/device/create_world.h"
 #include "common/error.h"
-#include "common/film/compare.h"
+#include "common/image/compare.h"
 #include "cuda_test.h"
 #include "mode_cases.h"
 

@@ -25,13 +25,15 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   const dim3 block(options_.block.x, options_.block.y);
   const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
                               static_cast<std::uint32_t>(options_.height), next_path_};
-  dispatch_traits(traits_, [&](auto traits) {
-    dispatch_branching(options_.branching, [&](auto branching) {
+  // Only the paper's scenes have their spheres elsewhere than in global memory.
+  using Kinds = std::conditional_t<memory == SceneMemory::global, KindsWith<Source, SceneKinds>,
+                                   SphereSceneKinds>;
+  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
       launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch.sample_count),
-             block, shared_bytes, storage, batch, division, source,
-             static_cast<std::uint32_t>(options_.max_depth), clock());
+             block, shared_bytes, storage, batch, division, source, limits_, clock());
     });
   });
 }

@@ -18,7 +18,7 @@ namespace pt {
 /// returns true. `bool any(bool)` is true when the argument is true for any thread of the warp.
 template <class Traits, Branching branching, class Source, class Work>
 PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                       std::uint32_t max_depth, Work& work) {
+                       const PathLimits& limits, Work& work) {
   PathState path;
   bool working = work.next(path.number, true);
   PathId id = samples.id_of(path.number);
@@ -36,12 +36,12 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
         const Scattering scattering =
             branching == Branching::reduced
-                ? shade_any<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light)
-                : shade_surface<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light);
+                ? shade_any<Traits>(scene, ray, hit, path, limits, u, light)
+                : shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
         radiance = add_rounded(radiance, scattering.emitted);
         if constexpr (Traits::has_lights) {
           if (!is_black(scattering.shadow.radiance) &&
-              !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
+              !intersect_shadow<Traits>(scene, scattering.shadow)) {
             radiance = add_rounded(radiance, scattering.shadow.radiance);
           }
         }
@@ -49,10 +49,11 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         ended = !scattering.alive;
       }
       if (!ended) {
-        hit = intersect_closest<Traits::accel>(scene, ray);
+        hit = intersect_closest<Traits>(scene, ray);
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          radiance = add_rounded(radiance, shade_miss(scene, ray.direction, path));
+          radiance =
+              add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
           ended = true;
         }
       }

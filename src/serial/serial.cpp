@@ -11,21 +11,21 @@ namespace {
 /// One path from the camera to its end: the whole algorithm, in the order of the textbooks.
 template <class Traits, class Stream>
 Color trace_path(const Scene& scene, std::uint32_t pixel, PathState& path, Stream& random,
-                 std::uint32_t max_depth) {
+                 const PathLimits& limits) {
   Color radiance(0.0f);
   Ray ray = generate_camera_path(scene, pixel, random.draw(scatter_block(0)));
   for (;;) {
-    const Hit hit = intersect_closest<Traits::accel>(scene, ray);
+    const Hit hit = intersect_closest<Traits>(scene, ray);
     ++path.rays;
-    if (hit.is_miss()) return add_rounded(radiance, shade_miss(scene, ray.direction, path));
+    if (hit.is_miss())
+      return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
 
     const Vec4 u = random.draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
-    const Scattering scattering =
-        shade_surface<Traits::has_lights>(scene, ray, hit, path, max_depth, u, light);
+    const Scattering scattering = shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
     radiance = add_rounded(radiance, scattering.emitted);
     if (!is_black(scattering.shadow.radiance) &&
-        !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
+        !intersect_shadow<Traits>(scene, scattering.shadow)) {
       radiance = add_rounded(radiance, scattering.shadow.radiance);
     }
     if (!scattering.alive) return radiance;
@@ -40,7 +40,8 @@ class SerialRenderer : public CpuRenderer {
  private:
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
-      dispatch_traits(traits_, [&](auto traits) {
+      using Source = std::remove_cvref_t<decltype(source)>;
+      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
         timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
       });
     });
@@ -53,8 +54,7 @@ class SerialRenderer : public CpuRenderer {
       PathState path;
       path.number = i;
       auto random = source.open(id);
-      const Color radiance = trace_path<Traits>(scene_, id.pixel, path, random,
-                                                static_cast<std::uint32_t>(options_.max_depth));
+      const Color radiance = trace_path<Traits>(scene_, id.pixel, path, random, limits_);
       batch.store(path, radiance);
     }
   }

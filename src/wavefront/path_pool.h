@@ -30,6 +30,7 @@ struct PathPool {
   Record* direction = nullptr;   ///< ray direction, number of the path | new_path
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   HitRecord* hit = nullptr;
+  std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   // Only with compaction over tags:
   PathTag* tag = nullptr;
   PathTag* shadow_tag = nullptr;  ///< surface: a shadow ray waits; free: none
@@ -40,9 +41,33 @@ struct PathPool {
 
   static constexpr std::uint32_t new_path = 0x80000000u;  ///< numbers are below 2^31
 
-  static constexpr std::uint64_t bytes_per_slot(bool has_lights) {
-    return 3 * sizeof(Record) + sizeof(HitRecord) + sizeof(PathTag) +
-           (has_lights ? 3 * sizeof(Record) + sizeof(PathTag) : 0);
+  /// What a pool for these scenes has: `tags` for compaction over tags.
+  struct Parts {
+    bool lights, instances, tags;
+  };
+
+  /// Sets each array that a pool of `slot_count` slots needs to allocate(T*{}, bytes of a T): the
+  /// only list of them.
+  template <class Allocate>
+  void allocate_arrays(const Parts& parts, Allocate&& allocate) {
+    const auto make = [&](auto*& array, bool needed) {
+      if (needed) array = allocate(array);
+    };
+    make(origin, true), make(direction, true), make(throughput, true), make(hit, true);
+    make(hit_instance, parts.instances);
+    make(tag, parts.tags);
+    make(shadow_tag, parts.tags && parts.lights);
+    make(shadow_origin, parts.lights), make(shadow_direction, parts.lights);
+    make(shadow_radiance, parts.lights);
+  }
+
+  static std::uint64_t bytes_per_slot(const Parts& parts) {
+    std::uint64_t sum = 0;
+    PathPool().allocate_arrays(parts, [&](auto* array) {
+      sum += sizeof *array;
+      return array;
+    });
+    return sum;
   }
 
   PT_HD static Record pack(const Vec3& v, std::uint32_t w) { return {v.x, v.y, v.z, w}; }
@@ -88,9 +113,12 @@ struct PathPool {
 
   PT_HD Hit load_hit(std::uint32_t slot) const {
     const HitRecord record = hit[slot];
-    return {record.t, record.primitive};
+    return {record.t, record.primitive, hit_instance != nullptr ? hit_instance[slot] : 0};
   }
-  PT_HD void store_hit(std::uint32_t slot, const Hit& h) const { hit[slot] = {h.t, h.primitive}; }
+  PT_HD void store_hit(std::uint32_t slot, const Hit& h) const {
+    hit[slot] = {h.t, h.primitive};
+    if (hit_instance != nullptr) hit_instance[slot] = h.instance;
+  }
 
   PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow, std::uint32_t number) const {
     store_wide(&shadow_origin[slot], pack(shadow.ray.origin, float_to_bits(shadow.distance)));

@@ -33,7 +33,7 @@ struct StageContext {
   Source source;
   WaveCounters* counters;
   std::uint32_t* ray_queue;  ///< null: there are no queues (Compaction::none)
-  std::uint32_t max_depth;
+  PathLimits limits;
 };
 
 /// Ends a path: its sample gets the last radiance and the path's counts. Without lights nothing has
@@ -48,12 +48,12 @@ template <bool has_lights, class Source>
 struct GeneratePaths {
   static constexpr StageId id = StageId::generate;
   static constexpr PathTag tag = PathTag::free;
-  static constexpr bool traces_rays = false;
+  static constexpr bool scans_spheres = false;
   static constexpr StageOutcomes outcomes = {{PathTag::intersect}, false, false};
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t rank) const {
-    const auto& [pool, samples, source, counters, ray_queue, max_depth] = context;
+    const auto& [pool, samples, source, counters, ray_queue, limits] = context;
     if (ray_queue == nullptr) {
       rank = atomic_fetch_add(&counters->ticket, 1);
       if (rank >= counters->generate) return {PathTag::free};
@@ -71,52 +71,54 @@ struct GeneratePaths {
   }
 };
 
-template <Accel accel, Branching branching>
+template <class Traits, Branching branching>
 struct IntersectRays {
   static constexpr StageId id = StageId::intersect;
   static constexpr PathTag tag = PathTag::intersect;
-  static constexpr bool traces_rays = true;
+  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
   static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
   PathPool pool;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const Hit hit = intersect_closest<accel>(scene, pool.load_ray(slot));
+    const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot));
     if (branching == Branching::divergent && hit.is_miss()) return {PathTag::miss};
     pool.store_hit(slot, hit);
     return {PathTag::surface};
   }
 };
 
-template <bool has_lights>
+template <Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
   static constexpr PathTag tag = PathTag::miss;
-  static constexpr bool traces_rays = false;
+  static constexpr bool scans_spheres = false;
   static constexpr StageOutcomes outcomes = {{PathTag::free, PathTag::free}, true, false};
   PathPool pool;
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    Vec3 ray_direction;
-    PathState path = pool.load_path(slot, ray_direction);
+    Ray ray;
+    PathState path = lighting == Lighting::full ? pool.load_path(slot, ray)
+                                                : pool.load_path(slot, ray.direction);
     ++path.rays;
-    end_path<has_lights>(samples, path, shade_miss(scene, ray_direction, path));
+    end_path<lighting != Lighting::sky>(samples, path,
+                                        shade_miss<lighting>(scene, ray.direction, path));
     return {PathTag::free};
   }
 };
 
 /// What a surface does to a path, with the random numbers that decide it.
-template <bool has_lights, Branching branching, class Source>
+template <class Traits, Branching branching, class Source>
 PT_HD Scattering scatter_path(const Scene& scene, const StageContext<Source>& context,
                               const Ray& ray, const Hit& hit, PathState& path) {
   const PathId id = context.samples.id_of(path.number);
   auto random = context.source.open(id);
   const Vec4 u = random.draw(scatter_block(path.rays));
-  const Vec4 light = has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+  const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
   context.source.close(id, random);
   return branching == Branching::reduced
-             ? shade_any<has_lights>(scene, ray, hit, path, context.max_depth, u, light)
-             : shade_surface<has_lights>(scene, ray, hit, path, context.max_depth, u, light);
+             ? shade_any<Traits>(scene, ray, hit, path, context.limits, u, light)
+             : shade_surface<Traits>(scene, ray, hit, path, context.limits, u, light);
 }
 
 PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
@@ -125,12 +127,13 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const
   sum = add_rounded(sum, radiance);
 }
 
-template <bool has_lights, Branching branching, class Source>
+template <class Traits, Branching branching, class Source>
 struct ShadeSurface {
+  static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::shade_surface;
   static constexpr PathTag tag = PathTag::surface;
   static constexpr StageOutcomes outcomes = {{PathTag::intersect, PathTag::free}, true, has_lights};
-  static constexpr bool traces_rays = false;
+  static constexpr bool scans_spheres = false;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -139,7 +142,7 @@ struct ShadeSurface {
     PathState path = pool.load_path(slot, ray);
     ++path.rays;
     const Scattering scattering =
-        scatter_path<has_lights, branching>(scene, context, ray, pool.load_hit(slot), path);
+        scatter_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
     if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
     if (!scattering.alive) {
@@ -152,11 +155,11 @@ struct ShadeSurface {
   }
 };
 
-template <Accel accel>
+template <class Traits>
 struct TraceShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr PathTag tag = PathTag::surface;  // of the shadow tags
-  static constexpr bool traces_rays = true;
+  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
   static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
   PathPool pool;
   SampleBuffer samples;
@@ -164,7 +167,7 @@ struct TraceShadowRays {
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t number;
     const ShadowRay shadow = pool.load_shadow(slot, number);
-    if (!intersect_shadow<accel>(scene, shadow)) {
+    if (!intersect_shadow<Traits>(scene, shadow)) {
       add_radiance(samples, number, shadow.radiance);
     }
     return {PathTag::free};
@@ -178,7 +181,7 @@ struct FinishPaths {
   static constexpr StageId id = StageId::finish;
   static constexpr PathTag tag = PathTag::intersect;
   static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
-  static constexpr bool traces_rays = true;
+  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -187,17 +190,16 @@ struct FinishPaths {
     PathState path = context.pool.load_path(slot, ray);
     Color radiance = has_lights ? context.samples.samples[path.number].radiance : Color(0.0f);
     for (bool alive = true; alive;) {
-      const Hit hit = intersect_closest<Traits::accel>(scene, ray);
+      const Hit hit = intersect_closest<Traits>(scene, ray);
       ++path.rays;
       if (branching == Branching::divergent && hit.is_miss()) {
-        radiance = add_rounded(radiance, shade_miss(scene, ray.direction, path));
+        radiance = add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
         break;
       }
-      const Scattering scattering =
-          scatter_path<has_lights, branching>(scene, context, ray, hit, path);
+      const Scattering scattering = scatter_path<Traits, branching>(scene, context, ray, hit, path);
       radiance = add_rounded(radiance, scattering.emitted);
       if (has_lights && !is_black(scattering.shadow.radiance) &&
-          !intersect_shadow<Traits::accel>(scene, scattering.shadow)) {
+          !intersect_shadow<Traits>(scene, scattering.shadow)) {
         radiance = add_rounded(radiance, scattering.shadow.radiance);
       }
       ray = scattering.ray;

@@ -77,21 +77,21 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
     execute.run(GeneratePaths<Traits::has_lights, Source>{context},
                 b.stage_queues(free, &counters->generate, tags, b.waiting(free)));
   }
-  execute.run(IntersectRays<Traits::accel, branching>{b.pool},
+  execute.run(IntersectRays<Traits, branching>{b.pool},
               b.stage_queues(intersect, &counters->intersect, tags));
 
   execute.compact(b.request(tags, miss, PathTag::miss, PathTag::surface));
   if constexpr (branching == Branching::divergent) {
-    execute.run(ShadeMiss<Traits::has_lights>{b.pool, context.samples},
+    execute.run(ShadeMiss<Traits::lighting>{b.pool, context.samples},
                 b.stage_queues(miss, b.waiting(miss), tags));
   }
-  execute.run(ShadeSurface<Traits::has_lights, branching, Source>{context},
+  execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context},
               b.stage_queues(surface, b.waiting(surface), tags));
 
   if constexpr (Traits::has_lights) {
     PathTag* shadow_tags = b.pool.shadow_tag;
     execute.compact(b.request(shadow_tags, shadow, PathTag::surface, PathTag::miss));
-    execute.run(TraceShadowRays<Traits::accel>{b.pool, context.samples},
+    execute.run(TraceShadowRays<Traits>{b.pool, context.samples},
                 b.stage_queues(shadow, b.waiting(shadow), shadow_tags));
   }
 }

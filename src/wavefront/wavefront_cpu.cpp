@@ -58,35 +58,25 @@ class WavefrontCpu : public CpuRenderer {
     const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
                                       static_cast<std::uint64_t>(options.spp);
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
-    const bool lights = traits_.has_lights;
+    const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
+                                   !appends_in_stages(options_.compaction)};
     const std::uint64_t size_bytes =
-        pool_size_ * (PathPool::bytes_per_slot(lights) + queue_count * sizeof(std::uint32_t));
+        pool_size_ * (PathPool::bytes_per_slot(parts) + queue_count * sizeof(std::uint32_t));
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);
-    allocate(lights);
+    allocate(parts);
   }
 
  private:
-  void allocate(bool lights) {
+  void allocate(const PathPool::Parts& parts) {
     PathPool& pool = buffers_.pool;
     slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
     buffers_.slot_count = &slot_count_;
     buffers_.counters = &counters_;
-    pool.origin = array<Record>();
-    pool.direction = array<Record>();
-    pool.throughput = array<Record>();
-    pool.hit = array<HitRecord>();
-    if (!appends_in_stages(options_.compaction)) {
-      pool.tag = array<PathTag>();
-      if (lights) pool.shadow_tag = array<PathTag>();
-    }
+    pool.allocate_arrays(parts,
+                         [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
     if (options_.compaction != Compaction::none) {
       for (std::uint32_t*& queue : buffers_.queues) queue = array<std::uint32_t>();
-    }
-    if (lights) {
-      pool.shadow_origin = array<Record>();
-      pool.shadow_direction = array<Record>();
-      pool.shadow_radiance = array<Record>();
     }
   }
 
@@ -100,8 +90,9 @@ class WavefrontCpu : public CpuRenderer {
 
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
-      dispatch_traits(traits_, [&](auto traits) {
-        dispatch_branching(options_.branching, [&](auto branching) {
+      using Source = std::remove_cvref_t<decltype(source)>;
+      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
+        dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
           run_waves<decltype(traits), branching()>(source, batch);
         });
       });
@@ -117,12 +108,8 @@ class WavefrontCpu : public CpuRenderer {
       std::iota(free, free + slot_count_, 0u);
       *buffers_.waiting(QueueId::free) = slot_count_;
     }
-    const StageContext<Source> context{buffers_.pool,
-                                       batch,
-                                       source,
-                                       &counters_,
-                                       buffers_.queue(QueueId::intersect),
-                                       static_cast<std::uint32_t>(options_.max_depth)};
+    const StageContext<Source> context{
+        buffers_.pool, batch, source, &counters_, buffers_.queue(QueueId::intersect), limits_};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
     run_finish<Traits, branching>(execute, buffers_, context);

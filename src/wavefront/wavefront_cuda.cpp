@@ -38,11 +38,12 @@ WavefrontCuda::~WavefrontCuda() {
 }
 
 void WavefrontCuda::allocate_pool() {
-  const bool lights = traits_.has_lights;
-  const std::uint64_t bytes_per_slot =
-      PathPool::bytes_per_slot(lights) + (queue_count + 1) * sizeof(std::uint32_t);
-  const std::uint64_t free = CudaMemory::free_bytes();
   const bool appends = appends_in_stages(options_.compaction);
+  const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
+                                 !appends};
+  const std::uint64_t bytes_per_slot =
+      PathPool::bytes_per_slot(parts) + (queue_count + 1) * sizeof(std::uint32_t);
+  const std::uint64_t free = CudaMemory::free_bytes();
   if (options_.pool_size == 0) {
     const std::uint64_t wanted =
         appends ? batch_paths() : std::min(pool_size_for_passes, batch_paths());
@@ -61,20 +62,14 @@ void WavefrontCuda::allocate_pool() {
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = static_cast<std::uint32_t>(n);
-  pool.origin = memory_.allocate<Record>("path pool", n);
-  pool.direction = memory_.allocate<Record>("path pool", n);
-  pool.throughput = memory_.allocate<Record>("path pool", n);
-  pool.hit = memory_.allocate<HitRecord>("path pool", n);
-  if (lights) {
-    pool.shadow_origin = memory_.allocate<Record>("path pool", n);
-    pool.shadow_direction = memory_.allocate<Record>("path pool", n);
-    pool.shadow_radiance = memory_.allocate<Record>("path pool", n);
-  }
+  pool.allocate_arrays(parts, [&](auto* array) {
+    return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", n);
+  });
   if (options_.compaction != Compaction::none) {
     for (int i = 0; i < queue_count; ++i) {
       const QueueId id = static_cast<QueueId>(i);
       const bool used = id == QueueId::free     ? buffers_.reuses_slots
-                        : id == QueueId::shadow ? lights
+                        : id == QueueId::shadow ? parts.lights
                                                 : true;
       if (used) buffers_.queues[i] = memory_.allocate<std::uint32_t>("queues", n);
     }
@@ -86,8 +81,6 @@ void WavefrontCuda::allocate_pool() {
       all_slots_ = memory_.upload("queues", all);
     }
   } else {
-    pool.tag = memory_.allocate<PathTag>("path pool", n);
-    if (lights) pool.shadow_tag = memory_.allocate<PathTag>("path pool", n);
     compactor_ = std::make_unique<CudaCompactor>(options_.compaction, pool.slot_count, memory_);
   }
   buffers_.counters = memory_.allocate<WaveCounters>("counters", 1);
@@ -118,6 +111,35 @@ void WavefrontCuda::start_queues() {
   };
   if (all_slots_ != nullptr) copy(buffers_.queue(QueueId::free), all_slots_, pool.slot_count);
   copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
+}
+
+template <class Function>
+void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
+  with_random_source([&](const auto& source) {
+    using Source = std::remove_cvref_t<decltype(source)>;
+    const StageContext<Source> context{
+        buffers_.pool, batch, source, buffers_.counters, buffers_.queue(QueueId::intersect),
+        limits_};
+    if (traits_.geometry == Geometry::spheres_and_quads) {
+      function(SphereSceneKinds{}, context);
+    } else if constexpr (draws_in_all_scenes<Source>) {
+      function(TriangleSceneKinds{}, context);
+    }
+  });
+}
+
+void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
+                                 bool starts_paths) {
+  path_count_ = batch.path_count;
+  loop_ = loop;
+  with_context(batch, [&](auto kinds, const auto& context) {
+    enqueue_wave_of<decltype(kinds)>(context, starts_paths);
+  });
+}
+
+void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
+  with_context(
+      batch, [&](auto kinds, const auto& context) { enqueue_finish_of<decltype(kinds)>(context); });
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {

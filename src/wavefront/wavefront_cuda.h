@@ -30,9 +30,14 @@ class WavefrontCuda : public CudaRenderer {
   std::uint64_t take_wave_count() override;
 
  private:
-  /// Calls function(traits, branching, context) with the options as types.
+  /// Calls function(kinds, context): a list of kinds of scenes that has this one, and what stages
+  /// need, by the type of the random source.
   template <class Function>
-  void with_stages(const SampleBuffer& batch, Function&& function);
+  void with_context(const SampleBuffer& batch, Function&& function);
+  template <class Kinds, class Source>
+  void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
+  template <class Kinds, class Source>
+  void enqueue_finish_of(const StageContext<Source>& context);
   void allocate_pool();
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();

@@ -9,6 +9,7 @@
 
 #include "common/accel/append_nodes.h"
 #include "common/accel/build_sah.h"
+#include "common/accel/build_sbvh.h"
 #include "common/accel/collapse_cwbvh.h"
 #include "common/accel/instance_tree.h"
 #include "common/accel/merge_leaves.h"
@@ -25,6 +26,9 @@ BinaryTree build_binary(const MeshTriangles& triangles, const TreeOptions& optio
     case TreeBuilder::automatic:
     case TreeBuilder::sah:
       return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+    case TreeBuilder::sbvh:
+      return build_sbvh(
+          triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
     default:
       throw Error(fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh",
                               to_string(options.builder)));
@@ -57,6 +61,7 @@ void add_group(TriangleTreeData& tree, std::span<const Mesh> meshes, std::uint32
   } else {
     order.resize(triangles.count());
     std::iota(order.begin(), order.end(), 0u);
+    for (const std::uint32_t i : order) group.bounds.grow(triangles.bounds(i));
   }
   group.first_node = group.root;
   group.slot_count = static_cast<std::uint32_t>(order.size());
@@ -96,6 +101,10 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   }
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
   tree.build_ms = time.count();
+  const bool sah = chosen.builder == TreeBuilder::automatic;
+  if (chosen.accel != AccelKind::brute) {
+    tree.builder = to_string(sah ? TreeBuilder::sah : chosen.builder);
+  }
   return tree;
 }
 

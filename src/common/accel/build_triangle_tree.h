@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/accel/binary_tree.h"
+#include "common/accel/build_sbvh.h"
 #include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
@@ -14,6 +14,7 @@ namespace pt {
 struct TreeOptions {
   AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
   TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
+  SbvhOptions sbvh;
   TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
   TreeCosts cwbvh_costs = {1.0f, 0.3f, cwbvh_leaf_max};
 };
@@ -28,11 +29,5 @@ struct TreeOptions {
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);
-
-/// Fits a tree to meshes whose vertices have moved, and to instances whose transforms have changed;
-/// all else must be as it was when the tree was built with these options. Nodes keep their
-/// children, so that a tree gets worse as triangles part; the tree over instances is built anew.
-void refit(TriangleTreeData& tree, std::span<const Mesh> meshes,
-           std::span<const Instance> instances, const TreeOptions& options);
 
 }  // namespace pt

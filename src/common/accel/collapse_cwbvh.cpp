@@ -41,7 +41,7 @@ class Collapser {
     children.bounds[0] = widened(tree_.bounds);
     children.triangles[0] = 1;
     result_.nodes = {encode_cwbvh_node(children, assign_cwbvh_slots(children), 1, 0)};
-    result_.order = tree_.order;
+    result_.order = {tree_.order[leaf_first(tree_.root)]};
   }
 
   Counts count(std::uint32_t index, int depth) {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/accel/build_reference.h"
+#include "common/accel/partition_range.h"
 
 namespace pt {
 
@@ -13,6 +13,7 @@ struct ObjectSplit {
   int axis = 0;
   int bin = 0;
   int bin_count = 0;
+  Box4 left_bounds, right_bounds;
 };
 
 /// Maps doubled centres to bins, monotonically.
@@ -35,9 +36,6 @@ ObjectSplit find_object_split(std::span<const BuildReference> references,
                               const ReferenceRange& range);
 
 /// Reorders the references of `range` so that the left ones come first.
-struct RangeHalves {
-  ReferenceRange left, right;
-};
 RangeHalves partition_references(std::span<BuildReference> references, const ReferenceRange& range,
                                  const ObjectSplit& split);
 

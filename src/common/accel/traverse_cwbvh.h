@@ -26,7 +26,7 @@ PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
   for (int axis = 0; axis < 3; ++axis) {
     const float d = ray.direction[axis];
     const float safe = copysignf(fmaxf(fabsf(d), cwbvh_least_direction), d);
-    result.inverse[axis] = 1.0f / safe;
+    result.inverse[axis] = approximate_inverse(safe);
     if (result.inverse[axis] < 0.0f) result.octant ^= 1u << axis;
   }
   return result;

@@ -9,6 +9,8 @@
 
 namespace pt {
 
+class EmbreeTree;
+
 /// A group of triangles placed in the world.
 struct alignas(16) InstanceRecord {
   Affine to_object;    ///< from world space
@@ -28,6 +30,7 @@ struct TriangleTree {
   std::uint32_t triangle_count = 0;  ///< slots
   std::uint32_t instance_count = 0;  ///< 0: the triangles lie in world space
   std::uint32_t root = 0;
+  const EmbreeTree* embree = nullptr;  ///< on the CPU, with --accel embree
 };
 
 }  // namespace pt

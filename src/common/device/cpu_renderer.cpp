@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
+#include "common/scene/prepare_scene.h"
 
 namespace pt {
 namespace {
@@ -61,7 +62,8 @@ void StageTimer::add(const std::string& stage, std::chrono::duration<double, std
 
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
     : options_(options),
-      traits_(scene.traits()),
+      limits_(path_limits_of(options)),
+      traits_(scene.traits),
       scene_(host_view(scene, options.width, options.height)),
       threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
       arena_(threads_),
@@ -147,7 +149,7 @@ Image CpuRenderer::image() { return develop(film_, options_.width, options_.heig
 void CpuRenderer::describe(RenderReport& report) const {
   report.device_kind = "cpu";
   report.device_name = fmt::format("CPU, {} thread{}", threads_, threads_ == 1 ? "" : "s");
-  report.accel = traits_.accel == Accel::brute ? "brute" : "bvh2";
+  report.accel = accel_name(traits_.accel);
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;
   report.setup_ms = setup_ms_;

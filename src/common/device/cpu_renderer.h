@@ -8,6 +8,7 @@
 
 #include "common/film/film.h"
 #include "common/render/dispatch.h"
+#include "common/render/path_limits_of.h"
 #include "common/render/renderer.h"
 #include "common/scene/scene_data.h"
 
@@ -58,6 +59,7 @@ class CpuRenderer : public Renderer {
   void note_memory(const char* name, std::uint64_t size_bytes);
 
   const Options options_;
+  const PathLimits limits_;
   const SceneTraits traits_;
   const Scene scene_;
   StageTimer timer_;

@@ -16,6 +16,7 @@
 #include "common/device/stage_clock.h"
 #include "common/film/film.h"
 #include "common/render/dispatch.h"
+#include "common/render/path_limits_of.h"
 #include "common/render/renderer.h"
 #include "common/scene/scene_data.h"
 
@@ -87,6 +88,7 @@ class CudaRenderer : public Renderer {
   StageClock* clock() const { return clock_; }
 
   const Options options_;
+  const PathLimits limits_;
   const SceneTraits traits_;
   Scene scene_;  ///< a view of device memory
   CudaMemory memory_;
@@ -96,6 +98,7 @@ class CudaRenderer : public Renderer {
 
  private:
   void upload(const SceneData& scene);
+  void upload_triangles(const SceneData& scene);
   void allocate_film();
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>

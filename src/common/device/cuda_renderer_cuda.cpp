@@ -10,6 +10,7 @@
 #include "common/film/develop.h"
 #include "common/render/batches.h"
 #include "common/render/option_names.h"
+#include "common/scene/prepare_scene.h"
 
 namespace pt {
 namespace {
@@ -47,7 +48,8 @@ const char* clock_name(ClockId id) {
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
     : options_(options),
-      traits_(scene.traits()),
+      limits_(path_limits_of(options)),
+      traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
       scan_spheres_(scene.scan_spheres) {
@@ -81,7 +83,14 @@ void CudaRenderer::upload(const SceneData& scene) {
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
     scene_memory_ =
-        fits_constant && scene.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
+        fits_constant && traits_.geometry == Geometry::spheres_and_quads &&
+                traits_.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
+  }
+  if (scene_memory_ != SceneMemory::global && traits_.geometry != Geometry::spheres_and_quads) {
+    throw Error(
+        fmt::format("--scene-memory {}: holds the spheres of scenes without triangles; expected "
+                    "global or auto",
+                    to_string(scene_memory_)));
   }
   if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(
@@ -105,6 +114,26 @@ void CudaRenderer::upload(const SceneData& scene) {
   scene_.material_of = memory_.upload("scene", scene.material_of);
   scene_.lights = memory_.upload("scene", scene.lights);
   scene_.bvh_nodes = memory_.upload("acceleration structure", scene.bvh_nodes);
+  if (traits_.geometry != Geometry::spheres_and_quads) upload_triangles(scene);
+}
+
+void CudaRenderer::upload_triangles(const SceneData& scene) {
+  TriangleTree& tree = scene_.triangles;
+  tree.bvh2 = memory_.upload("acceleration structure", scene.tree.bvh2);
+  tree.cwbvh = memory_.upload("acceleration structure", scene.tree.cwbvh);
+  tree.triangles = memory_.upload("triangles", scene.tree.triangles);
+  tree.instances = memory_.upload("instances", scene.tree.instances);
+  scene_.to_world = memory_.upload("instances", scene.to_world);
+  scene_.attributes = {memory_.upload("vertex attributes", scene.attributes.triangles),
+                       memory_.upload("vertex attributes", scene.attributes.normals),
+                       memory_.upload("vertex attributes", scene.attributes.uvs)};
+  scene_.light_list.lights = memory_.upload("lights", scene.light_list.lights);
+  scene_.light_list.selection = memory_.upload("lights", scene.light_list.selection);
+  scene_.environment.texels = memory_.upload("environment", scene.environment_map.texels);
+  scene_.environment.alias = memory_.upload("environment", scene.environment_map.alias);
+  scene_.material_textures = memory_.upload("scene", scene.material_textures);
+  scene_.textures = memory_.upload("textures", scene.textures);
+  scene_.texels = memory_.upload("textures", scene.texels);
 }
 
 void CudaRenderer::allocate_film() {
@@ -257,7 +286,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.device_kind = "cuda";
   report.device_name = properties_.name;
   report.driver = driver_;
-  report.accel = traits_.accel == Accel::brute ? "brute" : "bvh2";
+  report.accel = accel_name(traits_.accel);
   report.schedule = schedule_;
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/film/film.h"
-#include "common/film/image.h"
+#include "common/image/image.h"
 #include "common/render/stats.h"
 
 namespace pt {

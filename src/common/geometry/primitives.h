@@ -19,6 +19,7 @@ struct Primitives {
   std::uint32_t scan_count = 0;
   Vec3 scan_center = Vec3(0.0f);
 
+  PT_HD std::uint32_t count() const { return sphere_count + quad_count; }
   PT_HD bool is_sphere(std::uint32_t primitive) const { return primitive < sphere_count; }
   PT_HD const Quad& quad(std::uint32_t primitive) const { return quads[primitive - sphere_count]; }
 };

@@ -29,6 +29,8 @@ PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, floa
   return {wi, distance * (1.0f - 1e-4f), quad_solid_angle_pdf(quad, wi, distance)};
 }
 
+PT_HD float sphere_area(const Sphere& sphere) { return 4.0f * pi * sphere.radius_squared; }
+
 /// 1 - cos of the half angle under which the sphere is seen from `from`, outside of it, without
 /// cancellation for small ones; 0 from inside.
 PT_HD float sphere_one_minus_cos(const Sphere& sphere, const Vec3& from) {

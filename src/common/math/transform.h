@@ -22,6 +22,14 @@ struct alignas(16) Affine {
             row[0].y * v.x + row[1].y * v.y + row[2].y * v.z,
             row[0].z * v.x + row[1].z * v.y + row[2].z * v.z};
   }
+  /// A bound of the terms of point(p) for all |p| <= size, componentwise: the scale of its rounding
+  /// error.
+  PT_HD Vec3 absolute(const Vec3& size) const {
+    const auto sum = [&](const Vec4& r) {
+      return fabsf(r.x) * size.x + fabsf(r.y) * size.y + fabsf(r.z) * size.z + fabsf(r.w);
+    };
+    return {sum(row[0]), sum(row[1]), sum(row[2])};
+  }
   PT_HD Vec3 translation() const { return {row[0].w, row[1].w, row[2].w}; }
   PT_HD float determinant() const {
     return row[0].x * (row[1].y * row[2].z - row[1].z * row[2].y) -

@@ -34,6 +34,12 @@ PT_HD Color add_rounded(const Color& a, const Color& b) {
   return {add_rounded(a.x, b.x), add_rounded(a.y, b.y), add_rounded(a.z, b.z)};
 }
 
+/// a + t (b - a), rounded alike in every kernel.
+PT_HD Color interpolate(const Color& a, const Color& b, float t) {
+  return {fused_multiply_add(t, b.x - a.x, a.x), fused_multiply_add(t, b.y - a.y, a.y),
+          fused_multiply_add(t, b.z - a.z, a.z)};
+}
+
 PT_HD bool is_black(const Color& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }
 
 /// Largest absolute component: the scale of a position's rounding error.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/render/options.h"
+#include "common/sampling/random.h"
 #include "common/scene/scene.h"
 
 namespace pt {
@@ -12,22 +13,48 @@ namespace pt {
 template <auto value>
 using Constant = std::integral_constant<decltype(value), value>;
 
-/// function(Traits<...>{}) for the scene's traits.
-template <class Function>
-decltype(auto) dispatch_traits(SceneTraits traits, Function&& function) {
-  if (traits.accel == Accel::brute) {
-    return traits.has_lights ? function(Traits<Accel::brute, true>{})
-                             : function(Traits<Accel::brute, false>{});
-  }
-  return traits.has_lights ? function(Traits<Accel::bvh2, true>{})
-                           : function(Traits<Accel::bvh2, false>{});
+template <class... T>
+struct TypeList {};
+
+template <class... A, class... B>
+TypeList<A..., B...> concatenate(TypeList<A...>, TypeList<B...>);
+
+// The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
+// whatever a file can hold shares the rest.
+using SphereSceneKinds =
+    TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
+             Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>,
+             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>;
+using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
+                                    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
+                                    Traits<Accel::brute, Geometry::mixed, Lighting::full>,
+                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>>;
+using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
+using CpuSceneKinds = decltype(concatenate(
+    SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>>{}));
+
+/// Random numbers with a stored state are the paper's, and kept for its scenes.
+template <class Source>
+inline constexpr bool draws_in_all_scenes = std::is_same_v<Source, PhiloxSource>;
+/// Of the list `All`, the kinds of scenes that have kernels with this source.
+template <class Source, class All>
+using KindsWith = std::conditional_t<draws_in_all_scenes<Source>, All, SphereSceneKinds>;
+
+/// function(Traits<...>{}) for the member of the list that has these traits.
+template <class Function, class... T>
+void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
+  (void)((T::value() == traits && (function(T{}), true)) || ...);
 }
 
-/// function(Constant<branching>).
-template <class Function>
-decltype(auto) dispatch_branching(Branching branching, Function&& function) {
-  return branching == Branching::divergent ? function(Constant<Branching::divergent>{})
-                                           : function(Constant<Branching::reduced>{});
+/// function(Constant<branching>). Branches are reduced in the paper's scenes only.
+template <class Traits, class Function>
+void dispatch_branching(Branching branching, Function&& function) {
+  if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
+    if (branching == Branching::reduced) return function(Constant<Branching::reduced>{});
+  }
+  function(Constant<Branching::divergent>{});
 }
 
 }  // namespace pt

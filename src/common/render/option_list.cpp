@@ -42,6 +42,14 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
+      .add(integer("rr", &Options::rr_depth, 0, 65535),
+           "Russian roulette decides on paths of so many rays or more;\n0: never")
+      .add(custom(
+               "nee", OptionForm::text, "on|off",
+               [](Options& o, const std::string& s) { o.nee = parse_switch("nee", s); },
+               [](const Options& o) { return o.nee ? "on" : "off"; }),
+           "Next-event estimation: surfaces ask a light for its direct\n"
+           "contribution; off: paths find the lights by chance")
       .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {
@@ -63,7 +71,20 @@ void add_image(std::vector<OptionEntry>& list) {
 
 void add_scene(std::vector<OptionEntry>& list) {
   Group(list, "Scene")
-      .add(text("scene", "NAME", &Options::scene), "A scene named by --list-scenes")
+      .add(text("scene", "NAME|FILE", &Options::scene),
+           "A scene named by --list-scenes, or a file: Mitsuba .xml,\n"
+           ".gltf, .glb, .obj, .ply. A file's size, spp, depth and\n"
+           "camera hold where no option says otherwise")
+      .add(custom(
+               "define", OptionForm::list, "NAME=VALUE",
+               [](Options& o, const std::string& s) { parse_definition("define", s, o.definitions); },
+               [](const Options& o) { return definitions_text(o.definitions); }),
+           "Sets a parameter of a Mitsuba file; may be repeated", "-D")
+      .add(custom(
+               "strict", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.strict = true; },
+               [](const Options& o) { return o.strict ? "on" : "off"; }),
+           "What a file asks for and ptexp lacks is an error, not a\nwarning")
       .add(integer("spheres", &Options::spheres, 0, max_spheres),
            "Random spheres of the scene 'spheres', besides the ground")
       .add(choice("create-world", &Options::create_world),
@@ -102,8 +123,12 @@ void add_execution(std::vector<OptionEntry>& list) {
            "else the CPU. See --list-devices")
       .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
       .add(choice("accel", &Options::accel),
-           "How a ray finds its hit: by testing every primitive, or\n"
-           "through a binary BVH; auto: as the scene's size suggests")
+           "How a ray finds its hit: by testing every primitive, through\n"
+           "a binary BVH, a compressed 8-wide one (triangles only), or\n"
+           "Embree (CPU, triangles only); auto: what suits the scene")
+      .add(choice("builder", &Options::builder),
+           "Who builds the tree over triangles: binned SAH or spatial\n"
+           "splits on the CPU, LBVH or H-PLOC on the GPU")
       .add(choice("work", &Options::work),
            "megakernel: what a thread renders: a pixel, a sample of a\n"
            "pixel, or whatever it fetches from a common counter")

@@ -15,6 +15,7 @@ enum class OptionForm {
   text,    ///< one value, a JSON string
   number,  ///< one value, a JSON number unless its text is not one (such as "auto")
   vector,  ///< three values, X Y Z or X,Y,Z
+  list,    ///< one value, may be given several times; a JSON string
   flag     ///< no value, a JSON boolean
 };
 

@@ -165,4 +165,23 @@ std::string stage_blocks_text(const std::array<int, stage_count>& blocks) {
   return text;
 }
 
+void parse_definition(const std::string& name, const std::string& text,
+                      std::map<std::string, std::string>& definitions) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    refuse_value(name, text, "expected NAME=VALUE");
+  }
+  if (!definitions.emplace(text.substr(0, equals), text.substr(equals + 1)).second) {
+    refuse_value(name, text, "expected each name once");
+  }
+}
+
+std::string definitions_text(const std::map<std::string, std::string>& definitions) {
+  std::string text;
+  for (const auto& [name, value] : definitions) {
+    text += (text.empty() ? "" : " ") + name + '=' + value;
+  }
+  return text;
+}
+
 }  // namespace pt

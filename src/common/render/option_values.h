@@ -45,4 +45,10 @@ std::string stage_blocks_text(const std::array<int, stage_count>& blocks);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
 
+/// Adds NAME=VALUE to `definitions`.
+void parse_definition(const std::string& name, const std::string& text,
+                      std::map<std::string, std::string>& definitions);
+/// "a=1 b=2".
+std::string definitions_text(const std::map<std::string, std::string>& definitions);
+
 }  // namespace pt

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -47,6 +48,8 @@ struct Options {
   int height = 300;    ///< pixels, 1..65535
   int spp = 50;        ///< samples per pixel, >= 1
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
+  int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
+  bool nee = true;     ///< next-event estimation: ask the lights
   std::uint64_t seed = 1;
   std::string output = "image.exr";  ///< .exr, .png or .ppm
   float exposure = 0.0f;             ///< stops, for PNG and PPM only
@@ -55,6 +58,8 @@ struct Options {
   std::string scene = "spheres";
   int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
   WorldBuilder create_world = WorldBuilder::host;
+  std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
+  bool strict = false;  ///< what a scene file has and ptexp lacks is an error
   CameraOverrides camera;
 
   // Execution
@@ -62,6 +67,7 @@ struct Options {
   DeviceChoice device;
   int threads = 0;  ///< CPU threads, 0: all
   AccelKind accel = AccelKind::automatic;
+  TreeBuilder builder = TreeBuilder::automatic;  ///< of trees over triangles
   Work work = Work::persistent;  ///< megakernel
   BlockSize block;               ///< megakernel, threads per block
   Compaction compaction = Compaction::atomic;

@@ -5,7 +5,7 @@
 #include <functional>
 #include <memory>
 
-#include "common/film/image.h"
+#include "common/image/image.h"
 #include "common/render/options.h"
 #include "common/render/stats.h"
 

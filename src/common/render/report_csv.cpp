@@ -90,6 +90,18 @@ void add_device(CsvRow& row, const RenderReport& report) {
   row.emplace_back("primitives", std::to_string(report.primitives));
 }
 
+void add_scene(CsvRow& row, const SceneFacts& facts) {
+  row.emplace_back("triangles", std::to_string(facts.triangles));
+  row.emplace_back("instances", std::to_string(facts.instances));
+  row.emplace_back("lights", std::to_string(facts.lights));
+  row.emplace_back("used_builder", facts.builder);
+  row.emplace_back("tree_nodes", std::to_string(facts.tree_nodes));
+  row.emplace_back("tree_references", std::to_string(facts.tree_references));
+  row.emplace_back("sah_cost", fmt::format("{:.6g}", facts.sah_cost));
+  row.emplace_back("bytes_per_triangle", fmt::format("{:.6g}", facts.bytes_per_triangle));
+  row.emplace_back("build_ms", ms(facts.build_ms));
+}
+
 }  // namespace
 
 CsvRow report_csv_row(const Options& options, const RenderReport& report) {
@@ -99,6 +111,7 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   for (const OptionEntry& entry : option_list())
     row.emplace_back(option_key(entry), entry.text(options));
   add_device(row, report);
+  add_scene(row, report.scene);
   add_spread(row, "kernel", summary.kernel_ms);
   for (const std::string& stage : column_stages()) add_stage(row, stage, summary);
   add_stage(row, "other", summary);

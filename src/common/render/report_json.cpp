@@ -92,6 +92,27 @@ Json counts_json(const PathCounts& counts) {
           {"live_paths", counts.live_paths}};
 }
 
+Json scene_json(const SceneFacts& facts) {
+  Json memory = Json::object();
+  for (const BufferSize& buffer : facts.memory) memory[buffer.name] = buffer.size_bytes;
+  return {{"triangles", facts.triangles},
+          {"meshes", facts.meshes},
+          {"instances", facts.instances},
+          {"spheres", facts.spheres},
+          {"quads", facts.quads},
+          {"materials", facts.materials},
+          {"textures", facts.textures},
+          {"lights", facts.lights},
+          {"memory_bytes", memory},
+          {"builder", facts.builder},
+          {"tree_nodes", facts.tree_nodes},
+          {"tree_references", facts.tree_references},
+          {"tree_depth", facts.tree_depth},
+          {"sah_cost", facts.sah_cost},
+          {"bytes_per_triangle", facts.bytes_per_triangle},
+          {"build_ms", facts.build_ms}};
+}
+
 }  // namespace
 
 std::string report_json(const Options& options, const RenderReport& report) {
@@ -106,6 +127,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
                   {"schedule", report.schedule},
                   {"pool_size", report.pool_size},
                   {"primitives", report.primitives}};
+  json["scene"] = scene_json(report.scene);
   json["complete"] = is_complete(options, report);
   json["samples_done"] = summary.samples_done;
   json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},

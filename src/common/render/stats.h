@@ -45,15 +45,31 @@ struct KernelInfo {
   double occupancy = 0;  ///< resident warps / the multiprocessor's warps, 0..1
 };
 
+/// What a scene consists of and what its acceleration structure is like.
+struct SceneFacts {
+  std::uint64_t triangles = 0;  ///< of the meshes, each counted once
+  std::uint64_t meshes = 0, instances = 0, spheres = 0, quads = 0;
+  std::uint64_t materials = 0, textures = 0;
+  std::uint64_t lights = 0;  ///< primitives that emit, delta lights, the environment
+  std::vector<BufferSize> memory;  ///< on the host, by kind
+  std::string builder;             ///< of the tree over triangles; empty: none
+  std::uint64_t tree_nodes = 0, tree_references = 0;  ///< references: triangles in its leaves
+  int tree_depth = 0;
+  double sah_cost = 0;  ///< by the surface area heuristic; 0: unknown
+  double bytes_per_triangle = 0;  ///< of tree and triangles
+  double build_ms = 0;            ///< of the tree: wall time on the host, kernel time on CUDA
+};
+
 struct RenderReport {
   std::string device_name;      ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
   std::string device_kind;      ///< "cpu" or "cuda"
   std::string driver;           ///< CUDA driver and runtime versions; empty on the CPU
-  std::string accel;            ///< the structure used: "brute" or "bvh2"
+  std::string accel;            ///< the structure used, e.g. "bvh2"
   std::string schedule;         ///< the schedule used: "host" or "graph"; empty where there is none
   std::uint64_t pool_size = 0;  ///< paths in flight used; 0 in modes without a pool
   std::uint64_t primitives = 0;
-  double scene_ms = 0;     ///< building the scene and its acceleration structure (host wall time)
+  SceneFacts scene;
+  double scene_ms = 0;     ///< loading and preparing the scene (host wall time)
   double setup_ms = 0;     ///< device initialisation and allocation
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;

@@ -19,6 +19,9 @@ PT_HD Vec3 sample_unit_sphere(float u0, float u1) {
   return {r * phi.cos, r * phi.sin, z};
 }
 
+/// Density of sample_unit_sphere per solid angle.
+inline constexpr float unit_sphere_pdf = 0.25f * inverse_pi;
+
 /// Uniform in the unit ball; density 3 / (4 pi) per volume.
 PT_HD Vec3 sample_unit_ball(float u0, float u1, float u2) {
   const float radius = exp2f(log2f(fmaxf(u2, 1e-30f)) * (1.0f / 3.0f));

@@ -3,6 +3,12 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "common/scene/generate_boxes.h"
+#include "common/scene/generate_forest.h"
+#include "common/scene/generate_statue.h"
+#include "common/scene/generate_terrain.h"
+#include "common/scene/prepare_scene.h"
+#include "common/scene/quad_scenes.h"
 
 namespace pt {
 namespace {
@@ -25,88 +31,76 @@ SceneData make_sphere_world(SphereWorldKind kind, std::uint32_t count,
   return scene;
 }
 
-// A box of six quads whose normals point outward (or inward), turned about the y axis.
-void add_box(SceneData& scene, const Vec3& center, const Vec3& size, float turn_degrees,
-             std::uint32_t material, bool inward = false) {
-  const float angle = turn_degrees * pi / 180.0f;
-  const Vec3 half = 0.5f * size;
-  const Vec3 x = half.x * Vec3(std::cos(angle), 0, -std::sin(angle));
-  const Vec3 y = half.y * Vec3(0, 1, 0);
-  const Vec3 z = half.z * Vec3(std::sin(angle), 0, std::cos(angle));
-  const auto face = [&](const Vec3& out, const Vec3& a, const Vec3& b) {  // cross(a, b) along out
-    const Vec3 corner = center + out - a - b;
-    inward ? scene.add_quad(corner, 2.0f * b, 2.0f * a, material)
-           : scene.add_quad(corner, 2.0f * a, 2.0f * b, material);
-  };
-  face(x, y, z), face(-x, z, y), face(y, z, x), face(-y, x, z), face(z, x, y), face(-z, y, x);
+template <SphereWorldKind kind>
+SceneData make_spheres(const SceneRequest& request) {
+  return make_sphere_world(kind, static_cast<std::uint32_t>(request.options.spheres),
+                           request.create_world);
 }
 
-// Goral et al. 1984, with the measured reflectances rounded as in the Cornell Box of most papers.
-SceneData make_cornell() {
-  SceneData scene;
-  const auto white = scene.add_material(make_diffuse({0.73f, 0.73f, 0.73f}));
-  const auto red = scene.add_material(make_diffuse({0.65f, 0.05f, 0.05f}));
-  const auto green = scene.add_material(make_diffuse({0.12f, 0.45f, 0.15f}));
-  const auto lamp = scene.add_material(make_diffuse(Color(0.0f), {17.0f, 12.0f, 4.0f}));
-  scene.add_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white);  // floor
-  scene.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, white);  // ceiling
-  scene.add_quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white);  // back
-  scene.add_quad({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, red);    // left
-  scene.add_quad({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, green);   // right
-  scene.add_quad({-0.25f, 1.99f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}, lamp);
-  add_box(scene, {-0.35f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, 17.0f, white);
-  add_box(scene, {0.35f, 0.3f, 0.35f}, {0.6f, 0.6f, 0.6f}, -17.0f, white);
-  scene.camera = {{0, 1, 4.8f}, {0, 1, 0}, {0, 1, 0}, 30.0f, 0.0f, 4.8f};
-  return scene;
+SceneData make_terrain(const SceneRequest& request) {
+  return make_terrain_scene(parse_count(request.name, 1'000'000, terrain_least, terrain_most));
 }
 
-// Everything here emits e and reflects 1 - e of what arrives, so every ray carries radiance 1.
-SceneData make_furnace() {
-  SceneData scene;
-  const auto half = scene.add_material(make_diffuse(Color(0.5f), Color(0.5f)));
-  const auto most = scene.add_material(make_diffuse(Color(0.8f), Color(0.2f)));
-  const auto mirror = scene.add_material(make_metal(Color(1.0f), 0.0f));
-  const auto glass = scene.add_material(make_dielectric(Color(1.0f), 1.5f));
-  add_box(scene, {0, 0, 0}, {4, 4, 4}, 0.0f, half, true);
-  scene.add_sphere({-0.9f, -0.5f, 0}, 0.5f, most);
-  scene.add_sphere({0.0f, 0.6f, -0.6f}, 0.5f, mirror);
-  scene.add_sphere({0.9f, -0.5f, 0}, 0.5f, glass);
-  scene.camera = {{0, 0, 1.9f}, {0, 0, 0}, {0, 1, 0}, 70.0f, 0.0f, 1.9f};
-  return scene;
+SceneData make_statue(const SceneRequest& request) {
+  return make_statue_scene(parse_count(request.name, 1'000'000, statue_least, statue_most));
+}
+
+SceneData make_instances(const SceneRequest& request) {
+  return make_forest_scene(parse_count(request.name, 10'000, forest_least, forest_most));
+}
+
+const SceneInfo& find_scene(const SceneName& name) {
+  std::string names;
+  for (const SceneInfo& info : scene_list()) {
+    if (info.name == name.name) return info;
+    names += (names.empty() ? "" : ", ") + info.name;
+  }
+  throw Error(fmt::format("--scene {}: no such scene; expected one of {}", name.full, names));
 }
 
 }  // namespace
 
 const std::vector<SceneInfo>& scene_list() {
   static const std::vector<SceneInfo> list = {
-      {"spheres", "the paper's: a ground and --spheres random diffuse and metal ones under a sky"},
-      {"rtow", "the final scene of 'Ray Tracing in One Weekend': about 488 spheres, some of glass"},
-      {"cornell", "the Cornell Box: quads, one area light, two blocks"},
-      {"furnace", "a closed box in which every pixel must be 1: the test of energy"},
+      {"spheres", "",
+       "the paper's: a ground and --spheres random diffuse and metal ones under a sky",
+       make_spheres<SphereWorldKind::spheres>},
+      {"rtow", "",
+       "the final scene of 'Ray Tracing in One Weekend': about 488 spheres, some of glass",
+       make_spheres<SphereWorldKind::rtow>},
+      {"cornell", "", "the Cornell Box: quads, one area light, two blocks",
+       [](const SceneRequest&) { return make_cornell_scene(); }},
+      {"furnace", "", "a closed box in which every pixel must be 1: the test of energy",
+       [](const SceneRequest&) { return make_furnace_scene(); }},
+      {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
+      {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",
+       make_statue},
+      {"instances", "N", "a forest of N trees, 10K unless N is given, repeating four",
+       make_instances},
+      {"boxes", "SCALE", "512 boxes in a closed room, lit by a lamp; all lengths times SCALE",
+       [](const SceneRequest& request) { return make_boxes_scene(parse_scale(request.name)); }},
   };
   return list;
 }
 
-SceneData make_scene(const Options& options, const SphereWorldCreator& create_world) {
-  const auto count = static_cast<std::uint32_t>(options.spheres);
-  SceneData scene;
-  if (options.scene == "spheres") {
-    scene = make_sphere_world(SphereWorldKind::spheres, count, create_world);
-  } else if (options.scene == "rtow") {
-    scene = make_sphere_world(SphereWorldKind::rtow, count, create_world);
-  } else if (create_world) {
+SceneData build_scene(const Options& options, const SphereWorldCreator& create_world) {
+  const SceneName name = parse_scene_name(options.scene);
+  const SceneInfo& info = find_scene(name);
+  if (info.parameter.empty() && !name.parameter.empty()) {
+    throw Error(fmt::format("--scene {}: scene '{}' takes no parameter", name.full, name.name));
+  }
+  const bool has_spheres = name.name == "spheres" || name.name == "rtow";
+  if (create_world && !has_spheres) {
     throw Error(fmt::format("--create-world device: scene '{}' has no random spheres to create",
                             options.scene));
-  } else if (options.scene == "cornell") {
-    scene = make_cornell();
-  } else if (options.scene == "furnace") {
-    scene = make_furnace();
-  } else {
-    std::string names;
-    for (const SceneInfo& info : scene_list()) names += (names.empty() ? "" : ", ") + info.name;
-    throw Error(fmt::format("--scene {}: no such scene; expected one of {}", options.scene, names));
   }
+  SceneData scene = info.make({name, options, create_world});
   scene.name = options.scene;
+  return scene;
+}
+
+SceneData make_scene(const Options& options, const SphereWorldCreator& create_world) {
+  SceneData scene = build_scene(options, create_world);
   prepare_scene(scene, options);
   return scene;
 }

@@ -1,8 +1,11 @@
 // A scene as the kernels see it: a plain view, passed by value. scene_data.h owns the memory.
 #pragma once
 
-#include "common/accel/bvh2.h"
+#include "common/accel/accel.h"
+#include "common/accel/triangle_tree.h"
+#include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
+#include "common/light/light_list.h"
 #include "common/light/sky.h"
 #include "common/material/material.h"
 #include "common/scene/camera.h"
@@ -18,26 +21,52 @@ struct Scene {
   const std::uint32_t* material_of = nullptr;  ///< [primitive]
   const std::uint32_t* lights = nullptr;       ///< primitives that emit
   std::uint32_t light_count = 0;
+  // Scenes with triangles, which also number their triangles' slots after their primitives:
+  TriangleTree triangles;
+  VertexAttributes attributes;
+  const Affine* to_world = nullptr;  ///< [InstanceRecord::number]
+  LightList light_list;              ///< Lighting::full
+  Environment environment;           ///< Lighting::full
+  const MaterialTextures* material_textures = nullptr;
+  const Texture* textures = nullptr;
+  const std::byte* texels = nullptr;
 
   PT_HD Material material(std::uint32_t primitive) const {
     return load_wide(&materials[material_of[primitive]]);
   }
 };
 
-enum class Accel { brute, bvh2 };
+/// What rays can meet. `mixed`: triangles, instances of triangles, spheres.
+enum class Geometry { spheres_and_quads, triangles, mixed };
+
+/// What shines. `sky`: rays that leave the scene, alone; `emitters`: spheres and quads as well;
+/// `full`: lights of all kinds and an environment, with textures on all surfaces.
+enum class Lighting { sky, emitters, full };
 
 /// What is known of a scene before its kernels are chosen: each combination is a kernel of its own.
 struct SceneTraits {
   Accel accel = Accel::brute;
-  bool has_lights = false;
+  Geometry geometry = Geometry::spheres_and_quads;
+  Lighting lighting = Lighting::sky;
+
+  bool operator==(const SceneTraits&) const = default;
+  bool has_lights() const { return lighting != Lighting::sky; }
 };
 
 /// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host
 /// pass.)
-template <Accel accel_value, bool has_lights_value>
+template <Accel accel_value, Geometry geometry_value, Lighting lighting_value>
 struct Traits {
   static constexpr Accel accel = accel_value;
-  static constexpr bool has_lights = has_lights_value;
+  static constexpr Geometry geometry = geometry_value;
+  static constexpr Lighting lighting = lighting_value;
+  static constexpr bool has_lights = lighting != Lighting::sky;
+  static constexpr bool has_instances = geometry == Geometry::mixed;
+  static SceneTraits value() { return {accel, geometry, lighting}; }
 };
+
+/// What shading depends on: scenes that differ in their structure alone share its kernels.
+template <class T>
+using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting>;
 
 }  // namespace pt

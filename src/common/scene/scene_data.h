@@ -2,27 +2,19 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
+#include "common/light/delta_light.h"
 #include "common/math/transform.h"
-#include "common/render/options.h"
 #include "common/scene/scene.h"
 
 namespace pt {
-
-/// A light without extent.
-struct DeltaLight {
-  enum class Kind : std::uint32_t { point, spot, directional } kind = Kind::point;
-  Vec3 position{0.0f};       ///< point, spot: world space
-  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
-  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
-  float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
-  float cos_outer = -1.0f;   ///< none beyond this one, in between as the format asks
-};
 
 /// Light from infinitely far: a picture of all directions, latitude by longitude.
 struct EnvironmentData {
@@ -37,6 +29,21 @@ struct SceneDefaults {
   std::optional<int> width, height, spp, max_depth, rr_depth;
 };
 
+/// The memory behind VertexAttributes; empty where no mesh has any.
+struct MeshAttributes {
+  std::vector<TriangleIndices> triangles;
+  std::vector<Vec3> normals;
+  std::vector<Vec2> uvs;
+};
+
+/// The memory behind a LightList.
+struct LightListData {
+  std::vector<Light> lights;
+  std::vector<AliasEntry> selection;
+  float total_weight = 0.0f;
+  float environment_probability = 0.0f;
+};
+
 struct SceneData {
   std::string name;
   SceneDefaults defaults;
@@ -49,32 +56,31 @@ struct SceneData {
   std::vector<Mesh> meshes;         ///< those of group 0 in world space
   std::vector<Instance> instances;  ///< of the other groups
   std::vector<Material> materials;
-  std::vector<MaterialTextures> material_textures = {{}};  ///< 0: none
+  std::vector<MaterialTextures> material_textures = std::vector<MaterialTextures>(1);  ///< 0: none
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   // Made from the above by prepare_scene():
-  Accel accel = Accel::brute;
-  std::vector<Bvh2Node> bvh_nodes;         ///< empty with Accel::brute
+  SceneTraits traits;
+  std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
   std::vector<std::uint32_t> material_of;  ///< by primitive
   std::vector<std::uint32_t> lights;       ///< primitives that emit
   std::vector<Sphere> scan_spheres;        ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
+  // In scenes with triangles:
+  TriangleTreeData tree;                     ///< empty where the device builds it
+  std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`
+  MeshAttributes attributes;
+  std::vector<Affine> to_world;  ///< by instance
+  LightListData light_list;
+  EnvironmentMap environment_map;
 
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
-  SceneTraits traits() const { return {accel, !lights.empty()}; }
+  std::uint64_t triangle_count() const;
 
   std::uint32_t add_material(const Material& material);
   void add_sphere(const Vec3& center, float radius, std::uint32_t material);
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };
-
-/// Applies the options' camera overrides and acceleration structure: checks the camera, builds the
-/// structure (which reorders the primitives), lists the lights. Throws Error for a camera or a
-/// scene that cannot be rendered.
-void prepare_scene(SceneData& scene, const Options& options);
-
-/// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
-Scene host_view(const SceneData& scene, int width, int height);
 
 }  // namespace pt

@@ -9,14 +9,14 @@ namespace pt {
 
 /// As shade_surface, for a hit or a miss. The scene must have a primitive, whose data a miss loads
 /// and then discards.
-template <bool has_lights>
+template <class Traits>
 PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                           std::uint32_t max_depth, const Vec4& scatter, const Vec4& light) {
+                           const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
-  const Color sky = shade_miss(scene, ray.direction, path);
-  Scattering result = shade_surface<has_lights>(scene, ray, miss ? Hit{1.0f, 0} : hit, path,
-                                                max_depth, scatter, light);
+  const Color sky = shade_miss<Traits::lighting>(scene, ray.direction, path);
+  Scattering result = shade_surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, limits,
+                                            scatter, light);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;

@@ -2,10 +2,11 @@
 // path on (pbrt-v4, section 13.2.2: path tracing with multiple importance sampling).
 #pragma once
 
-#include "common/light/area_light.h"
 #include "common/sampling/mis.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
+#include "common/transport/path_limits.h"
+#include "common/transport/sample_light.h"
 
 namespace pt {
 
@@ -18,70 +19,77 @@ struct Scattering {
 };
 
 /// beta * Le, weighted against light sampling, which could have found the same point.
+template <class Traits>
 PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
-                             const PathState& path, const SurfacePoint& point,
-                             const Material& material) {
-  if (is_black(material.emission) || glm::dot(ray.direction, point.normal) >= 0.0f) {
+                             const PathState& path, const Surface& surface) {
+  const Color& emission = surface.material.emission;
+  if (is_black(emission) || glm::dot(ray.direction, surface.point.normal) >= 0.0f) {
     return Color(0.0f);
   }
-  const float light_pdf =
-      primitive_pdf(scene.primitives, hit.primitive, ray.origin, ray.direction, hit.t) /
-      static_cast<float>(scene.light_count);
-  return path.beta * material.emission * power_heuristic(path.bsdf_pdf, light_pdf);
+  return path.beta * emission *
+         power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
 }
 
-/// One light, chosen uniformly, asked for its direct contribution (next-event estimation).
-template <class Bsdf>
+/// One light, asked for its direct contribution (next-event estimation).
+template <class Traits, class Bsdf>
 PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, const Bsdf& bsdf,
-                                    const SurfacePoint& point, const Vec3& wo, const Vec4& u) {
-  const float count = static_cast<float>(scene.light_count);
-  const std::uint32_t choice = static_cast<std::uint32_t>(u.z * count);
-  const std::uint32_t primitive =
-      scene.lights[choice < scene.light_count ? choice : scene.light_count - 1];
-  const LightSample light = sample_primitive(scene.primitives, primitive, point.position, u.x, u.y);
-  const float light_pdf = light.pdf / count;
-  if (light_pdf <= 0.0f) return {};
-  const Color f = bsdf.evaluate(wo, light.wi, point.normal);
+                                    const Surface& surface, const Vec3& wo, const Vec4& u) {
+  IncidentLight light;
+  if constexpr (Traits::lighting == Lighting::emitters) {
+    light = sample_emitter(scene, surface.point.position, u);
+  } else {
+    light = sample_light(scene, surface.point.position, u);
+  }
+  if (light.pdf <= 0.0f) return {};
+  const Vec3& n = surface.shading_normal;
+  const Color f = bsdf.evaluate(wo, light.wi, n);
   if (is_black(f)) return {};
-  const float weight = power_heuristic(light_pdf, bsdf.pdf(wo, light.wi, point.normal));
-  return {spawn_ray(point, light.wi), light.distance,
-          path.beta * f * scene.material(primitive).emission * (weight / light_pdf)};
+  const float weight =
+      light.is_delta ? 1.0f : power_heuristic(light.pdf, bsdf.pdf(wo, light.wi, n));
+  return {spawn_ray(surface.point, light.wi), light.distance,
+          path.beta * f * light.radiance * (weight / light.pdf)};
 }
 
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
 /// that name (random.h); `light` is not read in a scene without lights. Updates the path's
-/// throughput, density and counts. A path ends when it is absorbed or has traced `max_depth` rays.
-template <bool has_lights>
+/// throughput, density and counts. A path ends when it is absorbed, has traced all of its rays or
+/// loses at Russian roulette, which `scatter.w` decides.
+template <class Traits>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                               std::uint32_t max_depth, const Vec4& scatter, const Vec4& light) {
-  const SurfacePoint point = surface_point(scene.primitives, ray, hit);
-  const Material material = scene.material(hit.primitive);
+                               const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
+  constexpr bool has_lights = Traits::has_lights;
+  const Surface surface = surface_at<Traits>(scene, ray, hit);
+  const Vec3& n = surface.shading_normal;
   const Vec3 wo = -ray.direction;
   Scattering result;
   if constexpr (has_lights) {
-    result.emitted = emitted_radiance(scene, ray, hit, path, point, material);
+    result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface);
   }
-  if (path.rays >= max_depth) return result;
+  if (path.rays >= limits.max_depth) return result;
+  if (Traits::lighting == Lighting::full && surface.material.one_sided && glm::dot(wo, n) <= 0.0f) {
+    return result;
+  }
 
   BsdfSample next;
-  visit(material, [&](const auto& bsdf) {
+  visit(surface.material, [&](const auto& bsdf) {
     if constexpr (has_lights) {
-      if (!bsdf.is_delta()) {
-        result.shadow = sample_direct_light(scene, path, bsdf, point, wo, light);
+      path.bsdf_pdf = PathState::delta_distribution;
+      if (!bsdf.is_delta() && limits.ask_lights) {
+        result.shadow = sample_direct_light<Traits>(scene, path, bsdf, surface, wo, light);
       }
     }
-    next = bsdf.sample(wo, point.normal, scatter);
+    next = bsdf.sample(wo, n, scatter);
     if constexpr (has_lights) {
-      path.bsdf_pdf =
-          bsdf.is_delta() ? PathState::delta_distribution : bsdf.pdf(wo, next.wi, point.normal);
+      if (!bsdf.is_delta() && limits.ask_lights) path.bsdf_pdf = bsdf.pdf(wo, next.wi, n);
     }
   });
   if constexpr (has_lights) {
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
+  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w);
   result.alive = !is_black(path.beta);
-  result.ray = spawn_ray(point, next.wi);
+  result.ray = spawn_ray(surface.point, next.wi);
   return result;
 }
 

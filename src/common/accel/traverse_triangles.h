@@ -1,0 +1,43 @@
+// Traversal of triangles in the structure that a type names.
+#pragma once
+
+#include "common/accel/accel.h"
+#include "common/accel/traverse_cwbvh.h"
+#include "common/accel/traverse_triangles_brute.h"
+#include "common/accel/traverse_triangles_bvh2.h"
+
+namespace pt {
+
+// Of embree_tree.h, which is for the CPU alone.
+Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
+bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
+
+/// The closest hit with t_min < t < t_max; t_min >= 0. Hit::primitive is the triangle's slot.
+template <Accel accel, bool instanced>
+PT_HD Hit closest_triangle(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
+  if constexpr (accel == Accel::brute) {
+    return closest_triangle_brute<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::bvh2) {
+    return closest_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::cwbvh) {
+    return closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
+  } else {
+    return closest_triangle_embree(*tree.embree, ray, t_min, t_max);
+  }
+}
+
+/// Whether there is a hit with t_min < t < t_max; t_min >= 0.
+template <Accel accel, bool instanced>
+PT_HD bool any_triangle(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
+  if constexpr (accel == Accel::brute) {
+    return any_triangle_brute<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::bvh2) {
+    return any_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::cwbvh) {
+    return any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
+  } else {
+    return any_triangle_embree(*tree.embree, ray, t_min, t_max);
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,40 @@
+// Images in files, as texels and as radiance: JPEG, PNG, BMP, TGA, Radiance (.hdr) and OpenEXR. The
+// content decides the format, not the file's name.
+//
+// Errors are Error, one line with the file's name, for one that is missing, of another format,
+// truncated, corrupted or larger than 65535 pixels a side.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/image/image.h"
+#include "common/texture/texture.h"
+
+namespace pt {
+
+/// An image in the layout that Texture describes.
+struct TextureImage {
+  TextureFormat format = TextureFormat::srgb8;
+  std::uint32_t width = 0, height = 0;
+  std::vector<std::byte> texels;  ///< row 0 is the image's head
+};
+
+/// Integers become `integers`, srgb8 or linear8, with 8 bits a value (16 bits in a file lose the
+/// lower half); floats (.hdr, .exr) become rgb32f. Grey becomes RGB; alpha is kept with 8 bits and
+/// opaque where the file has none.
+TextureImage read_texture_image(const std::filesystem::path& path,
+                                TextureFormat integers = TextureFormat::srgb8);
+
+/// The same of a file's content in memory; `name` stands for it in errors.
+TextureImage decode_texture_image(std::string_view bytes, const std::string& name,
+                                  TextureFormat integers = TextureFormat::srgb8);
+
+/// Linear RGB of any of the formats, integers decoded with the sRGB curve: for environment maps.
+Image read_radiance_image(const std::filesystem::path& path);
+Image decode_radiance_image(std::string_view bytes, const std::string& name);
+
+}  // namespace pt

@@ -1,0 +1,148 @@
+// EXR through OpenEXR.
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <ImfVersion.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/error.h"
+#include "common/image/exr_memory.h"
+#include "common/image/image_codec.h"
+
+namespace pt {
+namespace {
+
+constexpr const char* channel_names[3] = {"R", "G", "B"};
+constexpr int max_tile_size = 4096;
+
+/// The R, G and B of `pixels`, wherever the data window lies.
+Imf::FrameBuffer frame_buffer(const float* pixels, const Imath::Box2i& window) {
+  const std::size_t stride = 3 * sizeof(float);
+  const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
+  Imf::FrameBuffer buffer;
+  for (int c = 0; c < 3; ++c) {
+    buffer.insert(channel_names[c],
+                  Imf::Slice::Make(Imf::FLOAT, pixels + c, window, stride, stride * width));
+  }
+  return buffer;
+}
+
+/// Names to which OpenEXR gives a meaning, so that they are not ours to use.
+bool is_reserved(const std::string& name) {
+  static const Imf::Header standard;
+  const char* const optional[] = {"type", "name", "view", "version", "chunkCount", "tiles"};
+  return standard.find(name) != standard.end() || std::ranges::count(optional, name) > 0;
+}
+
+std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [key, value] : metadata) {
+    if (is_reserved(key)) throw Error(fmt::format("metadata key '{}' is taken by OpenEXR", key));
+    header.insert(key, Imf::StringAttribute(value));
+  }
+  ExrWriter stream;
+  {
+    Imf::OutputFile file(stream, header, 0);
+    file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow()));
+    file.writePixels(image.height);
+  }  // writes the table of offsets
+  return std::move(stream.bytes);
+}
+
+/// Refuses what is not a flat, single-part EXR, before OpenEXR reads more of it.
+void check_kind(std::string_view bytes) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  if (bytes.size() < 8) throw Error("not an OpenEXR file, or truncated: it is too short");
+  const int magic = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
+  if (magic != Imf::MAGIC) throw Error("not an OpenEXR file: wrong magic number");
+  const int flags = byte(5) << 8;
+  if (flags & (Imf::NON_IMAGE_FLAG | Imf::MULTI_PART_FILE_FLAG)) {
+    throw Error("deep or multi-part OpenEXR; expected a flat one with a single part");
+  }
+}
+
+/// OpenEXR allocates what the size of an attribute announces: refuses sizes past the file's end.
+void check_attributes(std::string_view bytes) {
+  std::size_t position = 8;  // after magic number and version
+  while (position < bytes.size() && bytes[position] != '\0') {
+    for (int name_and_type = 0; name_and_type < 2; ++name_and_type) {
+      position = std::min(bytes.find('\0', position), bytes.size() - 1) + 1;
+    }
+    std::uint32_t size = 0;
+    for (int i = 0; i < 4 && position < bytes.size(); ++i, ++position) {
+      size |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[position])) << 8 * i;
+    }
+    if (size > bytes.size() - position) throw Error("truncated or corrupted in the header");
+    position += size;
+  }
+}
+
+/// Refuses files without plain R, G and B. Returns the decompressed size of one pixel.
+int check_channels(const Imf::ChannelList& channels) {
+  std::string names;
+  int pixel_bytes = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    names += names.empty() ? it.name() : fmt::format(", {}", it.name());
+    pixel_bytes += it.channel().type == Imf::HALF ? 2 : 4;
+  }
+  for (const char* name : channel_names) {
+    const Imf::Channel* channel = channels.findChannel(name);
+    if (!channel) throw Error(fmt::format("no channel {}, only {}", name, names));
+    if (channel->xSampling != 1 || channel->ySampling != 1) {
+      throw Error(fmt::format("channel {} is subsampled", name));
+    }
+  }
+  return pixel_bytes;
+}
+
+Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
+  check_kind(bytes);
+  check_attributes(bytes);
+  // For the whole process, hence the same value each time.
+  Imf::Header::setMaxImageSize(max_image_size, max_image_size);
+  Imf::Header::setMaxTileSize(max_tile_size, max_tile_size);
+  ExrReader stream(bytes);
+  Imf::InputFile file(stream, 0);
+  const Imf::Header& header = file.header();
+  const int pixel_bytes = check_channels(header.channels());
+  if (!file.isComplete()) throw Error("truncated: some of its pixels are missing");
+
+  const Imath::Box2i window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const double decoded_bytes = 1.0 * pixel_bytes * width * height;
+  Image image = allocate_image(width, height, decoded_bytes, bytes.size());
+  file.setFrameBuffer(frame_buffer(image.rgb.data(), window));
+  file.readPixels(window.min.y, window.max.y);
+
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text && !is_reserved(it.name())) (*metadata)[it.name()] = text->value();
+  }
+  return image;
+}
+
+Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
+  try {
+    return read_exr(bytes, metadata);
+  } catch (const Iex::BaseExc& error) {
+    // OpenEXR begins with 'Cannot read image file "NAME". ', and our stream has no name.
+    const std::string_view message = error.what();
+    const std::size_t name = message.rfind("\"\". ");
+    throw Error(std::string(name == message.npos ? message : message.substr(name + 4)));
+  }
+}
+
+}  // namespace
+
+const ImageCodec exr_codec{".exr", encode_exr, decode_exr};
+
+}  // namespace pt

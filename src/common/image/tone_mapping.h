@@ -1,0 +1,34 @@
+// Between linear radiance and the integer samples of PNG and PPM files.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/image/image.h"
+#include "common/image/image_io.h"
+
+namespace pt {
+
+/// A transfer curve and its inverse on [0, 1].
+struct TransferCurve {
+  float (*encode)(float linear);
+  float (*decode)(float encoded);
+};
+
+/// IEC 61966-2-1.
+extern const TransferCurve srgb_curve;
+/// Square root and square: gamma 2, as in the paper.
+extern const TransferCurve gamma2_curve;
+
+/// Three bytes per pixel, rounded to nearest. NaN and negative values become 0.
+std::string quantize(const Image& image, const ToneMapping& tone_mapping,
+                     const TransferCurve& curve);
+
+/// Bytes of one sample: big-endian when there are two.
+inline int sample_bytes(int max_value) { return max_value > 255 ? 2 : 1; }
+
+/// Fills image.rgb from as many samples in [0, max_value]; `max_value` in 1..65535.
+/// Throws Error for a larger sample.
+void dequantize(std::string_view samples, int max_value, const TransferCurve& curve, Image& image);
+
+}  // namespace pt

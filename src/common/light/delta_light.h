@@ -1,0 +1,73 @@
+// Lights without extent: no ray ever meets them, so they are sampled only, with weight 1.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+/// What a spot light gives between its inner and its outer angle.
+enum class SpotFalloff : std::uint32_t {
+  smooth,         ///< pbrt's: smoothstep of the cosine
+  linear_angle,   ///< Mitsuba's: linear in the angle
+  square_cosine,  ///< glTF's KHR_lights_punctual: square of linear in the cosine
+};
+
+struct DeltaLight {
+  enum class Kind : std::uint32_t { point, spot, directional } kind = Kind::point;
+  Vec3 position{0.0f};       ///< point, spot: world space
+  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
+  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
+  float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
+  float cos_outer = -1.0f;   ///< none beyond this one,
+  SpotFalloff falloff = SpotFalloff::smooth;  ///< in between
+};
+
+/// Between 0 and 1: the share of its intensity that a spot light sends at an angle to its axis.
+PT_HD float spot_share(const DeltaLight& light, float cosine) {
+  if (cosine >= light.cos_inner) return 1.0f;
+  if (cosine <= light.cos_outer) return 0.0f;
+  if (light.falloff == SpotFalloff::linear_angle) {
+    const float outer = acosf(light.cos_outer);
+    return (outer - acosf(cosine)) / (outer - acosf(light.cos_inner));
+  }
+  const float t = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+  return light.falloff == SpotFalloff::smooth ? t * t * (3.0f - 2.0f * t) : t * t;
+}
+
+struct DeltaLightSample {
+  Vec3 wi = Vec3(0.0f);            ///< unit vector to the light
+  float distance = 0.0f;           ///< HUGE_VALF: infinitely far
+  Color irradiance = Color(0.0f);  ///< across wi: what is reflected is this times f times |cos|
+};
+
+/// There is nothing to choose. Black at the light's own position.
+PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
+  if (light.kind == DeltaLight::Kind::directional) {
+    return {-light.direction, HUGE_VALF, light.intensity};
+  }
+  const Vec3 to_light = light.position - from;
+  const float distance2 = glm::dot(to_light, to_light);
+  if (distance2 == 0.0f) return {};
+  const float distance = sqrtf(distance2);
+  const Vec3 wi = to_light / distance;
+  const float share = light.kind == DeltaLight::Kind::spot
+                          ? spot_share(light, -glm::dot(light.direction, wi))
+                          : 1.0f;
+  return {wi, distance, light.intensity * (share / distance2)};
+}
+
+/// W of the whole light for choosing among lights; of a directional one over a disk of
+/// `scene_radius`. A spot's is pbrt's estimate: the cone of the mean of both angles'
+/// cosines.
+PT_HD Color delta_light_power(const DeltaLight& light, float scene_radius) {
+  switch (light.kind) {
+    case DeltaLight::Kind::point:
+      return 4.0f * pi * light.intensity;
+    case DeltaLight::Kind::spot:
+      return 2.0f * pi * (1.0f - 0.5f * (light.cos_inner + light.cos_outer)) * light.intensity;
+    default:
+      return pi * scene_radius * scene_radius * light.intensity;
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,138 @@
+// Light from infinitely far, looked up in a picture of all directions and chosen by its brightness.
+//
+// The picture is a map by latitude and longitude: in its own space row 0 is the zenith (+y), the
+// middle column is -z, and u grows towards +x. Radiance is interpolated between the texels' centres
+// (around in u, clamped in v). Density per solid angle is constant over each texel: the luminance
+// that the interpolation gives on average there, so that whatever shines can be chosen. Within a
+// texel directions are uniform in solid angle, so no density is infinite at the poles.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/math/sincos.h"
+#include "common/math/transform.h"
+#include "common/sampling/alias_table.h"
+
+namespace pt {
+
+/// One 16-byte load.
+struct alignas(16) EnvironmentTexel {
+  Color radiance = Color(0.0f);  ///< at the centre
+  float pdf = 0.0f;              ///< of the texel's directions, per solid angle
+};
+
+/// A view for kernels. EnvironmentMap owns the memory.
+struct Environment {
+  const EnvironmentTexel* texels = nullptr;  ///< [row * width + column]
+  const AliasEntry* alias = nullptr;         ///< by texel
+  std::uint32_t width = 0, height = 0;       ///< 0: none
+  float average = 0.0f;                      ///< luminance, over the sphere
+  Affine to_world;                           ///< orthogonal
+
+  PT_HD bool is_empty() const { return width == 0; }
+};
+
+/// A place in the map, in texels: texel (i, j) reaches from i to i + 1 and from j to j + 1.
+struct MapPoint {
+  float x, y;
+};
+
+/// `direction` is in the map's own space; its length is free. Exact at the poles, where arc cosine
+/// is not.
+PT_HD MapPoint environment_point(const Environment& env, const Vec3& direction) {
+  const float azimuth = atan2f(direction.x, -direction.z);
+  const float from_zenith =
+      atan2f(sqrtf(direction.x * direction.x + direction.z * direction.z), direction.y);
+  return {(0.5f + 0.5f * inverse_pi * azimuth) * static_cast<float>(env.width),
+          inverse_pi * from_zenith * static_cast<float>(env.height)};
+}
+
+/// The number of the texel that contains the point.
+PT_HD std::uint32_t environment_texel(const Environment& env, const MapPoint& point) {
+  const auto column = static_cast<std::uint32_t>(fmaxf(point.x, 0.0f));
+  const auto row = static_cast<std::uint32_t>(fmaxf(point.y, 0.0f));
+  return (row < env.height ? row : env.height - 1) * env.width +
+         (column < env.width ? column : env.width - 1);
+}
+
+/// Radiance at a place of the map, between four texels.
+PT_HD Color environment_lookup(const Environment& env, const MapPoint& point) {
+  const float x = point.x - 0.5f, y = point.y - 0.5f;
+  const float left = floorf(x), top = floorf(y);
+  const int width = static_cast<int>(env.width), height = static_cast<int>(env.height);
+  const auto wrap = [width](int i) { return i < 0 ? i + width : i >= width ? i - width : i; };
+  const auto clamp = [height](int j) { return j < 0 ? 0 : j >= height ? height - 1 : j; };
+  const int column0 = wrap(static_cast<int>(left)), column1 = wrap(static_cast<int>(left) + 1);
+  const EnvironmentTexel* row0 = env.texels + std::int64_t{clamp(static_cast<int>(top))} * width;
+  const EnvironmentTexel* row1 =
+      env.texels + std::int64_t{clamp(static_cast<int>(top) + 1)} * width;
+  const auto radiance = [](const EnvironmentTexel* texel) { return load_wide(texel).radiance; };
+  return interpolate(interpolate(radiance(row0 + column0), radiance(row0 + column1), x - left),
+                     interpolate(radiance(row1 + column0), radiance(row1 + column1), x - left),
+                     y - top);
+}
+
+/// `direction` has unit length and points away from the scene, in world space.
+PT_HD Color environment_radiance(const Environment& env, const Vec3& direction) {
+  return environment_lookup(env, environment_point(env, env.to_world.transposed(direction)));
+}
+
+/// Density per solid angle with which sample_environment chooses `direction`.
+PT_HD float environment_pdf(const Environment& env, const Vec3& direction) {
+  const MapPoint point = environment_point(env, env.to_world.transposed(direction));
+  return env.texels[environment_texel(env, point)].pdf;
+}
+
+struct EnvironmentSample {
+  Vec3 wi = Vec3(0.0f);  ///< unit vector away from the scene, in world space
+  float pdf = 0.0f;      ///< per solid angle, positive
+  Color radiance = Color(0.0f);
+};
+
+/// A direction of row `row`, uniform in solid angle, as its distance from the nearer pole, measured
+/// in sin^2(theta / 2): uniform on the sphere like cos(theta), and precise at the pole.
+PT_HD float sample_row(std::uint32_t row, std::uint32_t height, float u) {
+  const float step = 0.25f / static_cast<float>(height);  // half an angle, in turns
+  const float sin0 = sincos_2pi(static_cast<float>(row) * step).sin;
+  const float sin1 = sincos_2pi(static_cast<float>(row + 1) * step).sin;
+  return fused_multiply_add(u, (sin1 - sin0) * (sin1 + sin0), sin0 * sin0);
+}
+
+/// From three uniform numbers, multiples of 2^-24 in [0, 1). Where rounding moves a direction over
+/// the border of its texel, `pdf` is that of the texel which was chosen.
+PT_HD EnvironmentSample sample_environment(const Environment& env, float u0, float u1, float u2) {
+  const AliasSample chosen = sample_alias(env.alias, env.width * env.height, u0, u1);
+  const std::uint32_t row = chosen.index / env.width, column = chosen.index % env.width;
+  const bool below = 2 * row >= env.height;
+  const float h = fminf(sample_row(below ? env.height - 1 - row : row, env.height, u2), 1.0f);
+  const float sin_theta = 2.0f * sqrtf(h * (1.0f - h));
+  const float cos_theta = 1.0f - 2.0f * h;
+  const SinCos phi =  // of the angle from column 0, which is +z
+      sincos_2pi((static_cast<float>(column) + chosen.u) / static_cast<float>(env.width));
+  const Vec3 local = {-sin_theta * phi.sin, below ? -cos_theta : cos_theta, sin_theta * phi.cos};
+  const Vec3 wi = normalize(env.to_world.vector(local));
+  return {wi, env.texels[chosen.index].pdf, environment_radiance(env, wi)};
+}
+
+/// The memory behind an Environment.
+struct EnvironmentMap {
+  std::vector<EnvironmentTexel> texels;
+  std::vector<AliasEntry> alias;
+  std::uint32_t width = 0, height = 0;
+  float average = 0.0f;
+  Affine to_world;
+
+  /// Valid while the map is neither changed nor destroyed.
+  Environment view() const {
+    return {texels.data(), alias.data(), width, height, average, to_world};
+  }
+};
+
+/// Prepares a map of `width` x `height` radiances, row by row. A uniform scale in `to_world` is
+/// removed. A black map is sampled uniformly. Throws Error for a size that does not fit `pixels` or
+/// exceeds 2^31 - 1 texels, a negative or non-finite pixel, and a `to_world` that shears.
+EnvironmentMap make_environment(int width, int height, std::span<const Color> pixels,
+                                const Affine& to_world);
+
+}  // namespace pt

@@ -1,0 +1,19 @@
+// Where a scene lies, and what a viewer needs to see it that its file does not give.
+#pragma once
+
+#include "common/geometry/bounds.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Of everything in world space, instances included. Those may be larger than need be: the boxes of
+/// their groups, turned.
+Bounds scene_bounds(const SceneData& scene);
+
+/// A camera that sees all of `bounds` (not empty) from the front, right and above: +z, +x and +y.
+CameraParameters frame_bounds(const Bounds& bounds);
+
+/// Is anything to be seen by: a sky, an environment, a light or a surface that emits?
+bool has_light(const SceneData& scene);
+
+}  // namespace pt

@@ -1,0 +1,12 @@
+// KHR_lights_punctual.
+#pragma once
+
+#include "common/scene/gltf/nodes.h"
+#include "common/scene/scene_data.h"
+
+namespace pt::gltf {
+
+/// Adds the lights of the nodes to the scene.
+void add_lights(File& file, const std::vector<PlacedNode>& nodes, SceneData& scene);
+
+}  // namespace pt::gltf

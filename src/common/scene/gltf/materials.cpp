@@ -1,0 +1,184 @@
+#include "common/scene/gltf/materials.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/scene/gltf/values.h"
+
+namespace pt::gltf {
+
+namespace {
+
+/// As reflectance: within [0, 1]. NaN becomes 0.
+Color clamped(const Color& c) {
+  const auto clamp = [](float x) { return x > 0.0f ? std::min(x, 1.0f) : 0.0f; };
+  return {clamp(c.x), clamp(c.y), clamp(c.z)};
+}
+
+Color to_color(const std::vector<double>& v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+float extension_number(const tinygltf::Material& source, const char* extension, const char* key,
+                       float fallback) {
+  const auto* value = find_extension(source.extensions, extension);
+  return value ? number_or(*value, key, fallback) : fallback;
+}
+
+}  // namespace
+
+std::uint32_t Materials::number(int index, const std::string& place) {
+  const auto known = numbers_.find(index);
+  if (known != numbers_.end()) return known->second;
+  std::uint32_t result;
+  if (index < 0) {
+    result = add(convert(tinygltf::Material(), place), place);
+  } else {
+    const auto& source = file_.at(file_.model.materials, index, "materials", place + ".material");
+    const std::string material_place = fmt::format(
+        "materials[{}]{}", index, source.name.empty() ? "" : fmt::format(" '{:.60}'", source.name));
+    result = add(convert(source, material_place), material_place);
+  }
+  numbers_.emplace(index, result);
+  return result;
+}
+
+std::uint32_t Materials::add(const Converted& converted, const std::string& place) {
+  Material material = converted.material;
+  if (converted.textures.albedo != no_texture || converted.textures.emission != no_texture) {
+    if (scene_.material_textures.size() > std::numeric_limits<std::uint16_t>::max()) {
+      file_.fail(place, "too many materials with textures: expected at most 65535");
+    }
+    material.textures = static_cast<std::uint16_t>(scene_.material_textures.size());
+    scene_.material_textures.push_back(converted.textures);
+  }
+  return scene_.add_material(material);
+}
+
+Materials::Converted Materials::convert(const tinygltf::Material& source,
+                                        const std::string& place) {
+  Converted result;
+  report_ignored(source, place);
+  if (find_extension(source.extensions, "KHR_materials_unlit")) {
+    file_.report(place,
+                 "KHR_materials_unlit: black that emits the base colour is used, and lights "
+                 "the scene");
+    set_base(source, place, result);
+    result.material.emission = result.material.albedo;
+    result.textures.emission = result.textures.albedo;
+    result.material.albedo = Color(0.0f);
+    result.textures.albedo = no_texture;
+    return result;
+  }
+  const auto* glossiness = find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
+  if (glossiness) {
+    set_specular_glossiness(*glossiness, place, result);
+  } else if (!set_transmission(source, place, result)) {
+    set_metallic_roughness(source, place, result);
+  }
+  set_emission(source, place, result);
+  result.material.one_sided = result.material.kind == MaterialKind::diffuse && !source.doubleSided;
+  return result;
+}
+
+void Materials::set_base(const tinygltf::Material& source, const std::string& place,
+                         Converted& result) {
+  const auto& pbr = source.pbrMetallicRoughness;
+  result.material.albedo = clamped(to_color(pbr.baseColorFactor));
+  if (const TextureUse use = texture_use(pbr.baseColorTexture)) {
+    result.textures.albedo =
+        textures_.add_color(use, place + ".pbrMetallicRoughness.baseColorTexture");
+  }
+}
+
+void Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
+                                       Converted& result) {
+  set_base(source, place, result);
+  const auto& pbr = source.pbrMetallicRoughness;
+  auto metallic = static_cast<float>(pbr.metallicFactor);
+  auto roughness = static_cast<float>(pbr.roughnessFactor);
+  if (const TextureUse use = texture_use(pbr.metallicRoughnessTexture)) {
+    const std::string texture_place = place + ".pbrMetallicRoughness.metallicRoughnessTexture";
+    file_.report(texture_place, "textures of metallic and roughness: their means are used");
+    const Color mean = textures_.mean(use, texture_place);
+    roughness *= mean.y;
+    metallic *= mean.z;
+  }
+  if (metallic >= 0.5f) {
+    file_.report(place,
+                 "metallic >= 0.5: metal in the base colour is used, its fuzz is roughness "
+                 "squared");
+    result.material.kind = MaterialKind::metal;
+    result.material.parameter = std::clamp(roughness * roughness, 0.0f, 1.0f);
+  } else {
+    file_.report(place,
+                 "metallic < 0.5: diffuse in the base colour is used, without a specular "
+                 "coat");
+  }
+}
+
+void Materials::set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
+                                        Converted& result) {
+  file_.report(place, "KHR_materials_pbrSpecularGlossiness: diffuse in the diffuse colour is used");
+  result.material.albedo = clamped(Color(vector_or(source, "diffuseFactor", Vec4(1.0f))));
+  if (const TextureUse use = texture_use(member(source, "diffuseTexture"))) {
+    result.textures.albedo = textures_.add_color(
+        use, place + ".extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture");
+  }
+}
+
+bool Materials::set_transmission(const tinygltf::Material& source, const std::string& place,
+                                 Converted& result) {
+  const auto* extension = find_extension(source.extensions, "KHR_materials_transmission");
+  float transmission = extension ? number_or(*extension, "transmissionFactor", 0.0f) : 0.0f;
+  if (!(transmission > 0.0f)) return false;
+  if (const TextureUse use = texture_use(member(*extension, "transmissionTexture"))) {
+    const std::string texture_place =
+        place + ".extensions.KHR_materials_transmission.transmissionTexture";
+    file_.report(texture_place, "textures of transmission: their means are used");
+    transmission *= textures_.mean(use, texture_place).x;
+  }
+  if (!(transmission > 0.5f)) {
+    file_.report(place, "transmission <= 0.5 is ignored");
+    return false;
+  }
+  file_.report(place, "transmission > 0.5: smooth, solid glass in the base colour is used");
+  set_base(source, place, result);
+  const float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
+  if (!std::isfinite(ior) || ior < 1.0f) {
+    file_.fail(place + ".extensions.KHR_materials_ior.ior", fmt::format("{}: expected >= 1", ior));
+  }
+  result.material.kind = MaterialKind::dielectric;
+  result.material.parameter = ior;
+  return true;
+}
+
+void Materials::set_emission(const tinygltf::Material& source, const std::string& place,
+                             Converted& result) {
+  if (source.emissiveFactor.size() != 3) return;  // the default material
+  const float strength =
+      extension_number(source, "KHR_materials_emissive_strength", "emissiveStrength", 1.0f);
+  const Color emission = strength * to_color(source.emissiveFactor);
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(emission[i]) || emission[i] < 0.0f) {
+      file_.fail(place + ".emissiveFactor", "expected finite numbers >= 0");
+    }
+  }
+  result.material.emission = emission;
+  if (is_black(emission)) return;
+  if (source.doubleSided) {
+    file_.report(place, "doubleSided and emissive: light from the front side only");
+  }
+  if (const TextureUse use = texture_use(source.emissiveTexture)) {
+    result.textures.emission = textures_.add_color(use, place + ".emissiveTexture");
+  }
+}
+
+void Materials::report_ignored(const tinygltf::Material& source, const std::string& place) {
+  if (source.alphaMode != "OPAQUE") {
+    file_.report(place, "alphaMode MASK and BLEND are ignored: opaque is used");
+  }
+  if (source.normalTexture.index >= 0) file_.report(place, "normal maps are ignored");
+}
+
+}  // namespace pt::gltf

@@ -1,0 +1,46 @@
+// Materials: the nearest of ours to metallic-roughness and its extensions.
+#pragma once
+
+#include <cstdint>
+#include <map>
+
+#include "common/scene/gltf/textures.h"
+#include "common/scene/scene_data.h"
+
+namespace pt::gltf {
+
+/// Converts the materials that the scene uses, with their textures.
+class Materials {
+ public:
+  /// Adds to `scene`, which outlives this.
+  Materials(File& file, SceneData& scene) : file_(file), scene_(scene), textures_(file, scene) {}
+
+  /// The scene's number of material `index` of the file, -1: the default material. `place` is that
+  /// of the reference.
+  std::uint32_t number(int index, const std::string& place);
+
+ private:
+  struct Converted {
+    Material material;
+    MaterialTextures textures;
+  };
+
+  Converted convert(const tinygltf::Material& source, const std::string& place);
+  void set_base(const tinygltf::Material& source, const std::string& place, Converted& result);
+  void set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
+                              Converted& result);
+  void set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
+                               Converted& result);
+  bool set_transmission(const tinygltf::Material& source, const std::string& place,
+                        Converted& result);
+  void set_emission(const tinygltf::Material& source, const std::string& place, Converted& result);
+  void report_ignored(const tinygltf::Material& source, const std::string& place);
+  std::uint32_t add(const Converted& converted, const std::string& place);
+
+  File& file_;
+  SceneData& scene_;
+  Textures textures_;
+  std::map<int, std::uint32_t> numbers_;
+};
+
+}  // namespace pt::gltf

@@ -1,0 +1,50 @@
+// Textures: images, samplers and KHR_texture_transform.
+#pragma once
+
+#include <string>
+
+#include "common/files/texture_store.h"
+#include "common/math/vec.h"
+#include "common/scene/gltf/file.h"
+#include "common/scene/scene_data.h"
+
+namespace pt::gltf {
+
+/// A textureInfo object: which texture, and how it lies on the surface.
+struct TextureUse {
+  int texture = -1;  ///< number in the file, -1: none
+  int tex_coord = 0;
+  tinygltf::Value transform;  ///< KHR_texture_transform, or null
+
+  explicit operator bool() const { return texture >= 0; }
+};
+
+TextureUse texture_use(const tinygltf::TextureInfo& info);
+/// The same within an extension; null: none.
+TextureUse texture_use(const tinygltf::Value& info);
+
+class Textures {
+ public:
+  /// Adds to `scene`, which outlives this.
+  Textures(File& file, SceneData& scene) : file_(file), store_(scene.textures, scene.texels) {}
+
+  /// A colour texture (sRGB); its number in the scene. `place` is that of the textureInfo.
+  std::uint32_t add_color(const TextureUse& use, const std::string& place);
+
+  /// Mean of the image's linear R, G, B over all texels, in [0, 1].
+  Color mean(const TextureUse& use, const std::string& place);
+
+ private:
+  struct Encoded {
+    std::string_view bytes;
+    std::string name;
+  };
+
+  const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
+  Encoded encoded_image(const TextureUse& use, const std::string& place) const;
+
+  File& file_;
+  TextureStore store_;
+};
+
+}  // namespace pt::gltf

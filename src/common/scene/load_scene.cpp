@@ -1,0 +1,96 @@
+#include "common/scene/load_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "common/files/mesh_files.h"
+#include "common/files/texture_store.h"
+#include "common/scene/frame_scene.h"
+#include "common/scene/gltf.h"
+#include "common/scene/mitsuba_xml.h"
+
+namespace pt {
+
+namespace {
+
+/// What a file of meshes alone does not say.
+void complete(const std::filesystem::path& path, const LoadOptions& options, SceneData& scene) {
+  const Bounds bounds = scene_bounds(scene);
+  if (bounds.is_empty()) {
+    throw Error(fmt::format("{}: no triangles: expected at least one", path.string()));
+  }
+  scene.name = path.filename().string();
+  scene.camera = frame_bounds(bounds);
+  const bool is_lit = has_light(scene);
+  if (!is_lit) scene.sky = {Color(1.0f), Color(1.0f)};
+  if (options.warn) {
+    options.warn(fmt::format("{}: the format has no camera: one that frames the scene is used{}",
+                             path.string(), is_lit ? "" : ", and a white sky of radiance 1"));
+  }
+}
+
+SceneData load_ply(const std::filesystem::path& path, const LoadOptions& options) {
+  SceneData scene;
+  Mesh mesh = read_ply(path);
+  mesh.material = scene.add_material(make_diffuse(Color(0.5f)));
+  scene.meshes.push_back(std::move(mesh));
+  complete(path, options, scene);
+  return scene;
+}
+
+void add_obj_material(ObjMaterial source, TextureStore& textures, SceneData& scene) {
+  const auto add = [&](const std::filesystem::path& map) {
+    return map.empty() ? no_texture : textures.add_file(map);
+  };
+  const MaterialTextures maps{add(source.albedo_map), add(source.emission_map)};
+  if (maps.albedo != no_texture || maps.emission != no_texture) {
+    if (scene.material_textures.size() > 0xffff) {
+      throw Error(fmt::format("material '{}': too many with textures, at most 65535", source.name));
+    }
+    source.material.textures = static_cast<std::uint16_t>(scene.material_textures.size());
+    scene.material_textures.push_back(maps);
+  }
+  scene.add_material(source.material);
+}
+
+SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options) {
+  SceneData scene;
+  ObjFile file = read_obj_with_materials(path);
+  for (const std::string& warning : file.warnings) options.report(warning);
+  TextureStore textures(scene.textures, scene.texels);
+  for (const ObjMaterial& material : file.materials) add_obj_material(material, textures, scene);
+  scene.meshes = std::move(file.meshes);
+  complete(path, options, scene);
+  return scene;
+}
+
+struct Format {
+  const char* ending;
+  SceneData (*load)(const std::filesystem::path&, const LoadOptions&);
+};
+
+constexpr std::array<Format, 5> formats = {{{".xml", load_mitsuba_xml},
+                                            {".gltf", load_gltf},
+                                            {".glb", load_gltf},
+                                            {".obj", load_obj},
+                                            {".ply", load_ply}}};
+
+}  // namespace
+
+SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& options) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::string known;
+  for (const Format& format : formats) {
+    if (ending == format.ending) return format.load(path, options);
+    known += fmt::format("{}{}", known.empty() ? "" : ", ", format.ending);
+  }
+  throw Error(fmt::format("{}: unknown kind of scene file '{}'; expected one of {}", path.string(),
+                          ending, known));
+}
+
+}  // namespace pt

@@ -1,0 +1,18 @@
+// Scene files of all formats.
+#pragma once
+
+#include <filesystem>
+
+#include "common/scene/load_options.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Loads a scene; the ending of the name, in either case, says which format it has: .xml (Mitsuba),
+/// .gltf, .glb, .obj or .ply. The last two have neither camera nor lights: they get a camera that
+/// frames them and a white sky of radiance 1 (unless a material of the .obj emits), and
+/// `options.warn` is told so. A .ply is grey, diffuse. Throws Error for other endings and as the
+/// formats' loaders do.
+SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& options = {});
+
+}  // namespace pt

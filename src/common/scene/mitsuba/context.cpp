@@ -1,0 +1,75 @@
+#include "common/scene/mitsuba/context.h"
+
+#include <fmt/format.h>
+
+#include "common/scene/mitsuba/values.h"
+
+namespace pt::mitsuba {
+namespace {
+
+// A scene without a version is read as one of today.
+bool is_modern(const ObjectGraph& graph) {
+  const std::string* version = graph.scene().element().attribute("version");
+  if (!version) return true;
+  const std::optional<double> major = parse_number(version->substr(0, version->find('.')));
+  if (!major) {
+    fail(graph.scene().element(),
+         fmt::format("version '{}' of the scene; expected one like 3.0.0", *version));
+  }
+  return *major >= 2;
+}
+
+}  // namespace
+
+Context::Context(SceneData& scene_data, const LoadOptions& load_options, const ObjectGraph& graph)
+    : scene(scene_data),
+      textures(scene_data.textures, scene_data.texels),
+      modern(is_modern(graph)),
+      options_(load_options),
+      graph_(graph) {}
+
+void Context::warn_once(const std::string& kind, const Element& at, const std::string& message) {
+  if (warned_.insert(kind).second) options_.report(at.place() + ": " + message);
+}
+
+std::filesystem::path Context::resolve(const Element& at, const std::string& name) const {
+  const std::filesystem::path beside = at.file->parent_path() / name;
+  const std::filesystem::path folder = graph_.scene().element().file->parent_path();
+  std::error_code ignored;
+  if (std::filesystem::exists(beside, ignored)) return beside;
+  if (std::filesystem::exists(folder / name, ignored)) return folder / name;
+  for (const std::string& path : graph_.search_paths()) {
+    if (std::filesystem::exists(folder / path / name, ignored)) return folder / path / name;
+  }
+  return beside;
+}
+
+void Context::report_unused() {
+  for (const auto& object : graph_.objects()) {
+    if (object->touched() && object->tag() != "scene") report_unused(*object);
+  }
+}
+
+void Context::report_unused(const Object& object) {
+  const std::string whose = fmt::format("{} '{}'", object.tag(), object.type());
+  const Element* first = nullptr;
+  std::string names;
+  const auto add = [&](const std::string& name, const Element* at) {
+    if (!warned_.insert(fmt::format("unused {} {}", whose, name)).second) return;
+    names += (first ? ", " : "") + name;
+    if (!first || at->line < first->line) first = at;
+  };
+  for (const auto& [name, property] : object.properties()) {
+    if (!property.used) add(name, property.element);
+  }
+  for (const Object::Nested& nested : object.nested()) {
+    if (nested.used) continue;
+    add(fmt::format("{} '{}'", nested.object->tag(), nested.object->type()), nested.element);
+  }
+  if (first) {
+    options_.report(
+        fmt::format("{}: not supported in {} and ignored: {}", first->place(), whose, names));
+  }
+}
+
+}  // namespace pt::mitsuba

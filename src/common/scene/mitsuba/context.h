@@ -1,0 +1,49 @@
+// What the loading of one scene shares.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/files/texture_store.h"
+#include "common/scene/load_options.h"
+#include "common/scene/mitsuba/object.h"
+#include "common/scene/scene_data.h"
+
+namespace pt::mitsuba {
+
+class Context {
+ public:
+  /// All arguments must outlive the context.
+  Context(SceneData& scene_data, const LoadOptions& load_options, const ObjectGraph& graph);
+
+  SceneData& scene;
+  TextureStore textures;
+  /// Mitsuba 2 and 3; else 0.x, with other defaults here and there.
+  const bool modern;
+
+  /// Reports what is replaced or ignored, once for each `kind`.
+  void warn_once(const std::string& kind, const Element& at, const std::string& message);
+
+  /// The existing file that a property names: beside the XML file that names it, beside the scene,
+  /// or on a <path>. Where there is none: the first of these, for an error that names it.
+  std::filesystem::path resolve(const Element& at, const std::string& name) const;
+
+  /// Reports what is inside of objects in use and nothing asked for.
+  void report_unused();
+
+  /// Numbers of materials by bsdf and emitter, of groups by shapegroup.
+  std::map<std::pair<const Object*, const Object*>, std::uint32_t> materials;
+  std::map<const Object*, std::uint32_t> groups;
+
+ private:
+  void report_unused(const Object& object);
+
+  const LoadOptions& options_;
+  const ObjectGraph& graph_;
+  std::set<std::string> warned_;
+};
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,15 @@
+// <emitter>s that are not on a shape.
+#pragma once
+
+#include "common/scene/mitsuba/context.h"
+
+namespace pt::mitsuba {
+
+/// Adds point, spot, directional, constant or envmap to the scene; others are reported. Adding a
+/// kind is adding a line to the table in emitters.cpp.
+void add_emitter(Context& context, const Object& emitter);
+
+/// Fills the scene's environment with an `envmap`.
+void add_environment_map(Context& context, const Object& emitter);
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,154 @@
+#include "common/scene/mitsuba/sensor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/scene/mitsuba/values.h"
+
+namespace pt::mitsuba {
+namespace {
+
+constexpr int max_image_side = 65535;
+
+int image_side(const Object& film, std::string_view name, int fallback) {
+  const int side = film.integer(name).value_or(fallback);
+  if (side < 1 || side > max_image_side) {
+    fail(film.element(),
+         fmt::format("{} of the film is {}; expected 1 to {} pixels", name, side, max_image_side));
+  }
+  return side;
+}
+
+void read_film(Context& context, const Object& film) {
+  context.scene.defaults.width = image_side(film, "width", 768);
+  context.scene.defaults.height = image_side(film, "height", 576);
+  if (film.find("crop_width") || film.find("crop_height") || film.find("crop_offset_x") ||
+      film.find("crop_offset_y")) {
+    context.warn_once("crop", film.element(),
+                      "a crop of the film is not supported: the whole image is rendered");
+    film.ignore({"crop_width", "crop_height", "crop_offset_x", "crop_offset_y"});
+  }
+  // About the file that Mitsuba would write.
+  film.ignore({"file_format", "pixel_format", "component_format", "gamma", "banner", "exposure",
+               "tonemap_method", "high_quality_edges", "attach_log", "compensate", "sample_border",
+               "variable", "digits", "key", "burn"});
+  const Object* filter = film.child("rfilter");
+  if (filter && filter->type() != "box") {
+    context.warn_once(
+        "rfilter", filter->element(),
+        fmt::format("reconstruction filter '{}' is not supported: box is used", filter->type()));
+  }
+}
+
+void read_sampler(Context& context, const Object& sampler) {
+  const std::optional<int> count = sampler.integer("sample_count");
+  sampler.ignore({"seed", "scramble", "jitter", "dimension"});
+  if (!count) return;
+  if (*count < 1) {
+    fail(sampler.element(), fmt::format("sample_count {}; expected 1 or more", *count));
+  }
+  context.scene.defaults.spp = count;
+}
+
+/// The tangent of half the vertical field of view of a film `aspect` times as wide as high, from
+/// that along an axis.
+double vertical_tangent(const Object& sensor, double tangent, const std::string& axis,
+                        double aspect) {
+  if (axis == "x" || (axis == "larger" && aspect > 1) || (axis == "smaller" && aspect <= 1)) {
+    return tangent / aspect;
+  }
+  if (axis == "y" || axis == "larger" || axis == "smaller") return tangent;
+  if (axis == "diagonal") return tangent / std::sqrt(1 + aspect * aspect);
+  fail(*sensor.find("fov_axis"),
+       fmt::format("fov_axis '{}'; expected x, y, diagonal, smaller or larger", axis));
+}
+
+/// Millimetres, of film 36 mm x 24 mm: "50mm".
+double focal_length_mm(const Object& sensor) {
+  std::string text = sensor.text("focal_length", "50mm");
+  if (text.size() > 2 && text.ends_with("mm")) text.resize(text.size() - 2);
+  const std::optional<double> length = parse_number(text);
+  if (!length || !(*length > 0)) {
+    fail(sensor.element(),
+         fmt::format("focal_length '{}'; expected a length above 0, such as 50mm", text));
+  }
+  return *length;
+}
+
+float vertical_fov_degrees(const Object& sensor, double aspect) {
+  const double degree = std::acos(-1.0) / 180.0;
+  double tangent = 0;
+  std::string axis = sensor.text("fov_axis", "x");
+  if (const std::optional<double> fov = sensor.number("fov")) {
+    if (!(*fov > 0 && *fov < 180)) {
+      fail(*sensor.find("fov"),
+           fmt::format("fov {}; expected degrees between 0 and 180, both excluded", *fov));
+    }
+    tangent = std::tan(0.5 * *fov * degree);
+  } else {
+    tangent = 0.5 * std::hypot(36.0, 24.0) / focal_length_mm(sensor);
+    axis = "diagonal";
+  }
+  const double vertical = vertical_tangent(sensor, tangent, axis, aspect);
+  return static_cast<float>(2.0 * std::atan(vertical) / degree);
+}
+
+/// Mitsuba's camera looks along its z, with y up and x to the left of the image.
+void place_camera(Context& context, const Object& sensor) {
+  const Affine map = sensor.transform("to_world");
+  const Vec3 left = map.vector({1, 0, 0}), up = map.vector({0, 1, 0});
+  const Vec3 forward = map.vector({0, 0, 1});
+  CameraParameters& camera = context.scene.camera;
+  camera.look_from = map.translation();
+  // Far enough that rounding does not turn the view.
+  const float distance = std::max(1.0f, max_abs(camera.look_from));
+  camera.look_at = camera.look_from + distance * glm::normalize(forward);
+  camera.up = up;
+  camera.mirrored = map.determinant() < 0.0f;
+  const float size = glm::length(forward);
+  const auto differs = [&](float a, float b) { return std::abs(a - b) > 1e-3f * size; };
+  if (differs(size, 1.0f) || differs(glm::length(left), size) || differs(glm::length(up), size) ||
+      differs(glm::dot(left, forward) / size, 0.0f) ||
+      differs(glm::dot(up, forward) / size, 0.0f) || differs(glm::dot(left, up) / size, 0.0f)) {
+    context.warn_once("camera scale", sensor.element(),
+                      "to_world of the sensor scales or shears: its view and up direction are "
+                      "used without that");
+  }
+}
+
+void read_lens(const Object& sensor, CameraParameters& camera) {
+  camera.focus_distance = sensor.number("focus_distance", camera.focus_distance);
+  camera.aperture = 2.0f * sensor.number("aperture_radius", 0.0f);
+  if (!(camera.focus_distance > 0.0f) || !(camera.aperture >= 0.0f)) {
+    fail(sensor.element(), "expected a focus_distance above 0 and an aperture_radius not below 0");
+  }
+}
+
+}  // namespace
+
+void read_sensor(Context& context, const Object& sensor) {
+  const std::string type = sensor.type();
+  SceneDefaults& defaults = context.scene.defaults;
+  defaults.width = 768;
+  defaults.height = 576;
+  if (const Object* film = sensor.child("film")) read_film(context, *film);
+  if (const Object* sampler = sensor.child("sampler")) read_sampler(context, *sampler);
+  if (type != "perspective" && type != "thinlens") {
+    context.warn_once("sensor " + type, sensor.element(),
+                      fmt::format("sensor '{}' is not supported: perspective is used", type));
+  }
+  const double aspect = static_cast<double>(*defaults.width) / *defaults.height;
+  context.scene.camera = {};
+  context.scene.camera.vertical_fov_degrees = vertical_fov_degrees(sensor, aspect);
+  place_camera(context, sensor);
+  sensor.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close"});
+  if (type == "thinlens") {
+    read_lens(sensor, context.scene.camera);
+  } else {
+    sensor.ignore({"focus_distance"});
+  }
+}
+
+}  // namespace pt::mitsuba

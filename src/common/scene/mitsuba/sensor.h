@@ -1,0 +1,15 @@
+// <sensor>, with its film and sampler, and <integrator>: camera and defaults of a scene.
+#pragma once
+
+#include "common/scene/mitsuba/context.h"
+
+namespace pt::mitsuba {
+
+/// `perspective` or `thinlens` as the scene's camera; other sensors become a pinhole with a
+/// warning. Width, height and samples per pixel become defaults.
+void read_sensor(Context& context, const Object& sensor);
+
+/// max_depth and rr_depth; every integrator becomes a path tracer.
+void read_integrator(Context& context, const Object& integrator);
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,26 @@
+// <bsdf>s to the nearest of our materials.
+#pragma once
+
+#include "common/scene/mitsuba/textures.h"
+
+namespace pt::mitsuba {
+
+/// What a bsdf becomes.
+struct Surface {
+  Material material;
+  MaterialTextures textures;
+  bool invisible = false;  ///< light passes as if nothing were there
+};
+
+/// Each replacement is reported once for its kind. Adding a bsdf is adding a line to the table in
+/// surfaces.cpp.
+Surface read_surface(Context& context, const Object& bsdf);
+
+/// The reflectance at normal incidence of a conductor that Mitsuba knows by name (Al, Cu, ...), or
+/// of the complex index of refraction in its properties.
+Color conductor_reflectance(Context& context, const Object& bsdf);
+
+/// int_ior / ext_ior, numbers or names (bk7, air, ...).
+float relative_ior(const Object& bsdf);
+
+}  // namespace pt::mitsuba

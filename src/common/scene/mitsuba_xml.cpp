@@ -1,0 +1,55 @@
+#include "common/scene/mitsuba_xml.h"
+
+#include <fmt/format.h>
+
+#include "common/scene/mitsuba/emitters.h"
+#include "common/scene/mitsuba/sensor.h"
+#include "common/scene/mitsuba/shapes.h"
+
+namespace pt {
+namespace {
+
+using mitsuba::Context;
+using mitsuba::Object;
+
+/// The sensor, in the name of 0.x's first versions or of today.
+void load_sensor(Context& context, const Object& root) {
+  std::vector<const Object*> sensors = root.children("sensor");
+  for (const Object* camera : root.children("camera")) sensors.push_back(camera);
+  if (sensors.empty()) {
+    context.warn_once("no sensor", root.element(),
+                      "the scene has no sensor: a camera at (0, 0, 1) that looks at the origin is "
+                      "used");
+    return;
+  }
+  if (sensors.size() > 1) {
+    context.warn_once("sensors", sensors[1]->element(), "more than one sensor: the first is used");
+  }
+  read_sensor(context, *sensors.front());
+}
+
+void load_objects(Context& context, const Object& root) {
+  if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
+  load_sensor(context, root);
+  for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
+  for (const Object* emitter : root.children("emitter")) add_emitter(context, *emitter);
+  for (const Object* emitter : root.children("luminaire")) add_emitter(context, *emitter);
+}
+
+}  // namespace
+
+SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options) {
+  const mitsuba::Element root = mitsuba::read_document(path, options);
+  const mitsuba::ObjectGraph graph(root, options);
+  SceneData scene;
+  // Many scenes are FOLDER/scene.xml.
+  const std::string stem = path.stem().string();
+  scene.name =
+      stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
+  Context context(scene, options, graph);
+  load_objects(context, graph.scene());
+  context.report_unused();
+  return scene;
+}
+
+}  // namespace pt

@@ -1,0 +1,14 @@
+// The camera's parameters: the scene's own, overridden by the options, checked.
+#pragma once
+
+#include "common/render/options.h"
+#include "common/scene/camera.h"
+
+namespace pt {
+
+void override_camera(CameraParameters& camera, const CameraOverrides& overrides);
+
+/// Throws Error naming the option that can mend it when the parameters describe no camera.
+void check_camera(const CameraParameters& camera);
+
+}  // namespace pt

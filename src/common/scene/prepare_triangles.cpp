@@ -1,0 +1,94 @@
+#include "common/scene/prepare_triangles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/accel/build_triangle_tree.h"
+#include "common/accel/embree_tree.h"
+#include "common/error.h"
+#include "common/render/option_names.h"
+#include "common/scene/convert_quads.h"
+#include "common/scene/frame_scene.h"
+#include "common/scene/list_lights.h"
+#include "common/scene/prepare_primitives.h"
+
+namespace pt {
+namespace {
+
+Accel structure_of(AccelKind kind) {
+  switch (kind) {
+    case AccelKind::brute:
+      return Accel::brute;
+    case AccelKind::bvh2:
+      return Accel::bvh2;
+    case AccelKind::embree:
+      return Accel::embree;
+    default:
+      return Accel::cwbvh;
+  }
+}
+
+bool is_device_builder(TreeBuilder builder) {
+  return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc;
+}
+
+/// All meshes' attributes as one array of vertices; triangles are numbered through the meshes.
+MeshAttributes join_attributes(const std::vector<Mesh>& meshes) {
+  MeshAttributes all;
+  const auto any = [&](auto&& has) { return std::any_of(meshes.begin(), meshes.end(), has); };
+  const bool normals = any([](const Mesh& mesh) { return !mesh.normals.empty(); });
+  const bool uvs = any([](const Mesh& mesh) { return !mesh.uvs.empty(); });
+  if (!normals && !uvs) return all;
+  for (const Mesh& mesh : meshes) {
+    const std::size_t first = std::max(all.normals.size(), all.uvs.size());
+    const std::size_t end = first + mesh.positions.size();
+    for (TriangleIndices triangle : mesh.triangles) {
+      for (std::uint32_t& v : triangle.v) v += static_cast<std::uint32_t>(first);
+      all.triangles.push_back(triangle);
+    }
+    if (normals) all.normals.insert(all.normals.end(), mesh.normals.begin(), mesh.normals.end());
+    if (uvs) all.uvs.insert(all.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    if (normals) all.normals.resize(end, Vec3(0.0f));
+    if (uvs) all.uvs.resize(end, Vec2(0.0f));
+  }
+  return all;
+}
+
+/// In the order of InstanceRecord::number: the meshes of group 0 come last.
+std::vector<Affine> instance_transforms(const SceneData& scene) {
+  std::vector<Affine> transforms;
+  for (const Instance& instance : scene.instances) transforms.push_back(instance.to_world);
+  if (!transforms.empty()) transforms.emplace_back();
+  return transforms;
+}
+
+}  // namespace
+
+void prepare_triangles(SceneData& scene, const Options& options) {
+  convert_quads(scene);
+  const Bounds bounds = scene_bounds(scene);
+  prepare_primitives(scene, !scene.spheres.empty(), bounds);
+  scene.lights.clear();  // they are in light_list
+  const Accel accel = structure_of(options.accel);
+  const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
+                     accel == Accel::embree;
+  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
+  if (!is_device_builder(options.builder)) {
+    TreeOptions tree;
+    tree.accel = options.accel;
+    tree.builder = options.builder;
+    if (accel == Accel::embree) tree.accel = AccelKind::brute;  // the triangles alone
+    scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
+    if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
+  }
+  scene.attributes = join_attributes(scene.meshes);
+  scene.to_world = instance_transforms(scene);
+  scene.light_list = list_lights(scene, bounds);
+  if (scene.environment.width > 0) {
+    scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
+                                             scene.environment.pixels, scene.environment.to_world);
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,13 @@
+// Scenes with triangles made ready for tracing.
+#pragma once
+
+#include "common/render/options.h"
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Turns quads into triangles, builds the tree, collects the vertices' attributes, the lights, the
+/// environment, and sets the traits. Throws Error for what cannot be built.
+void prepare_triangles(SceneData& scene, const Options& options);
+
+}  // namespace pt

@@ -1,0 +1,118 @@
+// Looking up a texture.
+//
+// Texels are decoded before they are filtered. Every operation says whether it is fused, so that
+// two kernels cannot round differently (see platform.h).
+#pragma once
+
+#include <cstddef>
+
+#include "common/texture/texture.h"
+
+namespace pt {
+
+/// Linear value of the sRGB curve (IEC 61966-2-1) at byte / 255, 0 and 1 exactly. Above the curve's
+/// linear part a polynomial, fitted to the 245 values that a byte can have: off by less than 1e-5
+/// and less than 1/800 of the step to the next byte. A table would be exact, but its 12 gathers for
+/// a bilinear lookup cost a GPU's L1 cache, which traversal keeps busy, more than 84 fused
+/// operations cost its arithmetic.
+PT_HD float srgb_to_linear(std::uint32_t byte) {
+  const float c = multiply_rounded(static_cast<float>(byte), 1.0f / 255.0f);
+  if (byte <= 10) return multiply_rounded(c, 1.0f / 12.92f);
+  float sum = 0.09612036496400833f;
+  sum = fused_multiply_add(sum, c, -0.39592963457107544f);
+  sum = fused_multiply_add(sum, c, 0.7066987752914429f);
+  sum = fused_multiply_add(sum, c, -0.774587869644165f);
+  sum = fused_multiply_add(sum, c, 0.8445791602134705f);
+  sum = fused_multiply_add(sum, c, 0.48702272772789f);
+  sum = fused_multiply_add(sum, c, 0.035241276025772095f);
+  return fused_multiply_add(sum, c, 0.0008551938226446509f);
+}
+
+/// A coordinate brought into [0, 1]; one that is not a number becomes 0.
+PT_HD float wrap_coordinate(float t, TextureWrap wrap) {
+  if (wrap == TextureWrap::repeat) t = t - floorf(t);
+  if (wrap == TextureWrap::mirror) {
+    t = t - 2.0f * floorf(0.5f * t);  // exact products
+    if (t > 1.0f) t = 2.0f - t;
+  }
+  return fminf(fmaxf(t, 0.0f), 1.0f);
+}
+
+/// The linear colour of a texel; x < width, y < height, row 0 the image's head.
+PT_HD Color load_texel(const Texture& texture, const std::byte* texels, std::uint32_t x,
+                       std::uint32_t y) {
+  const std::size_t number = static_cast<std::size_t>(y) * texture.width + x;
+  if (texture.format == TextureFormat::rgb32f) {
+    const auto* rgb = reinterpret_cast<const float*>(texels + texture.offset) + 3 * number;
+    return {rgb[0], rgb[1], rgb[2]};
+  }
+  const std::uint32_t rgba =
+      reinterpret_cast<const std::uint32_t*>(texels + texture.offset)[number];
+  const std::uint32_t r = rgba & 0xffu, g = (rgba >> 8) & 0xffu, b = (rgba >> 16) & 0xffu;
+  if (texture.format == TextureFormat::srgb8) {
+    return {srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b)};
+  }
+  constexpr float scale = 1.0f / 255.0f;
+  return {multiply_rounded(static_cast<float>(r), scale),
+          multiply_rounded(static_cast<float>(g), scale),
+          multiply_rounded(static_cast<float>(b), scale)};
+}
+
+/// The two texels next to a coordinate in [0, 1] of an axis with `size` texels, and how far it lies
+/// from the first to the second. Texel i has its centre at (i + 1/2) / size.
+struct TexelPair {
+  std::uint32_t first, second;
+  float t;
+};
+
+PT_HD TexelPair find_texels(float coordinate, std::uint32_t size, TextureWrap wrap) {
+  const float x = fused_multiply_add(coordinate, static_cast<float>(size), -0.5f);
+  const float below = floorf(x);
+  const int last = static_cast<int>(size) - 1;
+  int first = static_cast<int>(below), second = first + 1;  // -1 .. last, 0 .. last + 1
+  const bool repeats = wrap == TextureWrap::repeat;         // a mirrored edge meets itself
+  if (first < 0) first = repeats ? last : 0;
+  if (second > last) second = repeats ? 0 : last;
+  if (first > last) first = last;
+  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second), x - below};
+}
+
+PT_HD std::uint32_t nearest_texel(float coordinate, std::uint32_t size) {
+  const auto i = static_cast<std::uint32_t>(multiply_rounded(coordinate, static_cast<float>(size)));
+  return i < size ? i : size - 1;
+}
+
+/// An image at texture coordinates; v = 1 is its head.
+PT_HD Color sample_image(const Texture& texture, const std::byte* texels, const Vec2& uv) {
+  const float u = wrap_coordinate(uv.x, texture.wrap_u);
+  const float down = 1.0f - wrap_coordinate(uv.y, texture.wrap_v);
+  if (texture.filter == TextureFilter::nearest) {
+    return load_texel(texture, texels, nearest_texel(u, texture.width),
+                      nearest_texel(down, texture.height));
+  }
+  const TexelPair x = find_texels(u, texture.width, texture.wrap_u);
+  const TexelPair y = find_texels(down, texture.height, texture.wrap_v);
+  const Color head = interpolate(load_texel(texture, texels, x.first, y.first),
+                                 load_texel(texture, texels, x.second, y.first), x.t);
+  const Color foot = interpolate(load_texel(texture, texels, x.first, y.second),
+                                 load_texel(texture, texels, x.second, y.second), x.t);
+  return interpolate(head, foot, y.t);
+}
+
+/// Two colours on squares of half a unit, as Mitsuba's texture `checkerboard` has them.
+PT_HD Color sample_checkerboard(const Texture& texture, const Vec2& uv) {
+  const bool right = uv.x - floorf(uv.x) > 0.5f, upper = uv.y - floorf(uv.y) > 0.5f;
+  return right == upper ? texture.color0 : texture.color1;
+}
+
+/// The linear colour of a texture at the coordinates of a surface. `texels` is the scene's texel
+/// memory, 16-byte aligned.
+PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, const Vec2& uv) {
+  const float *a = texture.u_row, *b = texture.v_row;
+  const Vec2 mapped(fused_multiply_add(a[0], uv.x, fused_multiply_add(a[1], uv.y, a[2])),
+                    fused_multiply_add(b[0], uv.x, fused_multiply_add(b[1], uv.y, b[2])));
+  if (texture.kind == TextureKind::checkerboard) return sample_checkerboard(texture, mapped);
+  return multiply_rounded(sample_image(texture, texels, mapped), texture.color0);
+}
+
+}  // namespace pt

@@ -1,0 +1,29 @@
+// Rays and hits as they lie in files and in device memory.
+#pragma once
+
+#include "common/geometry/ray.h"
+
+namespace pt {
+
+/// Hits count for t_min < t < t_max. The direction's length is the unit of t.
+struct alignas(16) RayRecord {
+  Vec3 origin;
+  float t_min;
+  Vec3 direction;
+  float t_max;
+
+  PT_HD Ray ray() const { return {origin, direction}; }
+};
+static_assert(sizeof(RayRecord) == 32);
+
+/// Closest hit: t, or -1 for a miss, and the triangle's number in the mesh, or no_primitive. Any
+/// hit: t is 0 for an occluded ray, -1 for a free one.
+struct HitRecord {
+  float t;
+  std::uint32_t primitive;
+};
+static_assert(sizeof(HitRecord) == 8);
+
+enum class RayType : std::uint32_t { closest = 0, any = 1 };
+
+}  // namespace pt

@@ -1,0 +1,28 @@
+// When a path ends, and whether it asks the lights.
+#pragma once
+
+#include "common/math/vec.h"
+
+namespace pt {
+
+struct PathLimits {
+  std::uint32_t max_depth = 50;      ///< rays of a path, the camera ray included
+  std::uint32_t roulette_depth = 0;  ///< from so many rays on Russian roulette decides; 0: never
+  bool ask_lights = true;            ///< next-event estimation
+
+  /// Whether a path that has traced `rays` takes part in the roulette.
+  PT_HD bool is_roulette(std::uint32_t rays) const {
+    return roulette_depth != 0 && rays >= roulette_depth;
+  }
+};
+
+/// Russian roulette (pbrt-v4, section 2.2.4): a dim path ends, black, or counts for those that did.
+/// `u` in [0, 1) decides. The probability to go on is not above 0.95, so that no path between
+/// perfect mirrors lives for ever.
+PT_HD void play_roulette(Color& beta, float u) {
+  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z), 0.95f);
+  const float scale = u < survival ? 1.0f / survival : 0.0f;
+  beta = multiply_rounded(beta, Color(scale));
+}
+
+}  // namespace pt

@@ -1,0 +1,98 @@
+// What a path finds at the surface that it met: where, how it is turned, of which material.
+#pragma once
+
+#include "common/scene/scene.h"
+#include "common/texture/sample_texture.h"
+#include "common/transport/path.h"
+
+namespace pt {
+
+struct Surface {
+  SurfacePoint point;
+  Vec3 shading_normal;
+  Material material;  ///< its colours multiplied by its textures
+};
+
+template <class Traits>
+PT_HD bool is_placed(const Scene& scene) {
+  return Traits::has_instances && scene.triangles.instance_count > 0;
+}
+
+/// The triangle of a hit as it lies in the world.
+template <class Traits>
+PT_HD Triangle world_triangle(const Scene& scene, const Hit& hit) {
+  Triangle t = load_wide(&scene.triangles.triangles[hit.primitive - scene.primitives.count()]);
+  if (is_placed<Traits>(scene)) {
+    const std::uint32_t number = scene.triangles.instances[hit.instance].number;
+    const Affine to_world = load_wide(&scene.to_world[number]);
+    t.v0 = to_world.point(t.v0), t.v1 = to_world.point(t.v1), t.v2 = to_world.point(t.v2);
+  }
+  return t;
+}
+
+PT_HD void apply_textures(const Scene& scene, const Triangle& triangle, const Vec3& barycentric,
+                          Material& material) {
+  const MaterialTextures textures = scene.material_textures[material.textures];
+  const Vec2 uv = (triangle.attributes & TriangleAttributes::uvs) != 0
+                      ? scene.attributes.uv(triangle.id, barycentric)
+                      : Vec2(barycentric.y, barycentric.z);
+  if (textures.albedo != no_texture) {
+    material.albedo *= sample_texture(scene.textures[textures.albedo], scene.texels, uv);
+  }
+  if (textures.emission != no_texture) {
+    material.emission *= sample_texture(scene.textures[textures.emission], scene.texels, uv);
+  }
+}
+
+/// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
+/// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled so
+/// that the next intersection's own rounding is covered, too.
+template <class Traits>
+PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const std::uint32_t slot = hit.primitive - scene.primitives.count();
+  const Triangle triangle = load_wide(&scene.triangles.triangles[slot]);
+  const bool placed = is_placed<Traits>(scene);
+  InstanceRecord instance;
+  Vec3 origin = ray.origin, direction = ray.direction;
+  if (placed) {
+    instance = load_wide(&scene.triangles.instances[hit.instance]);
+    origin = instance.to_object.point(ray.origin);
+    direction = instance.to_object.vector(ray.direction);
+  }
+  const TriangleHit inside = intersect_triangle(make_triangle_ray(origin, direction), triangle.v0,
+                                                triangle.v1, triangle.v2);
+  const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
+  Vec3 position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
+  Vec3 extent = glm::abs(b.x * triangle.v0) + glm::abs(b.y * triangle.v1) +
+                glm::abs(b.z * triangle.v2);
+  Vec3 normal = glm::cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
+  Vec3 shading_normal = (triangle.attributes & TriangleAttributes::normals) != 0
+                            ? scene.attributes.normal(triangle.id, b)
+                            : normal;
+  if (placed) {
+    const Affine to_world = load_wide(&scene.to_world[instance.number]);
+    position = to_world.point(position);
+    extent = to_world.absolute(extent);
+    normal = instance.to_object.transposed(normal);
+    shading_normal = instance.to_object.transposed(shading_normal);
+  }
+  normal = normalize(normal);
+  Surface surface{{position, normal, 16.0f * half_ulp * glm::dot(glm::abs(normal), extent)},
+                  normalize(shading_normal),
+                  load_wide(&scene.materials[triangle.material])};
+  if (surface.material.textures != 0) apply_textures(scene, triangle, b, surface.material);
+  return surface;
+}
+
+template <class Traits>
+PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
+  if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
+    const bool is_triangle =
+        Traits::geometry == Geometry::triangles || hit.primitive >= scene.primitives.count();
+    if (is_triangle) return triangle_surface<Traits>(scene, ray, hit);
+  }
+  const SurfacePoint point = surface_point(scene.primitives, ray, hit);
+  return {point, point.normal, scene.material(hit.primitive)};
+}
+
+}  // namespace pt

@@ -1,0 +1,24 @@
+#include "common/device/stage_stamp.cuh"
+#include "wavefront/wavefront_cuda.h"
+
+namespace pt {
+namespace {
+
+/// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
+/// 0 outside of a graph.
+__global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
+                                  std::uint32_t finish_paths, cudaGraphConditionalHandle loop,
+                                  StageClock* clock) {
+  stamp(clock, ClockId::begin_wave);
+  const bool more = pt::begin_wave(*counters, path_count, regenerate, finish_paths);
+  if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
+}
+
+}  // namespace
+
+void WavefrontCuda::begin_wave() {
+  launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
+         options_.regenerate, static_cast<std::uint32_t>(options_.finish_paths), loop_, clock());
+}
+
+}  // namespace pt

@@ -1,0 +1,51 @@
+// One wave as kernel launches: the Executor of run_wave on CUDA, for the files that instantiate it.
+#pragma once
+
+#include "common/device/curand_state.cuh"
+#include "wavefront/stage_kernel.cuh"
+#include "wavefront/wavefront_cuda.h"
+
+namespace pt {
+
+template <class Stage>
+void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
+  const int block = options_.stage_block[static_cast<int>(Stage::id)];
+  const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
+    using Storage = std::remove_cvref_t<decltype(storage)>;
+    constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
+    const std::uint32_t blocks =
+        (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
+    const std::uint32_t resident =
+        resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
+    launch(clock_name(static_cast<ClockId>(Stage::id)), kernel,
+           blocks < resident ? blocks : resident, block, shared_bytes, storage, stage, queues,
+           clock());
+  };
+  // Only these kernels read the spheres again and again.
+  if constexpr (Stage::scans_spheres) {
+    with_scene_storage(launch_with);
+  } else {
+    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
+  }
+}
+
+template <class Kinds, class Source>
+void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool starts_paths) {
+  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
+                                                             starts_paths);
+    });
+  });
+}
+
+template <class Kinds, class Source>
+void WavefrontCuda::enqueue_finish_of(const StageContext<Source>& context) {
+  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+      run_finish<decltype(traits), decltype(branching)::value>(*this, buffers_, context);
+    });
+  });
+}
+
+}  // namespace pt

@@ -1,0 +1,14 @@
+#include "common/files/image_files.h"
+#include "fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  pt::expect_result_or_error([&] {
+    const pt::TextureImage image = pt::decode_texture_image(pt::as_bytes(data, size), "input");
+    const std::size_t texel_bytes = image.format == pt::TextureFormat::rgb32f ? 12 : 4;
+    if (image.width == 0 || image.height == 0 ||
+        image.texels.size() != texel_bytes * image.width * image.height) {
+      std::abort();
+    }
+  });
+  return 0;
+}

@@ -1,0 +1,30 @@
+// Mesh files byte by byte, for tests that read them.
+#pragma once
+
+#include <cstring>
+#include <string>
+
+namespace pt {
+
+/// Appends values as a binary file stores them.
+class ByteWriter {
+ public:
+  explicit ByteWriter(bool big_endian = false) : big_endian_(big_endian) {}
+
+  template <class T>
+  ByteWriter& put(T value) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, &value, sizeof(T));
+    for (std::size_t i = 0; i < sizeof(T); ++i) {
+      text += bytes[big_endian_ ? sizeof(T) - 1 - i : i];
+    }
+    return *this;
+  }
+
+  std::string text;
+
+ private:
+  bool big_endian_;
+};
+
+}  // namespace pt

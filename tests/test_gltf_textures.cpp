@@ -1,0 +1,151 @@
+// The glTF loader: textures.
+#include "gltf_files.h"
+
+namespace pt {
+namespace {
+
+/// A BMP of two by two texels, B G R: red, green above blue, white.
+const std::string& four_texels() {
+  static const std::string bytes = [] {
+    const auto u16 = [](int x) { return bytes_of({static_cast<std::uint16_t>(x)}); };
+    const auto u32 = [](int x) { return bytes_of({static_cast<std::uint32_t>(x)}); };
+    const auto row = [](std::initializer_list<std::uint8_t> row_bytes) {
+      return bytes_of(row_bytes) + std::string(2, '\0');
+    };
+    return "BM" + u32(70) + u32(0) + u32(54) + u32(40) + u32(2) + u32(2) + u16(1) + u16(24) +
+           u32(0) + u32(16) + u32(2835) + u32(2835) + u32(0) + u32(0) +
+           row({255, 0, 0, 255, 255, 255}) +  // the lower row comes first
+           row({0, 0, 255, 0, 255, 0});
+  }();
+  return bytes;
+}
+
+/// A material with the texels as base colour; `use` is merged into the textureInfo.
+GltfMaker with_texture(const Json& use = Json::object(), const Json& sampler = Json()) {
+  GltfMaker maker = with_material(
+      {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0}}}}}});
+  maker.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"].update(use);
+  maker.root["textures"] = {{{"source", 0}}};
+  if (!sampler.is_null()) {
+    maker.root["samplers"] = {sampler};
+    maker.root["textures"][0]["sampler"] = 0;
+  }
+  maker.root["images"] = {{{"uri", "data:image/bmp;base64," + base64(four_texels())}}};
+  return maker;
+}
+
+Texture base_texture(const SceneData& scene) {
+  const Material& material = scene.materials.at(scene.meshes.at(0).material);
+  return scene.textures.at(scene.material_textures.at(material.textures).albedo);
+}
+
+/// The texel of a texture at (u, v), the nearest, as R G B.
+std::vector<int> texel_at(const SceneData& scene, const Texture& t, float u, float v) {
+  const float tu = t.u_row[0] * u + t.u_row[1] * v + t.u_row[2];
+  const float tv = t.v_row[0] * u + t.v_row[1] * v + t.v_row[2];
+  const auto x = static_cast<std::size_t>((tu - std::floor(tu)) * 2.0f);
+  const auto y = static_cast<std::size_t>((1.0f - (tv - std::floor(tv))) * 2.0f);
+  const std::byte* texel = scene.texels.data() + t.offset + 4 * (2 * y + x);
+  return {static_cast<int>(texel[0]), static_cast<int>(texel[1]), static_cast<int>(texel[2])};
+}
+
+TEST(GltfTextures, BaseColourIsSrgbAndHeadUp) {
+  const Loaded loaded(with_texture());
+  const Texture texture = base_texture(loaded.scene);
+  EXPECT_EQ(texture.kind, TextureKind::image);
+  EXPECT_EQ(texture.format, TextureFormat::srgb8);
+  EXPECT_EQ(texture.width, 2u);
+  EXPECT_EQ(texture.height, 2u);
+  EXPECT_EQ(texture.wrap_u, TextureWrap::repeat);
+  EXPECT_EQ(texture.filter, TextureFilter::bilinear);
+  EXPECT_EQ(loaded.scene.materials.at(0).albedo, Color(1.0f));
+  EXPECT_EQ(texel_at(loaded.scene, texture, 0.25f, 0.75f), (std::vector{255, 0, 0}));
+  EXPECT_EQ(texel_at(loaded.scene, texture, 0.75f, 0.75f), (std::vector{0, 255, 0}));
+  EXPECT_EQ(texel_at(loaded.scene, texture, 0.25f, 0.25f), (std::vector{0, 0, 255}));
+}
+
+TEST(GltfTextures, SamplersSayWrapAndFilter) {
+  const Loaded loaded(
+      with_texture(Json::object(), {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}));
+  const Texture texture = base_texture(loaded.scene);
+  EXPECT_EQ(texture.wrap_u, TextureWrap::clamp);
+  EXPECT_EQ(texture.wrap_v, TextureWrap::mirror);
+  EXPECT_EQ(texture.filter, TextureFilter::nearest);
+}
+
+TEST(GltfTextures, TransformsAsTheExtensionsExampleSays) {
+  // KHR_texture_transform's example: 'only the lower left quadrant of the source image, rotated
+  // clockwise 90 degrees'. Here that is the blue texel.
+  const Loaded quadrant(with_texture(
+      {{"extensions",
+        {{"KHR_texture_transform",
+          {{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}}}}}}));
+  const Texture texture = base_texture(quadrant.scene);
+  for (const float u : {0.05f, 0.95f}) {
+    for (const float v : {0.05f, 0.95f}) {
+      EXPECT_EQ(texel_at(quadrant.scene, texture, u, v), (std::vector{0, 0, 255})) << u << " " << v;
+    }
+  }
+  // 'inverts the T axis'
+  const Loaded inverted(with_texture(
+      {{"extensions", {{"KHR_texture_transform", {{"offset", {0, 1}}, {"scale", {1, -1}}}}}}}));
+  EXPECT_EQ(texel_at(inverted.scene, base_texture(inverted.scene), 0.25f, 0.25f),
+            (std::vector{255, 0, 0}));
+  // A quarter to the right and nothing up or down.
+  const Loaded moved(
+      with_texture({{"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}}));
+  EXPECT_EQ(texel_at(moved.scene, base_texture(moved.scene), 0.25f, 0.75f),
+            (std::vector{0, 255, 0}));
+}
+
+TEST(GltfTextures, ImagesInBufferViewsAndFiles) {
+  GltfMaker embedded = with_texture();
+  const int view = embedded.view(four_texels());
+  embedded.root["images"][0] = {{"bufferView", view}, {"mimeType", "image/bmp"}};
+  const Loaded from_view(embedded.glb(), false, "scene.glb");
+  EXPECT_EQ(texel_at(from_view.scene, base_texture(from_view.scene), 0.25f, 0.75f),
+            (std::vector{255, 0, 0}));
+  GltfMaker external = with_texture();
+  external.root["images"][0] = {{"uri", "sub/four%20texels.bmp"}};
+  TempFolder folder;
+  std::filesystem::create_directory(folder.file("sub"));
+  write_text(folder.file("scene.gltf"), external.gltf());
+  expect_error([&] { load_gltf(folder.file("scene.gltf"), {}); }, "images[0]: cannot read");
+  write_text(folder.file("sub/four texels.bmp"), four_texels());
+  const SceneData from_file = load_gltf(folder.file("scene.gltf"), {});
+  EXPECT_EQ(texel_at(from_file, base_texture(from_file), 0.75f, 0.75f), (std::vector{0, 255, 0}));
+}
+
+TEST(GltfTextures, AnImageIsStoredOnce) {
+  GltfMaker maker = with_texture();
+  maker.root["materials"][0]["emissiveFactor"] = {1, 1, 1};
+  maker.root["materials"][0]["emissiveTexture"] = {
+      {"index", 0}, {"extensions", {{"KHR_texture_transform", {{"scale", {2, 2}}}}}}};
+  const Loaded loaded(maker);
+  EXPECT_EQ(loaded.scene.textures.size(), 2u);
+  EXPECT_EQ(loaded.scene.texels.size(), 16u);
+  const MaterialTextures& textures = loaded.scene.material_textures.at(1);
+  EXPECT_EQ(loaded.scene.textures.at(textures.emission).u_row[0], 2.0f);
+  EXPECT_EQ(loaded.scene.textures.at(textures.albedo).u_row[0], 1.0f);
+}
+
+TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
+  GltfMaker maker = with_texture();
+  auto& pbr = maker.root["materials"][0]["pbrMetallicRoughness"];
+  pbr["metallicFactor"] = 1;
+  pbr["metallicRoughnessTexture"] = {{"index", 0}};
+  const Loaded loaded(maker);  // blue and green: 1 in two of four texels
+  const Material& material = loaded.scene.materials.at(0);
+  EXPECT_EQ(material.kind, MaterialKind::metal);
+  EXPECT_NEAR(material.parameter, 0.25f, 1e-6f);
+  EXPECT_EQ(loaded.count("their means are used"), 1u);
+  EXPECT_EQ(loaded.scene.texels.size(), 16u);
+}
+
+TEST(GltfTextures, OtherCoordinatesAreReported) {
+  EXPECT_EQ(Loaded(with_texture({{"texCoord", 1}})).count("TEXCOORD_0"), 1u);
+  EXPECT_EQ(Loaded(with_texture({{"texCoord", 0}})).count("TEXCOORD_0"), 0u);
+}
+
+}  // namespace
+}  // namespace pt
