@@ -32,7 +32,8 @@ LAYERS = [
     ("wavefront", ["wavefront/*"], COMMON),
     ("metropolis", ["metropolis/*"], COMMON),
     # The few files among the physics that launch kernels: they build what the physics reads.
-    ("device_builders", ["common/accel/build_*.cu", "common/scene/*.cu", "common/scene/*_cuda.cpp"],
+    ("device_builders", ["common/accel/build_*.cu", "common/accel/build_*.cuh", "common/accel/build_*_cuda.cpp",
+                         "common/scene/*.cu", "common/scene/*_cuda.cpp"],
      ["device", "scene", *SCENE_PARTS, *HOST]),
     # What runs a schedule on a device.
     ("device", ["common/device/*"], AROUND),

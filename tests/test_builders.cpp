@@ -75,6 +75,11 @@ TEST_P(Builders, EveryTriangleLiesInBoxesThatContainIt) {
   }
 }
 
+TEST_P(Builders, TreesAreNotDeeperThanTraversalsExpect) {
+  const Mesh mesh = make_geometric_series(140);
+  check(GetParam().build({mesh}), mesh, GetParam().builder == TreeBuilder::sbvh);
+}
+
 TEST_P(Builders, LargeMeshes) {
   const Mesh mesh = make_soup(70'000, 0.2);
   check(GetParam().build({mesh}), mesh, GetParam().builder == TreeBuilder::sbvh);
