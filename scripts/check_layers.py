@@ -34,7 +34,8 @@ LAYERS = [
     # Tracing arrays of rays: files of rays, and the kernels that wavefronts use too.
     ("trace", ["common/trace/*"], ["device_builders", "device", *AROUND]),
     # The few files among the physics that launch kernels: they build what the physics reads.
-    ("device_builders", ["common/accel/build_*.cu", "common/scene/*.cu", "common/scene/*_cuda.cpp"],
+    ("device_builders", ["common/accel/build_*.cu", "common/accel/build_*.cuh", "common/accel/build_*_cuda.cpp",
+                         "common/scene/*.cu", "common/scene/*_cuda.cpp"],
      ["device", "scene", *SCENE_PARTS, *HOST]),
     # What runs a schedule on a device.
     ("device", ["common/device/*"], AROUND),

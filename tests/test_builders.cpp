@@ -7,34 +7,13 @@
 #include <set>
 
 #include "check_tree.h"
-#include "common/accel/build_triangle_tree.h"
 #include "common/accel/mesh_triangles.h"
 #include "common/error.h"
+#include "tree_kinds.h"
 #include "triangle_meshes.h"
 
 namespace pt {
 namespace {
-
-struct TreeKind {
-  const char* name;
-  AccelKind accel;
-  TreeBuilder builder;
-
-  TriangleTreeData build(const std::vector<Mesh>& meshes,
-                         const std::vector<Instance>& instances = {}) const {
-    TreeOptions options;
-    options.accel = accel, options.builder = builder;
-    return build_triangle_tree(meshes, instances, options);
-  }
-};
-void PrintTo(const TreeKind& kind, std::ostream* out) { *out << kind.name; }
-
-const TreeKind tree_kinds[] = {
-    {"bvh2_sah", AccelKind::bvh2, TreeBuilder::sah},
-    {"bvh2_sbvh", AccelKind::bvh2, TreeBuilder::sbvh},
-    {"cwbvh_sah", AccelKind::cwbvh, TreeBuilder::sah},
-    {"cwbvh_sbvh", AccelKind::cwbvh, TreeBuilder::sbvh},
-};
 
 class Builders : public testing::TestWithParam<TreeKind> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, Builders, testing::ValuesIn(tree_kinds),
@@ -94,6 +73,11 @@ TEST_P(Builders, EveryTriangleLiesInBoxesThatContainIt) {
       if (HasFatalFailure()) return;
     }
   }
+}
+
+TEST_P(Builders, TreesAreNotDeeperThanTraversalsExpect) {
+  const Mesh mesh = make_geometric_series(140);
+  check(GetParam().build({mesh}), mesh, GetParam().builder == TreeBuilder::sbvh);
 }
 
 TEST_P(Builders, LargeMeshes) {

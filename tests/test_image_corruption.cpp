@@ -141,5 +141,26 @@ TEST(ImageSizes, ExrKindsThatAreNotRead) {
   }
 }
 
+// Found by fuzzing: OpenEXR reads as much of an attribute as its type needs, and then took the rest
+// for attributes whose sizes nobody had checked.
+TEST(ImageSizes, ExrAttributesHaveTheSizesOfTheirTypes) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.exr");
+  write_image(path, Image{1, 1, {1, 2, 3}}, {});
+  const std::string good = read_text(path);
+  const auto expect_error_at = [&](const std::string& attribute, const std::string& inserted) {
+    std::string bytes = good;
+    bytes.insert(bytes.find(attribute), inserted);
+    write_text(path, bytes);
+    expect_error([&] { read_image(path); }, "corrupted in the header");
+  };
+  using namespace std::string_literals;
+  expect_error_at("compression", "x\0float\0\5\0\0\0abcde"s);
+  expect_error_at("compression", "x\0stringvector\0\5\0\0\0\xff\xff\xff\x7f!"s);
+  expect_error_at("compression", "x\0preview\0\x8\0\0\0\xff\xff\0\0\xff\xff\0\0"s);
+  expect_error_at("compression", "x\0chlist\0\x2\0\0\0\0!"s);
+  expect_error_at("compression", "x\0string\0\xff\xff\xff\x7f!"s);
+}
+
 }  // namespace
 }  // namespace pt

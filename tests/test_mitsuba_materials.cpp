@@ -2,6 +2,7 @@
 // (scalar_rgb).
 #include <gtest/gtest.h>
 
+#include "common/image/image_io.h"
 #include "common/texture/sample_texture.h"
 #include "mitsuba_scene.h"
 #include "shared_file.h"
@@ -51,8 +52,8 @@ TEST(MitsubaColor, spectraAreSeenByTheObserver) {
               {0.223116f, 0.140664f, 0.0925723f}, 2e-3f);
   expect_near(radiance("<spectrum name=\"radiance\" value=\"400:1,500:1,600:2,700:2\"/>"),
               {2.60267f, 1.34425f, 0.831981f}, 0.03f);
-  expect_near(radiance("<spectrum name=\"radiance\" value=\"2\"/>"),
-              {2.40959f, 1.89658f, 1.81783f}, 1e-4f);
+  expect_near(radiance("<spectrum name=\"radiance\" value=\"2\"/>"), {2.40959f, 1.89658f, 1.81783f},
+              1e-4f);
   EXPECT_EQ(radiance("<spectrum name=\"radiance\" value=\"2\"/>", "0.6.0"), Color(2.0f));
   EXPECT_EQ(reflectance("<spectrum name=\"reflectance\" value=\"0.5\"/>"), Color(0.5f));
   expect_near(reflectance("<spectrum name=\"reflectance\" value=\"300:0.7, 900:0.7\"/>"),
@@ -152,6 +153,40 @@ TEST(MitsubaTexture, checkerboardsKeepTheirSquares) {
   EXPECT_EQ(at(0.6f, 0.2f), 0.9f);
 }
 
+TEST(MitsubaTexture, imagesBeginAtTheirHead) {
+  const TempFolder folder;
+  Image image{2, 2, {1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}};  // red, green; blue, white
+  write_image(folder.file("a.png"), image, {});
+  const std::string square =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nproperty float u\nproperty float v\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "-1 -1 0 0.25 0.25\n1 -1 0 0.75 0.25\n-1 1 0 0.25 0.75\n3 0 1 2\n";
+  write_text(folder.file("t.ply"), square);
+  write_text(folder.file("t.obj"),
+             "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt .25 .25\nvt .75 .25\n"
+             "vt .25 .75\nf 1/1 2/2 3/3\n");
+  const auto color_of_first = [&](const std::string& file, const std::string& map) {
+    write_text(folder.file("scene.xml"),
+               "<scene version=\"3.0.0\"><shape type=\"" + file.substr(2) +
+                   "\"><string name=\"filename\" value=\"" + file +
+                   "\"/><bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\">"
+                   "<string name=\"filename\" value=\"a.png\"/>"
+                   "<string name=\"filter_type\" value=\"nearest\"/>"
+                   "<string name=\"wrap_mode\" value=\"clamp\"/>" +
+                   map + "</texture></bsdf></shape></scene>");
+    const SceneData scene = load_mitsuba_xml(folder.file("scene.xml"));
+    return sample_texture(scene.textures.at(0), scene.texels.data(), scene.meshes.at(0).uvs.at(0));
+  };
+  // Golden: Mitsuba flips the v of obj, not that of ply.
+  EXPECT_EQ(color_of_first("t.ply", ""), Color(1, 0, 0));
+  EXPECT_EQ(color_of_first("t.obj", ""), Color(0, 0, 1));
+  EXPECT_EQ(color_of_first("t.ply", "<transform name=\"to_uv\"><translate x=\"0.5\"/></transform>"),
+            Color(0, 1, 0));
+  EXPECT_EQ(color_of_first("t.ply", "<transform name=\"to_uv\"><translate y=\"0.5\"/></transform>"),
+            Color(0, 0, 1));
+}
+
 TEST(MitsubaTexture, scaleMultiplies) {
   const SceneData scene =
       load_xml(
@@ -209,6 +244,34 @@ TEST(MitsubaLight, skies) {
   EXPECT_EQ(loaded.scene.sky.nadir, loaded.scene.sky.zenith);
   EXPECT_EQ(loaded.count("emitter 'sunsky'"), 1);
   expect_error([] { load_xml("<emitter type=\"envmap\"/>"); }, "no filename");
+}
+
+TEST(MitsubaLight, environmentBeginsBehindTheCamera) {
+  const TempFolder folder;
+  Image image{8, 4, std::vector<float>(3 * 8 * 4)};
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      image.pixel(x, y)[0] = static_cast<float>(x + 1);
+      image.pixel(x, y)[1] = static_cast<float>(y + 1);
+    }
+  }
+  write_image(folder.file("sky.exr"), image, {});
+  write_text(folder.file("scene.xml"),
+             "<scene version=\"3.0.0\"><emitter type=\"envmap\"><string name=\"filename\" "
+             "value=\"sky.exr\"/><float name=\"scale\" value=\"2\"/></emitter></scene>");
+  const EnvironmentData sky = load_mitsuba_xml(folder.file("scene.xml")).environment;
+  ASSERT_EQ(sky.width, 8);
+  const auto radiance = [&](const Vec3& world) {  // as EnvironmentData says
+    const Vec3 d = inverse(sky.to_world).vector(world);
+    const float u = 0.5f + std::atan2(d.x, -d.z) / (2 * pi);
+    const float v = std::atan2(std::hypot(d.x, d.z), d.y) / pi;
+    return sky.pixels[static_cast<std::size_t>(4 * v) * 8 + static_cast<std::size_t>(8 * u)];
+  };
+  // Golden: Mitsuba's eval() in the middle of the first two columns gives 1 and 2.
+  const float c = std::cos(pi / 8), s = std::sin(pi / 8);
+  EXPECT_EQ(radiance({s, 0.1f, -c}), Color(2, 4, 0));
+  EXPECT_EQ(radiance({c, 0.1f, -s}), Color(4, 4, 0));
+  EXPECT_EQ(radiance({c, -5.0f, -s}), Color(4, 8, 0));
 }
 
 TEST(MitsubaLight, areaLightsOfAGroupAreBlack) {

@@ -222,6 +222,25 @@ f 1/1 4/3 3/2
 f 2/1 3/2 4/3
 """
 
+SQUARE = """ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property float u
+property float v
+element face 2
+property list uchar int vertex_indices
+end_header
+-1 -1 0 0 0
+1 -1 0 1 0
+1 1 0.5 1 1
+-1 1 0 0 1
+3 0 1 2
+3 0 2 3
+"""
+
 BITMAP = """<bsdf type="diffuse"><texture type="bitmap" name="reflectance">
 <string name="filename" value="picture.png"/>{}</texture></bsdf>"""
 LIGHT = '<emitter type="area"><rgb name="radiance" value="{}"/></emitter>'
@@ -239,24 +258,27 @@ def write_zoo(folder):
     write_picture(folder / "sky.pfm", 128, 256, lambda u, v: (
         1 + 0.5 * math.cos(2 * math.pi * u), 1 + 0.5 * math.sin(2 * math.pi * u), v))
     (folder / "tetrahedron.obj").write_text(TETRAHEDRON)
+    (folder / "square.ply").write_text(SQUARE)
     # Mitsuba 3.9.1 does not rotate about an axis that has not unit length: it scales as well.
     turn = '<rotate x="0.48" y="0.6" z="0.64" angle="40"/>'
     flip = '<boolean name="flip_normals" value="true"/>'
     flat = '<boolean name="face_normals" value="true"/>'
     obj = '<string name="filename" value="tetrahedron.obj"/>'
+    ply = obj.replace("tetrahedron.obj", "square.ply")
+    clamp = '<string name="wrap_mode" value="clamp"/>'
     mirror = '<scale x="-1"/>'
     uv = '<transform name="to_uv"><scale x="2" y="3"/><translate x="0.25" y="0.1"/></transform>'
     checker = ('<bsdf type="diffuse"><texture type="checkerboard" name="reflectance">'
                f"{uv}</texture></bsdf>")
     kinds = [("rectangle", ""), ("cube", ""), ("sphere", ""), ("disk", ""), ("cylinder", ""),
-             ("obj", obj), ("obj", obj + flat)]
+             ("obj", obj), ("obj", obj + flat), ("ply", ply)]
     variants = [("", LIGHT.format("1 2 3")), ("", flip + LIGHT.format("2")),
                 (mirror, LIGHT.format("3 1 1")), (mirror, flip + LIGHT.format("1 5 1")),
-                ("", BITMAP.format("")), (mirror, BITMAP.format(uv)), ("", checker)]
+                ("", BITMAP.format("")), (mirror, BITMAP.format(uv + clamp)), ("", checker)]
     xml = '<scene version="3.0.0"><integrator type="path"/>\n'
     xml += """<sensor type="perspective"><float name="fov" value="44"/>
         <string name="fov_axis" value="smaller"/><transform name="to_world">
-        <lookat origin="9,12,-30" target="9,9,0" up="0.2,1,0"/></transform>
+        <lookat origin="9,14,-33" target="9,11,0" up="0.2,1,0"/></transform>
         <film type="hdrfilm"><integer name="width" value="300"/>
         <integer name="height" value="200"/></film></sensor>\n"""
     for row, (kind, inside) in enumerate(kinds):
@@ -272,7 +294,7 @@ def write_zoo(folder):
     for i in range(4):
         step = mirror if i % 2 else ""
         xml += shape("instance", f'<scale value="1, 0.8, 1.1"/>{step}{turn}'
-                     f'<translate x="{4 * i + 1}" y="22"/>', '<ref id="group"/>')
+                     f'<translate x="{4 * i + 1}" y="25"/>', '<ref id="group"/>')
     xml += shape("cylinder", turn + '<translate x="-4" y="4"/>',
                  '<point name="p0" value="0,1,0"/><point name="p1" value="1,-2,0.5"/>'
                  '<float name="radius" value="0.6"/>' + BITMAP.format(""))

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "common/scene/builtin_scenes.h"
+#include "common/scene/prepare_scene.h"
 #include "small_scenes.h"
 #include "temp_folder.h"
 
@@ -31,7 +32,9 @@ TEST(Scenes, AreTheSameEveryTime) {
     SCOPED_TRACE(name);
     const SceneData a = make_scene(scene_options(name)), b = make_scene(scene_options(name));
     EXPECT_EQ(a.name, name);
-    EXPECT_GT(a.primitive_count(), 0u);
+    EXPECT_GT(a.primitive_count() + a.triangle_count(), 0u);
+    EXPECT_TRUE(same_bytes(a.tree.triangles, b.tree.triangles));
+    EXPECT_TRUE(same_bytes(a.tree.cwbvh, b.tree.cwbvh));
     EXPECT_TRUE(same_bytes(a.spheres, b.spheres) && same_bytes(a.quads, b.quads));
     EXPECT_EQ(a.material_of, b.material_of);
     EXPECT_EQ(a.lights, b.lights);
@@ -144,13 +147,13 @@ std::vector<Primitive> describe_all(const SceneData& scene) {
 }
 
 TEST(Scenes, ATreeKeepsMaterialsAndLightsWithTheirPrimitives) {
-  for (const std::string& name : small_scenes()) {
+  for (const std::string& name : primitive_scenes()) {
     SCOPED_TRACE(name);
     const SceneData brute = make_scene(scene_options(name, AccelKind::brute));
     const SceneData tree = make_scene(scene_options(name, AccelKind::bvh2));
     EXPECT_TRUE(brute.bvh_nodes.empty());
     EXPECT_FALSE(tree.bvh_nodes.empty());
-    EXPECT_EQ(tree.accel, Accel::bvh2);
+    EXPECT_EQ(tree.traits.accel, Accel::bvh2);
     EXPECT_EQ(tree.material_of.size(), tree.primitive_count());
     EXPECT_EQ(describe_all(tree), describe_all(brute));
     ASSERT_EQ(tree.lights.size(), brute.lights.size());
@@ -161,7 +164,7 @@ TEST(Scenes, ATreeKeepsMaterialsAndLightsWithTheirPrimitives) {
 }
 
 TEST(Scenes, LightsAreThePrimitivesThatEmit) {
-  for (const std::string& name : small_scenes()) {
+  for (const std::string& name : primitive_scenes()) {
     for (const AccelKind accel : {AccelKind::brute, AccelKind::bvh2}) {
       const SceneData scene = make_scene(scene_options(name, accel));
       std::vector<std::uint32_t> lights = scene.lights, emitting;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/builtin_scenes.h"
+#include "common/scene/prepare_scene.h"
 #include "render_serial.h"
 #include "small_scenes.h"
 #include "statistics.h"
@@ -171,7 +172,7 @@ TEST(Energy, IsNeverCreated) {
 }
 
 TEST(Accel, DoesNotChangeTheImage) {
-  for (const std::string& name : small_scenes()) {
+  for (const std::string& name : primitive_scenes()) {
     Options options = image_options(48, 24, 8);
     options.scene = name;
     std::vector<Render> renders;

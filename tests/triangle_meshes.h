@@ -126,6 +126,17 @@ inline Mesh make_degenerate(int count) {
   return mesh;
 }
 
+/// Each triangle smaller and nearer to the origin than the one before: a tree that splits where it
+/// is cheapest is nearly a list.
+inline Mesh make_geometric_series(int count) {
+  Mesh mesh;
+  for (int i = 0; i < count; ++i) {
+    const float s = std::ldexp(1.0f, 40 - i);
+    add_triangle(mesh, {s, s, s}, {1.5f * s, s, s}, {s, 1.5f * s, 1.2f * s});
+  }
+  return mesh;
+}
+
 /// Scales and then moves a mesh.
 inline Mesh moved(Mesh mesh, float scale, const Vec3& by) {
   for (Vec3& p : mesh.positions) p = scale * p + by;

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Writes a small valid file of each kind for the fuzz targets to begin with.
 
-Usage: make_seeds.py FOLDER      fills FOLDER/ply, FOLDER/obj, ..., named as the targets are
+Usage: make_seeds.py FOLDER      fills FOLDER/ply, FOLDER/obj, ..., named as the targets are, and
+                                FOLDER/files with what the scenes among them name
 """
+import base64
+import json
 import struct
 import sys
 import zlib
@@ -143,6 +146,85 @@ def exr():
     return header + struct.pack("<Q", len(header) + 8) + struct.pack("<iI", 0, len(line)) + line
 
 
+XML_START = b"""<?xml version="1.0"?>
+<scene version="3.0.0"><default name="spp" value="4"/><integrator type="path">
+<integer name="max_depth" value="7"/></integrator>
+<sensor type="perspective"><float name="fov" value="40"/><string name="fov_axis" value="x"/>
+<transform name="to_world"><lookat origin="0,1,5" target="0 0 0" up="0,1,0"/></transform>
+<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>
+<film type="hdrfilm"><integer name="width" value="64"/><integer name="height" value="32"/></film>
+</sensor>
+"""
+XML_PARTS = [b"""<bsdf type="twosided" id="wood"><bsdf type="diffuse">
+<texture name="reflectance" type="bitmap"><string name="filename" value="a.png"/>
+<transform name="to_uv"><scale x="2" y="3"/></transform></texture></bsdf></bsdf>
+<bsdf type="dielectric" id="glass"><float name="int_ior" value="1.5"/></bsdf>
+<bsdf type="roughconductor" id="gold"><string name="material" value="Au"/>
+<float name="alpha" value="0.1"/></bsdf>
+<shape type="obj"><string name="filename" value="a.obj"/><ref id="wood"/>
+<transform name="to_world"><rotate y="1" angle="30"/><translate x="1"/></transform></shape>
+<shape type="ply"><string name="filename" value="a.ply"/><ref id="glass"/></shape>
+<shape type="serialized"><string name="filename" value="a.serialized"/>
+<integer name="shape_index" value="1"/><ref id="gold"/></shape>
+<emitter type="constant"><rgb name="radiance" value="0.5 1 1"/></emitter>
+""", b"""<shape type="rectangle"><emitter type="area"><spectrum name="radiance" value="400:1, 700:2"/>
+</emitter></shape><shape type="sphere"><point name="center" x="0" y="1" z="2"/>
+<float name="radius" value="0.5"/><bsdf type="plastic"><rgb name="diffuse_reflectance"
+value="#ff8000"/></bsdf></shape><shape type="cube"><bsdf type="conductor"/></shape>
+<shape type="cylinder"/><shape type="disk"><transform name="to_world"><matrix
+value="1 0 0 0 0 2 0 0 0 0 3 0 0 0 0 1"/></transform></shape>
+<emitter type="envmap"><string name="filename" value="a.hdr"/></emitter>
+<emitter type="point"><rgb name="intensity" value="1"/><point name="position" value="1 2 3"/>
+</emitter><emitter type="spot"/><emitter type="directional"><vector name="direction" value="0 0 1"/>
+</emitter>
+""", b"""<shape type="shapegroup" id="group"><shape type="sphere"/></shape>
+<shape type="instance"><ref id="group"/></shape><include filename="b.xml"/>
+<alias id="wood" as="timber"/><shape type="cube"><bsdf type="blendbsdf"><float name="weight"
+value="0.3"/><bsdf type="diffuse"/><bsdf type="mask"><bsdf type="principled"/></bsdf></bsdf>
+<texture type="checkerboard" name="color"/></shape>
+"""]
+
+
+def gltf():
+    vertices = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<3H", 0, 1, 2) + b"\0\0"
+    image = png(2, 8, 3)
+    def uri(kind, data):
+        return f"data:{kind};base64," + base64.b64encode(data).decode()
+    model = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_transmission"],
+        "extensions": {"KHR_lights_punctual": {"lights": [
+            {"type": "spot", "spot": {"outerConeAngle": 0.7}, "intensity": 3, "color": [1, 0, 1]}]}},
+        "nodes": [{"mesh": 0, "translation": [1, 2, 3], "rotation": [0, 0, 0, 1], "scale": [1, 2, 1]},
+                  {"camera": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1]},
+                  {"mesh": 0, "children": [3]},
+                  {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 0.7, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1,
+                                    "material": 0, "mode": 4}]}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0},
+                                                "metallicFactor": 0.2}, "emissiveFactor": [1, 2, 3],
+                       "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.3}}}],
+        "textures": [{"source": 0, "sampler": 0}], "samplers": [{"wrapS": 33071}],
+        "images": [{"uri": uri("image/png", image)}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                       "min": [0, 0, 0], "max": [1, 1, 0]},
+                      {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36, "byteStride": 12},
+                        {"buffer": 0, "byteOffset": 36, "byteLength": 6}],
+        "buffers": [{"byteLength": len(vertices), "uri": uri("application/octet-stream", vertices)}],
+    }
+    text = json.dumps(model).encode()
+    del model["buffers"][0]["uri"]
+    model["images"] = [{"uri": "a.png"}]
+    chunk = json.dumps(model).encode()
+    chunk += b" " * (-len(chunk) % 4)
+    glb = (b"glTF" + struct.pack("<II", 2, 28 + len(chunk) + len(vertices)) +
+           struct.pack("<I", len(chunk)) + b"JSON" + chunk +
+           struct.pack("<I", len(vertices)) + b"BIN\0" + vertices)
+    return text, glb
+
+
 SEEDS = {
     "ply": [ply(e) for e in ("ascii", "binary_little_endian", "binary_big_endian")],
     "obj": [OBJ],
@@ -150,7 +232,14 @@ SEEDS = {
     "serialized": [serialized(v, d) for v in (3, 4) for d in (False, True)],
     "image": [png(0, 8, 1), png(2, 8, 3), png(6, 16, 4, 1), png(3, 8, 1), png(4, 8, 2), bmp(),
               tga(2, 24), tga(10, 32), tga(3, 8), jpeg(False), jpeg(True), *hdr(), exr()],
+    "mitsuba_xml": [XML_START + part + b"</scene>\n" for part in XML_PARTS],
+    "gltf": gltf(),
 }
+
+# Beside the scenes, under the names that they use.
+FILES = {"a.png": png(2, 8, 3), "a.hdr": hdr()[0], "a.obj": OBJ, "a.mtl": MTL, "a.ply": ply("ascii"),
+         "a.serialized": serialized(4, False),
+         "b.xml": b'<scene version="3.0.0"><bsdf type="diffuse" id="other"/></scene>'}
 
 
 def main(arguments):
@@ -162,6 +251,10 @@ def main(arguments):
         folder.mkdir(parents=True, exist_ok=True)
         for number, data in enumerate(files):
             (folder / f"seed{number}").write_bytes(data)
+    folder = Path(arguments[0], "files")
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, data in FILES.items():
+        (folder / name).write_bytes(data)
     return 0
 
 

@@ -61,6 +61,7 @@ void add_group(TriangleTreeData& tree, std::span<const Mesh> meshes, std::uint32
   } else {
     order.resize(triangles.count());
     std::iota(order.begin(), order.end(), 0u);
+    for (const std::uint32_t i : order) group.bounds.grow(triangles.bounds(i));
   }
   group.first_node = group.root;
   group.slot_count = static_cast<std::uint32_t>(order.size());

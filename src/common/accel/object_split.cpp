@@ -9,30 +9,28 @@ namespace pt {
 
 namespace {
 
-constexpr int bins_max = 32;
-
-int bin_count_for(std::uint32_t size) { return size < 32 ? 8 : size < 1024 ? 16 : bins_max; }
-
 struct Bin : Box4 {
   std::uint32_t count = 0;
   void add(const BuildReference& r) { grow(r), ++count; }
   void add(const Bin& b) { grow(b), count += b.count; }
 };
 
+/// By axis. The number of bins is a type's, since making more than needed takes long for small
+/// nodes.
+template <int bin_count>
 struct Bins {
-  explicit Bins(int count) { clear(count); }
-  void clear(int count) {
-    for (auto& axis : of) std::fill_n(axis.begin(), count, Bin());
-  }
-  void add(const Bins& other, int count) {
+  std::array<std::array<Bin, bin_count>, 3> of;
+
+  void add(const Bins& other) {
     for (int axis = 0; axis < 3; ++axis) {
-      for (int b = 0; b < count; ++b) of[axis][b].add(other.of[axis][b]);
+      for (int b = 0; b < bin_count; ++b) of[axis][b].add(other.of[axis][b]);
     }
   }
-  std::array<std::array<Bin, bins_max>, 3> of;
 };
 
-void fill_bins(std::span<const BuildReference> references, const BinMapping& mapping, Bins& bins) {
+template <int bin_count>
+void fill_bins(std::span<const BuildReference> references, const BinMapping& mapping,
+               Bins<bin_count>& bins) {
   for (const BuildReference& r : references) {
     const Int4 bin = mapping(r.twice_center());
     for (int axis = 0; axis < 3; ++axis) bins.of[axis][bin[axis]].add(r);
@@ -40,33 +38,48 @@ void fill_bins(std::span<const BuildReference> references, const BinMapping& map
 }
 
 // Minima, maxima and integer sums do not depend on the order of the parts.
-Bins make_bins(std::span<const BuildReference> references, const BinMapping& mapping, int count) {
+template <int bin_count>
+Bins<bin_count> make_bins(std::span<const BuildReference> references, const BinMapping& mapping) {
   if (references.size() <= serial_range_max) {
-    Bins bins(count);
+    Bins<bin_count> bins;
     fill_bins(references, mapping, bins);
     return bins;
   }
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, references.size(), range_block), Bins(count),
-      [&](const auto& part, Bins bins) {
+      tbb::blocked_range<std::size_t>(0, references.size(), range_block), Bins<bin_count>(),
+      [&](const auto& part, Bins<bin_count> bins) {
         fill_bins(references.subspan(part.begin(), part.size()), mapping, bins);
         return bins;
       },
-      [&](Bins a, const Bins& b) { return a.add(b, count), a; });
+      [&](Bins<bin_count> a, const Bins<bin_count>& b) {
+        a.add(b);
+        return a;
+      });
 }
 
-void try_axis(const std::array<Bin, bins_max>& bins, int axis, int count, ObjectSplit& best) {
-  std::array<Bin, bins_max> left;  // of the bins below
-  left[0] = {};
-  for (int b = 1; b < count; ++b) left[b] = left[b - 1], left[b].add(bins[b - 1]);
+template <int bin_count>
+void try_axis(const std::array<Bin, bin_count>& bins, int axis, ObjectSplit& best) {
+  std::array<Bin, bin_count> left;  // of the bins below
+  for (int b = 1; b < bin_count; ++b) left[b] = left[b - 1], left[b].add(bins[b - 1]);
   Bin right;
-  for (int b = count - 1; b >= 1; --b) {
+  for (int b = bin_count - 1; b >= 1; --b) {
     right.add(bins[b]);
     if (right.count == 0 || left[b].count == 0) continue;
     const float cost = left[b].half_area() * static_cast<float>(left[b].count) +
                        right.half_area() * static_cast<float>(right.count);
-    if (cost < best.cost) best = {cost, axis, b, count, left[b], right};
+    if (cost < best.cost) best = {cost, axis, b, bin_count, left[b], right};
   }
+}
+
+template <int bin_count>
+ObjectSplit find_split(std::span<const BuildReference> references, const Box4& centers) {
+  const BinMapping mapping(centers, bin_count);
+  const Bins<bin_count> bins = make_bins<bin_count>(references, mapping);
+  ObjectSplit best;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!mapping.is_flat(axis)) try_axis<bin_count>(bins.of[axis], axis, best);
+  }
+  return best;
 }
 
 }  // namespace
@@ -83,14 +96,10 @@ BinMapping::BinMapping(const Box4& centers, int bin_count) : base_(centers.low) 
 
 ObjectSplit find_object_split(std::span<const BuildReference> references,
                               const ReferenceRange& range) {
-  const int count = bin_count_for(range.size());
-  const BinMapping mapping(range.centers, count);
-  const Bins bins = make_bins(references.subspan(range.begin, range.size()), mapping, count);
-  ObjectSplit best;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!mapping.is_flat(axis)) try_axis(bins.of[axis], axis, count, best);
-  }
-  return best;
+  const auto those = references.subspan(range.begin, range.size());
+  if (range.size() < 32) return find_split<8>(those, range.centers);
+  if (range.size() < 1024) return find_split<16>(those, range.centers);
+  return find_split<32>(those, range.centers);
 }
 
 RangeHalves partition_references(std::span<BuildReference> references, const ReferenceRange& range,

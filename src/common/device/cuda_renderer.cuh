@@ -99,6 +99,7 @@ class CudaRenderer : public Renderer {
  private:
   void upload(const SceneData& scene);
   void upload_triangles(const SceneData& scene);
+  void upload_tree(const TriangleTreeData& tree);
   void allocate_film();
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>
@@ -129,6 +130,7 @@ class CudaRenderer : public Renderer {
   int device_;
   std::string driver_;
   std::uint64_t primitive_count_;
+  TreeFacts tree_facts_;  ///< of a tree built on the device
   std::vector<Sphere> scan_spheres_;
   SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
   int batch_samples_ = 1;

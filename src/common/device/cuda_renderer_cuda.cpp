@@ -6,6 +6,7 @@
 
 #include "common/device/cuda_renderer.cuh"
 #include "common/device/film_kernels.cuh"
+#include "common/device/scene_tree.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
@@ -82,9 +83,10 @@ void CudaRenderer::upload(const SceneData& scene) {
   const bool fits_constant = scene.scan_spheres.size() <= constant_spheres_max;
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
-    scene_memory_ =
-        fits_constant && traits_.geometry == Geometry::spheres_and_quads &&
-                traits_.accel == Accel::brute ? SceneMemory::constant : SceneMemory::global;
+    scene_memory_ = fits_constant && traits_.geometry == Geometry::spheres_and_quads &&
+                            traits_.accel == Accel::brute
+                        ? SceneMemory::constant
+                        : SceneMemory::global;
   }
   if (scene_memory_ != SceneMemory::global && traits_.geometry != Geometry::spheres_and_quads) {
     throw Error(
@@ -117,12 +119,20 @@ void CudaRenderer::upload(const SceneData& scene) {
   if (traits_.geometry != Geometry::spheres_and_quads) upload_triangles(scene);
 }
 
-void CudaRenderer::upload_triangles(const SceneData& scene) {
+void CudaRenderer::upload_tree(const TriangleTreeData& data) {
   TriangleTree& tree = scene_.triangles;
-  tree.bvh2 = memory_.upload("acceleration structure", scene.tree.bvh2);
-  tree.cwbvh = memory_.upload("acceleration structure", scene.tree.cwbvh);
-  tree.triangles = memory_.upload("triangles", scene.tree.triangles);
-  tree.instances = memory_.upload("instances", scene.tree.instances);
+  tree.bvh2 = memory_.upload("acceleration structure", data.bvh2);
+  tree.cwbvh = memory_.upload("acceleration structure", data.cwbvh);
+  tree.triangles = memory_.upload("triangles", data.triangles);
+  tree.instances = memory_.upload("instances", data.instances);
+}
+
+void CudaRenderer::upload_triangles(const SceneData& scene) {
+  if (builds_on_device(scene)) {
+    scene_.triangles = build_scene_tree(scene, options_, memory_, tree_facts_);
+  } else {
+    upload_tree(scene.tree);
+  }
   scene_.to_world = memory_.upload("instances", scene.to_world);
   scene_.attributes = {memory_.upload("vertex attributes", scene.attributes.triangles),
                        memory_.upload("vertex attributes", scene.attributes.normals),
@@ -290,6 +300,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.schedule = schedule_;
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;
+  if (tree_facts_.nodes > 0) report.scene.tree = tree_facts_;
   report.setup_ms = setup_ms_;
   report.transfer_ms = transfer_ms_;
   report.counts = summarize(tally);

@@ -15,6 +15,7 @@ namespace {
 bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01"); }
 bool is_hdr(std::string_view bytes) { return bytes.starts_with("#?"); }
 bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG"); }
+bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8"); }
 
 /// Of formats that store floats.
 bool is_float(std::string_view bytes) { return is_exr(bytes) || is_hdr(bytes); }
@@ -25,7 +26,8 @@ Image decode_floats(std::string_view bytes) {
 }
 
 Rgba8Image decode_integers(std::string_view bytes) {
-  return is_png(bytes) ? decode_png_rgba8(bytes) : decode_rgba8(bytes);
+  if (is_png(bytes)) return decode_png_rgba8(bytes);
+  return is_jpeg(bytes) ? decode_jpeg(bytes) : decode_bmp_or_tga(bytes);
 }
 
 TextureImage decode_texture(std::string_view bytes, TextureFormat integers) {

@@ -6,12 +6,12 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
-#include <ImfVersion.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "common/error.h"
+#include "common/image/exr_header.h"
 #include "common/image/exr_memory.h"
 #include "common/image/image_codec.h"
 
@@ -57,34 +57,6 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
   return std::move(stream.bytes);
 }
 
-/// Refuses what is not a flat, single-part EXR, before OpenEXR reads more of it.
-void check_kind(std::string_view bytes) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
-  if (bytes.size() < 8) throw Error("not an OpenEXR file, or truncated: it is too short");
-  const int magic = byte(0) | byte(1) << 8 | byte(2) << 16 | byte(3) << 24;
-  if (magic != Imf::MAGIC) throw Error("not an OpenEXR file: wrong magic number");
-  const int flags = byte(5) << 8;
-  if (flags & (Imf::NON_IMAGE_FLAG | Imf::MULTI_PART_FILE_FLAG)) {
-    throw Error("deep or multi-part OpenEXR; expected a flat one with a single part");
-  }
-}
-
-/// OpenEXR allocates what the size of an attribute announces: refuses sizes past the file's end.
-void check_attributes(std::string_view bytes) {
-  std::size_t position = 8;  // after magic number and version
-  while (position < bytes.size() && bytes[position] != '\0') {
-    for (int name_and_type = 0; name_and_type < 2; ++name_and_type) {
-      position = std::min(bytes.find('\0', position), bytes.size() - 1) + 1;
-    }
-    std::uint32_t size = 0;
-    for (int i = 0; i < 4 && position < bytes.size(); ++i, ++position) {
-      size |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[position])) << 8 * i;
-    }
-    if (size > bytes.size() - position) throw Error("truncated or corrupted in the header");
-    position += size;
-  }
-}
-
 /// Refuses files without plain R, G and B. Returns the decompressed size of one pixel.
 int check_channels(const Imf::ChannelList& channels) {
   std::string names;
@@ -104,8 +76,7 @@ int check_channels(const Imf::ChannelList& channels) {
 }
 
 Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
-  check_kind(bytes);
-  check_attributes(bytes);
+  check_exr_header(bytes);
   // For the whole process, hence the same value each time.
   Imf::Header::setMaxImageSize(max_image_size, max_image_size);
   Imf::Header::setMaxTileSize(max_tile_size, max_tile_size);

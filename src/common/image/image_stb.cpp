@@ -1,4 +1,4 @@
-// JPEG, BMP, TGA and Radiance's .hdr through stb_image, which this file alone contains.
+// BMP, TGA and Radiance's .hdr through stb_image, which this file alone contains.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC  // other libraries contain it as well
-#define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
 #define STBI_ONLY_HDR
@@ -95,7 +94,7 @@ std::unique_ptr<Value, void (*)(void*)> load(std::string_view bytes, int& width,
 
 }  // namespace
 
-Rgba8Image decode_rgba8(std::string_view bytes) {
+Rgba8Image decode_bmp_or_tga(std::string_view bytes) {
   Rgba8Image image;
   const auto pixels = load<stbi_uc>(bytes, image.width, image.height, [](auto... arguments) {
     return stbi_load_from_callbacks(arguments..., 4);

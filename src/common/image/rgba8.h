@@ -20,8 +20,11 @@ struct Rgba8Image {
 /// Any PNG; 16 bits are rounded to 8.
 Rgba8Image decode_png_rgba8(std::string_view bytes);
 
-/// JPEG, BMP or TGA (which has no signature), by stb_image.
-Rgba8Image decode_rgba8(std::string_view bytes);
+/// Baseline or progressive JPEG, grey or YCbCr.
+Rgba8Image decode_jpeg(std::string_view bytes);
+
+/// BMP or TGA (which has no signature), by stb_image.
+Rgba8Image decode_bmp_or_tga(std::string_view bytes);
 
 /// Radiance's .hdr, by stb_image: linear.
 Image decode_hdr(std::string_view bytes);

@@ -77,7 +77,9 @@ void add_scene(std::vector<OptionEntry>& list) {
            "camera hold where no option says otherwise")
       .add(custom(
                "define", OptionForm::list, "NAME=VALUE",
-               [](Options& o, const std::string& s) { parse_definition("define", s, o.definitions); },
+               [](Options& o, const std::string& s) {
+                 parse_definition("define", s, o.definitions);
+               },
                [](const Options& o) { return definitions_text(o.definitions); }),
            "Sets a parameter of a Mitsuba file; may be repeated", "-D")
       .add(custom(

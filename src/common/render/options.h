@@ -68,8 +68,8 @@ struct Options {
   int threads = 0;  ///< CPU threads, 0: all
   AccelKind accel = AccelKind::automatic;
   TreeBuilder builder = TreeBuilder::automatic;  ///< of trees over triangles
-  Work work = Work::persistent;  ///< megakernel
-  BlockSize block;               ///< megakernel, threads per block
+  Work work = Work::persistent;                  ///< megakernel
+  BlockSize block;                               ///< megakernel, threads per block
   Compaction compaction = Compaction::atomic;
   std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
   bool regenerate = true;

@@ -94,12 +94,12 @@ void add_scene(CsvRow& row, const SceneFacts& facts) {
   row.emplace_back("triangles", std::to_string(facts.triangles));
   row.emplace_back("instances", std::to_string(facts.instances));
   row.emplace_back("lights", std::to_string(facts.lights));
-  row.emplace_back("used_builder", facts.builder);
-  row.emplace_back("tree_nodes", std::to_string(facts.tree_nodes));
-  row.emplace_back("tree_references", std::to_string(facts.tree_references));
-  row.emplace_back("sah_cost", fmt::format("{:.6g}", facts.sah_cost));
-  row.emplace_back("bytes_per_triangle", fmt::format("{:.6g}", facts.bytes_per_triangle));
-  row.emplace_back("build_ms", ms(facts.build_ms));
+  row.emplace_back("used_builder", facts.tree.builder);
+  row.emplace_back("tree_nodes", std::to_string(facts.tree.nodes));
+  row.emplace_back("tree_references", std::to_string(facts.tree.references));
+  row.emplace_back("sah_cost", fmt::format("{:.6g}", facts.tree.sah_cost));
+  row.emplace_back("bytes_per_triangle", fmt::format("{:.6g}", facts.tree.bytes_per_triangle));
+  row.emplace_back("build_ms", ms(facts.tree.build_ms));
 }
 
 }  // namespace

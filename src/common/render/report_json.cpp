@@ -104,13 +104,13 @@ Json scene_json(const SceneFacts& facts) {
           {"textures", facts.textures},
           {"lights", facts.lights},
           {"memory_bytes", memory},
-          {"builder", facts.builder},
-          {"tree_nodes", facts.tree_nodes},
-          {"tree_references", facts.tree_references},
-          {"tree_depth", facts.tree_depth},
-          {"sah_cost", facts.sah_cost},
-          {"bytes_per_triangle", facts.bytes_per_triangle},
-          {"build_ms", facts.build_ms}};
+          {"builder", facts.tree.builder},
+          {"tree_nodes", facts.tree.nodes},
+          {"tree_references", facts.tree.references},
+          {"tree_depth", facts.tree.depth},
+          {"sah_cost", facts.tree.sah_cost},
+          {"bytes_per_triangle", facts.tree.bytes_per_triangle},
+          {"build_ms", facts.tree.build_ms}};
 }
 
 }  // namespace

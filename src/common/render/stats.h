@@ -45,19 +45,25 @@ struct KernelInfo {
   double occupancy = 0;  ///< resident warps / the multiprocessor's warps, 0..1
 };
 
+/// The tree over a scene's triangles.
+struct TreeFacts {
+  std::string builder;  ///< empty: there is none
+  std::uint64_t nodes = 0;
+  std::uint64_t references = 0;  ///< triangles in leaves, each as often as it is there
+  int depth = 0;
+  double sah_cost = 0;            ///< by the surface area heuristic; 0: unknown
+  double bytes_per_triangle = 0;  ///< of tree and triangles
+  double build_ms = 0;            ///< wall time on the host, kernel time on CUDA
+};
+
 /// What a scene consists of and what its acceleration structure is like.
 struct SceneFacts {
   std::uint64_t triangles = 0;  ///< of the meshes, each counted once
   std::uint64_t meshes = 0, instances = 0, spheres = 0, quads = 0;
   std::uint64_t materials = 0, textures = 0;
-  std::uint64_t lights = 0;  ///< primitives that emit, delta lights, the environment
+  std::uint64_t lights = 0;        ///< primitives that emit, delta lights, the environment
   std::vector<BufferSize> memory;  ///< on the host, by kind
-  std::string builder;             ///< of the tree over triangles; empty: none
-  std::uint64_t tree_nodes = 0, tree_references = 0;  ///< references: triangles in its leaves
-  int tree_depth = 0;
-  double sah_cost = 0;  ///< by the surface area heuristic; 0: unknown
-  double bytes_per_triangle = 0;  ///< of tree and triangles
-  double build_ms = 0;            ///< of the tree: wall time on the host, kernel time on CUDA
+  TreeFacts tree;
 };
 
 struct RenderReport {

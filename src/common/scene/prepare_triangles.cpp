@@ -33,6 +33,19 @@ bool is_device_builder(TreeBuilder builder) {
   return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc;
 }
 
+void check_device_build(const SceneData& scene, const Options& options) {
+  const std::string what = "--builder " + to_string(options.builder);
+  if (options.device.kind == DeviceChoice::Kind::cpu || options.mode == Mode::serial) {
+    throw Error(what + ": needs a CUDA device; on the CPU expected sah or sbvh");
+  }
+  if (!scene.instances.empty()) {
+    throw Error(what + ": builds one tree, and this scene has instances; expected sah or sbvh");
+  }
+  if (scene.traits.accel != Accel::bvh2 && scene.traits.accel != Accel::cwbvh) {
+    throw Error(what + ": builds binary and wide trees; expected --accel bvh2 or cwbvh");
+  }
+}
+
 /// All meshes' attributes as one array of vertices; triangles are numbered through the meshes.
 MeshAttributes join_attributes(const std::vector<Mesh>& meshes) {
   MeshAttributes all;
@@ -74,7 +87,9 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
                      accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
-  if (!is_device_builder(options.builder)) {
+  if (is_device_builder(options.builder)) {
+    check_device_build(scene, options);
+  } else {
     TreeOptions tree;
     tree.accel = options.accel;
     tree.builder = options.builder;

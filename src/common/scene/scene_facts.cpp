@@ -38,16 +38,16 @@ constexpr double triangle_cost = 1.0;
 
 void describe_tree(const TriangleTreeData& tree, SceneFacts& facts) {
   if (tree.bvh2.empty() && tree.cwbvh.empty()) return;
-  const TreeQuality quality = tree.bvh2.empty() ? measure_tree(tree.cwbvh, tree.root)
-                                                : measure_tree(tree.bvh2, tree.root);
-  facts.tree_nodes = tree.bvh2.size() + tree.cwbvh.size();
-  facts.tree_references = tree.triangles.size();
-  facts.tree_depth = quality.depth;
-  facts.sah_cost = quality.sah_cost(triangle_cost);
-  facts.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
-                             static_cast<double>(std::max<std::uint64_t>(facts.triangles, 1));
-  facts.builder = tree.builder;
-  facts.build_ms = tree.build_ms;
+  const TreeQuality quality =
+      tree.bvh2.empty() ? measure_tree(tree.cwbvh, tree.root) : measure_tree(tree.bvh2, tree.root);
+  facts.tree.nodes = tree.bvh2.size() + tree.cwbvh.size();
+  facts.tree.references = tree.triangles.size();
+  facts.tree.depth = quality.depth;
+  facts.tree.sah_cost = quality.sah_cost(triangle_cost);
+  facts.tree.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
+                                  static_cast<double>(std::max<std::uint64_t>(facts.triangles, 1));
+  facts.tree.builder = tree.builder;
+  facts.tree.build_ms = tree.build_ms;
 }
 
 void describe_scene(const SceneData& scene, SceneFacts& facts) {
@@ -60,12 +60,12 @@ void describe_scene(const SceneData& scene, SceneFacts& facts) {
   facts.textures = scene.textures.size();
   const bool has_environment = scene.environment_map.width > 0;
   facts.lights = scene.lights.size() + scene.light_list.lights.size() + (has_environment ? 1 : 0);
-  facts.memory = {{"meshes", mesh_bytes(scene)},
-                  {"acceleration structure", scene.tree.size_bytes() + bytes(scene.bvh_nodes)},
-                  {"textures", bytes(scene.texels)},
-                  {"environment", bytes(scene.environment_map.texels) +
-                                      bytes(scene.environment_map.alias)},
-                  {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection)}};
+  facts.memory = {
+      {"meshes", mesh_bytes(scene)},
+      {"acceleration structure", scene.tree.size_bytes() + bytes(scene.bvh_nodes)},
+      {"textures", bytes(scene.texels)},
+      {"environment", bytes(scene.environment_map.texels) + bytes(scene.environment_map.alias)},
+      {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection)}};
   std::erase_if(facts.memory, [](const BufferSize& buffer) { return buffer.size_bytes == 0; });
   describe_tree(scene.tree, facts);
 }
@@ -86,7 +86,7 @@ std::string scene_text(const SceneFacts& facts) {
   }
   std::string text = fmt::format("scene: {}\n", counts);
   if (!memory.empty()) text += fmt::format("memory: {}\n", memory);
-  if (facts.tree_nodes > 0) text += tree_text(facts);
+  if (facts.tree.nodes > 0) text += tree_text(facts);
   return text;
 }
 
@@ -94,8 +94,8 @@ std::string tree_text(const SceneFacts& facts) {
   return fmt::format(
       "tree: {}, {} nodes, depth {}, SAH cost {:.1f}, {:.1f} bytes per triangle, built in {:.0f} "
       "ms\n",
-      facts.builder, facts.tree_nodes, facts.tree_depth, facts.sah_cost, facts.bytes_per_triangle,
-      facts.build_ms);
+      facts.tree.builder, facts.tree.nodes, facts.tree.depth, facts.tree.sah_cost,
+      facts.tree.bytes_per_triangle, facts.tree.build_ms);
 }
 
 }  // namespace pt

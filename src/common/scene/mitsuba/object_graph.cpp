@@ -1,33 +1,25 @@
 // Elements to objects: ids, references, cycles.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
+#include <set>
 
 #include "common/scene/mitsuba/object.h"
 
 namespace pt::mitsuba {
 namespace {
 
-template <std::size_t n>
-bool is_one_of(const std::string& tag, const std::array<std::string_view, n>& tags) {
-  return std::find(tags.begin(), tags.end(), tag) != tags.end();
-}
-
 bool is_object(const Element& element) {
-  constexpr std::array<std::string_view, 14> tags = {
-      "scene", "integrator", "sensor",  "camera",  "sampler",   "film",   "rfilter",
-      "bsdf",  "shape",      "texture", "emitter", "luminaire", "medium", "subsurface"};
-  constexpr std::array<std::string_view, 2> more = {"volume", "phase"};
-  return is_one_of(element.tag, tags) || is_one_of(element.tag, more) ||
-         (element.tag == "spectrum" && element.attribute("type"));
+  static const std::set<std::string_view> tags = {
+      "scene", "integrator", "sensor",  "camera",    "sampler", "film",       "rfilter", "bsdf",
+      "shape", "texture",    "emitter", "luminaire", "medium",  "subsurface", "volume",  "phase"};
+  return tags.count(element.tag) || (element.tag == "spectrum" && element.attribute("type"));
 }
 
 bool is_property(const Element& element) {
-  constexpr std::array<std::string_view, 14> tags = {
-      "float",     "integer",   "boolean", "string", "rgb",       "srgb",      "spectrum",
-      "blackbody", "transform", "vector",  "point",  "animation", "translate", "xyz"};
-  return is_one_of(element.tag, tags);
+  static const std::set<std::string_view> tags = {"float",     "integer", "boolean",  "string",
+                                                  "rgb",       "srgb",    "spectrum", "blackbody",
+                                                  "transform", "vector",  "point",    "animation"};
+  return tags.count(element.tag);
 }
 
 // So many objects inside each other, through references as well.

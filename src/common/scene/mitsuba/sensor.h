@@ -9,6 +9,12 @@ namespace pt::mitsuba {
 /// warning. Width, height and samples per pixel become defaults.
 void read_sensor(Context& context, const Object& sensor);
 
+/// Width and height; what is about the file that Mitsuba would write is passed over.
+void read_film(Context& context, const Object& film);
+
+/// Samples per pixel.
+void read_sampler(Context& context, const Object& sampler);
+
 /// max_depth and rr_depth; every integrator becomes a path tracer.
 void read_integrator(Context& context, const Object& integrator);
 

@@ -1,0 +1,10 @@
+#include "check_scene.h"
+#include "common/scene/mitsuba_xml.h"
+#include "fuzz_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const pt::FuzzFolder folder;
+  const auto path = folder.write("input.xml", pt::as_bytes(data, size));
+  pt::expect_result_or_error([&] { pt::check_scene(pt::load_mitsuba_xml(path)); });
+  return 0;
+}
