@@ -43,7 +43,7 @@ struct SlotGroup {
 };
 
 struct PersistentTuning {
-  static constexpr int refill = 8;
+  static constexpr int refill = 6;
   static constexpr int nodes_least = 16;
 };
 
@@ -197,7 +197,7 @@ template <class Query, int block_size, class Work>
 __device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
                                  Work& work) {
   // Any hit ends a ray, so its triangles are tested at once; the closest one waits for company.
-  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 8;
+  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 12;
   memory.order.fill();
   __syncthreads();
   uint2 stack[bvh_depth_max];
