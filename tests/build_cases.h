@@ -123,7 +123,7 @@ inline const BuildCase build_cases[] = {
     {"tiny", [](std::uint32_t n) { return make_soup(n, 1e-36, 1e-37); }},
     {"far_away",
      [](std::uint32_t n) {
-       std::vector<Triangle> triangles = make_soup(n, 1, 0.1);
+       std::vector<Triangle> triangles = make_soup(n, 20, 5);
        for (Triangle& t : triangles)
          for (Vec3* v : {&t.v0, &t.v1, &t.v2}) *v += Vec3(3e6f, -2e6f, 1e6f);
        return triangles;
