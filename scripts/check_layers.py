@@ -79,7 +79,7 @@ PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GL
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
-BUILD_CONDITION_FILES = ["make_renderer.cpp", "common/device/devices*.cpp",
+BUILD_CONDITION_FILES = ["make_renderer.cpp", "trace_command.cpp", "common/device/devices*.cpp",
                          "common/scene/*builtin*"]
 
 SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}

@@ -21,6 +21,10 @@ constexpr const char* program_text =
 constexpr const char* compare_text =
     "Prints RMSE, relMSE, the largest difference and the number of differing pixels.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
+constexpr const char* trace_text =
+    "Traces a file of rays against a mesh, measures the rate and compares with reference hits.\n"
+    "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
+constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C; the\n"
@@ -32,6 +36,8 @@ struct Parser {
   CLI::App app{program_text, "ptexp"};
   std::vector<std::pair<const OptionEntry*, CLI::Option*>> options;
   CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *version = nullptr;
+  Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
+  Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   CLI::App* compare = nullptr;
   CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr;
 
@@ -181,6 +187,14 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (parser.compare->parsed()) {
     check_alone(parser, "compare", nullptr);
     return parse_compare(parser);
+  }
+  if (parser.trace.is_parsed()) {
+    check_alone(parser, "trace", nullptr);
+    return parser.trace.parse();
+  }
+  if (parser.rays.is_parsed()) {
+    check_alone(parser, "rays", nullptr);
+    return parser.rays.parse();
   }
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},

@@ -7,6 +7,7 @@
 
 #include "check_options.h"
 #include "common/render/options.h"
+#include "trace_command.h"
 
 namespace pt {
 
@@ -25,8 +26,8 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command = std::variant<RenderCommand, CompareCommand, ListScenesCommand, ListDevicesCommand,
-                             VersionCommand, HelpCommand>;
+using Command = std::variant<RenderCommand, CompareCommand, TraceCommand, RaysCommand,
+                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

@@ -22,6 +22,10 @@ int execute(const CompareCommand& command) {
   return compare_command(command.a, command.b, command.tolerance);
 }
 
+int execute(const TraceCommand& command) { return trace_command(command); }
+
+int execute(const RaysCommand& command) { return rays_command(command); }
+
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())
     fmt::print("{:<13} {}\n", scene.usage(), scene.description);

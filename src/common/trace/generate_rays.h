@@ -1,34 +1,33 @@
-// Sets of rays from any scene, for measuring traversal.
+// Makes sets of rays to measure traversal with.
 #pragma once
 
-#include <string>
-
-#include "common/scene/scene_data.h"
+#include "common/accel/triangle_tree_data.h"
+#include "common/scene/camera.h"
 #include "common/trace/ray_file.h"
 
 namespace pt {
 
 enum class RayKind {
-  primary,  ///< through the pixels' centres, pixels in Morton order
-  ao,       ///< eight cosine-distributed ones from each primary hit, any hit
-  diffuse,  ///< the third segment of paths that bounce with a cosine: fully incoherent
-  bounce    ///< the rays of the scene's own paths after some bounces, in the order of their pixels
+  primary,  ///< through the pixels' centres, in Morton order; closest hit
+  ao,       ///< eight cosine-distributed rays where each primary one hits; any hit
+  diffuse,  ///< the third segments of diffuse paths: they have nothing in common; closest hit
 };
 
-struct RaySetRequest {
-  RayKind kind = RayKind::primary;
-  int bounce = 0;             ///< of RayKind::bounce; 0: the camera rays of a path tracer
-  std::uint32_t size = 2048;  ///< of the image, a power of two: size * size pixels
-  float ao_distance = 0.0f;   ///< t_max of ao; 0: a twentieth of the scene's diagonal
+inline constexpr int ao_rays = 8;
+
+/// Lengths in units of the scene.
+struct RayKindSizes {
+  float offset = 0;       ///< of origins off the surface that they leave, along its normal
+  float ao_distance = 0;  ///< t_max of ambient occlusion
 };
 
-/// "primary", "ao", "diffuse" or "bounce:K". Throws Error.
-RaySetRequest parse_ray_kind(const std::string& text);
+/// 0.005 and 50 for a mesh whose bounding box has a diagonal of 1000.
+RayKindSizes scale_ray_kinds(const Bounds& bounds);
 
-/// `scene` is prepared, its tree built on the host. Origins of ao and diffuse rays lie 5e-6 of the
-/// scene's diagonal off the surface. Rays that ended or escaped before their turn are dropped;
-/// diffuse and bounce sets are filled up with further samples until there is one per pixel, unless
-/// nearly all paths escape. Throws Error where no ray is left.
-RaySet generate_rays(const SceneData& scene, const RaySetRequest& request);
+/// For an image of `size` x `size` pixels, a power of two; the camera is one of such an image.
+/// Paths that escape are left out; for diffuse rays, more paths are followed until there are size^2
+/// rays, or nothing has been found by the whole image.
+RaySet generate_rays(RayKind kind, const TriangleTreeData& tree, const Camera& camera, int size,
+                     const RayKindSizes& sizes);
 
 }  // namespace pt

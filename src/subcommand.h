@@ -1,0 +1,69 @@
+// Options of a subcommand: a table of names, help and what to do with the value.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "common/error.h"
+
+namespace pt {
+
+/// `set` parses and stores; it throws Error naming option and value.
+template <class Command>
+struct SubcommandOption {
+  const char* name;
+  const char* placeholder;  ///< of the value, with its default; null: a flag
+  const char* help;
+  void (*set)(Command&, const std::string& value);
+  bool is_required = false;
+};
+
+/// Adds the options to CLI11's subcommand `app`.
+template <class Command>
+class Subcommand {
+ public:
+  Subcommand(CLI::App& parent, const std::string& name, const std::string& text,
+             std::vector<SubcommandOption<Command>> options)
+      : name_(name), options_(std::move(options)), app_(parent.add_subcommand(name, text)) {
+    for (const SubcommandOption<Command>& option : options_) {
+      const std::string flag = std::string("--") + option.name, help = option.help;
+      CLI::Option* added = option.placeholder == nullptr
+                               ? app_->add_flag(flag, help)->disable_flag_override()
+                               : app_->add_option_function<std::vector<std::string>>(
+                                         flag, [](const std::vector<std::string>&) {}, help)
+                                     ->expected(1)
+                                     ->allow_extra_args(false)
+                                     ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                                     ->type_name(option.placeholder);
+      added_.push_back(added);
+    }
+    app_->allow_extras();
+  }
+
+  bool is_parsed() const { return app_->parsed(); }
+
+  /// Throws Error for options that are given twice, missing, or have bad values.
+  Command parse() const {
+    Command command;
+    for (std::size_t i = 0; i < options_.size(); ++i) {
+      const SubcommandOption<Command>& option = options_[i];
+      const auto values = added_[i]->results();
+      if (option.is_required && values.empty())
+        throw Error(fmt::format("{}: expected --{} {}", name_, option.name, option.placeholder));
+      if (values.size() > 1) throw Error(fmt::format("--{}: is given twice", option.name));
+      if (!values.empty()) option.set(command, values.front());
+    }
+    return command;
+  }
+
+ private:
+  std::string name_;
+  std::vector<SubcommandOption<Command>> options_;
+  CLI::App* app_;
+  std::vector<CLI::Option*> added_;
+};
+
+}  // namespace pt

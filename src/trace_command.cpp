@@ -1,0 +1,167 @@
+#include "trace_command.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "common/accel/build_triangle_tree.h"
+#include "common/build_info.h"
+#include "common/device/devices.h"
+#include "common/error.h"
+#include "common/image/atomic_file.h"
+#include "common/render/csv_file.h"
+#include "common/render/option_values.h"
+#include "common/render/run_summary.h"
+#include "common/trace/compare_hits.h"
+
+namespace pt {
+namespace {
+
+/// All that a run of the command has found out.
+struct TraceReport {
+  DeviceInfo device;
+  std::uint64_t triangles = 0, rays = 0;
+  RayType type = RayType::closest;
+  TreeQuality quality;
+  double build_ms = 0, bytes_per_triangle = 0, sah_cost = 0;
+  Spread time_ms;
+  TraceVariant variant = TraceVariant::automatic;
+
+  double mrays_per_s() const {
+    return time_ms.median > 0 ? static_cast<double>(rays) / time_ms.median / 1e3 : 0;
+  }
+};
+
+const char* variant_name(TraceVariant variant) {
+  constexpr const char* names[] = {"cpu", "threads", "persistent", "beam"};
+  return names[static_cast<int>(variant)];
+}
+
+/// Of the kernel module; empty where there is none.
+std::string driver_version() {
+  std::ifstream file("/sys/module/nvidia/version");
+  std::string version;
+  std::getline(file, version);
+  return version;
+}
+
+CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
+  const bool is_cuda = report.device.choice.kind == DeviceChoice::Kind::cuda;
+  const auto number = [](double x) { return fmt::format("{:.6g}", x); };
+  return {{"version", build_info().version},
+          {"commit", build_info().commit},
+          {"device", report.device.name},
+          {"driver", is_cuda ? driver_version() : ""},
+          {"mesh", command.mesh},
+          {"triangles", std::to_string(report.triangles)},
+          {"ray_file", command.rays},
+          {"type", report.type == RayType::any ? "any" : "closest"},
+          {"rays", std::to_string(report.rays)},
+          {"accel", to_string(command.accel)},
+          {"builder", to_string(command.builder)},
+          {"variant", variant_name(report.variant)},
+          {"nodes", std::to_string(report.quality.nodes)},
+          {"sah_cost", number(report.sah_cost)},
+          {"bytes_per_triangle", number(report.bytes_per_triangle)},
+          {"build_ms", number(report.build_ms)},
+          {"repeat", std::to_string(command.runs.repeat)},
+          {"warmup", std::to_string(command.runs.warmup)},
+          {"time_ms", number(report.time_ms.median)},
+          {"time_min_ms", number(report.time_ms.min)},
+          {"time_max_ms", number(report.time_ms.max)},
+          {"mrays_per_s", number(report.mrays_per_s())}};
+}
+
+void print_report(const TraceCommand& command, const TraceReport& report) {
+  const Spread& t = report.time_ms;
+  fmt::print("device     {}: {}\n", to_string(report.device.choice), report.device.name);
+  fmt::print("tree       {} by {}: {} triangles, {} nodes, {:.1f} bytes per triangle\n",
+             to_string(command.accel), to_string(command.builder), grouped(report.triangles),
+             grouped(report.quality.nodes), report.bytes_per_triangle);
+  fmt::print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.build_ms, report.sah_cost);
+  fmt::print("rays       {}, {} hit, {}\n", grouped(report.rays),
+             report.type == RayType::any ? "any" : "closest", variant_name(report.variant));
+  fmt::print("time       {:.4f} ms, {:.4f} to {:.4f} in {} runs\n", t.median, t.min, t.max,
+             command.runs.repeat);
+  fmt::print("rate       {:.1f} Mrays/s\n", report.mrays_per_s());
+}
+
+int print_comparison(const TraceCommand& command, const HitComparison& c) {
+  if (!command.quiet) {
+    fmt::print("agreement  {} the same, {} ties, {} at another distance, {} missed, {} invented\n",
+               c.same, c.ties, c.other, c.missed, c.invented);
+    if (!c.first.empty()) fmt::print("first      {}\n", c.first);
+  }
+  return c.agrees() ? 0 : 1;
+}
+
+TraceReport describe_tree(const TriangleTreeData& tree, const TreeOptions& options) {
+  TraceReport report;
+  const bool is_wide = !tree.cwbvh.empty();
+  if (is_wide) report.quality = measure_tree(std::span(tree.cwbvh), tree.root);
+  if (!tree.bvh2.empty()) report.quality = measure_tree(std::span(tree.bvh2), tree.root);
+  report.sah_cost =
+      report.quality.sah_cost((is_wide ? options.cwbvh_costs : options.bvh2_costs).triangle);
+  report.build_ms = tree.build_ms;
+  return report;
+}
+
+void check_command(const TraceCommand& command, const DeviceInfo& device) {
+  if (!command.output.empty()) check_writable(command.output);
+  if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
+  const bool is_cpu = device.choice.kind == DeviceChoice::Kind::cpu;
+  if (is_cpu && command.runs.variant != TraceVariant::automatic)
+    throw Error("--variant: has no effect on the CPU");
+}
+
+HitSet read_reference(const TraceCommand& command, const RaySet& rays) {
+  HitSet hits = read_hits(command.hits);
+  if (hits.hits.size() != rays.rays.size() || hits.type != rays.type)
+    throw Error(fmt::format("{}: is not of the rays in {}", command.hits, command.rays));
+  return hits;
+}
+
+TraceResult trace(const DeviceInfo& device, const TriangleTreeData& tree, const RaySet& rays,
+                  const TraceRuns& runs) {
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda)
+    return trace_rays_cuda(tree, rays, runs, device.choice.index);
+#endif
+  (void)device;  // without CUDA there is only one
+  return trace_rays_cpu(tree, rays, runs);
+}
+
+}  // namespace
+
+int trace_command(const TraceCommand& given) {
+  TraceCommand command = given;
+  if (command.accel == AccelKind::automatic) command.accel = AccelKind::cwbvh;
+  if (command.builder == TreeBuilder::automatic) command.builder = TreeBuilder::sah;
+  const DeviceInfo device = choose_device(command.device);
+  check_command(command, device);
+  const Mesh mesh = read_trace_mesh(command.mesh);
+  const RaySet rays = read_rays(command.rays);
+  HitSet reference;
+  if (!command.hits.empty()) reference = read_reference(command, rays);
+  TreeOptions options;
+  options.accel = command.accel;
+  options.builder = command.builder;
+  const TriangleTreeData tree = build_triangle_tree({&mesh, 1}, {}, options);
+  TraceReport report = describe_tree(tree, options);
+  TraceResult result = trace(device, tree, rays, command.runs);
+  report.device = device;
+  report.triangles = mesh.triangles.size();
+  report.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
+                              static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1));
+  report.rays = rays.rays.size();
+  report.type = rays.type;
+  report.variant = result.variant;
+  report.time_ms = spread(result.times_ms);
+  if (!command.quiet) print_report(command, report);
+  if (!command.output.empty()) write_hits(command.output, {rays.type, result.hits});
+  if (!command.csv.empty()) append_csv_row(command.csv, csv_row(command, report));
+  if (command.hits.empty()) return 0;
+  return print_comparison(command, compare_hits(result.hits, reference.hits));
+}
+
+}  // namespace pt

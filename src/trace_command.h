@@ -1,0 +1,43 @@
+// `ptexp trace`: a file of rays against a mesh; `ptexp rays`: makes such files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/render/options.h"
+#include "common/trace/generate_rays.h"
+#include "common/trace/trace_rays.h"
+#include "subcommand.h"
+
+namespace pt {
+
+struct TraceCommand {
+  std::string mesh, rays;  ///< files
+  std::string hits;        ///< reference to compare with; empty: none
+  std::string output;      ///< file for the hits; empty: none
+  std::string csv;         ///< file to append a row to; empty: none
+  AccelKind accel = AccelKind::automatic;
+  TreeBuilder builder = TreeBuilder::automatic;
+  DeviceChoice device;
+  TraceRuns runs;
+  bool quiet = false;
+};
+
+struct RaysCommand {
+  std::string mesh, output;
+  RayKind kind = RayKind::primary;
+  int size = 2048;
+  CameraOverrides camera;  ///< else inside the bounding box, looking along it
+};
+
+std::vector<SubcommandOption<TraceCommand>> trace_options();
+std::vector<SubcommandOption<RaysCommand>> rays_options();
+
+/// Prints rate, tree and agreement. Returns the exit code: 1 where hits differ from the reference.
+/// Throws Error.
+int trace_command(const TraceCommand& command);
+
+/// Throws Error.
+int rays_command(const RaysCommand& command);
+
+}  // namespace pt
