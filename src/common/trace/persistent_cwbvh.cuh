@@ -11,15 +11,27 @@
 
 #include "common/trace/cwbvh_step.cuh"
 #include "common/trace/prepared_rays.cuh"
+#include "common/trace/ray_arrays.h"
 #include "common/trace/slot_order.cuh"
 
 namespace pt {
+
+/// What a warp needs now and then, in shared memory: registers are short.
+struct PersistentWarp {
+  static constexpr std::uint32_t none = 0xffffffffu;
+
+  PreparedRays rays;
+  int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not handed out
+  int refill;                ///< idle lanes that make the warp hand out rays
+  std::uint32_t number[32];  ///< by lane: of the ray whose result is not written; none
+  ReservedRays reserved;
+};
 
 /// What the threads of a block share.
 template <int block_size>
 struct PersistentMemory {
   SlotOrder order;
-  PreparedRays rays[block_size / 32];
+  PersistentWarp warps[block_size / 32];
 };
 
 /// What is left of a node: bits 0..7 slots of inner children to visit, bits 8..15 its inner_mask.
@@ -31,58 +43,66 @@ struct SlotGroup {
 };
 
 struct PersistentTuning {
-  static constexpr int refill = 8;
+  static constexpr int refill = 6;
   static constexpr int nodes_least = 16;
 };
 
 /// Traces what `work` hands out, one lane's view. Query: ClosestTriangle or AnyTriangle. Work has
-///   std::uint32_t fetch(unsigned lane, RayRecord&, int& count)  by the whole warp: up to 32 rays
-///     with successive numbers, one each for the first `count` lanes; returns the first's number;
-///     count 0: there is none left
+///   std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord&, int& count)  by the whole warp:
+///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
+///     first's number; count 0: there is none left
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
 template <class Query, int triangles_least, class Work>
 class PersistentTracer {
  public:
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
-                              PreparedRays& prepared, uint2* stack)
-      : tree_(tree), work_(work), order_(order), prepared_(prepared), stack_(stack) {}
+                              PersistentWarp& warp, uint2* stack)
+      : tree_(tree), work_(work), order_(order), warp_(warp), stack_(stack) {}
 
   /// By the whole warp; returns when all rays are done.
   __device__ void run() {
+    warp_.number[threadIdx.x & 31] = PersistentWarp::none;
+    warp_.next_ray = warp_.ray_count = 0;
+    warp_.refill = PersistentTuning::refill;
+    warp_.reserved = {0, 0};
+    __syncwarp();
     while (true) {
-      const unsigned idle = __ballot_sync(whole_warp, !is_active_);
-      if (__popc(idle) >= (is_dry_ ? 32 : PersistentTuning::refill)) {
+      const unsigned idle = __ballot_sync(whole_warp, !is_active());
+      if (__popc(idle) >= warp_.refill) {
         refill(idle);
-        if (is_dry_ && idle == whole_warp) return;
+        if (idle == whole_warp && warp_.refill == 32) return;
       }
       step_down();
       gather_triangles();
       test_triangles();
-      if (!nodes_.has_slots() && triangles_ == 0) is_active_ = false;
     }
   }
 
  private:
   static constexpr unsigned whole_warp = 0xffffffffu;
 
+  __device__ bool is_active() const { return nodes_.has_slots() || triangles_ != 0; }
+
   __device__ void refill(unsigned idle) {
-    if (!is_active_ && has_result_) {
-      work_.finish(number_, query_);
-      has_result_ = false;
-    }
     const unsigned lane = threadIdx.x & 31;
-    if (next_prepared_ >= prepared_count_) {
-      RayRecord record;
-      const std::uint32_t first = work_.fetch(lane, record, prepared_count_);
-      next_prepared_ = 0;
-      is_dry_ = prepared_count_ == 0;
-      __syncwarp();
-      if (static_cast<int>(lane) < prepared_count_) prepared_.store(lane, record, first + lane);
-      __syncwarp();
+    if (!is_active() && warp_.number[lane] != PersistentWarp::none) {
+      work_.finish(warp_.number[lane], query_);
+      warp_.number[lane] = PersistentWarp::none;
     }
-    const int place = next_prepared_ + __popc(idle & ((1u << lane) - 1));
-    next_prepared_ += __popc(idle);
-    if (!is_active_ && place < prepared_count_) begin(prepared_.load(static_cast<unsigned>(place)));
+    int next = warp_.next_ray, count = warp_.ray_count;
+    __syncwarp();
+    if (next >= count) {
+      RayRecord record;
+      const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
+      next = 0;
+      if (count == 0) warp_.refill = 32;  // there is none left: only the end is waited for
+      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
+      warp_.ray_count = count;
+    }
+    warp_.next_ray = next + __popc(idle);
+    __syncwarp();
+    const int place = next + __popc(idle & ((1u << lane) - 1));
+    if (!is_active() && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
   }
 
   __device__ void begin(const PreparedRay& ray) {
@@ -90,11 +110,9 @@ class PersistentTracer {
     inverse_ = ray.inverse;
     triangle_ray_ = ray.triangles;
     query_ = Query(ray.t_min, ray.t_max);
-    number_ = ray.number;
+    warp_.number[threadIdx.x & 31] = ray.number;
     slot_order_ = order_.first[ray.octant];
-    has_result_ = true;
-    is_active_ = ray.t_max > 0.0f;
-    nodes_ = {tree_.root, is_active_ ? 1u : 0u};  // the root as the only child, in slot 0
+    nodes_ = {tree_.root, ray.t_max > 0.0f ? 1u : 0u};  // the root as the only child, in slot 0
   }
 
   /// Steps until too few lanes have one to do; at least one, if any lane has.
@@ -162,11 +180,7 @@ class PersistentTracer {
   const TriangleTree& tree_;
   Work& work_;
   const SlotOrder& order_;
-  PreparedRays& prepared_;
-  int next_prepared_ = 0, prepared_count_ = 0;  // the same in all lanes, as is is_dry_
-  bool is_dry_ = false;
-  bool is_active_ = false, has_result_ = false;
-  std::uint32_t number_ = 0;
+  PersistentWarp& warp_;
   Query query_{0.0f, 0.0f};
   Vec3 origin_{}, inverse_{};
   TriangleRay triangle_ray_{};
@@ -183,12 +197,12 @@ template <class Query, int block_size, class Work>
 __device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
                                  Work& work) {
   // Any hit ends a ray, so its triangles are tested at once; the closest one waits for company.
-  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 8;
+  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 12;
   memory.order.fill();
   __syncthreads();
   uint2 stack[bvh_depth_max];
   PersistentTracer<Query, triangles_least, Work> tracer(tree, work, memory.order,
-                                                        memory.rays[threadIdx.x / 32], stack);
+                                                        memory.warps[threadIdx.x / 32], stack);
   tracer.run();
 }
 

@@ -13,4 +13,9 @@ struct RayArrays {
   std::uint32_t* next = nullptr;
 };
 
+/// Numbers [next, end) of rays that a warp has reserved; empty at first. In shared memory.
+struct ReservedRays {
+  std::uint32_t next, end;
+};
+
 }  // namespace pt

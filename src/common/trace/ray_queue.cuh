@@ -31,28 +31,29 @@ class RayQueue {
 
   /// All threads of the warp call it together and get up to 32 rays with successive numbers, one
   /// each; the first one's number is returned.
-  __device__ std::uint32_t fetch(unsigned lane, RayRecord& ray, int& count) {
-    if (next_ == end_) {
-      if (lane == 0) next_ = atomicAdd(arrays_.next, batch);
-      next_ = __shfl_sync(0xffffffffu, next_, 0);
-      end_ = next_ + batch;
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& ray,
+                                 int& count) const {
+    std::uint32_t first = reserved.next;
+    if (first == reserved.end) {
+      if (lane == 0) first = atomicAdd(arrays_.next, batch);
+      first = __shfl_sync(0xffffffffu, first, 0);
+      reserved.end = first + batch;
     }
-    const std::uint32_t first = next_;
-    next_ += 32;
+    __syncwarp();
+    reserved.next = first + 32;
     count = first < arrays_.count ? static_cast<int>(min(32u, arrays_.count - first)) : 0;
     if (static_cast<int>(lane) < count) ray = load_ray(arrays_.rays + first + lane);
     return first;
   }
 
   template <class Query>
-  __device__ void finish(std::uint32_t number, const Query& query) {
+  __device__ void finish(std::uint32_t number, const Query& query) const {
     store_result(tree_, query, arrays_.hits + number);
   }
 
  private:
   const TriangleTree& tree_;
   const RayArrays& arrays_;
-  std::uint32_t next_ = 0, end_ = 0;  ///< the same in all threads of the warp
 };
 
 }  // namespace pt
