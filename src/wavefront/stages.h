@@ -87,6 +87,20 @@ struct IntersectRays {
   }
 };
 
+/// Sends each path whose ray has been traced to the stage that shades it: for tracers that store
+/// the hits and do no more.
+struct SortHits {
+  static constexpr StageId id = StageId::intersect;
+  static constexpr PathTag tag = PathTag::intersect;
+  static constexpr bool scans_spheres = false;
+  static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
+  PathPool pool;
+
+  PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t) const {
+    return {pool.load_hit(slot).is_miss() ? PathTag::miss : PathTag::surface};
+  }
+};
+
 template <Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;

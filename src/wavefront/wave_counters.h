@@ -19,6 +19,8 @@ struct WaveCounters {
   std::uint32_t first_path;                ///< number of the first path that it starts
   std::uint32_t next_path;                 ///< paths started so far
   std::uint32_t ticket;                    ///< paths handed out where no queue ranks the free slots
+  std::uint32_t traced;                    ///< rays handed out to persistent warps
+  std::uint32_t shadow_traced;             ///< shadow rays, likewise
   std::uint32_t waves;
 };
 
@@ -37,6 +39,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   c.generate = 0;
   c.intersect = 0;
   c.ticket = 0;
+  c.traced = c.shadow_traced = 0;
   if (remaining == 0 && c.live <= finish_paths) {
     c.finish = c.live;
     return false;

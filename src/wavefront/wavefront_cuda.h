@@ -23,6 +23,10 @@ class WavefrontCuda : public CudaRenderer {
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
+  template <class Traits>
+  void run(const IntersectRays<Traits, Branching::divergent>& stage, const StageQueues& queues);
+  template <class Traits>
+  void run(const TraceShadowRays<Traits>& stage, const StageQueues& queues);
 
  protected:
   void prepare_batch(const SampleBuffer& batch) override;
@@ -34,6 +38,10 @@ class WavefrontCuda : public CudaRenderer {
   /// need, by the type of the random source.
   template <class Function>
   void with_context(const SampleBuffer& batch, Function&& function);
+  template <class Stage>
+  void run_stage(const Stage& stage, const StageQueues& queues);
+  template <class Rays>
+  void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
   template <class Kinds, class Source>

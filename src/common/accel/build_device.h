@@ -11,6 +11,7 @@
 #include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
 #include "common/accel/tree_statistics.h"
+#include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh.h"
 #include "common/geometry/triangle.h"
 
@@ -80,6 +81,9 @@ struct DeviceTree {
   DeviceBuilder builder = DeviceBuilder::hploc;  ///< another than asked for where that was too deep
   DeviceBuildTimes times;
   std::uint64_t scratch_bytes = 0;  ///< of temporary memory
+
+  /// For traversal, of a tree whose nodes and slots are numbered from 0.
+  TriangleTree view() const { return {bvh2, cwbvh, triangles, nullptr, slot_count, 0, 0}; }
 };
 
 /// Gives `size_bytes` of device memory, aligned to 256, or throws Error.

@@ -2,12 +2,50 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
-#include <memory>
+#include <set>
 
 #include "common/error.h"
 #include "common/image/image_codec.h"
 #include "common/image/rgba8.h"
+
+namespace pt {
+namespace {
+
+/// Owns what stb_image allocates in this thread as long as it lives, so that an exception may pass
+/// through stb_image, which is C.
+class StbMemory {
+ public:
+  StbMemory() { current = this; }
+  StbMemory(const StbMemory&) = delete;
+  StbMemory& operator=(const StbMemory&) = delete;
+  ~StbMemory() {
+    for (void* block : blocks_) std::free(block);
+    current = nullptr;
+  }
+
+  void* resize(void* block, std::size_t size) {
+    const bool known = blocks_.erase(block) > 0;
+    void* resized = std::realloc(block, size);
+    if (resized) blocks_.insert(resized);
+    if (!resized && known) blocks_.insert(block);
+    return resized;
+  }
+  void free(void* block) {
+    blocks_.erase(block);
+    std::free(block);
+  }
+
+  static thread_local StbMemory* current;
+
+ private:
+  std::set<void*> blocks_;
+};
+thread_local StbMemory* StbMemory::current = nullptr;
+
+}  // namespace
+}  // namespace pt
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC  // other libraries contain it as well
@@ -16,6 +54,9 @@
 #define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #define STBI_MAX_DIMENSIONS 65535
+#define STBI_MALLOC(size) pt::StbMemory::current->resize(nullptr, size)
+#define STBI_REALLOC(block, size) pt::StbMemory::current->resize(block, size)
+#define STBI_FREE(block) pt::StbMemory::current->free(block)
 #include <stb/stb_image.h>
 
 namespace pt {
@@ -23,47 +64,38 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == max_image_size);
 
-/// A file in memory that notices when the decoder wants more than there is: stb_image itself goes
-/// on with zeros.
+/// A file in memory that throws Error when the decoder wants more than there is: stb_image itself
+/// would go on with zeros, in an .hdr for ever.
 class Source {
  public:
   explicit Source(std::string_view bytes) : bytes_(bytes) {}
 
   static int read(void* user, char* data, int size) {
     auto& source = *static_cast<Source*>(user);
-    const std::size_t rest = source.bytes_.size() - source.position_;
-    const std::size_t count = std::min(rest, static_cast<std::size_t>(std::max(size, 0)));
+    const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0));
+    const std::size_t count = std::min(wanted, source.rest());
     // Its buffer may be filled in part, but is refilled only when all of it has been used.
-    if (count == 0 || (count < static_cast<std::size_t>(size) && size != buffer_bytes)) {
-      source.past_end = true;
-    }
+    if (count == 0 || (count < wanted && size != buffer_bytes)) fail();
     std::memcpy(data, source.bytes_.data() + source.position_, count);
     source.position_ += count;
     return static_cast<int>(count);
   }
 
+  /// A negative size gives back what was read ahead.
   static void skip(void* user, int size) {
     auto& source = *static_cast<Source*>(user);
-    const std::size_t rest = source.bytes_.size() - source.position_;
-    // A negative size gives back what was read ahead.
-    const std::size_t back = size < 0 ? static_cast<std::size_t>(-std::int64_t{size}) : 0;
-    if (size < 0) {
-      source.position_ -= std::min(back, source.position_);
-    } else {
-      if (static_cast<std::size_t>(size) > rest) source.past_end = true;
-      source.position_ += std::min(rest, static_cast<std::size_t>(size));
-    }
+    const std::int64_t position = static_cast<std::int64_t>(source.position_) + size;
+    if (position < 0 || position > static_cast<std::int64_t>(source.bytes_.size())) fail();
+    source.position_ = static_cast<std::size_t>(position);
   }
 
-  static int at_end(void* user) {
-    const auto& source = *static_cast<const Source*>(user);
-    return source.position_ == source.bytes_.size();
-  }
-
-  bool past_end = false;
+  static int at_end(void* user) { return static_cast<const Source*>(user)->rest() == 0; }
 
  private:
   static constexpr int buffer_bytes = sizeof(stbi__context::buffer_start);
+
+  [[noreturn]] static void fail() { throw Error("truncated or corrupted"); }
+  std::size_t rest() const { return bytes_.size() - position_; }
 
   std::string_view bytes_;
   std::size_t position_ = 0;
@@ -71,11 +103,10 @@ class Source {
 
 constexpr stbi_io_callbacks callbacks{Source::read, Source::skip, Source::at_end};
 
-/// Lets stb_image read `bytes` by load(callbacks, source, &width, &height, &channels), which
-/// returns `channels_wanted` values a pixel.
+/// Lets stb_image read `bytes` by load_pixels(callbacks, source, &width, &height, &channels). The
+/// result is the StbMemory's.
 template <class Value, class Load>
-std::unique_ptr<Value, void (*)(void*)> load(std::string_view bytes, int& width, int& height,
-                                             Load load_pixels) {
+const Value* load(std::string_view bytes, int& width, int& height, Load load_pixels) {
   int channels = 0;
   Source header(bytes);
   if (bytes.empty() ||
@@ -85,9 +116,7 @@ std::unique_ptr<Value, void (*)(void*)> load(std::string_view bytes, int& width,
   const double decoded_bytes = 4.0 * sizeof(Value) * width * height;
   check_image_size(width, height, decoded_bytes, bytes.size());
   Source source(bytes);
-  std::unique_ptr<Value, void (*)(void*)> pixels(
-      load_pixels(&callbacks, &source, &width, &height, &channels), stbi_image_free);
-  if (source.past_end) throw Error("truncated or corrupted");
+  const Value* pixels = load_pixels(&callbacks, &source, &width, &height, &channels);
   if (!pixels) throw Error(fmt::format("corrupted: {}", stbi_failure_reason()));
   return pixels;
 }
@@ -95,21 +124,23 @@ std::unique_ptr<Value, void (*)(void*)> load(std::string_view bytes, int& width,
 }  // namespace
 
 Rgba8Image decode_bmp_or_tga(std::string_view bytes) {
+  StbMemory memory;
   Rgba8Image image;
-  const auto pixels = load<stbi_uc>(bytes, image.width, image.height, [](auto... arguments) {
+  const auto* pixels = load<stbi_uc>(bytes, image.width, image.height, [](auto... arguments) {
     return stbi_load_from_callbacks(arguments..., 4);
   });
-  const auto* begin = reinterpret_cast<const std::byte*>(pixels.get());
+  const auto* begin = reinterpret_cast<const std::byte*>(pixels);
   image.rgba.assign(begin, begin + std::size_t{4} * image.width * image.height);
   return image;
 }
 
 Image decode_hdr(std::string_view bytes) {
+  StbMemory memory;
   Image image;
-  const auto pixels = load<float>(bytes, image.width, image.height, [](auto... arguments) {
+  const float* pixels = load<float>(bytes, image.width, image.height, [](auto... arguments) {
     return stbi_loadf_from_callbacks(arguments..., 3);
   });
-  image.rgb.assign(pixels.get(), pixels.get() + std::size_t{3} * image.width * image.height);
+  image.rgb.assign(pixels, pixels + std::size_t{3} * image.width * image.height);
   return image;
 }
 

@@ -16,16 +16,27 @@
 namespace pt {
 namespace {
 
-Accel structure_of(AccelKind kind) {
-  switch (kind) {
+/// Persistent warps make the most of wide trees; for threads that follow rays alone binary ones are
+/// faster (results/ has the measurement).
+Accel automatic_structure(const SceneData& scene, const Options& options) {
+  const bool persistent = options.device.kind == DeviceChoice::Kind::cuda &&
+                          options.mode == Mode::wavefront && scene.instances.empty() &&
+                          scene.spheres.empty() && options.compaction == Compaction::atomic;
+  return persistent ? Accel::cwbvh : Accel::bvh2;
+}
+
+Accel structure_of(const SceneData& scene, const Options& options) {
+  switch (options.accel) {
     case AccelKind::brute:
       return Accel::brute;
     case AccelKind::bvh2:
       return Accel::bvh2;
     case AccelKind::embree:
       return Accel::embree;
-    default:
+    case AccelKind::cwbvh:
       return Accel::cwbvh;
+    default:
+      return automatic_structure(scene, options);
   }
 }
 
@@ -83,7 +94,7 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   const Bounds bounds = scene_bounds(scene);
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
-  const Accel accel = structure_of(options.accel);
+  const Accel accel = structure_of(scene, options);
   const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
                      accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
@@ -91,9 +102,11 @@ void prepare_triangles(SceneData& scene, const Options& options) {
     check_device_build(scene, options);
   } else {
     TreeOptions tree;
-    tree.accel = options.accel;
+    tree.accel = accel == Accel::bvh2 ? AccelKind::bvh2 : AccelKind::cwbvh;
     tree.builder = options.builder;
-    if (accel == Accel::embree) tree.accel = AccelKind::brute;  // the triangles alone
+    if (accel == Accel::brute || accel == Accel::embree) {
+      tree.accel = AccelKind::brute;  // the triangles alone
+    }
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }

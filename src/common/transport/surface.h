@@ -63,9 +63,9 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
                                                 triangle.v1, triangle.v2);
   const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
   Vec3 position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
-  Vec3 extent = glm::abs(b.x * triangle.v0) + glm::abs(b.y * triangle.v1) +
-                glm::abs(b.z * triangle.v2);
-  Vec3 normal = glm::cross(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
+  Vec3 extent =
+      glm::abs(b.x * triangle.v0) + glm::abs(b.y * triangle.v1) + glm::abs(b.z * triangle.v2);
+  Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = (triangle.attributes & TriangleAttributes::normals) != 0
                             ? scene.attributes.normal(triangle.id, b)
                             : normal;

@@ -1,0 +1,95 @@
+// The rays of a queue, traced by persistent warps: for wide trees, where a thread per ray would
+// wait for the slowest of its warp.
+#pragma once
+
+#include "common/device/stage_stamp.cuh"
+#include "common/trace/persistent_cwbvh.cuh"
+#include "wavefront/wavefront.h"
+
+namespace pt {
+
+/// What both kinds of rays share: a number is a place in the stage's queue.
+struct QueuedRays {
+  PathPool pool;
+  StageQueues queues;
+  std::uint32_t* next;  ///< of the queue's places: handed out so far
+
+  __device__ std::uint32_t slot(std::uint32_t number) const {
+    return queues.slots[queues.begin() + number];
+  }
+
+  /// See PersistentTracer. `load(slot)` gives the ray.
+  template <class Load>
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, int& count,
+                                 Load&& load) const {
+    constexpr std::uint32_t batch = 128;
+    std::uint32_t first = reserved.next;
+    if (first == reserved.end) {
+      if (lane == 0) first = atomicAdd(next, batch);
+      first = __shfl_sync(0xffffffffu, first, 0);
+      reserved.end = first + batch;
+    }
+    __syncwarp();
+    reserved.next = first + 32;
+    const std::uint32_t all = *queues.count;
+    count = first < all ? static_cast<int>(min(32u, all - first)) : 0;
+    if (static_cast<int>(lane) < count) load(slot(first + lane));
+    return first;
+  }
+};
+
+/// The next ray of each path; its hit is stored.
+struct QueuedPaths {
+  using Query = ClosestTriangle;
+  QueuedRays rays;
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
+                                 int& count) const {
+    return rays.fetch(lane, reserved, count, [&](std::uint32_t slot) {
+      const Ray ray = rays.pool.load_ray(slot);
+      record = {ray.origin, 0.0f, ray.direction, infinite_distance};
+    });
+  }
+
+  __device__ void finish(std::uint32_t number, const ClosestTriangle& query) const {
+    rays.pool.store_hit(rays.slot(number), query.result());
+  }
+};
+
+/// Questions to lights; what arrives is added to the path's sample.
+struct QueuedShadowRays {
+  using Query = AnyTriangle;
+  QueuedRays rays;
+  SampleBuffer samples;
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
+                                 int& count) const {
+    return rays.fetch(lane, reserved, count, [&](std::uint32_t slot) {
+      std::uint32_t number;
+      const ShadowRay shadow = rays.pool.load_shadow(slot, number);
+      record = {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance};
+    });
+  }
+
+  __device__ void finish(std::uint32_t number, const AnyTriangle& query) const {
+    if (query.result()) return;
+    std::uint32_t path;
+    const ShadowRay shadow = rays.pool.load_shadow(rays.slot(number), path);
+    add_radiance(samples, path, shadow.radiance);
+  }
+};
+
+inline constexpr int trace_block = 128;
+inline constexpr int trace_blocks_least = 8;  ///< per multiprocessor: 64 registers for a thread
+
+template <class Rays>
+__global__ void __launch_bounds__(trace_block, trace_blocks_least)
+    trace_queue(const __grid_constant__ TriangleTree tree, const __grid_constant__ Rays rays,
+                StageId stage, StageClock* clock) {
+  __shared__ PersistentMemory<trace_block> memory;
+  stamp_first_thread(clock, stage);
+  if (*rays.rays.queues.count == 0) return;
+  trace_persistent<typename Rays::Query>(tree, memory, rays);
+}
+
+}  // namespace pt
