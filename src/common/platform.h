@@ -192,4 +192,24 @@ PT_HD std::uint32_t atomic_fetch_add(std::uint32_t* counter, std::uint32_t amoun
 #endif
 }
 
+#ifdef __CUDACC__
+/// The least and the largest of a warp's values, by all of its threads.
+__device__ inline std::uint32_t warp_min(std::uint32_t x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_min_sync(0xffffffffu, x);
+#else
+  for (int step = 16; step > 0; step /= 2) x = min(x, __shfl_xor_sync(0xffffffffu, x, step));
+  return x;
+#endif
+}
+__device__ inline std::uint32_t warp_max(std::uint32_t x) {
+#if __CUDA_ARCH__ >= 800
+  return __reduce_max_sync(0xffffffffu, x);
+#else
+  for (int step = 16; step > 0; step /= 2) x = max(x, __shfl_xor_sync(0xffffffffu, x, step));
+  return x;
+#endif
+}
+#endif
+
 }  // namespace pt

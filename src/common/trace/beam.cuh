@@ -20,10 +20,10 @@ inline constexpr float beam_width_max = 0.25f;
 
 /// The least and the largest |x| of a warp, for the same signs of all.
 __device__ inline float warp_min_magnitude(float x) {
-  return __uint_as_float(__reduce_min_sync(0xffffffffu, __float_as_uint(x) & 0x7fffffffu));
+  return __uint_as_float(warp_min(__float_as_uint(x) & 0x7fffffffu));
 }
 __device__ inline float warp_max_magnitude(float x) {
-  return __uint_as_float(__reduce_max_sync(0xffffffffu, __float_as_uint(x) & 0x7fffffffu));
+  return __uint_as_float(warp_max(__float_as_uint(x) & 0x7fffffffu));
 }
 
 /// By the whole warp. Sets `width` to how much the directions differ; false: in their signs.

@@ -29,25 +29,12 @@ __device__ inline CwbvhWords load_cwbvh_words(const CwbvhNode* node) {
   return words;
 }
 
-#ifndef CONV
-#define CONV 0
-#endif
-inline constexpr float byte_bias = CONV == 0 ? 65536.0f : CONV == 1 ? 32768.0f : 0.0f;
+inline constexpr float byte_bias = 65536.0f;
 
-/// bias + byte `i` of a word.
+/// bias + byte `i` of a word: one instruction, on another pipe than minima, selects and shifts.
 template <int i>
 __device__ inline float biased_byte(std::uint32_t word) {
-  if constexpr (CONV == 0) {
-    return __uint_as_float(__dp4a(word, 128u << (8 * i), 0x47800000u));
-  } else if constexpr (CONV == 1) {
-    return __uint_as_float(__byte_perm(word, 0x47000000u, 0x7404 | i << 4));
-  } else {
-    float result;
-    asm("{\n\t.reg .b32 q;\n\tbfe.u32 q, %1, %2, 8;\n\tcvt.rn.f32.u32 %0, q;\n\t}"
-        : "=f"(result)
-        : "r"(word), "n"(8 * i));
-    return result;
-  }
+  return __uint_as_float(__dp4a(word, 128u << (8 * i), 0x47800000u));
 }
 
 /// As CwbvhAxis, for biased bytes.
