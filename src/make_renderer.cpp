@@ -31,20 +31,24 @@ bool is_scene_file(const std::string& scene) {
 
 }  // namespace
 
-SceneData make_scene_for(const Options& options, const DeviceInfo& device,
-                         const std::function<void(const std::string&)>& warn) {
+SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
+                     const Warn& warn) {
   if (is_scene_file(options.scene)) {
-    SceneData scene = load_scene_file(options.scene, {options.definitions, options.strict, warn});
-    prepare_scene(scene, options);
-    return scene;
+    return load_scene_file(options.scene, {options.definitions, options.strict, warn});
   }
-  if (options.create_world == WorldBuilder::host) return make_scene(options);
+  if (options.create_world == WorldBuilder::host) return build_scene(options);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda) {
-    return make_scene(options, create_world_on(device.choice.index));
+    return build_scene(options, create_world_on(device.choice.index));
   }
 #endif
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
+  SceneData scene = load_scene(options, device, warn);
+  prepare_scene(scene, options);
+  return scene;
 }
 
 namespace {

@@ -11,10 +11,15 @@
 
 namespace pt {
 
-/// Loads or makes the scene that the options name, on the device where they want it so, and
-/// prepares it. What a file asks for and ptexp lacks goes to `warn`, a line each. Throws Error.
-SceneData make_scene_for(const Options& options, const DeviceInfo& device,
-                         const std::function<void(const std::string&)>& warn = {});
+/// Called with what a scene file asks for and ptexp lacks, a line each; empty: silence.
+using Warn = std::function<void(const std::string&)>;
+
+/// Loads or makes the scene that the options name, on the device where they want it so. Throws
+/// Error.
+SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
+
+/// The same, prepared for rendering.
+SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
 /// `scene` must outlive the renderer. Throws Error when the options ask for something that the
 /// device or the mode cannot do, or that does not fit into memory.

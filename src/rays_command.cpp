@@ -4,8 +4,12 @@
 #include "common/error.h"
 #include "common/image/atomic_file.h"
 #include "common/render/option_values.h"
+#include "common/scene/frame_scene.h"
 #include "common/scene/prepare_camera.h"
+#include "common/scene/prepare_scene.h"
+#include "common/trace/path_rays.h"
 #include "trace_command.h"
+#include "trace_scene.h"
 
 namespace pt {
 namespace {
@@ -22,17 +26,22 @@ CameraParameters default_camera(const Bounds& bounds) {
 }  // namespace
 
 int rays_command(const RaysCommand& command) {
+  if (command.scene.empty()) throw Error("rays: expected --scene NAME|FILE or --mesh FILE");
   check_writable(command.output);
-  const Mesh mesh = read_trace_mesh(command.mesh);
-  if (mesh.triangles.empty()) throw Error(fmt::format("{}: has no triangles", command.mesh));
-  const TriangleTreeData tree = build_triangle_tree({&mesh, 1}, {}, TreeOptions());
-  const Bounds bounds = tree.groups.front().bounds;
-  CameraParameters parameters = default_camera(bounds);
-  override_camera(parameters, command.camera);
-  check_camera(parameters);
-  const Camera camera = make_camera(parameters, command.size, command.size);
-  const RaySet rays =
-      generate_rays(command.kind, tree, camera, command.size, scale_ray_kinds(bounds));
+  SceneData scene = load_triangles(command.scene);
+  const Bounds bounds = scene_bounds(scene);
+  if (command.scene.ends_with(".mesh")) scene.camera = default_camera(bounds);
+  override_camera(scene.camera, command.camera);
+  check_camera(scene.camera);
+  RaySet rays;
+  if (command.bounce) {
+    prepare_scene(scene, {});
+    rays = generate_path_rays(scene, *command.bounce, command.size);
+  } else {
+    const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, {});
+    const Camera camera = make_camera(scene.camera, command.size, command.size);
+    rays = generate_rays(command.kind, tree, camera, command.size, scale_ray_kinds(bounds));
+  }
   write_rays(command.output, rays);
   fmt::print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
   return 0;

@@ -13,6 +13,7 @@
 #include "common/render/option_values.h"
 #include "common/render/run_summary.h"
 #include "common/trace/compare_hits.h"
+#include "trace_scene.h"
 
 namespace pt {
 namespace {
@@ -139,20 +140,20 @@ int trace_command(const TraceCommand& given) {
   if (command.builder == TreeBuilder::automatic) command.builder = TreeBuilder::sah;
   const DeviceInfo device = choose_device(command.device);
   check_command(command, device);
-  const Mesh mesh = read_trace_mesh(command.mesh);
+  const SceneData scene = load_triangles(command.mesh);
   const RaySet rays = read_rays(command.rays);
   HitSet reference;
   if (!command.hits.empty()) reference = read_reference(command, rays);
   TreeOptions options;
   options.accel = command.accel;
   options.builder = command.builder;
-  const TriangleTreeData tree = build_triangle_tree({&mesh, 1}, {}, options);
+  const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
   TraceReport report = describe_tree(tree, options);
   TraceResult result = trace(device, tree, rays, command.runs);
   report.device = device;
-  report.triangles = mesh.triangles.size();
-  report.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
-                              static_cast<double>(std::max<std::size_t>(mesh.triangles.size(), 1));
+  report.triangles = scene.triangle_count();
+  report.bytes_per_triangle =
+      static_cast<double>(tree.size_bytes()) / static_cast<double>(report.triangles);
   report.rays = rays.rays.size();
   report.type = rays.type;
   report.variant = result.variant;

@@ -1,6 +1,7 @@
 // `ptexp trace`: a file of rays against a mesh; `ptexp rays`: makes such files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,12 @@ struct TraceCommand {
 };
 
 struct RaysCommand {
-  std::string mesh, output;
+  std::string scene;  ///< as load_triangles takes it
+  std::string output;
   RayKind kind = RayKind::primary;
+  std::optional<int> bounce;  ///< instead of `kind`
   int size = 2048;
-  CameraOverrides camera;  ///< else inside the bounding box, looking along it
+  CameraOverrides camera;  ///< else the scene's, or inside a mesh's bounding box, looking along it
 };
 
 std::vector<SubcommandOption<TraceCommand>> trace_options();

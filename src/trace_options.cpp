@@ -34,6 +34,15 @@ int parse_size(const std::string& text) {
   return size;
 }
 
+void parse_kind(const std::string& text, RaysCommand& command) {
+  const std::string prefix = "bounce:";
+  if (text.starts_with(prefix)) {
+    command.bounce = static_cast<int>(parse_integer("kind", text.substr(prefix.size()), 0, 1000));
+  } else {
+    command.kind = parse_name<RayKind>("kind", text);
+  }
+}
+
 float parse_fov(const std::string& text) {
   return parse_number("vfov", text, "degrees between 0 and 180",
                       [](float x) { return x > 0.0f && x < 180.0f; });
@@ -45,7 +54,8 @@ std::vector<SubcommandOption<TraceCommand>> trace_options() {
   using C = TraceCommand;
   using S = const std::string&;
   return {
-      {"mesh", "FILE", "Triangles, TRBMESH1", [](C& c, S v) { c.mesh = v; }, true},
+      {"mesh", "FILE|SCENE", "Triangles, TRBMESH1, or those of a scene",
+       [](C& c, S v) { c.mesh = v; }, true},
       {"rays", "FILE", "Rays, TRBRAYS1", [](C& c, S v) { c.rays = v; }, true},
       {"hits", "FILE", "Reference to compare with, TRBHITS1", [](C& c, S v) { c.hits = v; }},
       {"output", "FILE", "Writes the hits, TRBHITS1", [](C& c, S v) { c.output = v; }},
@@ -70,13 +80,14 @@ std::vector<SubcommandOption<RaysCommand>> rays_options() {
   using C = RaysCommand;
   using S = const std::string&;
   return {
-      {"mesh", "FILE", "Triangles, TRBMESH1", [](C& c, S v) { c.mesh = v; }, true},
+      {"mesh", "FILE", "Triangles, TRBMESH1; or --scene", [](C& c, S v) { c.scene = v; }},
+      {"scene", "NAME|FILE", "A scene, with its own camera", [](C& c, S v) { c.scene = v; }},
       {"output", "FILE", "Rays, TRBRAYS1", [](C& c, S v) { c.output = v; }, true},
-      {"kind", "KIND [primary]", "primary, ao, diffuse",
-       [](C& c, S v) { c.kind = parse_name<RayKind>("kind", v); }},
+      {"kind", "KIND [primary]", "primary, ao, diffuse, or bounce:K, of the scene's paths",
+       [](C& c, S v) { parse_kind(v, c); }},
       {"size", "N [2048]", "The image is N x N pixels, a power of two",
        [](C& c, S v) { c.size = parse_size(v); }},
-      {"look-from", "X,Y,Z", "Camera's position [inside the bounding box]",
+      {"look-from", "X,Y,Z", "Camera's position [a mesh: inside the bounding box]",
        [](C& c, S v) { c.camera.look_from = parse_vector("look-from", v); }},
       {"look-at", "X,Y,Z", "What it looks at [the other end of the box]",
        [](C& c, S v) { c.camera.look_at = parse_vector("look-at", v); }},

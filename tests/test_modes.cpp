@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "common/render/dispatch.h"
+#include "common/render/path_limits_of.h"
 #include "common/sampling/random.h"
+#include "common/scene/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/shade_miss.h"
 #include "common/transport/shade_surface.h"

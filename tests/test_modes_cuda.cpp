@@ -93,6 +93,70 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
                   render_options(options("megakernel")));
 }
 
+/// Scenes with triangles, in each structure.
+const std::vector<ImageKind> triangle_kinds = [] {
+  std::vector<ImageKind> kinds;
+  for (const std::string scene : {"boxes", "statue:3K", "terrain:3K", "instances:20"}) {
+    for (const std::string accel : {"brute", "bvh2", "cwbvh"}) {
+      const std::string name = scene.substr(0, scene.find(':'));
+      Settings settings{{"scene", scene}, {"width", width},   {"height", height},
+                        {"spp", spp},     {"max-depth", "6"}, {"accel", accel}};
+      if (accel == "brute") settings[1].second = "16", settings[2].second = "9";
+      kinds.push_back({name + "_" + accel, settings});
+      if (accel == "brute" || name == "instances") continue;
+      settings.push_back({"builder", "hploc"});
+      kinds.push_back({name + "_" + accel + "_hploc", settings});
+      settings.back().second = "lbvh";
+      kinds.push_back({name + "_" + accel + "_lbvh", settings});
+    }
+  }
+  kinds.push_back({"roulette",
+                   {{"scene", "boxes"},
+                    {"width", width},
+                    {"height", height},
+                    {"spp", spp},
+                    {"accel", "cwbvh"},
+                    {"rr", "3"}}});
+  kinds.push_back({"no_light_sampling",
+                   {{"scene", "boxes"},
+                    {"width", width},
+                    {"height", height},
+                    {"spp", spp},
+                    {"accel", "cwbvh"},
+                    {"nee", "off"},
+                    {"max-depth", "6"}}});
+  return kinds;
+}();
+
+class GpuTrianglesOf : public CudaTest, public testing::WithParamInterface<ImageKind> {
+ protected:
+  Options options(const std::string& mode) const { return cuda_options(mode, GetParam().settings); }
+};
+INSTANTIATE_TEST_SUITE_P(Cuda, GpuTrianglesOf, testing::ValuesIn(triangle_kinds),
+                         [](const auto& kind) { return kind.param.name; });
+
+TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
+  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "none"}},
+                                       {"schedule", {"graph", "host"}},
+                                       {"regenerate", {"on", "off"}},
+                                       {"pool-size", {"auto", "1000", "4097", "1M"}},
+                                       {"finish-paths", {"0", "700", "131072"}},
+                                       {"stage-block", {"256", "33", "1024"}}};
+  const Rendered expected = render_options(options("megakernel"));
+  expect_plausible(expected, options("megakernel"));
+  expect_all_same(options("wavefront"), variations(choices, 6, 5), expected);
+}
+
+// The structure and its builder are a matter of speed alone.
+TEST_P(GpuTrianglesOf, StructureDoesNotChangeTheImage) {
+  Options other = options("wavefront");
+  if (other.width == 16) GTEST_SKIP() << "the scene is compared at its usual size";
+  const Rendered expected = render_options(other);
+  other.builder = TreeBuilder::sah;
+  other.accel = AccelKind::bvh2;
+  expect_same(render_options(other), expected);
+}
+
 /// How far CPU and GPU may be apart: rounding errors grow at every bounce on a sphere until a path
 /// takes another way. Bounds are some times what contraction (-ffp-contract=fast -mfma) changes on
 /// a CPU: 0.18, 0.54, 0.005 and 0.005 % of the pixels, and at most 2.3e-4 of the rays.

@@ -1,0 +1,31 @@
+#include "trace_scene.h"
+
+#include <fmt/format.h>
+
+#include "common/device/devices.h"
+#include "common/error.h"
+#include "common/scene/convert_quads.h"
+#include "common/trace/ray_file.h"
+#include "make_renderer.h"
+
+namespace pt {
+
+SceneData load_triangles(const std::string& name) {
+  SceneData scene;
+  if (name.ends_with(".mesh")) {
+    scene.meshes.push_back(read_trace_mesh(name));
+    scene.add_material({});
+  } else {
+    Options options;
+    options.scene = name;
+    scene = load_scene(options, choose_device({DeviceChoice::Kind::cpu, 0}));
+    convert_quads(scene);
+    scene.spheres.clear();
+    scene.sphere_material.clear();
+  }
+  scene.name = name;
+  if (scene.triangle_count() == 0) throw Error(fmt::format("{}: has no triangles", name));
+  return scene;
+}
+
+}  // namespace pt
