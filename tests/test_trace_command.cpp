@@ -45,15 +45,15 @@ TEST(TraceCommandLine, RefusesWhatItCannotDo) {
 class TraceFiles : public testing::Test {
  protected:
   void SetUp() override {
-    write_trace_mesh(folder_.file("m"), generate_terrain(2000));
+    write_trace_mesh(folder_.file("m.mesh"), generate_terrain(2000));
     RaysCommand rays;
-    rays.mesh = folder_.file("m");
+    rays.scene = folder_.file("m.mesh");
     rays.output = folder_.file("r");
     rays.size = 16;
     rays.camera.look_from = {-490, 175, 490};
     rays.camera.look_at = {0, 10, 0};
     rays_command(rays);
-    command_.mesh = folder_.file("m");
+    command_.mesh = folder_.file("m.mesh");
     command_.rays = folder_.file("r");
     command_.device = {DeviceChoice::Kind::cpu, 0};
     command_.quiet = true;
