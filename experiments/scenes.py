@@ -35,10 +35,12 @@ def configurations(arguments, device):
                 for builder in builders:
                     if builder != "sah" and (scene in STRUCTURES or "instances" in scene):
                         continue
-                    label = f"{accel}, {builder}" if scene not in STRUCTURES else accel
+                    has_triangles = scene not in STRUCTURES
+                    label = f"{accel}, {builder}" if has_triangles else accel
+                    chosen = f"--builder {builder} " if has_triangles else ""
                     rows.append(Configuration(
                         f"{scene}: {mode}, {label}",
-                        f"--mode {mode} --scene {scene} --accel {accel} --builder {builder} "
+                        f"--mode {mode} --scene {scene} --accel {accel} {chosen}"
                         f"--width {size} --height {size} --spp {spp} --max-depth {DEPTH}",
                         {"panel": scene, "x": f"{mode}, {label}",
                          "target_msamples_per_s": target or "", "verdict": ""}))

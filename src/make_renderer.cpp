@@ -36,6 +36,10 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   if (is_scene_file(options.scene)) {
     return load_scene_file(options.scene, {options.definitions, options.strict, warn});
   }
+  if (options.strict || !options.definitions.empty()) {
+    throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
+                            options.strict ? "strict" : "define", options.scene));
+  }
   if (options.create_world == WorldBuilder::host) return build_scene(options);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda) {

@@ -14,8 +14,9 @@ class ClosestTriangle {
  public:
   PT_HD ClosestTriangle(float t_min, float t_max) : t_min_(t_min) { hit_.t = t_max; }
 
-  /// Boxes that the ray enters beyond this need no visit. It lies 2^-16 behind the hit: of triangles
-  /// that nearly coincide, all are tested, so that the answer does not depend on the structure.
+  /// Boxes that the ray enters beyond this need no visit. It lies 2^-16 behind the hit: of
+  /// triangles that nearly coincide, all are tested, so that the answer does not depend on the
+  /// structure.
   PT_HD float t_max() const { return multiply_rounded(hit_.t, 1.0f + 1.0f / 65536.0f); }
   PT_HD float t_min() const { return t_min_; }
 

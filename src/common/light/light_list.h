@@ -9,7 +9,14 @@ namespace pt {
 
 /// A turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors,
 /// and mirroring would turn the side that shines away.
-enum class LightKind : std::uint32_t { triangle, turned_triangle, sphere, point, spot, directional };
+enum class LightKind : std::uint32_t {
+  triangle,
+  turned_triangle,
+  sphere,
+  point,
+  spot,
+  directional
+};
 
 /// 64 bytes: four loads.
 struct alignas(16) Light {
@@ -27,7 +34,12 @@ struct alignas(16) Light {
   PT_HD DeltaLight delta() const {
     return {static_cast<DeltaLight::Kind>(static_cast<std::uint32_t>(kind) -
                                           static_cast<std::uint32_t>(LightKind::point)),
-            a, b, radiance, c.x, c.y, static_cast<SpotFalloff>(float_to_bits(c.z))};
+            a,
+            b,
+            radiance,
+            c.x,
+            c.y,
+            static_cast<SpotFalloff>(float_to_bits(c.z))};
   }
 };
 

@@ -40,9 +40,9 @@ PT_HD Color interpolate(const Color& a, const Color& b, float t) {
           fused_multiply_add(t, b.z - a.z, a.z)};
 }
 
-/// The cross product without fused operations: where its two products are equal, a component is 0 on
-/// every device. make_frame turns about at a sign, so a residue of rounding would turn the frames of
-/// axis-parallel walls.
+/// The cross product without fused operations: where its two products are equal, a component is 0
+/// on every device. make_frame turns about at a sign, so a residue of rounding would turn the
+/// frames of axis-parallel walls.
 PT_HD Vec3 cross_rounded(const Vec3& a, const Vec3& b) {
   const auto minus = [](float p, float q, float r, float s) {
     return add_rounded(multiply_rounded(p, q), -multiply_rounded(r, s));

@@ -65,8 +65,10 @@ class Lister {
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
       light.a = v[0], light.b = v[turned ? 2 : 1], light.c = v[turned ? 1 : 2];
-      light.weight = emitter_weight(material.emission, 0.5f * glm::length(glm::cross(v[1] - v[0], v[2] - v[0])));
-      light.triangle = mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
+      light.weight = emitter_weight(material.emission,
+                                    0.5f * glm::length(glm::cross(v[1] - v[0], v[2] - v[0])));
+      light.triangle =
+          mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
       light.radiance = material.emission;
       light.emission_texture = texture;
       add(light);

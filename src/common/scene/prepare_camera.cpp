@@ -24,7 +24,8 @@ void override_camera(CameraParameters& camera, const CameraOverrides& overrides)
 void check_camera(const CameraParameters& camera) {
   const Vec3 backward = camera.look_from - camera.look_at;
   if (!(glm::dot(backward, backward) > 0.0f)) {
-    throw Error("--look-from and --look-at are the same point or not finite; the camera needs a direction");
+    throw Error(
+        "--look-from and --look-at are the same point or not finite; the camera needs a direction");
   }
   const Vec3 side = glm::cross(camera.up, backward);
   if (!(glm::dot(side, side) >

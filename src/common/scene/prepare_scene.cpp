@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "common/render/option_names.h"
 #include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
@@ -25,6 +26,10 @@ void prepare_primitives_only(SceneData& scene, const Options& options) {
         fmt::format("--accel {}: holds triangles; scene '{}' has spheres and quads only, expected "
                     "brute or bvh2",
                     options.accel == AccelKind::cwbvh ? "cwbvh" : "embree", scene.name));
+  }
+  if (options.builder != TreeBuilder::automatic) {
+    throw Error(fmt::format("--builder {}: builds trees over triangles; scene '{}' has none",
+                            to_string(options.builder), scene.name));
   }
   const bool brute =
       options.accel == AccelKind::brute ||

@@ -15,8 +15,8 @@ void describe_scene(const SceneData& scene, SceneFacts& facts);
 void describe_tree(const TriangleTreeData& tree, SceneFacts& facts);
 std::string tree_text(const SceneFacts& facts);
 
-/// Two or three lines for a person: counts, memory, the tree. Empty for the paper's scenes, which have
-/// nothing to say.
+/// Two or three lines for a person: counts, memory, the tree. Empty for the paper's scenes, which
+/// have nothing to say.
 std::string scene_text(const SceneFacts& facts);
 
 }  // namespace pt

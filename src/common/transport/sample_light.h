@@ -36,8 +36,7 @@ PT_HD Color textured_radiance(const Scene& scene, const Light& light, const Vec3
   if (light.emission_texture == no_texture) return light.radiance;
   const Vec2 uv = light.triangle != no_texture ? scene.attributes.uv(light.triangle, barycentric)
                                                : Vec2(barycentric.y, barycentric.z);
-  return light.radiance *
-         sample_texture(scene.textures[light.emission_texture], scene.texels, uv);
+  return light.radiance * sample_texture(scene.textures[light.emission_texture], scene.texels, uv);
 }
 
 /// Any light but the environment.
@@ -65,8 +64,7 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec
     return {s.wi, infinite_distance, s.radiance, p * s.pdf};
   }
   if (list.count == 0) return {};
-  const AliasSample choice =
-      sample_alias(list.selection, list.count, (u.z - p) / (1.0f - p), u.w);
+  const AliasSample choice = sample_alias(list.selection, list.count, (u.z - p) / (1.0f - p), u.w);
   const Light light = load_wide(&list.lights[choice.index]);
   IncidentLight incident = sample_listed_light(scene, light, from, u.x, u.y);
   incident.pdf *= list.probability(light.weight);
@@ -81,8 +79,8 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
   } else {
     if (hit.primitive < scene.primitives.count()) {
       const Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
-      return scene.light_list.probability(emitter_weight(scene.material(hit.primitive).emission,
-                                                         sphere_area(sphere))) *
+      return scene.light_list.probability(
+                 emitter_weight(scene.material(hit.primitive).emission, sphere_area(sphere))) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
     const Triangle t = world_triangle<Traits>(scene, hit);

@@ -15,8 +15,8 @@ PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, P
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
   const Color sky = shade_miss<Traits::lighting>(scene, ray.direction, path);
-  Scattering result = shade_surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, limits,
-                                            scatter, light);
+  Scattering result =
+      shade_surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, limits, scatter, light);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;

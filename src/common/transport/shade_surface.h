@@ -26,8 +26,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   if (is_black(emission) || glm::dot(ray.direction, surface.point.normal) >= 0.0f) {
     return Color(0.0f);
   }
-  return path.beta * emission *
-         power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
+  return path.beta * emission * power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
 }
 
 /// One light, asked for its direct contribution (next-event estimation).
