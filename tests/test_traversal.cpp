@@ -83,7 +83,7 @@ int expect_same(const TestTrees& trees, const Ray& ray, float t_min, float t_max
     if (hit.is_miss()) return;
     EXPECT_EQ(hit.t, expected.t);
     EXPECT_EQ(tree.triangles[hit.primitive].id, binary.triangles[expected.primitive].id);
-    if (instanced) {
+    if (instanced && binary.instance_count > 0) {
       EXPECT_EQ(tree.instances[hit.instance].number, binary.instances[expected.instance].number);
     }
   };
@@ -105,7 +105,10 @@ void test_triangles(const Triangles& triangles, int rays) {
   for (int i = 0; i < rays; ++i) {
     const Ray ray = random_ray(random, triangles, all);
     const bool part = random.bits() % 4 == 0;
-    hits += expect_same<false>(trees, ray, part ? 0.5f : 0.0f, part ? 1.5f : infinite_distance);
+    const float t_min = part ? 0.5f : 0.0f, t_max = part ? 1.5f : infinite_distance;
+    hits += expect_same<false>(trees, ray, t_min, t_max);
+    // Traversal that is ready for instances also takes trees without.
+    expect_same<true>(trees, ray, t_min, t_max);
     if (testing::Test::HasFailure()) return;
   }
   EXPECT_GT(hits, rays / 20);
@@ -161,6 +164,7 @@ TEST(Traversal, RaysThatAreNoneMissEverything) {
     EXPECT_EQ(expect_same<false>(trees, ray, 0, infinite_distance), 0);
   }
   const TestTrees nothing;
+  EXPECT_EQ(expect_same<true>(nothing, {{0, 0, 0}, {0, 0, 1}}, 0, infinite_distance), 0);
   EXPECT_EQ(expect_same<false>(nothing, {{0, 0, 0}, {0, 0, 1}}, 0, infinite_distance), 0);
 }
 

@@ -110,13 +110,15 @@ PT_HD std::uint32_t take_triangle(CwbvhGroup& group) {
   return group.base + static_cast<std::uint32_t>(bit);
 }
 
+/// `instanced`: the tree may have instances.
 template <bool instanced, class Query>
 PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || tree.triangle_count == 0) return;
-  constexpr int in_world = -1;
+  constexpr int in_world = -1, only_level = -2;
   CwbvhGroup stack[instanced ? 2 * bvh_depth_max + 2 : bvh_depth_max];
   int depth = 0;
-  int entered = in_world;  // the stack's depth on entering the instance
+  // The stack's depth on entering the instance.
+  int entered = instanced && tree.instance_count > 0 ? in_world : only_level;
   std::uint32_t instance = 0;
   CwbvhRay local = make_cwbvh_ray(ray);
   CwbvhGroup nodes{tree.root, 0x80000000u};  // the only child: its slot does not matter

@@ -5,6 +5,7 @@
 
 namespace pt {
 
+/// `instanced`: the tree may have instances.
 template <bool instanced, class Query>
 PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || tree.triangle_count == 0) return;
@@ -17,7 +18,8 @@ PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Qu
       if (offer_slots(tree, triangle_ray, instance.first_slot, instance.slot_count, i, query))
         return;
     }
-  } else {
+  }
+  if (!instanced || tree.instance_count == 0) {
     const TriangleRay triangle_ray = make_triangle_ray(ray.origin, ray.direction);
     offer_slots(tree, triangle_ray, 0, tree.triangle_count, 0, query);
   }

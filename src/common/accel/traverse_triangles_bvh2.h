@@ -35,13 +35,15 @@ PT_HD Bvh2Step step_bvh2(const Bvh2Node& node, const SlabTestRay& ray, float t_m
           a_first ? node.child[0] : node.child[1], a_first ? node.child[1] : node.child[0]};
 }
 
+/// `instanced`: the tree may have instances.
 template <bool instanced, class Query>
 PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || tree.triangle_count == 0) return;
-  constexpr int in_world = -1;
+  constexpr int in_world = -1, only_level = -2;
   std::uint32_t stack[instanced ? 2 * bvh_depth_max + 1 : bvh_depth_max];
   int depth = 0;
-  int entered = in_world;  // the stack's depth on entering the instance
+  // The stack's depth on entering the instance.
+  int entered = instanced && tree.instance_count > 0 ? in_world : only_level;
   std::uint32_t instance = 0;
   Bvh2Ray local = make_bvh2_ray(ray);
   std::uint32_t current = tree.root;
