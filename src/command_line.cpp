@@ -22,7 +22,7 @@ constexpr const char* compare_text =
     "Prints RMSE, relMSE, the largest difference and the number of differing pixels.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
 constexpr const char* trace_text =
-    "Traces a file of rays against a mesh, measures the rate and compares with reference hits.\n"
+    "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
 constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* footer_text =

@@ -6,6 +6,7 @@
 
 #include "common/accel/build_triangle_tree.h"
 #include "common/accel/embree_tree.h"
+#include "common/accel/instance_tree.h"
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/convert_quads.h"
@@ -49,8 +50,10 @@ void check_device_build(const SceneData& scene, const Options& options) {
   if (options.device.kind == DeviceChoice::Kind::cpu || options.mode == Mode::serial) {
     throw Error(what + ": needs a CUDA device; on the CPU expected sah or sbvh");
   }
-  if (!scene.instances.empty()) {
-    throw Error(what + ": builds one tree, and this scene has instances; expected sah or sbvh");
+  if (scene.traits.geometry == Geometry::mixed) {
+    throw Error(what +
+                ": builds one tree of triangles, and this scene has instances or spheres; "
+                "expected sah or sbvh");
   }
   if (scene.traits.accel != Accel::bvh2 && scene.traits.accel != Accel::cwbvh) {
     throw Error(what + ": builds binary and wide trees; expected --accel bvh2 or cwbvh");
@@ -83,7 +86,7 @@ MeshAttributes join_attributes(const std::vector<Mesh>& meshes) {
 std::vector<Affine> instance_transforms(const SceneData& scene) {
   std::vector<Affine> transforms;
   for (const Instance& instance : scene.instances) transforms.push_back(instance.to_world);
-  if (!transforms.empty()) transforms.emplace_back();
+  transforms.emplace_back();
   return transforms;
 }
 
@@ -108,10 +111,13 @@ void prepare_triangles(SceneData& scene, const Options& options) {
       tree.accel = AccelKind::brute;  // the triangles alone
     }
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
+    // Kernels for mixed scenes look for instances: without any, the world is the only one.
+    if (mixed && scene.instances.empty() && !scene.tree.is_empty())
+      add_instance_tree(scene.tree, {}, tree.accel);
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
   scene.attributes = join_attributes(scene.meshes);
-  scene.to_world = instance_transforms(scene);
+  if (mixed) scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
