@@ -45,8 +45,9 @@ PT_HD void apply_textures(const Scene& scene, const Triangle& triangle, const Ve
 }
 
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
-/// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled so
-/// that the next intersection's own rounding is covered, too.
+/// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled, and
+/// what the intersection of the ray that leaves may round: on an axis-parallel plane through 0 the
+/// first is 0, but not the second.
 template <class Traits>
 PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
   const std::uint32_t slot = hit.primitive - scene.primitives.count();
@@ -65,6 +66,9 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Vec3 position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
   Vec3 extent =
       glm::abs(b.x * triangle.v0) + glm::abs(b.y * triangle.v1) + glm::abs(b.z * triangle.v2);
+  // The next intersection rounds relative to where the vertices lie as seen from the new origin.
+  Vec3 size = glm::max(glm::max(glm::abs(triangle.v0 - position), glm::abs(triangle.v1 - position)),
+                       glm::abs(triangle.v2 - position));
   Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = (triangle.attributes & TriangleAttributes::normals) != 0
                             ? scene.attributes.normal(triangle.id, b)
@@ -73,13 +77,16 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
     const Affine to_world = load_wide(&scene.to_world[instance.number]);
     position = to_world.point(position);
     extent = to_world.absolute(extent);
+    size = to_world.absolute(size);
     normal = instance.to_object.transposed(normal);
     shading_normal = instance.to_object.transposed(shading_normal);
   }
   normal = normalize(normal);
-  Surface surface{{position, normal, 16.0f * half_ulp * glm::dot(glm::abs(normal), extent)},
-                  normalize(shading_normal),
-                  load_wide(&scene.materials[triangle.material])};
+  Surface surface{
+      {position, normal,
+       16.0f * half_ulp * glm::dot(glm::abs(normal), extent) + 8.0f * half_ulp * max_abs(size)},
+      normalize(shading_normal),
+      load_wide(&scene.materials[triangle.material])};
   if (surface.material.textures != 0) apply_textures(scene, triangle, b, surface.material);
   return surface;
 }
