@@ -38,6 +38,10 @@ int rays_command(const RaysCommand& command) {
     prepare_scene(scene, {});
     rays = generate_path_rays(scene, *command.bounce, command.size);
   } else {
+    if (!scene.instances.empty()) {
+      throw Error(
+          fmt::format("--scene {}: has instances; expected --kind bounce:K", command.scene));
+    }
     const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, {});
     const Camera camera = make_camera(scene.camera, command.size, command.size);
     rays = generate_rays(command.kind, tree, camera, command.size, scale_ray_kinds(bounds));

@@ -1,11 +1,11 @@
 #include "common/accel/build_sah.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <bit>
 
+#include "common/accel/build_children.h"
 #include "common/accel/object_split.h"
 
 namespace pt {
@@ -41,17 +41,7 @@ class Builder {
     const auto build_right = [&] {
       if (right.size() > 1) build_node(right, children[1], depth + 1);
     };
-    if (range.size() >= task_min) {
-      tbb::parallel_invoke(build_left, build_right);
-    } else {
-      build_left(), build_right();
-    }
-  }
-
-  void set_child(Bvh2Node& node, int i, const ReferenceRange& range, std::uint32_t index) const {
-    set_child_bounds(node, i, widened(range.bounds.bounds()));
-    node.child[i] = range.size() == 1 ? make_leaf(range.begin, 1) : index;
-    node.padding[i] = 0;
+    build_halves(range.size() >= task_min, build_left, build_right);
   }
 
   RangeHalves split(const ReferenceRange& range, int depth) const {

@@ -84,10 +84,8 @@ Triangle MeshTriangles::operator[](std::uint32_t i) const {
   const Mesh& mesh = meshes_[mesh_[part]];
   const std::uint32_t local = i - first_[part];
   const std::uint32_t(&v)[3] = mesh.triangles[local].v;
-  const std::uint32_t attributes = (mesh.normals.empty() ? 0 : TriangleAttributes::normals) |
-                                   (mesh.uvs.empty() ? 0 : TriangleAttributes::uvs);
   return {mesh.positions[v[0]], first_id_[part] + local, mesh.positions[v[1]],
-          mesh.material,        mesh.positions[v[2]],    attributes};
+          mesh.material,        mesh.positions[v[2]],    triangle_attributes(mesh)};
 }
 
 Bounds MeshTriangles::bounds(std::uint32_t i) const {

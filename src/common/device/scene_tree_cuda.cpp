@@ -1,4 +1,6 @@
 #include "common/accel/build_device.h"
+#include "common/accel/build_triangle_tree.h"
+#include "common/accel/mesh_triangles.h"
 #include "common/device/cuda_check.cuh"
 #include "common/device/scene_tree.cuh"
 
@@ -11,8 +13,7 @@ TriangleSource upload_meshes(const std::vector<Mesh>& meshes, CudaMemory& memory
   MeshRange next;
   for (const Mesh& mesh : meshes) {
     next.material = mesh.material;
-    next.attributes = (mesh.normals.empty() ? 0 : TriangleAttributes::normals) |
-                      (mesh.uvs.empty() ? 0 : TriangleAttributes::uvs);
+    next.attributes = triangle_attributes(mesh);
     ranges.push_back(next);
     next.first_triangle += static_cast<std::uint32_t>(mesh.triangles.size());
     next.first_vertex += static_cast<std::uint32_t>(mesh.positions.size());
@@ -41,7 +42,7 @@ DeviceBuildOptions build_options(const SceneTraits& traits, TreeBuilder builder)
   options.builder = builder == TreeBuilder::lbvh ? DeviceBuilder::lbvh : DeviceBuilder::hploc;
   if (traits.accel == Accel::bvh2) {
     options.format = TreeFormat::bvh2;
-    options.costs = {1.0f, 1.0f, 4};
+    options.costs = TreeOptions().bvh2_costs;
   }
   return options;
 }

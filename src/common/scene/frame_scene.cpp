@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "common/geometry/primitive_bounds.h"
+
 namespace pt {
 
 namespace {
@@ -29,13 +31,8 @@ Bounds scene_bounds(const SceneData& scene) {
   for (const Instance& instance : scene.instances) {
     all.grow(transformed(groups[instance.group], instance.to_world));
   }
-  for (const Sphere& s : scene.spheres) all.grow({s.center - s.radius(), s.center + s.radius()});
-  for (const Quad& q : scene.quads) {
-    for (int i = 0; i < 4; ++i) {
-      all.grow(q.corner + static_cast<float>(i & 1) * q.edge_a +
-               static_cast<float>(i >> 1) * q.edge_b);
-    }
-  }
+  for (const Sphere& s : scene.spheres) all.grow(sphere_bounds(s));
+  for (const Quad& q : scene.quads) all.grow(quad_bounds(q));
   return all;
 }
 

@@ -4,25 +4,15 @@
 
 #include "common/accel/build_bvh2.h"
 #include "common/accel/traverse_brute.h"
+#include "common/geometry/primitive_bounds.h"
 
 namespace pt {
 namespace {
 
-Bounds quad_bounds(const Quad& quad) {
-  Bounds bounds;
-  for (int i = 0; i < 4; ++i) {
-    bounds.grow(quad.corner + static_cast<float>(i & 1) * quad.edge_a +
-                static_cast<float>(i >> 1) * quad.edge_b);
-  }
-  return bounds;
-}
-
 std::vector<Bounds> primitive_bounds(const SceneData& scene) {
   std::vector<Bounds> bounds;
   bounds.reserve(scene.primitive_count());
-  for (const Sphere& s : scene.spheres) {
-    bounds.push_back({s.center - s.radius(), s.center + s.radius()});
-  }
+  for (const Sphere& s : scene.spheres) bounds.push_back(sphere_bounds(s));
   for (const Quad& q : scene.quads) bounds.push_back(quad_bounds(q));
   return bounds;
 }

@@ -6,7 +6,6 @@
 
 #include "common/accel/build_triangle_tree.h"
 #include "common/accel/embree_tree.h"
-#include "common/accel/instance_tree.h"
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/convert_quads.h"
@@ -39,6 +38,12 @@ Accel structure_of(const SceneData& scene, const Options& options) {
     default:
       return automatic_structure(scene, options);
   }
+}
+
+/// What is built for a structure. Embree, which builds its own, wants the triangles alone.
+AccelKind tree_kind(Accel accel) {
+  if (accel == Accel::bvh2) return AccelKind::bvh2;
+  return accel == Accel::cwbvh ? AccelKind::cwbvh : AccelKind::brute;
 }
 
 bool is_device_builder(TreeBuilder builder) {
@@ -105,19 +110,13 @@ void prepare_triangles(SceneData& scene, const Options& options) {
     check_device_build(scene, options);
   } else {
     TreeOptions tree;
-    tree.accel = accel == Accel::bvh2 ? AccelKind::bvh2 : AccelKind::cwbvh;
+    tree.accel = tree_kind(accel);
     tree.builder = options.builder;
-    if (accel == Accel::brute || accel == Accel::embree) {
-      tree.accel = AccelKind::brute;  // the triangles alone
-    }
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
-    // Kernels for mixed scenes look for instances: without any, the world is the only one.
-    if (mixed && scene.instances.empty() && !scene.tree.is_empty())
-      add_instance_tree(scene.tree, {}, tree.accel);
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
   scene.attributes = join_attributes(scene.meshes);
-  if (mixed) scene.to_world = instance_transforms(scene);
+  if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,

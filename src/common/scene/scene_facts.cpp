@@ -34,8 +34,6 @@ void append_count(std::string& text, std::uint64_t count, const char* what) {
 /// Of all nodes' visits and triangles' tests, as the builders weigh them.
 constexpr double triangle_cost = 1.0;
 
-}  // namespace
-
 void describe_tree(const TriangleTreeData& tree, SceneFacts& facts) {
   if (tree.bvh2.empty() && tree.cwbvh.empty()) return;
   const TreeQuality quality =
@@ -49,6 +47,16 @@ void describe_tree(const TriangleTreeData& tree, SceneFacts& facts) {
   facts.tree.builder = tree.builder;
   facts.tree.build_ms = tree.build_ms;
 }
+
+std::string tree_text(const SceneFacts& facts) {
+  return fmt::format(
+      "tree: {}, {} nodes, depth {}, SAH cost {:.1f}, {:.1f} bytes per triangle, built in {:.0f} "
+      "ms\n",
+      facts.tree.builder, facts.tree.nodes, facts.tree.depth, facts.tree.sah_cost,
+      facts.tree.bytes_per_triangle, facts.tree.build_ms);
+}
+
+}  // namespace
 
 void describe_scene(const SceneData& scene, SceneFacts& facts) {
   facts.triangles = scene.triangle_count();
@@ -88,14 +96,6 @@ std::string scene_text(const SceneFacts& facts) {
   if (!memory.empty()) text += fmt::format("memory: {}\n", memory);
   if (facts.tree.nodes > 0) text += tree_text(facts);
   return text;
-}
-
-std::string tree_text(const SceneFacts& facts) {
-  return fmt::format(
-      "tree: {}, {} nodes, depth {}, SAH cost {:.1f}, {:.1f} bytes per triangle, built in {:.0f} "
-      "ms\n",
-      facts.tree.builder, facts.tree.nodes, facts.tree.depth, facts.tree.sah_cost,
-      facts.tree.bytes_per_triangle, facts.tree.build_ms);
 }
 
 }  // namespace pt
