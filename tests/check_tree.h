@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <vector>
 
 #include "common/accel/triangle_tree_data.h"
 
 namespace pt {
 
-/// Exact: floats, and sums of 8 bits times a power of two and a float, fit into doubles.
+/// Exact: floats, and sums of 8 bits times 16 bits and a float, fit into doubles but for scales
+/// that are far apart.
 struct ExactBox {
   glm::dvec3 min{-HUGE_VAL}, max{HUGE_VAL};
 
@@ -22,13 +22,13 @@ struct ExactBox {
   }
 };
 
+/// With the tolerance that traversal adds.
 inline ExactBox exact_child_box(const CwbvhNode& node, int slot) {
-  const int low[3] = {node.low_x[slot], node.low_y[slot], node.low_z[slot]};
-  const int high[3] = {node.high_x[slot], node.high_y[slot], node.high_z[slot]};
   ExactBox box;
   for (int i = 0; i < 3; ++i) {
-    box.min[i] = node.origin[i] + std::ldexp(low[i], node.exponent[i] - 127);
-    box.max[i] = node.origin[i] + std::ldexp(high[i], node.exponent[i] - 127);
+    const double step = node.step(i), slack = step * cwbvh_grid_tolerance;
+    box.min[i] = node.origin[i] + step * node.planes[i][2 * slot] - slack;
+    box.max[i] = node.origin[i] + step * node.planes[i][2 * slot + 1] + slack;
   }
   return box;
 }
@@ -84,19 +84,16 @@ class TreeWalk {
     visit(index, tree_.cwbvh.size(), level);
     const CwbvhNode& node = tree_.cwbvh[index];
     std::uint32_t inner = node.child_base, slot = node.triangle_base;
-    for (int s = 0; s < 8; ++s) {
-      if (node.meta[s] == 0) continue;
-      const ExactBox child = box.intersection(exact_child_box(node, s));
-      if ((node.inner_mask >> s & 1) != 0) {
-        walk_wide(inner++, child, level + 1);
-        continue;
+    for_each_cwbvh_child(node, [&](int s, const CwbvhChild& child) {
+      const ExactBox inside = box.intersection(exact_child_box(node, s));
+      if (child.count == 0) {
+        EXPECT_EQ(child.place, inner++);
+        return walk_wide(child.place, inside, level + 1);
       }
-      const auto count =
-          static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(node.meta[s]) >> 5));
-      EXPECT_EQ(node.triangle_base + (node.meta[s] & 31u), slot) << "leaves are not contiguous";
-      leaves.push_back({slot, count, child});
-      slot += count;
-    }
+      EXPECT_EQ(child.place, slot) << "leaves are not contiguous";
+      leaves.push_back({slot, child.count, inside});
+      slot += child.count;
+    });
   }
 
   const TriangleTreeData& tree_;

@@ -1,5 +1,5 @@
-// Wide nodes: no box loses anything to quantisation, slots go from near to far, and the bit fields
-// say what the children are.
+// Wide nodes: no box loses more than the tolerance to quantisation, flat children lie on the grid,
+// slots go from near to far, and the masks say what the children are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "check_tree.h"
+#include "common/accel/binary_tree.h"
 #include "common/accel/encode_cwbvh.h"
 #include "triangle_meshes.h"
 
@@ -35,11 +36,11 @@ void expect_tight_and_conservative(const CwbvhChildren& children) {
     const Bounds& box = children.bounds[slots.child[s]];
     const ExactBox decoded = exact_child_box(node, s);
     for (int i = 0; i < 3; ++i) {
-      const double step = std::ldexp(1.0, node.exponent[i] - 127);
+      const double step = node.step(i) * (1.0 + 2.0 * cwbvh_grid_tolerance);
       ASSERT_LE(decoded.min[i], static_cast<double>(box.min[i]));
       ASSERT_GE(decoded.max[i], static_cast<double>(box.max[i]));
-      ASSERT_LT(static_cast<double>(box.min[i]) - decoded.min[i], step) << "not tight";
-      ASSERT_LT(decoded.max[i] - static_cast<double>(box.max[i]), step) << "not tight";
+      ASSERT_LE(static_cast<double>(box.min[i]) - decoded.min[i], step) << "not tight";
+      ASSERT_LE(decoded.max[i] - static_cast<double>(box.max[i]), step) << "not tight";
     }
   }
 }
@@ -57,18 +58,46 @@ TEST(EncodeCwbvh, DecodedBoxesContainTheOriginals) {
   }
 }
 
-TEST(EncodeCwbvh, TheGridIsTheFinestThatCovers) {
+TEST(EncodeCwbvh, TheGridIsFineAndCovers) {
   TestRandom random(4);
+  int exact = 0;
   for (int i = 0; i < 100'000; ++i) {
     const auto low = static_cast<float>(random.uniform(-10, 10));
     const float high = low + static_cast<float>(random.log_uniform(1e-6, 1e6));
     const CwbvhGrid grid = make_cwbvh_grid(low, high);
-    const auto covered = [&](int exponent) {
-      return low + std::ldexp(255.0, exponent - 127) >= static_cast<double>(high);
-    };
-    ASSERT_TRUE(covered(static_cast<int>(grid.exponent)));
-    ASSERT_FALSE(covered(static_cast<int>(grid.exponent) - 1)) << low << ' ' << high;
+    const double step = grid.step, extent = static_cast<double>(high) - low;
+    ASSERT_GE(255 * step + step * cwbvh_grid_tolerance, extent) << low << ' ' << high;
+    ASSERT_LE(127 * step, extent) << low << ' ' << high;
+    ASSERT_LE(grid.ceil_of(high), 255.0f);
+    exact += grid.ceil_of(high) == grid.floor_of(high) ? 1 : 0;
   }
+  EXPECT_GE(exact, 90'000);  // the high end lies on the grid
+}
+
+TEST(EncodeCwbvh, WallsOfARoomAreFlat) {
+  TestRandom random(8);
+  int flat = 0, walls = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 half = Vec3(400) + point_in_cube(random, 300), center = point_in_cube(random, 200);
+    const Bounds room = {center - half, center + half};
+    CwbvhChildren children;
+    children.count = 6;
+    for (int c = 0; c < 6; ++c) {
+      Bounds wall = room;
+      (c % 2 == 0 ? wall.max : wall.min)[c / 2] = (c % 2 == 0 ? room.min : room.max)[c / 2];
+      children.bounds[c] = widened(wall);
+      children.triangles[c] = 2;
+    }
+    const CwbvhSlots slots = assign_cwbvh_slots(children);
+    const CwbvhNode node = encode_cwbvh_node(children, slots, 0, 0);
+    for (int s = 0; s < cwbvh_width; ++s) {
+      if (slots.child[s] == no_cwbvh_child) continue;
+      const std::uint8_t* planes = &node.planes[slots.child[s] / 2][2 * s];
+      flat += planes[0] == planes[1] ? 1 : 0, ++walls;
+    }
+  }
+  EXPECT_EQ(walls, 6000);
+  EXPECT_GE(flat, 0.9 * walls);
 }
 
 TEST(EncodeCwbvh, FieldsNameEachChildOnce) {
@@ -79,25 +108,19 @@ TEST(EncodeCwbvh, FieldsNameEachChildOnce) {
     const CwbvhNode node = encode_cwbvh_node(children, slots, 11, 22);
     EXPECT_EQ(node.child_base, 11u);
     EXPECT_EQ(node.triangle_base, 22u);
-    std::uint32_t seen = 0, triangles = 0;
+    EXPECT_EQ(node.inner_mask() & node.leaf_mask(), 0u);
+    EXPECT_EQ(node.pair_mask() & ~node.leaf_mask(), 0u);
+    std::uint32_t seen = 0, inner = 11, triangles = 22;
     for (std::uint32_t s = 0; s < cwbvh_width; ++s) {
       const std::uint32_t c = slots.child[s];
-      const bool inner = (node.inner_mask >> s & 1) != 0;
-      if (c == no_cwbvh_child) {
-        EXPECT_EQ(node.meta[s], 0);
-        EXPECT_FALSE(inner);
-        continue;
-      }
+      const bool is_used = (node.used_mask() >> s & 1) != 0;
+      EXPECT_EQ(is_used, c != no_cwbvh_child);
+      if (!is_used || c == no_cwbvh_child) continue;
       seen |= 1u << c;
-      EXPECT_EQ(inner, children.triangles[c] == 0);
-      if (inner) {
-        EXPECT_EQ(node.meta[s], 0b001u << 5 | (24 + s));
-      } else {
-        constexpr std::array<int, 4> unary = {0, 0b001, 0b011, 0b111};
-        EXPECT_EQ(node.meta[s] >> 5, unary[children.triangles[c]]);
-        EXPECT_EQ(node.meta[s] & 31u, triangles);
-        triangles += children.triangles[c];
-      }
+      const CwbvhChild child = cwbvh_child(node, s);
+      EXPECT_EQ(child.count, children.triangles[c]);
+      EXPECT_EQ(child.place, child.count == 0 ? inner++ : triangles);
+      triangles += child.count;
     }
     EXPECT_EQ(seen, (1u << children.count) - 1);
   }

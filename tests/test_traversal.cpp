@@ -222,7 +222,7 @@ TEST(Traversal, Instances) {
       bounds.push_back(box);
     }
   }
-  const TestTrees::Order order = trees.add(bounds, 0, 0);
+  const TestTrees::Order order = trees.add(bounds, 1, 0, 0);
   trees.binary_root = order.binary_root;
   trees.wide_root = order.wide_root;
   for (const std::uint32_t i : order.binary) trees.binary_instances.push_back(binary[i]);

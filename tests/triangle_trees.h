@@ -15,8 +15,9 @@ class SimpleCollapse {
  public:
   /// `bounds[slot]` of what the leaves hold. Appends to `nodes`; the new root's place is returned.
   SimpleCollapse(const std::vector<Bvh2Node>& binary, const std::vector<Bounds>& bounds,
-                 std::vector<CwbvhNode>& nodes, std::vector<std::uint32_t>& order)
-      : binary_(binary), bounds_(bounds), nodes_(nodes), order_(order) {}
+                 std::uint32_t leaf_max, std::vector<CwbvhNode>& nodes,
+                 std::vector<std::uint32_t>& order)
+      : binary_(binary), bounds_(bounds), leaf_max_(leaf_max), nodes_(nodes), order_(order) {}
 
   /// `order` gets the slots of the binary tree in the order of the wide tree's.
   std::uint32_t collapse(std::uint32_t root) {
@@ -48,9 +49,7 @@ class SimpleCollapse {
     return child;
   }
 
-  static bool may_open(std::uint32_t code) {
-    return !is_leaf(code) || leaf_count(code) > static_cast<std::uint32_t>(cwbvh_leaf_max);
-  }
+  bool may_open(std::uint32_t code) const { return !is_leaf(code) || leaf_count(code) > leaf_max_; }
 
   void fill(std::uint32_t place, std::vector<Child> children) {
     while (children.size() < 8) {
@@ -96,6 +95,7 @@ class SimpleCollapse {
 
   const std::vector<Bvh2Node>& binary_;
   const std::vector<Bounds>& bounds_;
+  std::uint32_t leaf_max_;
   std::vector<CwbvhNode>& nodes_;
   std::vector<std::uint32_t>& order_;
 };
@@ -135,13 +135,14 @@ struct TestTrees {
     std::vector<std::uint32_t> binary, wide;
     std::uint32_t binary_root, wide_root;
   };
-  Order add(const std::vector<Bounds>& bounds, std::size_t first_binary, std::size_t first_wide) {
+  Order add(const std::vector<Bounds>& bounds, std::uint32_t wide_leaf_max,
+            std::size_t first_binary, std::size_t first_wide) {
     Bvh2 bvh = build_bvh2(bounds, static_cast<std::uint32_t>(bounds.size()), 0.0f);
     std::vector<Bounds> sorted;
     for (const std::uint32_t i : bvh.order) sorted.push_back(bounds[i]);
     Order order;
     std::vector<CwbvhNode> wide;
-    SimpleCollapse(bvh.nodes, sorted, wide, order.wide).collapse(0);
+    SimpleCollapse(bvh.nodes, sorted, wide_leaf_max, wide, order.wide).collapse(0);
     for (std::uint32_t& i : order.wide) i = bvh.order[i];
     order.binary = bvh.order;
     order.binary_root = static_cast<std::uint32_t>(binary_nodes.size());
@@ -164,7 +165,7 @@ struct TestTrees {
   Order add_triangles(const std::vector<Triangle>& triangles) {
     std::vector<Bounds> bounds;
     for (const Triangle& t : triangles) bounds.push_back(triangle_bounds(t.v0, t.v1, t.v2));
-    const Order order = add(bounds, binary_triangles.size(), wide_triangles.size());
+    const Order order = add(bounds, cwbvh_leaf_max, binary_triangles.size(), wide_triangles.size());
     for (const std::uint32_t i : order.binary) binary_triangles.push_back(triangles[i]);
     for (const std::uint32_t i : order.wide) wide_triangles.push_back(triangles[i]);
     binary_root = order.binary_root;

@@ -31,12 +31,12 @@ struct TreeCosts {
   std::uint32_t leaf_max = leaf_size_max;
 };
 
-/// Boxes in trees are wider than their content by 16 ulps of their largest coordinate: more than
+/// Boxes in trees are wider than their content by 4 ulps of their largest coordinate: more than
 /// the rounding of a box's own planes and that of the triangle test, so that a ray that begins on a
 /// triangle meets it, or does not, whatever the structure. Larger boxes are widened more: parents
 /// go on containing their children.
 PT_HD Bounds widened(const Bounds& box) {
-  const float margin = 32.0f * half_ulp * fmaxf(max_abs(box.min), max_abs(box.max));
+  const float margin = 8.0f * half_ulp * fmaxf(max_abs(box.min), max_abs(box.max));
   return {box.min - margin, box.max + margin};
 }
 

@@ -37,7 +37,7 @@ __device__ void for_each_inner(const Bvh2Node& node, Visit&& visit) {
 }
 template <class Visit>
 __device__ void for_each_inner(const CwbvhNode& node, Visit&& visit) {
-  for (int i = 0; i < __popc(node.inner_mask); ++i) visit(node.child_base + i);
+  for (int i = 0; i < __popc(node.inner_mask()); ++i) visit(node.child_base + i);
 }
 
 __device__ Bounds refit_node(const RefitJob& job, Bvh2Node& node) {
@@ -58,22 +58,15 @@ __device__ Bounds refit_node(const RefitJob& job, CwbvhNode& node) {
   CwbvhChildren children;
   CwbvhSlots slots;
   Bounds all;
-  std::uint32_t inner = node.child_base;
-  for (int s = 0; s < cwbvh_width; ++s) {
-    slots.child[s] = no_cwbvh_child;
-    if (node.meta[s] == 0) continue;
+  for (std::uint8_t& slot : slots.child) slot = no_cwbvh_child;
+  for_each_cwbvh_child(node, [&](int s, const CwbvhChild& child) {
     const int c = children.count++;
     slots.child[s] = static_cast<std::uint8_t>(c);
-    if ((node.inner_mask >> s & 1) != 0) {
-      children.triangles[c] = 0;
-      children.bounds[c] = inner_bounds(job, inner++);
-    } else {
-      children.triangles[c] = static_cast<std::uint32_t>(__popc(node.meta[s] >> 5));
-      children.bounds[c] =
-          slot_bounds(job, node.triangle_base + (node.meta[s] & 31u), children.triangles[c]);
-    }
+    children.triangles[c] = child.count;
+    children.bounds[c] = child.count == 0 ? inner_bounds(job, child.place)
+                                          : slot_bounds(job, child.place, child.count);
     all.grow(children.bounds[c]);
-  }
+  });
   node = encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);
   return all;
 }

@@ -18,12 +18,9 @@ __device__ void for_each_child(const Bvh2Node& node, Visit&& visit) {
 }
 template <class Visit>
 __device__ void for_each_child(const CwbvhNode& node, Visit&& visit) {
-  for (int s = 0; s < cwbvh_width; ++s) {
-    if (node.meta[s] == 0) continue;
-    const bool is_inner = (node.inner_mask >> s & 1) != 0;
-    visit(decode_cwbvh_bounds(node, s).half_area(),
-          is_inner ? 0u : static_cast<std::uint32_t>(__popc(node.meta[s] >> 5)));
-  }
+  for_each_cwbvh_child(node, [&](int slot, const CwbvhChild& child) {
+    visit(decode_cwbvh_bounds(node, slot).half_area(), child.count);
+  });
 }
 
 template <class T>

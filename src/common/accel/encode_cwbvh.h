@@ -6,7 +6,6 @@
 
 namespace pt {
 
-inline constexpr int cwbvh_width = 8;
 inline constexpr std::uint8_t no_cwbvh_child = 0xff;
 
 /// The children that a wide node is to have, in any order.
@@ -22,48 +21,39 @@ struct CwbvhSlots {
   std::uint8_t child[cwbvh_width];
 };
 
-/// a - b as a rounded value and the exact rest (Knuth's TwoSum).
-struct ExactDifference {
-  float value, rest;
+/// The grid of one axis: origin + step * q.
+struct CwbvhGrid {
+  float origin, step;  ///< the step has 16 significant bits
+
+  /// The largest q at or below x >= origin, and the smallest at or above; planes that x misses by
+  /// no more than the tolerance count as met.
+  PT_HD float floor_of(float x) const { return floorf(place_of(x) + snap); }
+  PT_HD float ceil_of(float x) const { return ceilf(fmaxf(place_of(x) - snap, 0.0f)); }
+
+  static constexpr float snap = cwbvh_grid_tolerance * (2.0f / 3.0f);
+  static constexpr float fit = cwbvh_grid_tolerance / 6.0f;  ///< the rest is left to rounding
+
+ private:
+  PT_HD float place_of(float x) const { return add_rounded(x, -origin) / step; }
 };
-PT_HD ExactDifference exact_difference(float a, float b) {
-  const float value = add_rounded(a, -b);
-  const float minus_b = add_rounded(value, -a);
-  const float rest_a = add_rounded(a, -add_rounded(value, -minus_b));
-  return {value, add_rounded(rest_a, add_rounded(-b, -minus_b))};
+
+/// A step of 16 significant bits, rounded to nearest; never 0.
+PT_HD float round_cwbvh_step(float step) {
+  const std::uint32_t bits = (float_to_bits(step) + 0x80u) & 0xffffff00u;
+  return bits_to_float(bits < 0x00800000u ? 0x00800000u : bits);
 }
 
-/// The grid of one axis: origin + 2^(exponent - 127) q.
-struct CwbvhGrid {
-  float origin;
-  std::uint32_t exponent;
-
-  PT_HD float scale() const { return bits_to_float(exponent << 23); }
-  PT_HD float inverse_scale() const { return bits_to_float((254u - exponent) << 23); }
-
-  /// The largest q at or below x >= origin, and the smallest at or above. Exact: a power of two
-  /// scales without error, and rounding the difference is monotone, so that only a difference that
-  /// falls on the grid needs a look at its rest.
-  PT_HD float floor_of(float x) const {
-    const ExactDifference d = exact_difference(x, origin);
-    const float scaled = d.value * inverse_scale();
-    const float q = floorf(scaled);
-    return q == scaled && d.rest < 0.0f ? q - 1.0f : q;
-  }
-  PT_HD float ceil_of(float x) const {
-    const ExactDifference d = exact_difference(x, origin);
-    const float scaled = d.value * inverse_scale();
-    const float q = ceilf(scaled);
-    return q == scaled && d.rest > 0.0f ? q + 1.0f : q;
-  }
-};
-
-/// The finest grid that covers [low, high] with q in 0..255; |low|, |high| < 1e30.
+/// A fine grid that covers [low, high], both of which lie on it, wherever a step can be found whose
+/// upper 24 bits say it well enough; |low|, |high| < 1e30.
 PT_HD CwbvhGrid make_cwbvh_grid(float low, float high) {
-  const std::uint32_t bits = float_to_bits(add_rounded(high, -low) * (1.0f / 128.0f));
-  CwbvhGrid grid{low, (bits >> 23) > 1u ? bits >> 23 : 1u};
-  while (grid.ceil_of(high) > 255.0f) ++grid.exponent;
-  return grid;
+  const float extent = add_rounded(high, -low);
+  for (int last = 255; last >= 128; --last) {
+    const auto count = static_cast<float>(last);
+    const float step = round_cwbvh_step(extent / count);
+    const float rest = fabsf(fused_multiply_add(step, -count, extent));
+    if (rest <= step * CwbvhGrid::fit) return {low, step};
+  }
+  return {low, round_cwbvh_step(extent * (1.0f / 254.0f))};
 }
 
 /// How far along the diagonal of `slot` a child lies: what the slots' assignment minimises in sum.
@@ -113,50 +103,51 @@ PT_HD CwbvhSlots assign_cwbvh_slots(const CwbvhChildren& children) {
   return slots;
 }
 
-/// The node. No child's box loses anything: decoded boxes contain the given ones exactly.
+/// The node. Decoded boxes contain the given ones to within cwbvh_grid_tolerance.
 PT_HD CwbvhNode encode_cwbvh_node(const CwbvhChildren& children, const CwbvhSlots& slots,
                                   std::uint32_t child_base, std::uint32_t triangle_base) {
   Bounds all;
   for (int c = 0; c < children.count; ++c) all.grow(children.bounds[c]);
   if (all.is_empty()) all = {Vec3(0.0f), Vec3(0.0f)};
-  const CwbvhGrid grid[3] = {make_cwbvh_grid(all.min.x, all.max.x),
-                             make_cwbvh_grid(all.min.y, all.max.y),
-                             make_cwbvh_grid(all.min.z, all.max.z)};
   CwbvhNode node;
   node.origin = all.min;
-  for (int i = 0; i < 3; ++i) node.exponent[i] = static_cast<std::uint8_t>(grid[i].exponent);
-  node.inner_mask = 0;
   node.child_base = child_base;
   node.triangle_base = triangle_base;
-  std::uint32_t triangles = 0;
-  for (int s = 0; s < cwbvh_width; ++s) {
+  std::uint32_t inner = 0, leaves = 0, pairs = 0;
+  for (std::uint32_t s = 0; s < cwbvh_width; ++s) {
     const std::uint8_t c = slots.child[s];
-    const bool none = c == no_cwbvh_child;
-    const Bounds box = none ? Bounds{all.max, all.min} : children.bounds[c];  // none: inside out
-    const std::uint32_t count = none ? 0 : children.triangles[c];
-    const std::uint32_t inner = 1u << 5 | (24u + static_cast<std::uint32_t>(s));
-    const std::uint32_t leaf = ((1u << count) - 1u) << 5 | triangles;
-    node.meta[s] = static_cast<std::uint8_t>(none ? 0 : count == 0 ? inner : leaf);
-    if (!none && count == 0) node.inner_mask = static_cast<std::uint8_t>(node.inner_mask | 1u << s);
-    triangles += count;
-    node.low_x[s] = static_cast<std::uint8_t>(grid[0].floor_of(box.min.x));
-    node.low_y[s] = static_cast<std::uint8_t>(grid[1].floor_of(box.min.y));
-    node.low_z[s] = static_cast<std::uint8_t>(grid[2].floor_of(box.min.z));
-    node.high_x[s] = static_cast<std::uint8_t>(grid[0].ceil_of(box.max.x));
-    node.high_y[s] = static_cast<std::uint8_t>(grid[1].ceil_of(box.max.y));
-    node.high_z[s] = static_cast<std::uint8_t>(grid[2].ceil_of(box.max.z));
+    if (c == no_cwbvh_child) continue;
+    const std::uint32_t count = children.triangles[c];
+    (count == 0 ? inner : leaves) |= 1u << s;
+    if (count == 2) pairs |= 1u << s;
+  }
+  const std::uint32_t masks[3] = {inner, leaves, pairs};
+  PT_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    const CwbvhGrid grid = make_cwbvh_grid(all.min[i], all.max[i]);
+    node.packed[i] = float_to_bits(grid.step) | masks[i];
+    for (int s = 0; s < cwbvh_width; ++s) {
+      const std::uint8_t c = slots.child[s];
+      const bool none = c == no_cwbvh_child;
+      const float low = none ? 255.0f : grid.floor_of(children.bounds[c].min[i]);  // none:
+      const float high = none ? 0.0f : grid.ceil_of(children.bounds[c].max[i]);    // inside out
+      node.planes[i][2 * s] = static_cast<std::uint8_t>(low);
+      node.planes[i][2 * s + 1] = static_cast<std::uint8_t>(high);
+    }
   }
   return node;
 }
 
 /// The box of the child in `slot`, rounded to the nearest float.
 PT_HD Bounds decode_cwbvh_bounds(const CwbvhNode& node, int slot) {
-  const Vec3 scale(bits_to_float(static_cast<std::uint32_t>(node.exponent[0]) << 23),
-                   bits_to_float(static_cast<std::uint32_t>(node.exponent[1]) << 23),
-                   bits_to_float(static_cast<std::uint32_t>(node.exponent[2]) << 23));
-  const Vec3 low(node.low_x[slot], node.low_y[slot], node.low_z[slot]);
-  const Vec3 high(node.high_x[slot], node.high_y[slot], node.high_z[slot]);
-  return {node.origin + scale * low, node.origin + scale * high};
+  Bounds box;
+  PT_UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    const auto* planes = &node.planes[i][2 * slot];
+    box.min[i] = fused_multiply_add(node.step(i), static_cast<float>(planes[0]), node.origin[i]);
+    box.max[i] = fused_multiply_add(node.step(i), static_cast<float>(planes[1]), node.origin[i]);
+  }
+  return box;
 }
 
 }  // namespace pt

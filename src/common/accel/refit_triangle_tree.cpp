@@ -5,7 +5,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "common/accel/binary_tree.h"
 #include "common/accel/encode_cwbvh.h"
@@ -78,34 +77,19 @@ void refit_bvh2(TriangleTreeData& tree, const GroupTree& group) {
   }
 }
 
-/// Calls visit(slot, first, count) for the leaves of a wide node, visit(slot, node, 0) for the
-/// inner children.
-template <class Visit>
-void for_each_slot(const CwbvhNode& node, Visit visit) {
-  std::uint32_t inner = node.child_base;
-  for (int s = 0; s < cwbvh_width; ++s) {
-    if (node.meta[s] == 0) continue;
-    if ((node.inner_mask >> s & 1) != 0) {
-      visit(s, inner++, 0u);
-    } else {
-      visit(s, node.triangle_base + (node.meta[s] & 31u),
-            static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(node.meta[s]) >> 5)));
-    }
-  }
-}
-
 // The same children in the same slots.
 CwbvhNode encode_again(const TriangleTreeData& tree, const CwbvhNode& node,
                        std::span<const Bounds> bounds, std::uint32_t first_node) {
   CwbvhChildren children;
   CwbvhSlots slots;
   std::fill(std::begin(slots.child), std::end(slots.child), no_cwbvh_child);
-  for_each_slot(node, [&](int s, std::uint32_t place, std::uint32_t count) {
+  for_each_cwbvh_child(node, [&](int s, const CwbvhChild& child) {
     const int c = children.count++;
     slots.child[s] = static_cast<std::uint8_t>(c);
-    children.triangles[c] = count;
+    children.triangles[c] = child.count;
     children.bounds[c] =
-        count == 0 ? bounds[place - first_node] : widened(slot_bounds(tree, place, count));
+        child.count == 0 ? bounds[child.place - first_node]
+                         : widened(slot_bounds(tree, child.place, child.count));
   });
   return encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);
 }
@@ -114,13 +98,13 @@ void refit_cwbvh(TriangleTreeData& tree, const GroupTree& group) {
   const std::span<CwbvhNode> nodes(tree.cwbvh.data() + group.first_node, group.node_count);
   std::vector<Bounds> bounds(nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
-    for_each_slot(nodes[n], [&](int, std::uint32_t place, std::uint32_t count) {
-      if (count > 0) bounds[n].grow(widened(slot_bounds(tree, place, count)));
+    for_each_cwbvh_child(nodes[n], [&](int, const CwbvhChild& child) {
+      if (child.count > 0) bounds[n].grow(widened(slot_bounds(tree, child.place, child.count)));
     });
   });
   for (std::size_t n = nodes.size(); n-- > 0;) {
-    for_each_slot(nodes[n], [&](int, std::uint32_t place, std::uint32_t count) {
-      if (count == 0) bounds[n].grow(bounds[place - group.first_node]);
+    for_each_cwbvh_child(nodes[n], [&](int, const CwbvhChild& child) {
+      if (child.count == 0) bounds[n].grow(bounds[child.place - group.first_node]);
     });
   }
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {

@@ -3,6 +3,7 @@
 // likewise the triangles of its leaves. Children are visited by (slot XOR ray octant).
 #pragma once
 
+#include "common/accel/cwbvh.h"
 #include "common/accel/slab_test.h"
 #include "common/accel/triangle_query.h"
 
@@ -16,14 +17,14 @@ inline constexpr float cwbvh_least_direction = 8.2718061e-25f;  // 2^-80
 struct CwbvhRay {
   Vec3 origin;
   Vec3 inverse;
-  std::uint32_t octant;  ///< 7 less bit `axis` for a negative direction
+  std::uint32_t octant;  ///< bit `axis`: the direction is negative
   TriangleRay triangles;
 };
 
 PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
   CwbvhRay result;
   result.origin = ray.origin;
-  result.octant = 7;
+  result.octant = 0;
   result.triangles = make_triangle_ray(ray.origin, ray.direction);
   PT_UNROLL(3)
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,72 +43,91 @@ struct CwbvhAxis {
   float step, near, far;
 };
 
-PT_HD CwbvhAxis make_cwbvh_axis(float grid_origin, std::uint32_t exponent, float origin,
-                                float inverse) {
-  constexpr float grid_tolerance = 256.0f * slab_tolerance;
-  const float step = bits_to_float(exponent << 23) * inverse;
+PT_HD CwbvhAxis make_cwbvh_axis(float grid_origin, float grid_step, float origin, float inverse) {
+  const float step = grid_step * inverse;
   const float base = (grid_origin - origin) * inverse;
-  const float slack = fused_multiply_add(fabsf(base), slab_tolerance, fabsf(step) * grid_tolerance);
+  const float slack =
+      fused_multiply_add(fabsf(base), slab_tolerance, fabsf(step) * cwbvh_grid_tolerance);
   return {step, base - slack, base + slack};
 }
 
-/// The children that the ray meets: bits 24..31 the inner ones at 24 + (slot ^ octant), bits 0..23
-/// the triangles of leaves.
+/// The slots of children that the ray meets.
 PT_HD std::uint32_t intersect_cwbvh_node(const CwbvhNode& node, const CwbvhRay& ray, float t_min,
                                          float t_max) {
   CwbvhAxis axis[3];
   PT_UNROLL(3)
   for (int i = 0; i < 3; ++i) {
-    axis[i] = make_cwbvh_axis(node.origin[i], node.exponent[i], ray.origin[i], ray.inverse[i]);
+    axis[i] = make_cwbvh_axis(node.origin[i], node.step(i), ray.origin[i], ray.inverse[i]);
   }
-  const bool x = ray.inverse.x < 0.0f, y = ray.inverse.y < 0.0f, z = ray.inverse.z < 0.0f;
   std::uint32_t hits = 0;
   PT_UNROLL(8)
   for (int s = 0; s < 8; ++s) {
-    const auto distance = [&](int i, bool high, const std::uint8_t* low_q,
-                              const std::uint8_t* high_q, float base) {
-      const auto q = static_cast<float>(high ? high_q[s] : low_q[s]);
-      return fused_multiply_add(q, axis[i].step, base);
-    };
-    const float near_x = distance(0, x, node.low_x, node.high_x, axis[0].near);
-    const float near_y = distance(1, y, node.low_y, node.high_y, axis[1].near);
-    const float near_z = distance(2, z, node.low_z, node.high_z, axis[2].near);
-    const float far_x = distance(0, !x, node.low_x, node.high_x, axis[0].far);
-    const float far_y = distance(1, !y, node.low_y, node.high_y, axis[1].far);
-    const float far_z = distance(2, !z, node.low_z, node.high_z, axis[2].far);
-    const float near = max_number(near_x, max_number(near_y, max_number(near_z, t_min)));
-    const float far = min_number(far_x, min_number(far_y, min_number(far_z, t_max)));
-    if (near <= far) {
-      const std::uint32_t meta = node.meta[s];
-      const std::uint32_t place = meta & 31u;
-      hits |= (meta >> 5) << (place >= 24u ? place ^ ray.octant : place);
+    float near = t_min, far = t_max;
+    PT_UNROLL(3)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint8_t* planes = &node.planes[i][2 * s];
+      const bool negative = ray.inverse[i] < 0.0f;
+      const auto first = static_cast<float>(planes[negative ? 1 : 0]);
+      const auto second = static_cast<float>(planes[negative ? 0 : 1]);
+      near = max_number(fused_multiply_add(first, axis[i].step, axis[i].near), near);
+      far = min_number(fused_multiply_add(second, axis[i].step, axis[i].far), far);
     }
+    if (near <= far) hits |= 1u << s;
   }
-  return hits;
+  return hits & node.used_mask();
 }
 
-/// What is left of a node: bits of intersect_cwbvh_node (of its upper 8 or its lower 24) and where
-/// they point to.
+/// Children of a node that are left to visit, and what finds them in memory. Inner ones: bits 0..7
+/// are the slots, each XOR the ray's octant, so that the lowest is the nearest; bits 8..15 are the
+/// node's inner_mask. Leaves: bits 0..7 are the slots, 8..15 leaf_mask, 16..23 pair_mask, 31 is set.
 struct CwbvhGroup {
   std::uint32_t base;
-  std::uint32_t bits;  ///< of a group of inner children, bits 0..7 are the node's inner_mask
+  std::uint32_t bits;
+
+  PT_HD bool has_slots() const { return (bits & 0xffu) != 0; }
+  PT_HD bool is_of_leaves() const { return (bits >> 31) != 0; }
 };
 
-PT_HD bool has_children(const CwbvhGroup& group) { return group.bits > 0x00ffffffu; }
-
-/// Takes the nearest child out of a group; its place among the nodes.
-PT_HD std::uint32_t take_child(CwbvhGroup& group, std::uint32_t octant) {
-  const int bit = 31 - count_leading_zeros(group.bits);
-  group.bits &= ~(1u << bit);
-  const std::uint32_t slot = static_cast<std::uint32_t>(bit - 24) ^ octant;
-  return group.base + static_cast<std::uint32_t>(count_bits(group.bits & ~(~0u << slot)));
+/// Moves bit s to s XOR octant.
+PT_HD std::uint32_t order_slots(std::uint32_t slots, std::uint32_t octant) {
+  if ((octant & 1u) != 0) slots = (slots & 0x55u) << 1 | (slots & 0xaau) >> 1;
+  if ((octant & 2u) != 0) slots = (slots & 0x33u) << 2 | (slots & 0xccu) >> 2;
+  if ((octant & 4u) != 0) slots = (slots & 0x0fu) << 4 | (slots & 0xf0u) >> 4;
+  return slots;
 }
 
-/// Takes a triangle (or instance) out of a group; its slot.
-PT_HD std::uint32_t take_triangle(CwbvhGroup& group) {
-  const int bit = 31 - count_leading_zeros(group.bits);
-  group.bits &= ~(1u << bit);
-  return group.base + static_cast<std::uint32_t>(bit);
+PT_HD CwbvhGroup root_group(std::uint32_t root, std::uint32_t octant) {
+  return {root, 1u << octant | 1u << 8};  // as the child in slot 0
+}
+PT_HD CwbvhGroup inner_group(const CwbvhNode& node, std::uint32_t hits, std::uint32_t octant) {
+  const std::uint32_t mask = node.inner_mask();
+  return {node.child_base, order_slots(hits & mask, octant) | mask << 8};
+}
+PT_HD CwbvhGroup leaf_group(const CwbvhNode& node, std::uint32_t hits) {
+  const std::uint32_t mask = node.leaf_mask();
+  return {node.triangle_base, (hits & mask) | mask << 8 | node.pair_mask() << 16 | 1u << 31};
+}
+
+/// Takes the nearest child out of a group of inner ones; its place among the nodes.
+PT_HD std::uint32_t take_child(CwbvhGroup& group, std::uint32_t octant) {
+  const std::uint32_t nearest = group.bits & (0u - group.bits);
+  group.bits ^= nearest;
+  const std::uint32_t below = (1u << (count_bits(nearest - 1u) ^ octant)) - 1u;
+  return group.base + static_cast<std::uint32_t>(count_bits(group.bits >> 8 & below));
+}
+
+/// The slots of one or two triangles, or of an instance.
+struct CwbvhLeaf {
+  std::uint32_t first, count;
+};
+
+/// Takes any leaf out of a group.
+PT_HD CwbvhLeaf take_leaf(CwbvhGroup& group) {
+  const std::uint32_t lowest = group.bits & (0u - group.bits);
+  group.bits ^= lowest;
+  const std::uint32_t below = (lowest - 1u) * 0x010100u;  // of both masks
+  return {group.base + static_cast<std::uint32_t>(count_bits(group.bits & below)),
+          (group.bits >> 16 & lowest) != 0 ? 2u : 1u};
 }
 
 /// `instanced`: the tree may have instances.
@@ -121,41 +141,41 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
   int entered = instanced && tree.instance_count > 0 ? in_world : only_level;
   std::uint32_t instance = 0;
   CwbvhRay local = make_cwbvh_ray(ray);
-  CwbvhGroup nodes{tree.root, 0x80000000u};  // the only child: its slot does not matter
-  CwbvhGroup triangles{0, 0};
+  CwbvhGroup nodes = root_group(tree.root, local.octant), leaves{0, 0};
   while (true) {
-    if (has_children(nodes)) {
+    if (nodes.has_slots()) {
       const std::uint32_t child = take_child(nodes, local.octant);
-      if (has_children(nodes)) stack[depth++] = nodes;
+      if (nodes.has_slots()) stack[depth++] = nodes;
       const CwbvhNode node = load_wide(&tree.cwbvh[child]);
       const std::uint32_t hits = intersect_cwbvh_node(node, local, query.t_min(), query.t_max());
-      nodes = {node.child_base, (hits & 0xff000000u) | node.inner_mask};
-      triangles = {node.triangle_base, hits & 0x00ffffffu};
+      nodes = inner_group(node, hits, local.octant);
+      leaves = leaf_group(node, hits);
     }
-    while (triangles.bits != 0) {
-      const std::uint32_t slot = take_triangle(triangles);
+    while (leaves.has_slots()) {
+      const CwbvhLeaf leaf = take_leaf(leaves);
       if (instanced && entered == in_world) {
-        const Ray inner = object_ray(tree.instances[slot], ray);
+        const Ray inner = object_ray(tree.instances[leaf.first], ray);
         if (!is_traceable(inner)) continue;
-        if (triangles.bits != 0) stack[depth++] = triangles;
-        if (has_children(nodes)) stack[depth++] = nodes;
+        if (leaves.has_slots()) stack[depth++] = leaves;
+        if (nodes.has_slots()) stack[depth++] = nodes;
         entered = depth;
-        instance = slot;
+        instance = leaf.first;
         local = make_cwbvh_ray(inner);
-        nodes = {tree.instances[slot].root, 0x80000000u};
-        triangles.bits = 0;
-      } else if (offer_slots(tree, local.triangles, slot, 1, instance, query)) {
+        nodes = root_group(tree.instances[instance].root, local.octant);
+        leaves.bits = 0;
+      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, instance,
+                             query)) {
         return;
       }
     }
-    if (has_children(nodes)) continue;
+    if (nodes.has_slots()) continue;
     if (depth == 0) return;
     if (instanced && depth == entered) {
       entered = in_world;
       local = make_cwbvh_ray(ray);
     }
     const CwbvhGroup group = stack[--depth];
-    (has_children(group) ? nodes : triangles) = group;
+    (group.is_of_leaves() ? leaves : nodes) = group;
   }
 }
 

@@ -1,7 +1,6 @@
 #include "common/accel/tree_statistics.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "common/accel/binary_tree.h"
 #include "common/accel/encode_cwbvh.h"
@@ -28,14 +27,10 @@ void for_each_child(const Bvh2Node& node, Visit visit) {
 
 template <class Visit>
 void for_each_child(const CwbvhNode& node, Visit visit) {
-  std::uint32_t inner = node.child_base;
-  for (int s = 0; s < cwbvh_width; ++s) {
-    if (node.meta[s] == 0) continue;
-    const bool is_inner = (node.inner_mask >> s & 1) != 0;
-    const auto count =
-        static_cast<std::uint32_t>(std::popcount(static_cast<unsigned>(node.meta[s]) >> 5));
-    visit(Child{decode_cwbvh_bounds(node, s), is_inner, is_inner ? inner++ : count});
-  }
+  for_each_cwbvh_child(node, [&](int slot, const CwbvhChild& child) {
+    const bool is_inner = child.count == 0;
+    visit(Child{decode_cwbvh_bounds(node, slot), is_inner, is_inner ? child.place : child.count});
+  });
 }
 
 template <class Node>

@@ -21,7 +21,8 @@ struct alignas(16) InstanceRecord {
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are
 /// absolute. With instances, `root` is the root of a tree whose leaves hold instances instead of
-/// triangles (places in `instances`); without, the root of the one tree of triangles.
+/// triangles (places in `instances`), those of wide trees one each; without, the root of the one
+/// tree of triangles.
 struct TriangleTree {
   const Bvh2Node* bvh2 = nullptr;
   const CwbvhNode* cwbvh = nullptr;

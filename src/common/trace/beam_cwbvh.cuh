@@ -55,7 +55,7 @@ class BeamTracer {
     __syncwarp();
     const float* center = memory_.beam.center;
     offset_ = (Vec3(center[0], center[1], center[2]) - origin_) * ray_.inverse;
-    slot_ = (lane_ & 7u) ^ (7u - ray_.octant);
+    slot_ = (lane_ & 7u) ^ ray_.octant;
     t_max_ = warp_max_magnitude(query_.t_max());
     size_ = 1;
     if (lane_ == 0) memory_.stack[0] = tree_.root;
@@ -80,49 +80,47 @@ class BeamTracer {
   };
 
   /// Planes of the lane's child along axis `i`, widened by more than rounding errors.
-  __device__ Planes planes(int i, const std::uint8_t* child, float scale, float origin) const {
+  __device__ Planes planes(int i, const CwbvhNode* node, float origin, std::uint32_t packed) const {
     constexpr float grid_slack = 2048.0f;  // in units of slab_tolerance: 2^-10 of a step
+    static_assert(grid_slack * slab_tolerance > 1.1f * cwbvh_grid_tolerance);
+    const float step = __uint_as_float(packed & 0xffffff00u);
     const float outward = memory_.beam.outward[i];
     const float base = origin - memory_.beam.center[i];
-    const float size = __fmaf_rn(scale, grid_slack, fabsf(base));
-    const std::uint32_t low = __ldg(child + 32 + 8 * i), high = __ldg(child + 56 + 8 * i);
+    const float size = __fmaf_rn(step, grid_slack, fabsf(base));
+    const uchar2 q = __ldg(reinterpret_cast<const uchar2*>(node->planes[i]) + slot_);
     const bool is_negative = outward > 0.0f;
-    const auto near = static_cast<float>(is_negative ? high : low);
-    const auto far = static_cast<float>(is_negative ? low : high);
-    return {__fmaf_rn(near, scale, __fmaf_rn(size, outward, base)),
-            __fmaf_rn(far, scale, __fmaf_rn(size, -outward, base))};
+    const auto near = static_cast<float>(is_negative ? q.y : q.x);
+    const auto far = static_cast<float>(is_negative ? q.x : q.y);
+    return {__fmaf_rn(near, step, __fmaf_rn(size, outward, base)),
+            __fmaf_rn(far, step, __fmaf_rn(size, -outward, base))};
   }
 
   /// Takes up to four nodes from the stack; lane l tests a child of the (l / 8)th.
   __device__ void step_down() {
     const int place = size_ - 1 - static_cast<int>(lane_ >> 3);
     const CwbvhNode* node = &tree_.cwbvh[memory_.stack[max(place, 0)]];
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(node);
     const uint4 head = __ldg(reinterpret_cast<const uint4*>(node));
-    const uint2 bases = __ldg(reinterpret_cast<const uint2*>(node) + 2);
-    const std::uint8_t* child = bytes + slot_;
-    const std::uint32_t meta = __ldg(child + 24);
-    const Planes x =
-        planes(0, child, __uint_as_float((head.w & 0xffu) << 23), __uint_as_float(head.x));
-    const Planes y =
-        planes(1, child, __uint_as_float((head.w & 0xff00u) << 15), __uint_as_float(head.y));
-    const Planes z =
-        planes(2, child, __uint_as_float((head.w & 0xff0000u) << 7), __uint_as_float(head.z));
+    const uint4 more = __ldg(reinterpret_cast<const uint4*>(node) + 1);
+    const Planes x = planes(0, node, __uint_as_float(head.x), head.w);
+    const Planes y = planes(1, node, __uint_as_float(head.y), more.x);
+    const Planes z = planes(2, node, __uint_as_float(head.z), more.y);
     const Vec3 near = {x.near, y.near, z.near}, far = {x.far, y.far, z.far};
-    const bool is_hit = place >= 0 && meta != 0 && beam_meets(memory_.beam, near, far, t_max_);
-    const std::uint32_t inner_mask = head.w >> 24;
-    const bool is_inner = (inner_mask >> slot_ & 1u) != 0;
+    const std::uint32_t bit = 1u << slot_, before = bit - 1u;
+    const std::uint32_t leaf_mask = more.x & 0xffu, pair_mask = more.y & 0xffu;
+    const bool is_inner = (head.w & bit) != 0, is_used = is_inner || (leaf_mask & bit) != 0;
+    const bool is_hit = place >= 0 && is_used && beam_meets(memory_.beam, near, far, t_max_);
     const unsigned below = (1u << lane_) - 1;
     const unsigned inner = __ballot_sync(whole_warp, is_hit && is_inner);
     const unsigned leaves = __ballot_sync(whole_warp, is_hit && !is_inner);
     size_ = max(size_ - 4, 0) + __popc(inner);
     if (is_hit && is_inner) {
       memory_.stack[size_ - 1 - __popc(inner & below)] =
-          bases.x + __popc(inner_mask & ((1u << slot_) - 1));
+          more.z + __popc(head.w & before);
     }
     if (is_hit && !is_inner) {
       memory_.leaves[leaf_count_ + __popc(leaves & below)] = {
-          near, bases.y + (meta & 31u), far, static_cast<std::uint32_t>(__popc(meta >> 5))};
+          near, more.w + __popc(leaf_mask & before) + __popc(pair_mask & before), far,
+          (pair_mask & bit) != 0 ? 2u : 1u};
     }
     leaf_count_ += __popc(leaves);
   }

@@ -3,9 +3,9 @@
 // Rays differ in how many nodes they visit; a warp that waited for the slowest of 32 would be idle
 // for most of its time. So a lane whose ray is done takes another one, as soon as `refill` lanes
 // are idle. And the warp does one thing at a time: steps down the tree while at least
-// `nodes_least` lanes have one to do, then triangles while at least `triangles_least` lanes have
-// some. A lane that has found triangles waits until they are tested: going on without knowing the
-// hit would visit nodes behind it. All votes are explicit and by the whole warp: since Volta,
+// `nodes_least` lanes have one to do, then leaves while at least `leaves_least` lanes have some. A
+// lane that has found leaves waits until they are tested: going on without knowing the hit would
+// visit nodes behind it. The two triangles of a leaf are tested side by side. All votes are explicit and by the whole warp: since Volta,
 // threads that part do not meet again by themselves.
 #pragma once
 
@@ -34,7 +34,8 @@ struct PersistentMemory {
   PersistentWarp warps[block_size / 32];
 };
 
-/// What is left of a node: bits 0..7 slots of inner children to visit, bits 8..15 its inner_mask.
+/// Inner children that are left to visit: bits 0..7 their slots, 8..10 the ray's octant (so that
+/// bits 0..10 are the place in SlotOrder), 16..23 the node's inner_mask.
 struct SlotGroup {
   std::uint32_t base;
   std::uint32_t bits;
@@ -52,7 +53,7 @@ struct PersistentTuning {
 ///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
 ///     first's number; count 0: there is none left
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
-template <class Query, int triangles_least, class Work>
+template <class Query, int leaves_least, class Work>
 class PersistentTracer {
  public:
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
@@ -73,15 +74,14 @@ class PersistentTracer {
         if (idle == whole_warp && warp_.refill == 32) return;
       }
       step_down();
-      gather_triangles();
-      test_triangles();
+      test_leaves();
     }
   }
 
  private:
   static constexpr unsigned whole_warp = 0xffffffffu;
 
-  __device__ bool is_active() const { return nodes_.has_slots() || triangles_ != 0; }
+  __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
 
   __device__ void refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
@@ -111,14 +111,14 @@ class PersistentTracer {
     triangle_ray_ = ray.triangles;
     query_ = Query(ray.t_min, ray.t_max);
     warp_.number[threadIdx.x & 31] = ray.number;
-    slot_order_ = order_.first[ray.octant];
-    nodes_ = {tree_.root, ray.t_max > 0.0f ? 1u : 0u};  // the root as the only child, in slot 0
+    const std::uint32_t octant = ray.octant << 8;
+    nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
   }
 
   /// Steps until too few lanes have one to do; at least one, if any lane has.
   __device__ void step_down() {
     for (bool is_first = true;; is_first = false) {
-      const bool steps = nodes_.has_slots() && leaf_slots_ == 0 && triangles_ == 0;
+      const bool steps = nodes_.has_slots() && !leaves_.has_slots();
       const unsigned stepping = __ballot_sync(whole_warp, steps);
       if (stepping == 0) return;
       if (!is_first && __popc(stepping) < PersistentTuning::nodes_least) return;
@@ -127,52 +127,41 @@ class PersistentTracer {
   }
 
   __device__ void step() {
-    const std::uint32_t slot = slot_order_[nodes_.bits & 0xffu];
-    const std::uint32_t bit = 1u << slot;
-    const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 8 & (bit - 1));
+    const std::uint32_t octant = nodes_.bits & 0x700u;
+    const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
+    const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
     nodes_.bits ^= bit;
     if (nodes_.has_slots()) stack_[depth_++] = {nodes_.base, nodes_.bits};
     const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
     const std::uint32_t hits = hit_slots(node, origin_, inverse_, query_.t_max());
-    const std::uint32_t inner = node.inner_mask();
-    nodes_ = {node.child_base(), (hits & inner) | inner << 8};
-    leaf_slots_ = hits & ~inner;
-    triangle_base_ = node.triangle_base();
-    meta_ = node.meta();
+    const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
+    nodes_ = {node.child_base(), (hits & inner) | octant | inner << 16};
+    leaves_ = {node.triangle_base(), (hits & leaf) | leaf << 8 | node.pair_mask() << 16};
     if (!nodes_.has_slots() && depth_ > 0) {
       const uint2 top = stack_[--depth_];
       nodes_ = {top.x, top.y};
     }
   }
 
-  /// From slots of leaves to triangles: bit i is the one in slot triangle_base_ + i.
-  __device__ void gather_triangles() {
-    while (leaf_slots_ != 0) {
-      const int slot = __ffs(static_cast<int>(leaf_slots_)) - 1;
-      leaf_slots_ &= leaf_slots_ - 1;
-      const std::uint32_t meta = __byte_perm(meta_.x, meta_.y, slot) & 0xffu;
-      triangles_ |= (meta >> 5) << (meta & 31u);
-    }
-  }
-
-  __device__ void test_triangles() {
+  __device__ void test_leaves() {
     while (true) {
-      const unsigned testing = __ballot_sync(whole_warp, triangles_ != 0);
+      const unsigned testing = __ballot_sync(whole_warp, leaves_.has_slots());
       if (testing == 0) return;
-      if (triangles_ != 0) test_triangle();
-      if (__popc(testing) < triangles_least) return;
+      if (leaves_.has_slots()) test_leaf();
+      if (__popc(testing) < leaves_least) return;
     }
   }
 
-  __device__ void test_triangle() {
-    const int bit = __ffs(static_cast<int>(triangles_)) - 1;
-    triangles_ &= triangles_ - 1;
-    const std::uint32_t slot = triangle_base_ + static_cast<std::uint32_t>(bit);
-    const Triangle triangle = load_wide(&tree_.triangles[slot]);
-    const TriangleHit hit =
-        intersect_triangle(triangle_ray_, triangle.v0, triangle.v1, triangle.v2);
-    if (query_.offer(tree_, hit.t, slot, 0)) {
-      nodes_.bits = triangles_ = 0;
+  /// A single triangle is tested as a pair with itself.
+  __device__ void test_leaf() {
+    const CwbvhLeaf leaf = take_leaf(leaves_);
+    const std::uint32_t last = leaf.first + leaf.count - 1;
+    const Triangle a = load_wide(&tree_.triangles[leaf.first]);
+    const Triangle b = load_wide(&tree_.triangles[last]);
+    const float t_a = intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t;
+    const float t_b = intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t;
+    if (query_.offer(tree_, t_a, leaf.first, 0) || query_.offer(tree_, t_b, last, 0)) {
+      nodes_.bits = leaves_.bits = 0;
       depth_ = 0;
     }
   }
@@ -184,10 +173,8 @@ class PersistentTracer {
   Query query_{0.0f, 0.0f};
   Vec3 origin_{}, inverse_{};
   TriangleRay triangle_ray_{};
-  const std::uint8_t* slot_order_ = nullptr;
   SlotGroup nodes_{0, 0};
-  std::uint32_t leaf_slots_ = 0, triangle_base_ = 0, triangles_ = 0;
-  uint2 meta_{0, 0};
+  CwbvhGroup leaves_{0, 0};
   uint2* stack_;  ///< no member itself: an array would keep the members beside it out of registers
   int depth_ = 0;
 };
@@ -197,11 +184,11 @@ template <class Query, int block_size, class Work>
 __device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
                                  Work& work) {
   // Any hit ends a ray, so its triangles are tested at once; the closest one waits for company.
-  constexpr int triangles_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 12;
+  constexpr int leaves_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 12;
   memory.order.fill();
   __syncthreads();
   uint2 stack[bvh_depth_max];
-  PersistentTracer<Query, triangles_least, Work> tracer(tree, work, memory.order,
+  PersistentTracer<Query, leaves_least, Work> tracer(tree, work, memory.order,
                                                         memory.warps[threadIdx.x / 32], stack);
   tracer.run();
 }

@@ -29,7 +29,7 @@ class PreparedRays {
     part_[0][place] = {r.origin.x, r.origin.y, r.origin.z, record.t_min};
     part_[1][place] = {r.inverse.x, r.inverse.y, r.inverse.z, t_max};
     part_[2][place] = {t.x_axis.x, t.x_axis.y, t.x_axis.z, __uint_as_float(number)};
-    part_[3][place] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(7 - r.octant)};
+    part_[3][place] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(r.octant)};
     part_[4][place] = {t.along.x, t.along.y, t.along.z, 0.0f};
   }
 

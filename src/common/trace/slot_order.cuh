@@ -5,10 +5,10 @@
 
 namespace pt {
 
-/// For the octant of a ray's direction and a set of slots: the slot to visit first, that is the one
-/// with the least (slot XOR octant). In shared memory: one load instead of a dozen instructions.
+/// For the octant of a ray's direction and a set of slots, at [octant << 8 | slots]: the slot to
+/// visit first, that is the one with the least (slot XOR octant). In shared memory: one load instead of a dozen instructions.
 struct SlotOrder {
-  std::uint8_t first[8][256];
+  std::uint8_t first[8 * 256];
 
   /// By all threads of the block; they must meet before the table is read.
   __device__ void fill() {
@@ -17,7 +17,7 @@ struct SlotOrder {
       std::uint32_t best = 0;
       for (std::uint32_t k = 8; k-- > 0;)
         if ((slots >> (k ^ octant) & 1u) != 0) best = k ^ octant;
-      first[octant][slots] = static_cast<std::uint8_t>(best);
+      first[i] = static_cast<std::uint8_t>(best);
     }
   }
 };
