@@ -7,6 +7,12 @@
 
 namespace pt {
 
+/// A triangle that was met at `t`, NaN for not met.
+struct MetTriangle {
+  float t;
+  std::uint32_t slot, id;
+};
+
 /// The closest hit with t_min < t < t_max. Of several at the same t the one of the lowest triangle
 /// number wins, then of the lowest instance number, so that the answer does not depend on the order
 /// in which a structure finds them.
@@ -26,6 +32,13 @@ class ClosestTriangle {
       hit_ = {t, slot, instance};
     }
     return false;
+  }
+
+  /// Offers two triangles of a tree without instances.
+  PT_HD bool offer_nearer(const TriangleTree& tree, const MetTriangle& a, const MetTriangle& b) {
+    const bool nearer = b.t < a.t || (b.t == a.t && b.id < a.id);
+    const bool second = !(a.t > t_min_) || (b.t > t_min_ && nearer);
+    return offer(tree, second ? b.t : a.t, second ? b.slot : a.slot, 0);
   }
 
   PT_HD Hit result() const { return hit_.is_miss() ? Hit() : hit_; }
@@ -52,6 +65,11 @@ class AnyTriangle {
 
   PT_HD bool offer(const TriangleTree&, float t, std::uint32_t, std::uint32_t) {
     found_ = t > t_min_ && t < t_max_;
+    return found_;
+  }
+
+  PT_HD bool offer_nearer(const TriangleTree&, const MetTriangle& a, const MetTriangle& b) {
+    found_ = (a.t > t_min_ && a.t < t_max_) || (b.t > t_min_ && b.t < t_max_);
     return found_;
   }
 

@@ -2,10 +2,10 @@
 //
 // Rays differ in how many nodes they visit; a warp that waited for the slowest of 32 would be idle
 // for most of its time. So a lane whose ray is done takes another one, as soon as `refill` lanes
-// are idle. And the warp does one thing at a time: steps down the tree while at least
-// `nodes_least` lanes have one to do, then leaves while at least `leaves_least` lanes have some. A
-// lane that has found leaves waits until they are tested: going on without knowing the hit would
-// visit nodes behind it. The two triangles of a leaf are tested side by side. All votes are explicit and by the whole warp: since Volta,
+// are idle. And the warp does one thing at a time, whatever more of its lanes wait for: steps down
+// the tree or tests of leaves. A lane that has found leaves waits until they are tested: going on
+// without knowing the hit would visit nodes behind it. The two triangles of a leaf are tested side
+// by side. All votes are explicit and by the whole warp: since Volta,
 // threads that part do not meet again by themselves.
 #pragma once
 
@@ -22,7 +22,6 @@ struct PersistentWarp {
 
   PreparedRays rays;
   int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not handed out
-  int refill;                ///< idle lanes that make the warp hand out rays
   std::uint32_t number[32];  ///< by lane: of the ray whose result is not written; none
   ReservedRays reserved;
 };
@@ -44,8 +43,9 @@ struct SlotGroup {
 };
 
 struct PersistentTuning {
-  static constexpr int refill = 6;
-  static constexpr int nodes_least = 16;
+  static constexpr int refill = 6;  ///< idle lanes that make the warp hand out rays
+  /// A warp steps if stepping lanes * step_weight >= testing lanes * test_weight.
+  static constexpr int step_weight = 2, test_weight = 3;
 };
 
 /// Traces what `work` hands out, one lane's view. Query: ClosestTriangle or AnyTriangle. Work has
@@ -53,7 +53,7 @@ struct PersistentTuning {
 ///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
 ///     first's number; count 0: there is none left
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
-template <class Query, int leaves_least, class Work>
+template <class Query, class Work>
 class PersistentTracer {
  public:
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
@@ -64,17 +64,23 @@ class PersistentTracer {
   __device__ void run() {
     warp_.number[threadIdx.x & 31] = PersistentWarp::none;
     warp_.next_ray = warp_.ray_count = 0;
-    warp_.refill = PersistentTuning::refill;
     warp_.reserved = {0, 0};
     __syncwarp();
+    bool is_drained = false;  // no rays are left: only the end is waited for
     while (true) {
-      const unsigned idle = __ballot_sync(whole_warp, !is_active());
-      if (__popc(idle) >= warp_.refill) {
-        refill(idle);
-        if (idle == whole_warp && warp_.refill == 32) return;
+      const bool tests = leaves_.has_slots(), steps = !tests && nodes_.has_slots();
+      const unsigned testing = __ballot_sync(whole_warp, tests);
+      const unsigned stepping = __ballot_sync(whole_warp, steps);
+      const int test_count = __popc(testing), step_count = __popc(stepping);
+      if (test_count + step_count <= (is_drained ? 0 : 32 - PersistentTuning::refill)) {
+        is_drained = !refill(~(testing | stepping));
+        if (is_drained && (testing | stepping) == 0) return;
+      } else if (PersistentTuning::step_weight * step_count >=
+                 PersistentTuning::test_weight * test_count) {
+        if (steps) step();
+      } else if (tests) {
+        test_leaf();
       }
-      step_down();
-      test_leaves();
     }
   }
 
@@ -83,7 +89,8 @@ class PersistentTracer {
 
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
 
-  __device__ void refill(unsigned idle) {
+  /// Finishes the rays of idle lanes and hands out others. False: none were left.
+  __device__ bool refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
     if (!is_active() && warp_.number[lane] != PersistentWarp::none) {
       work_.finish(warp_.number[lane], query_);
@@ -95,7 +102,6 @@ class PersistentTracer {
       RayRecord record;
       const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
       next = 0;
-      if (count == 0) warp_.refill = 32;  // there is none left: only the end is waited for
       if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
       warp_.ray_count = count;
     }
@@ -103,6 +109,7 @@ class PersistentTracer {
     __syncwarp();
     const int place = next + __popc(idle & ((1u << lane) - 1));
     if (!is_active() && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
+    return count > 0;
   }
 
   __device__ void begin(const PreparedRay& ray) {
@@ -113,17 +120,6 @@ class PersistentTracer {
     warp_.number[threadIdx.x & 31] = ray.number;
     const std::uint32_t octant = ray.octant << 8;
     nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
-  }
-
-  /// Steps until too few lanes have one to do; at least one, if any lane has.
-  __device__ void step_down() {
-    for (bool is_first = true;; is_first = false) {
-      const bool steps = nodes_.has_slots() && !leaves_.has_slots();
-      const unsigned stepping = __ballot_sync(whole_warp, steps);
-      if (stepping == 0) return;
-      if (!is_first && __popc(stepping) < PersistentTuning::nodes_least) return;
-      if (steps) step();
-    }
   }
 
   __device__ void step() {
@@ -143,15 +139,6 @@ class PersistentTracer {
     }
   }
 
-  __device__ void test_leaves() {
-    while (true) {
-      const unsigned testing = __ballot_sync(whole_warp, leaves_.has_slots());
-      if (testing == 0) return;
-      if (leaves_.has_slots()) test_leaf();
-      if (__popc(testing) < leaves_least) return;
-    }
-  }
-
   /// A single triangle is tested as a pair with itself.
   __device__ void test_leaf() {
     const CwbvhLeaf leaf = take_leaf(leaves_);
@@ -160,7 +147,7 @@ class PersistentTracer {
     const Triangle b = load_wide(&tree_.triangles[last]);
     const float t_a = intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t;
     const float t_b = intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t;
-    if (query_.offer(tree_, t_a, leaf.first, 0) || query_.offer(tree_, t_b, last, 0)) {
+    if (query_.offer_nearer(tree_, {t_a, leaf.first, a.id}, {t_b, last, b.id})) {
       nodes_.bits = leaves_.bits = 0;
       depth_ = 0;
     }
@@ -183,12 +170,10 @@ class PersistentTracer {
 template <class Query, int block_size, class Work>
 __device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
                                  Work& work) {
-  // Any hit ends a ray, so its triangles are tested at once; the closest one waits for company.
-  constexpr int leaves_least = sizeof(Query) == sizeof(AnyTriangle) ? 1 : 12;
   memory.order.fill();
   __syncthreads();
   uint2 stack[bvh_depth_max];
-  PersistentTracer<Query, leaves_least, Work> tracer(tree, work, memory.order,
+  PersistentTracer<Query, Work> tracer(tree, work, memory.order,
                                                         memory.warps[threadIdx.x / 32], stack);
   tracer.run();
 }
