@@ -30,7 +30,7 @@ inline std::string name_of(const DeviceBuildOptions& options) {
 inline DeviceBuildOptions binary_options() {
   DeviceBuildOptions options;
   options.format = TreeFormat::bvh2;
-  options.costs = {1.0f, 1.0f, 4};
+  options.costs = default_bvh2_costs;
   return options;
 }
 

@@ -10,6 +10,7 @@
 #include "common/accel/binary_tree.h"
 #include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/tree_costs.h"
 #include "common/accel/tree_statistics.h"
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh.h"
@@ -47,7 +48,7 @@ struct DeviceBuildOptions {
   DeviceBuilder builder = DeviceBuilder::hploc;
   TreeFormat format = TreeFormat::cwbvh;
   Collapse collapse = Collapse::optimal;
-  TreeCosts costs = {1.0f, 0.3f, cwbvh_leaf_max};  ///< for binary trees {1, 1, 4} is good
+  TreeCosts costs = default_cwbvh_costs;  ///< of the format: default_bvh2_costs for the other
   int morton_bits = 21;  ///< per axis, 1..morton_bits_max; up to 10 make 32-bit keys
   int depth_max = bvh_depth_max;
   std::uint32_t first_node = 0;  ///< added to node numbers: for trees that share arrays

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "common/accel/build_sbvh.h"
+#include "common/accel/tree_costs.h"
 #include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
@@ -15,8 +16,8 @@ struct TreeOptions {
   AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
   TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
   SbvhOptions sbvh;
-  TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
-  TreeCosts cwbvh_costs = {1.0f, 0.5f, cwbvh_leaf_max};
+  TreeCosts bvh2_costs = default_bvh2_costs;
+  TreeCosts cwbvh_costs = default_cwbvh_costs;
 };
 
 /// Triangles are numbered through the meshes in their order, those of groups included. Without

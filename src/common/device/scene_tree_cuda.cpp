@@ -42,7 +42,7 @@ DeviceBuildOptions build_options(const SceneTraits& traits, TreeBuilder builder)
   options.builder = builder == TreeBuilder::lbvh ? DeviceBuilder::lbvh : DeviceBuilder::hploc;
   if (traits.accel == Accel::bvh2) {
     options.format = TreeFormat::bvh2;
-    options.costs = TreeOptions().bvh2_costs;
+    options.costs = default_bvh2_costs;
   }
   return options;
 }
