@@ -128,10 +128,9 @@ class CudaBuild : public CudaTest {
   void SetUp() override {
     CudaTest::SetUp();
     if (IsSkipped()) return;
-    builder_ = std::make_unique<DeviceTreeBuilder>(
-        [this](const std::string& name, std::uint64_t size_bytes) {
-          return memory_->allocate<char>(name, size_bytes);
-        });
+    builder_ = std::make_unique<DeviceTreeBuilder>([this](TreeArray, std::uint64_t size_bytes) {
+      return memory_->allocate<char>("tree", size_bytes);
+    });
   }
 
   DeviceTree build(const std::vector<Triangle>& triangles, const DeviceBuildOptions& options) {

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "common/accel/binary_tree.h"
 #include "common/accel/bvh2.h"
@@ -24,6 +22,7 @@ struct MeshRange {
   std::uint32_t first_vertex = 0;  ///< added to the indices
   std::uint32_t material = 0;
   std::uint32_t attributes = 0;  ///< see TriangleAttributes
+  std::uint32_t first_id = 0;    ///< of the first triangle; the others' follow
 };
 
 /// Triangles in device memory: finished records by id, or vertices and indices of meshes.
@@ -33,7 +32,6 @@ struct TriangleSource {
   const TriangleIndices* indices = nullptr;
   const MeshRange* ranges = nullptr;  ///< ascending, the first begins at 0; null: one, all zero
   std::uint32_t range_count = 0;
-  std::uint32_t first_id = 0;  ///< the id of triangle 0
 };
 
 enum class DeviceBuilder {
@@ -87,8 +85,12 @@ struct DeviceTree {
   TriangleTree view() const { return {bvh2, cwbvh, triangles, nullptr, slot_count, 0, 0}; }
 };
 
-/// Gives `size_bytes` of device memory, aligned to 256, or throws Error.
-using DeviceAllocator = std::function<void*(const std::string& name, std::uint64_t size_bytes)>;
+/// What a tree consists of.
+enum class TreeArray { nodes, order, triangles };
+
+/// Gives device memory for an array, aligned as its elements are, or throws Error. Each build asks
+/// once for each, the triangles last.
+using DeviceAllocator = std::function<void*(TreeArray array, std::uint64_t size_bytes)>;
 
 /// Keeps its temporary memory (about 200 bytes per primitive) from one build to the next. All work
 /// is in the default stream of the current device, and is done when a function returns.

@@ -20,13 +20,16 @@ struct TreeOptions {
   TreeCosts cwbvh_costs = default_cwbvh_costs;
 };
 
+/// Throws Error for vertices that are not finite, indices that name no vertex, and instances of
+/// group 0 or with a singular transform.
+void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> instances);
+
 /// Triangles are numbered through the meshes in their order, those of groups included. Without
 /// instances the tree is over the meshes of group 0; with instances it is one of two levels, with a
 /// tree for each group that is used and one over the instances, the meshes of group 0 being an
 /// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
 /// slots are in the order of the triangles' numbers.
-/// Throws Error for vertices that are not finite, indices that name no vertex, instances of group 0
-/// or with a singular transform, and for builders and structures that are not the CPU's.
+/// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);
