@@ -7,6 +7,7 @@
 #include "common/scene/builtin_scenes.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/prepare_scene.h"
+#include "mixed_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"
 #include "statistics.h"
@@ -246,6 +247,19 @@ TEST(TriangleScenes, StructureAndBuilderDoNotChangeABit) {
                                      Settings{{"accel", "cwbvh"}, {"builder", "sbvh"}}}) {
       SCOPED_TRACE(command_of(with(options, settings)));
       expect_same(render_options(with(options, settings)), expected);
+    }
+  }
+}
+
+TEST(TriangleScenes, StructureDoesNotChangeMixedScenes) {
+  Options options = image_options(40, 30, 2, 5);
+  options.accel = AccelKind::brute;
+  const Image expected = render_scene(mixed_scene(), options);
+  EXPECT_GT(mean_of(expected), 0.05);
+  for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
+    for (const TreeBuilder builder : {TreeBuilder::sah, TreeBuilder::sbvh}) {
+      options.accel = accel, options.builder = builder;
+      EXPECT_EQ(differing_pixels(render_scene(mixed_scene(), options), expected), 0u);
     }
   }
 }
