@@ -33,7 +33,7 @@ def configurations(arguments, device):
         for mode in ["megakernel", "wavefront"]:
             for accel in STRUCTURES.get(scene, TRIANGLES):
                 for builder in builders:
-                    if builder != "sah" and (scene in STRUCTURES or "instances" in scene):
+                    if builder != "sah" and scene in STRUCTURES:
                         continue
                     has_triangles = scene not in STRUCTURES
                     label = f"{accel}, {builder}" if has_triangles else accel

@@ -115,7 +115,9 @@ int render_command(const RenderCommand& command) {
   const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   if (has_image) {
     const Image image = renderer->image();
+    const bool is_new = report.scene.tree.nodes == 0;  // built by the renderer
     renderer->describe(report);
+    if (is_new && !options.quiet) fmt::print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
     write_outputs(options, image, report);
   }

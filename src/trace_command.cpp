@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "common/accel/build_triangle_tree.h"
+#include "common/accel/check_builder.h"
 #include "common/build_info.h"
 #include "common/device/devices.h"
 #include "common/error.h"
@@ -23,15 +24,29 @@ struct TraceReport {
   DeviceInfo device;
   std::uint64_t triangles = 0, rays = 0;
   RayType type = RayType::closest;
-  TreeQuality quality;
-  double build_ms = 0, bytes_per_triangle = 0, sah_cost = 0;
+  TreeSummary tree;
   Spread time_ms;
   TraceVariant variant = TraceVariant::automatic;
 
   double mrays_per_s() const {
     return time_ms.median > 0 ? static_cast<double>(rays) / time_ms.median / 1e3 : 0;
   }
+  double bytes_per_triangle() const {
+    return static_cast<double>(tree.size_bytes) / static_cast<double>(triangles);
+  }
 };
+
+/// As the tree's builder weighs triangles.
+double sah_cost(const TraceCommand& command, const TraceReport& report) {
+  const bool is_wide = command.accel == AccelKind::cwbvh;
+  return report.tree.quality.sah_cost(
+      static_cast<double>((is_wide ? default_cwbvh_costs : default_bvh2_costs).triangle));
+}
+
+/// A tree of the device that got too deep has another builder than asked for.
+std::string builder_name(const TraceCommand& command, const TraceReport& report) {
+  return report.tree.builder.empty() ? to_string(command.builder) : report.tree.builder;
+}
 
 const char* variant_name(TraceVariant variant) {
   constexpr const char* names[] = {"cpu", "threads", "persistent", "beam"};
@@ -59,12 +74,12 @@ CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
           {"type", report.type == RayType::any ? "any" : "closest"},
           {"rays", std::to_string(report.rays)},
           {"accel", to_string(command.accel)},
-          {"builder", to_string(command.builder)},
+          {"builder", builder_name(command, report)},
           {"variant", variant_name(report.variant)},
-          {"nodes", std::to_string(report.quality.nodes)},
-          {"sah_cost", number(report.sah_cost)},
-          {"bytes_per_triangle", number(report.bytes_per_triangle)},
-          {"build_ms", number(report.build_ms)},
+          {"nodes", std::to_string(report.tree.quality.nodes)},
+          {"sah_cost", number(sah_cost(command, report))},
+          {"bytes_per_triangle", number(report.bytes_per_triangle())},
+          {"build_ms", number(report.tree.build_ms)},
           {"repeat", std::to_string(command.runs.repeat)},
           {"warmup", std::to_string(command.runs.warmup)},
           {"time_ms", number(report.time_ms.median)},
@@ -77,9 +92,10 @@ void print_report(const TraceCommand& command, const TraceReport& report) {
   const Spread& t = report.time_ms;
   fmt::print("device     {}: {}\n", to_string(report.device.choice), report.device.name);
   fmt::print("tree       {} by {}: {} triangles, {} nodes, {:.1f} bytes per triangle\n",
-             to_string(command.accel), to_string(command.builder), grouped(report.triangles),
-             grouped(report.quality.nodes), report.bytes_per_triangle);
-  fmt::print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.build_ms, report.sah_cost);
+             to_string(command.accel), builder_name(command, report), grouped(report.triangles),
+             grouped(report.tree.quality.nodes), report.bytes_per_triangle());
+  fmt::print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.tree.build_ms,
+             sah_cost(command, report));
   fmt::print("rays       {}, {} hit, {}\n", grouped(report.rays),
              report.type == RayType::any ? "any" : "closest", variant_name(report.variant));
   fmt::print("time       {:.4f} ms, {:.4f} to {:.4f} in {} runs\n", t.median, t.min, t.max,
@@ -96,21 +112,11 @@ int print_comparison(const TraceCommand& command, const HitComparison& c) {
   return c.agrees() ? 0 : 1;
 }
 
-TraceReport describe_tree(const TriangleTreeData& tree, const TreeOptions& options) {
-  TraceReport report;
-  const bool is_wide = !tree.cwbvh.empty();
-  if (is_wide) report.quality = measure_tree(std::span(tree.cwbvh), tree.root);
-  if (!tree.bvh2.empty()) report.quality = measure_tree(std::span(tree.bvh2), tree.root);
-  report.sah_cost =
-      report.quality.sah_cost((is_wide ? options.cwbvh_costs : options.bvh2_costs).triangle);
-  report.build_ms = tree.build_ms;
-  return report;
-}
-
 void check_command(const TraceCommand& command, const DeviceInfo& device) {
   if (!command.output.empty()) check_writable(command.output);
   if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
   const bool is_cpu = device.choice.kind == DeviceChoice::Kind::cpu;
+  check_builder(command.builder, command.accel, !is_cpu);
   if (is_cpu && command.runs.variant != TraceVariant::automatic)
     throw Error("--variant: has no effect on the CPU");
 }
@@ -132,6 +138,20 @@ TraceResult trace(const DeviceInfo& device, const TriangleTreeData& tree, const 
   return trace_rays_cpu(tree, rays, runs);
 }
 
+BuiltTrace build_and_trace(const TraceCommand& command, const DeviceInfo& device,
+                           const SceneData& scene, const RaySet& rays) {
+  TreeOptions options;
+  options.accel = command.accel;
+  options.builder = command.builder;
+#ifdef PTEXP_CUDA
+  if (is_device_builder(command.builder))
+    return build_and_trace_cuda(scene.meshes, scene.instances, options, rays, command.runs,
+                                device.choice.index);
+#endif
+  const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
+  return {trace(device, tree, rays, command.runs), summarize(tree)};
+}
+
 }  // namespace
 
 int trace_command(const TraceCommand& given) {
@@ -144,20 +164,15 @@ int trace_command(const TraceCommand& given) {
   const RaySet rays = read_rays(command.rays);
   HitSet reference;
   if (!command.hits.empty()) reference = read_reference(command, rays);
-  TreeOptions options;
-  options.accel = command.accel;
-  options.builder = command.builder;
-  const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
-  TraceReport report = describe_tree(tree, options);
-  TraceResult result = trace(device, tree, rays, command.runs);
+  const auto [result, tree] = build_and_trace(command, device, scene, rays);
+  TraceReport report;
   report.device = device;
   report.triangles = scene.triangle_count();
-  report.bytes_per_triangle =
-      static_cast<double>(tree.size_bytes()) / static_cast<double>(report.triangles);
   report.rays = rays.rays.size();
   report.type = rays.type;
-  report.variant = result.variant;
+  report.tree = tree;
   report.time_ms = spread(result.times_ms);
+  report.variant = result.variant;
   if (!command.quiet) print_report(command, report);
   if (!command.output.empty()) write_hits(command.output, {rays.type, result.hits});
   if (!command.csv.empty()) append_csv_row(command.csv, csv_row(command, report));

@@ -30,7 +30,7 @@ inline std::string name_of(const DeviceBuildOptions& options) {
 inline DeviceBuildOptions binary_options() {
   DeviceBuildOptions options;
   options.format = TreeFormat::bvh2;
-  options.costs = {1.0f, 1.0f, 4};
+  options.costs = default_bvh2_costs;
   return options;
 }
 
@@ -128,10 +128,9 @@ class CudaBuild : public CudaTest {
   void SetUp() override {
     CudaTest::SetUp();
     if (IsSkipped()) return;
-    builder_ = std::make_unique<DeviceTreeBuilder>(
-        [this](const std::string& name, std::uint64_t size_bytes) {
-          return memory_->allocate<char>(name, size_bytes);
-        });
+    builder_ = std::make_unique<DeviceTreeBuilder>([this](TreeArray, std::uint64_t size_bytes) {
+      return memory_->allocate<char>("tree", size_bytes);
+    });
   }
 
   DeviceTree build(const std::vector<Triangle>& triangles, const DeviceBuildOptions& options) {

@@ -104,10 +104,11 @@ TEST_F(CudaBuild, MeshesGiveTheRecordsOfTheirTriangles) {
   const Mesh hills = make_hills(500);
   std::vector<Vec3> positions = hills.positions;
   std::vector<TriangleIndices> indices = hills.triangles;
-  std::vector<MeshRange> ranges{{0, 0, 7, 1}};
+  std::vector<MeshRange> ranges{{0, 0, 7, 1, 100}};
   for (std::uint32_t copy = 1; copy < 4; ++copy) {
     ranges.push_back({static_cast<std::uint32_t>(indices.size()),
-                      static_cast<std::uint32_t>(positions.size()), 10 + copy, copy % 3});
+                      static_cast<std::uint32_t>(positions.size()), 10 + copy, copy % 3,
+                      100 * copy * copy});
     for (const Vec3& p : hills.positions) positions.push_back(p + static_cast<float>(copy));
     indices.insert(indices.end(), hills.triangles.begin(), hills.triangles.end());
   }
@@ -117,7 +118,6 @@ TEST_F(CudaBuild, MeshesGiveTheRecordsOfTheirTriangles) {
   TriangleSource source;
   source.positions = device_positions.data(), source.indices = device_indices.data();
   source.ranges = device_ranges.data(), source.range_count = 4;
-  source.first_id = 100;
   const auto count = static_cast<std::uint32_t>(indices.size());
   const HostTree tree = download(builder_->build(source, count, {}), {});
   std::vector<Triangle> expected(count);
@@ -125,7 +125,8 @@ TEST_F(CudaBuild, MeshesGiveTheRecordsOfTheirTriangles) {
     const MeshRange& range = ranges[i / hills.triangles.size()];
     const Vec3* p = positions.data() + range.first_vertex;
     const TriangleIndices& v = indices[i];
-    expected[i] = {p[v.v[0]], 100 + i, p[v.v[1]], range.material, p[v.v[2]], range.attributes};
+    const std::uint32_t id = range.first_id + i - range.first_triangle;
+    expected[i] = {p[v.v[0]], id, p[v.v[1]], range.material, p[v.v[2]], range.attributes};
   }
   check_triangles(tree, expected);
 }

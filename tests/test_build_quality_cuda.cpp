@@ -46,7 +46,7 @@ void print_cpu_trees(const Mesh& mesh) {
         is_wide ? measure_tree(std::span(tree.cwbvh), 0) : measure_tree(std::span(tree.bvh2), 0);
     std::printf("%-88s %7.0f | %9llu %9.3f %5d\n", is_wide ? "cpu sah cwbvh" : "cpu sah bvh2",
                 tree.build_ms, static_cast<unsigned long long>(quality.nodes),
-                quality.sah_cost(is_wide ? 0.3 : 1.0), quality.depth);
+                quality.sah_cost(is_wide ? cwbvh_triangle_cost : 1.0), quality.depth);
   }
 }
 

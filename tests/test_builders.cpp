@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <cstring>
 #include <limits>
 #include <set>
 
 #include "check_tree.h"
+#include "common/accel/check_builder.h"
+#include "common/accel/instance_tree.h"
 #include "common/accel/mesh_triangles.h"
+#include "common/accel/tree_summary.h"
 #include "common/error.h"
+#include "instanced_meshes.h"
 #include "tree_kinds.h"
-#include "triangle_meshes.h"
 
 namespace pt {
 namespace {
@@ -194,6 +198,39 @@ TEST_P(Builders, InstancesLieInTheTopTreesBoxes) {
   EXPECT_EQ(seen, std::vector<int>(201, 1));
 }
 
+// What the device puts behind the groups' nodes that it has built.
+TEST_P(Builders, TheTopTreeCanBeNumberedFromAnyNode) {
+  const InstancedMeshes world = make_instanced_meshes(40);
+  const TriangleTreeData tree = GetParam().build(world.meshes, world.instances);
+  const InstanceTree top =
+      build_instance_tree(tree.groups, world.instances, GetParam().accel, tree.first_top_node);
+  const auto expect_tail = [&](const auto& part, const auto& all, std::size_t first) {
+    ASSERT_EQ(first + part.size(), all.size());
+    EXPECT_EQ(std::memcmp(part.data(), all.data() + first, part.size() * sizeof(part[0])), 0);
+  };
+  if (!tree.bvh2.empty()) expect_tail(top.bvh2, tree.bvh2, tree.root);
+  if (!tree.cwbvh.empty()) expect_tail(top.cwbvh, tree.cwbvh, tree.root);
+  expect_tail(top.instances, tree.instances, 0);
+}
+
+TEST_P(Builders, SummariesGoThroughInstances) {
+  Mesh mesh = make_soup(500, 3);
+  const TreeSummary single = summarize(GetParam().build({mesh}));
+  mesh.group = 1;
+  const TreeSummary placed = summarize(GetParam().build({mesh}, {{1, {}}}));
+  EXPECT_EQ(placed.quality.nodes, single.quality.nodes + 1);
+  EXPECT_EQ(placed.quality.slots, single.quality.slots);
+  EXPECT_EQ(placed.quality.leaves, single.quality.leaves);
+  EXPECT_EQ(placed.quality.depth, single.quality.depth + 1);
+  EXPECT_NEAR(placed.quality.nodes_per_ray, single.quality.nodes_per_ray + 1, 0.05);
+  EXPECT_NEAR(placed.quality.triangles_per_ray, single.quality.triangles_per_ray, 0.05);
+  // Two far apart: a ray that meets the box of both meets one of them rarely.
+  const TreeSummary two =
+      summarize(GetParam().build({mesh}, {{1, {}}, {1, translate({1000, 1000, 1000})}}));
+  EXPECT_EQ(two.quality.nodes, placed.quality.nodes);
+  EXPECT_LT(two.quality.nodes_per_ray, 1.2);
+}
+
 TEST(BuilderErrors, NameTheTriangleAndTheInstance) {
   const auto message = [](const std::vector<Mesh>& meshes, const std::vector<Instance>& instances) {
     try {
@@ -227,6 +264,9 @@ TEST(BuilderErrors, BuildersOfTheDeviceAreRefused) {
   options.builder = TreeBuilder::hploc;
   const std::vector<Mesh> meshes = {make_soup(3, 1)};
   EXPECT_THROW(build_triangle_tree(meshes, {}, options), Error);
+  EXPECT_THROW(check_builder(TreeBuilder::hploc, AccelKind::brute, true), Error);
+  EXPECT_NO_THROW(check_builder(TreeBuilder::lbvh, AccelKind::bvh2, true));
+  EXPECT_NO_THROW(check_builder(TreeBuilder::sbvh, AccelKind::brute, false));
 }
 
 }  // namespace

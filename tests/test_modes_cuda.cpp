@@ -103,7 +103,7 @@ const std::vector<ImageKind> triangle_kinds = [] {
                         {"spp", spp},     {"max-depth", "6"}, {"accel", accel}};
       if (accel == "brute") settings[1].second = "16", settings[2].second = "9";
       kinds.push_back({name + "_" + accel, settings});
-      if (accel == "brute" || name == "instances") continue;
+      if (accel == "brute") continue;
       settings.push_back({"builder", "hploc"});
       kinds.push_back({name + "_" + accel + "_hploc", settings});
       settings.back().second = "lbvh";

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "command_line.h"
+#include "common/render/option_names.h"
 #include "common/scene/generate_terrain.h"
 #include "temp_folder.h"
 #include "trace_command.h"
@@ -89,6 +90,14 @@ TEST_F(TraceFiles, AppendsRows) {
   trace_command(command_);
   const std::string text = read_text(command_.csv);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+}
+
+TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {
+  for (const TreeBuilder builder : {TreeBuilder::lbvh, TreeBuilder::hploc}) {
+    command_.builder = builder;
+    expect_error([&] { trace_command(command_); },
+                 "--builder " + to_string(builder) + ": needs a CUDA device");
+  }
 }
 
 TEST_F(TraceFiles, VariantsAreCudas) {

@@ -2,6 +2,7 @@
 // independent tracer found.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 
 #include "common/accel/build_triangle_tree.h"
@@ -9,6 +10,7 @@
 #include "common/trace/compare_hits.h"
 #include "common/trace/generate_rays.h"
 #include "common/trace/trace_rays.h"
+#include "instanced_meshes.h"
 #include "shared_file.h"
 
 namespace pt {
@@ -47,6 +49,27 @@ TEST(TraceRays, StructuresAgree) {
         const HitComparison comparison = compare_hits(hits, expected);
         EXPECT_EQ(comparison.same, rays.rays.size()) << comparison.first;
       }
+    }
+  }
+}
+
+TEST(TraceRays, StructuresAgreeOnInstances) {
+  for (const std::uint32_t groups : {1u, 60u}) {
+    const InstancedMeshes world = make_instanced_meshes(groups);
+    const RaySet rays = rays_through(4000, RayType::closest);
+    const auto hits_of = [&](AccelKind accel) {
+      TreeOptions options;
+      options.accel = accel;
+      const auto tree = build_triangle_tree(world.meshes, world.instances, options);
+      return trace_rays_cpu(tree, rays, {}).hits;
+    };
+    const auto expected = hits_of(AccelKind::brute);
+    std::size_t met = 0;
+    for (const HitRecord& hit : expected) met += hit.t >= 0;
+    EXPECT_GT(met, rays.rays.size() / 20);
+    for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
+      const auto hits = hits_of(accel);
+      EXPECT_EQ(std::memcmp(hits.data(), expected.data(), hits.size() * sizeof(HitRecord)), 0);
     }
   }
 }

@@ -7,9 +7,11 @@
 #include "common/scene/builtin_scenes.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/prepare_scene.h"
+#include "mixed_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"
 #include "statistics.h"
+#include "temp_folder.h"
 
 namespace pt {
 namespace {
@@ -247,6 +249,43 @@ TEST(TriangleScenes, StructureAndBuilderDoNotChangeABit) {
       expect_same(render_options(with(options, settings)), expected);
     }
   }
+}
+
+TEST(TriangleScenes, StructureDoesNotChangeMixedScenes) {
+  Options options = image_options(40, 30, 2, 5);
+  options.accel = AccelKind::brute;
+  const Image expected = render_scene(mixed_scene(), options);
+  EXPECT_GT(mean_of(expected), 0.05);
+  for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
+    for (const TreeBuilder builder : {TreeBuilder::sah, TreeBuilder::sbvh}) {
+      options.accel = accel, options.builder = builder;
+      EXPECT_EQ(differing_pixels(render_scene(mixed_scene(), options), expected), 0u);
+    }
+  }
+}
+
+TEST(TriangleScenes, BuildersOfTheDeviceLeaveTheTreeToIt) {
+  SceneData mixed = floor_scene();
+  mixed.add_sphere({0, 1, 0}, 1, 0);
+  Options options;
+  options.builder = TreeBuilder::hploc;
+  options.device.kind = DeviceChoice::Kind::cuda;
+  for (SceneData scene : {mixed, placed_emitter(true, false)}) {
+    prepare_scene(scene, options);
+    EXPECT_TRUE(scene.tree.is_empty());
+    EXPECT_EQ(scene.bvh_nodes.empty(), scene.spheres.empty()) << "spheres are the host's";
+  }
+  const auto refuse = [&](SceneData scene, const Settings& settings, const std::string& part) {
+    expect_error([&] { prepare_scene(scene, with(options, settings)); }, part);
+  };
+  refuse(mixed, {{"accel", "brute"}}, "--builder hploc: builds binary and wide trees");
+  refuse(mixed, {{"mode", "serial"}}, "--builder hploc: needs a CUDA device");
+  refuse(mixed, {{"device", "cpu"}}, "--builder hploc: needs a CUDA device");
+  mixed.meshes[0].triangles[1].v[2] = 4;
+  refuse(mixed, {}, "mesh 0, triangle 1: vertex 4");
+  SceneData placed = placed_emitter(true, false);
+  placed.instances[0].to_world = scale({1, 0, 1});
+  refuse(placed, {}, "instance 0: expected a transform");
 }
 
 TEST(TriangleScenes, EmbreeGivesNearlyTheSameImage) {

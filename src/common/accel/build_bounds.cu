@@ -27,8 +27,10 @@ __device__ Triangle load_triangle(const TriangleSource& source, std::uint32_t i)
   const MeshRange range = range_of(source, i);
   const TriangleIndices indices = source.indices[i];
   const Vec3* positions = source.positions + range.first_vertex;
-  return {positions[indices.v[0]], source.first_id + i,     positions[indices.v[1]],
-          range.material,          positions[indices.v[2]], range.attributes};
+  const std::uint32_t id = range.first_id + (i - range.first_triangle);
+  return {positions[indices.v[0]], id,
+          positions[indices.v[1]], range.material,
+          positions[indices.v[2]], range.attributes};
 }
 
 __device__ bool is_usable(const Vec3& p) {  // false for NaN, too

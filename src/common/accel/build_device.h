@@ -4,12 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "common/accel/binary_tree.h"
 #include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/tree_costs.h"
 #include "common/accel/tree_statistics.h"
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh.h"
@@ -23,6 +22,7 @@ struct MeshRange {
   std::uint32_t first_vertex = 0;  ///< added to the indices
   std::uint32_t material = 0;
   std::uint32_t attributes = 0;  ///< see TriangleAttributes
+  std::uint32_t first_id = 0;    ///< of the first triangle; the others' follow
 };
 
 /// Triangles in device memory: finished records by id, or vertices and indices of meshes.
@@ -32,7 +32,6 @@ struct TriangleSource {
   const TriangleIndices* indices = nullptr;
   const MeshRange* ranges = nullptr;  ///< ascending, the first begins at 0; null: one, all zero
   std::uint32_t range_count = 0;
-  std::uint32_t first_id = 0;  ///< the id of triangle 0
 };
 
 enum class DeviceBuilder {
@@ -47,7 +46,7 @@ struct DeviceBuildOptions {
   DeviceBuilder builder = DeviceBuilder::hploc;
   TreeFormat format = TreeFormat::cwbvh;
   Collapse collapse = Collapse::optimal;
-  TreeCosts costs = {1.0f, 0.3f, cwbvh_leaf_max};  ///< for binary trees {1, 1, 4} is good
+  TreeCosts costs = default_cwbvh_costs;  ///< of the format: default_bvh2_costs for the other
   int morton_bits = 21;  ///< per axis, 1..morton_bits_max; up to 10 make 32-bit keys
   int depth_max = bvh_depth_max;
   std::uint32_t first_node = 0;  ///< added to node numbers: for trees that share arrays
@@ -86,8 +85,12 @@ struct DeviceTree {
   TriangleTree view() const { return {bvh2, cwbvh, triangles, nullptr, slot_count, 0, 0}; }
 };
 
-/// Gives `size_bytes` of device memory, aligned to 256, or throws Error.
-using DeviceAllocator = std::function<void*(const std::string& name, std::uint64_t size_bytes)>;
+/// What a tree consists of.
+enum class TreeArray { nodes, order, triangles };
+
+/// Gives device memory for an array, aligned as its elements are, or throws Error. Each build asks
+/// once for each, the triangles last.
+using DeviceAllocator = std::function<void*(TreeArray array, std::uint64_t size_bytes)>;
 
 /// Keeps its temporary memory (about 200 bytes per primitive) from one build to the next. All work
 /// is in the default stream of the current device, and is done when a function returns.

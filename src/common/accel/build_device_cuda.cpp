@@ -213,12 +213,14 @@ class DeviceTreeBuilder::Work {
   void write_outputs(DeviceTree& tree, const PrimitiveSource& source) {
     const std::uint64_t slots = tree.slot_count;
     const std::uint64_t node_size = is_wide() ? sizeof(CwbvhNode) : sizeof(Bvh2Node);
-    void* nodes = allocate_("tree nodes", tree.node_count * node_size);
+    void* nodes = allocate_(TreeArray::nodes, tree.node_count * node_size);
     tree.bvh2 = is_wide() ? nullptr : static_cast<Bvh2Node*>(nodes);
     tree.cwbvh = is_wide() ? static_cast<CwbvhNode*>(nodes) : nullptr;
-    tree.order = static_cast<std::uint32_t*>(allocate_("tree order", slots * sizeof *tree.order));
+    tree.order =
+        static_cast<std::uint32_t*>(allocate_(TreeArray::order, slots * sizeof *tree.order));
     if (source.boxes == nullptr) {
-      tree.triangles = static_cast<Triangle*>(allocate_("triangles", slots * sizeof(Triangle)));
+      tree.triangles =
+          static_cast<Triangle*>(allocate_(TreeArray::triangles, slots * sizeof(Triangle)));
     }
     watch_.start();
     copy(nodes, nodes_, tree.node_count * node_size);

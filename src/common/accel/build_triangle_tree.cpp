@@ -1,6 +1,5 @@
 #include "common/accel/build_triangle_tree.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -10,11 +9,11 @@
 #include "common/accel/append_nodes.h"
 #include "common/accel/build_sah.h"
 #include "common/accel/build_sbvh.h"
+#include "common/accel/check_builder.h"
 #include "common/accel/collapse_cwbvh.h"
 #include "common/accel/instance_tree.h"
 #include "common/accel/merge_leaves.h"
 #include "common/accel/mesh_triangles.h"
-#include "common/error.h"
 #include "common/render/option_names.h"
 
 namespace pt {
@@ -22,17 +21,11 @@ namespace pt {
 namespace {
 
 BinaryTree build_binary(const MeshTriangles& triangles, const TreeOptions& options) {
-  switch (options.builder) {
-    case TreeBuilder::automatic:
-    case TreeBuilder::sah:
-      return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
-    case TreeBuilder::sbvh:
-      return build_sbvh(
-          triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
-    default:
-      throw Error(fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh",
-                              to_string(options.builder)));
+  if (options.builder == TreeBuilder::sbvh) {
+    return build_sbvh(
+        triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
   }
+  return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
 }
 
 /// Appends the group's tree, and its triangles in the order of the tree's slots.
@@ -72,24 +65,21 @@ void add_group(TriangleTreeData& tree, std::span<const Mesh> meshes, std::uint32
   tree.groups.push_back(group);
 }
 
-std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
-  std::vector<std::uint32_t> groups = {0};
-  for (const Instance& instance : instances) groups.push_back(instance.group);
-  std::sort(groups.begin(), groups.end());
-  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
-  return groups;
-}
-
 }  // namespace
+
+void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> instances) {
+  MeshTriangles(meshes).check();
+  check_instances(instances);
+}
 
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  MeshTriangles(meshes).check();
-  check_instances(instances);
   TreeOptions chosen = options;
   if (chosen.accel == AccelKind::automatic) chosen.accel = AccelKind::cwbvh;
+  check_builder(chosen.builder, chosen.accel, false);
+  check_geometry(meshes, instances);
   TriangleTreeData tree;
   for (const std::uint32_t group : groups_in_use(instances)) {
     add_group(tree, meshes, group, chosen);

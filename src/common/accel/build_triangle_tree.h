@@ -4,6 +4,7 @@
 #include <span>
 
 #include "common/accel/build_sbvh.h"
+#include "common/accel/tree_costs.h"
 #include "common/accel/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
@@ -15,17 +16,20 @@ struct TreeOptions {
   AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
   TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
   SbvhOptions sbvh;
-  TreeCosts bvh2_costs = {1.0f, 1.0f, 4};
-  TreeCosts cwbvh_costs = {1.0f, 0.5f, cwbvh_leaf_max};
+  TreeCosts bvh2_costs = default_bvh2_costs;
+  TreeCosts cwbvh_costs = default_cwbvh_costs;
 };
+
+/// Throws Error for vertices that are not finite, indices that name no vertex, and instances of
+/// group 0 or with a singular transform.
+void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> instances);
 
 /// Triangles are numbered through the meshes in their order, those of groups included. Without
 /// instances the tree is over the meshes of group 0; with instances it is one of two levels, with a
 /// tree for each group that is used and one over the instances, the meshes of group 0 being an
 /// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
 /// slots are in the order of the triangles' numbers.
-/// Throws Error for vertices that are not finite, indices that name no vertex, instances of group 0
-/// or with a singular transform, and for builders and structures that are not the CPU's.
+/// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);

@@ -60,10 +60,11 @@ InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std:
           group.slot_count};
 }
 
-const GroupTree* find_group(const TriangleTreeData& tree, std::uint32_t group) {
-  const auto found = std::find_if(tree.groups.begin(), tree.groups.end(),
-                                  [group](const GroupTree& g) { return g.group == group; });
-  return found == tree.groups.end() ? nullptr : &*found;
+const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t number) {
+  const auto found = std::lower_bound(
+      groups.begin(), groups.end(), number,
+      [](const GroupTree& group, std::uint32_t wanted) { return group.group < wanted; });
+  return found == groups.end() || found->group != number ? nullptr : &*found;
 }
 
 struct Placed {
@@ -71,7 +72,7 @@ struct Placed {
   std::vector<Bounds> bounds;
 };
 
-Placed place_instances(const TriangleTreeData& tree, std::span<const Instance> instances) {
+Placed place_instances(std::span<const GroupTree> groups, std::span<const Instance> instances) {
   Placed placed;
   const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t number) {
     if (group == nullptr) return;
@@ -79,10 +80,17 @@ Placed place_instances(const TriangleTreeData& tree, std::span<const Instance> i
     placed.bounds.push_back(world_bounds(group->bounds, to_object));
   };
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    add(find_group(tree, instances[i].group), inverse(instances[i].to_world), i);
+    add(find_group(groups, instances[i].group), inverse(instances[i].to_world), i);
   }
-  add(find_group(tree, 0), Affine(), instances.size());
+  add(find_group(groups, 0), Affine(), instances.size());
   return placed;
+}
+
+/// Nodes that are numbered from 0 get the numbers from `first` on.
+template <class Node>
+std::vector<Node> numbered_from(std::uint32_t first, std::vector<Node>&& nodes) {
+  for (Node& node : nodes) move_references(node, first, 0);
+  return std::move(nodes);
 }
 
 }  // namespace
@@ -102,30 +110,49 @@ void check_instances(std::span<const Instance> instances) {
   }
 }
 
-void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
-                       AccelKind accel) {
-  const Placed placed = place_instances(tree, instances);
+std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
+  std::vector<std::uint32_t> groups = {0};
+  for (const Instance& instance : instances) groups.push_back(instance.group);
+  std::sort(groups.begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  return groups;
+}
+
+InstanceTree build_instance_tree(std::span<const GroupTree> groups,
+                                 std::span<const Instance> instances, AccelKind accel,
+                                 std::uint32_t first_node) {
+  Placed placed = place_instances(groups, instances);
+  InstanceTree tree;
   const bool wide = accel == AccelKind::cwbvh;
-  tree.first_top_node = static_cast<std::uint32_t>(wide ? tree.cwbvh.size() : tree.bvh2.size());
-  if (placed.records.empty()) return;
-  if (!wide && accel != AccelKind::bvh2) {
-    tree.instances = placed.records;
-    return;
+  if (placed.records.empty() || (!wide && accel != AccelKind::bvh2)) {
+    tree.instances = std::move(placed.records);
+    return tree;
   }
   BinaryTree binary = build_sah(static_cast<std::uint32_t>(placed.bounds.size()),
                                 [&](std::uint32_t i) { return placed.bounds[i]; });
   std::vector<std::uint32_t> order;
   if (wide) {
     Cwbvh top = collapse_cwbvh(binary, instance_costs);
-    tree.root = append_nodes(tree.cwbvh, std::move(top.nodes), 0);
+    tree.cwbvh = numbered_from(first_node, std::move(top.nodes));
     order = std::move(top.order);
   } else {
     Bvh2 top = merge_leaves(std::move(binary), instance_costs);
-    tree.root = append_nodes(tree.bvh2, std::move(top.nodes), 0);
+    tree.bvh2 = numbered_from(first_node, std::move(top.nodes));
     order = std::move(top.order);
   }
-  tree.instances.clear();
   for (const std::uint32_t i : order) tree.instances.push_back(placed.records[i]);
+  return tree;
+}
+
+void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
+                       AccelKind accel) {
+  const bool wide = accel == AccelKind::cwbvh;
+  tree.first_top_node = static_cast<std::uint32_t>(wide ? tree.cwbvh.size() : tree.bvh2.size());
+  InstanceTree top = build_instance_tree(tree.groups, instances, accel, tree.first_top_node);
+  tree.cwbvh.insert(tree.cwbvh.end(), top.cwbvh.begin(), top.cwbvh.end());
+  tree.bvh2.insert(tree.bvh2.end(), top.bvh2.begin(), top.bvh2.end());
+  tree.instances = std::move(top.instances);
+  if (!top.cwbvh.empty() || !top.bvh2.empty()) tree.root = tree.first_top_node;
 }
 
 }  // namespace pt

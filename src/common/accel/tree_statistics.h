@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 
 #include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/triangle_tree.h"
 
 namespace pt {
 
@@ -26,5 +28,18 @@ struct TreeQuality {
 /// Of the tree below `root`.
 TreeQuality measure_tree(std::span<const Bvh2Node> nodes, std::uint32_t root);
 TreeQuality measure_tree(std::span<const CwbvhNode> nodes, std::uint32_t root);
+
+/// Of groups' trees, by the numbers of their roots.
+using QualityByRoot = std::unordered_map<std::uint32_t, TreeQuality>;
+
+/// Of a tree over instances and the groups' trees together: a ray that meets an instance's box goes
+/// through the group's tree. Nodes, leaves and slots of a group count once. `nodes` are those of
+/// the upper level alone, the root first, and have the numbers from `first_node` on.
+TreeQuality measure_instances(std::span<const Bvh2Node> nodes, std::uint32_t first_node,
+                              std::span<const InstanceRecord> instances,
+                              const QualityByRoot& groups);
+TreeQuality measure_instances(std::span<const CwbvhNode> nodes, std::uint32_t first_node,
+                              std::span<const InstanceRecord> instances,
+                              const QualityByRoot& groups);
 
 }  // namespace pt

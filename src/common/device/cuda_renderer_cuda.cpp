@@ -4,14 +4,16 @@
 #include <algorithm>
 #include <chrono>
 
+#include "common/accel/check_builder.h"
 #include "common/device/cuda_renderer.cuh"
+#include "common/device/device_triangle_tree.cuh"
 #include "common/device/film_kernels.cuh"
-#include "common/device/scene_tree.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/batches.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_scene.h"
+#include "common/scene/scene_facts.h"
 
 namespace pt {
 namespace {
@@ -128,8 +130,14 @@ void CudaRenderer::upload_tree(const TriangleTreeData& data) {
 }
 
 void CudaRenderer::upload_triangles(const SceneData& scene) {
-  if (builds_on_device(scene)) {
-    scene_.triangles = build_scene_tree(scene, options_, memory_, tree_facts_);
+  if (is_device_builder(options_.builder)) {
+    TreeOptions tree;
+    tree.accel = traits_.accel == Accel::bvh2 ? AccelKind::bvh2 : AccelKind::cwbvh;
+    tree.builder = options_.builder;
+    const DeviceTriangleTree built =
+        build_device_triangle_tree(scene.meshes, scene.instances, tree, memory_);
+    scene_.triangles = built.view;
+    tree_facts_ = tree_facts(built.summary, scene.triangle_count());
   } else {
     upload_tree(scene.tree);
   }

@@ -129,8 +129,9 @@ void add_execution(std::vector<OptionEntry>& list) {
            "a binary BVH, a compressed 8-wide one (triangles only), or\n"
            "Embree (CPU, triangles only); auto: what suits the scene")
       .add(choice("builder", &Options::builder),
-           "Who builds the tree over triangles: binned SAH or spatial\n"
-           "splits on the CPU, LBVH or H-PLOC on the GPU")
+           "Who builds trees over triangles: binned SAH or spatial\n"
+           "splits on the CPU, LBVH or H-PLOC on the GPU; trees over\n"
+           "instances and over spheres are always the CPU's")
       .add(choice("work", &Options::work),
            "megakernel: what a thread renders: a pixel, a sample of a\n"
            "pixel, or whatever it fetches from a common counter")

@@ -54,11 +54,6 @@ void prepare_scene(SceneData& scene, const Options& options) {
   }
 }
 
-bool builds_on_device(const SceneData& scene) {
-  return scene.traits.geometry != Geometry::spheres_and_quads && scene.tree.is_empty() &&
-         scene.triangle_count() > 0;
-}
-
 Scene host_view(const SceneData& scene, int width, int height) {
   Scene view;
   view.camera = make_camera(scene.camera, width, height);

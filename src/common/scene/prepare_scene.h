@@ -7,12 +7,9 @@
 namespace pt {
 
 /// Applies the options' camera overrides, chooses the kind of scene and its acceleration structure,
-/// builds it (unless --builder leaves that to the device), lists the lights. Throws Error for a
-/// camera or a scene that cannot be rendered and for a structure that it cannot have.
+/// builds it (unless --builder leaves the triangles' tree to the device), lists the lights. Throws
+/// Error for a camera or a scene that cannot be rendered and for a structure that it cannot have.
 void prepare_scene(SceneData& scene, const Options& options);
-
-/// Whether the tree over the scene's triangles is left to be built on the device.
-bool builds_on_device(const SceneData& scene);
 
 /// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
 Scene host_view(const SceneData& scene, int width, int height);

@@ -1,13 +1,10 @@
 #include "common/scene/prepare_triangles.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "common/accel/build_triangle_tree.h"
+#include "common/accel/check_builder.h"
 #include "common/accel/embree_tree.h"
-#include "common/error.h"
-#include "common/render/option_names.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
@@ -46,23 +43,8 @@ AccelKind tree_kind(Accel accel) {
   return accel == Accel::cwbvh ? AccelKind::cwbvh : AccelKind::brute;
 }
 
-bool is_device_builder(TreeBuilder builder) {
-  return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc;
-}
-
-void check_device_build(const SceneData& scene, const Options& options) {
-  const std::string what = "--builder " + to_string(options.builder);
-  if (options.device.kind == DeviceChoice::Kind::cpu || options.mode == Mode::serial) {
-    throw Error(what + ": needs a CUDA device; on the CPU expected sah or sbvh");
-  }
-  if (scene.traits.geometry == Geometry::mixed) {
-    throw Error(what +
-                ": builds one tree of triangles, and this scene has instances or spheres; "
-                "expected sah or sbvh");
-  }
-  if (scene.traits.accel != Accel::bvh2 && scene.traits.accel != Accel::cwbvh) {
-    throw Error(what + ": builds binary and wide trees; expected --accel bvh2 or cwbvh");
-  }
+bool is_on_cuda(const Options& options) {
+  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
 }
 
 /// All meshes' attributes as one array of vertices; triangles are numbered through the meshes.
@@ -106,8 +88,9 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
                      accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
+  check_builder(options.builder, tree_kind(accel), is_on_cuda(options));
   if (is_device_builder(options.builder)) {
-    check_device_build(scene, options);
+    check_geometry(scene.meshes, scene.instances);
   } else {
     TreeOptions tree;
     tree.accel = tree_kind(accel);

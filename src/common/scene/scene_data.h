@@ -68,7 +68,7 @@ struct SceneData {
   std::vector<Sphere> scan_spheres;        ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
   // In scenes with triangles:
-  TriangleTreeData tree;                     ///< empty where the device builds it
+  TriangleTreeData tree;                     ///< empty where --builder leaves it to the device
   std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`
   MeshAttributes attributes;
   std::vector<Affine> to_world;  ///< by instance

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace pt {
@@ -34,29 +35,21 @@ void append_count(std::string& text, std::uint64_t count, const char* what) {
 /// Of all nodes' visits and triangles' tests, as the builders weigh them.
 constexpr double triangle_cost = 1.0;
 
-void describe_tree(const TriangleTreeData& tree, SceneFacts& facts) {
-  if (tree.bvh2.empty() && tree.cwbvh.empty()) return;
-  const TreeQuality quality =
-      tree.bvh2.empty() ? measure_tree(tree.cwbvh, tree.root) : measure_tree(tree.bvh2, tree.root);
-  facts.tree.nodes = tree.bvh2.size() + tree.cwbvh.size();
-  facts.tree.references = tree.triangles.size();
-  facts.tree.depth = quality.depth;
-  facts.tree.sah_cost = quality.sah_cost(triangle_cost);
-  facts.tree.bytes_per_triangle = static_cast<double>(tree.size_bytes()) /
-                                  static_cast<double>(std::max<std::uint64_t>(facts.triangles, 1));
-  facts.tree.builder = tree.builder;
-  facts.tree.build_ms = tree.build_ms;
-}
-
-std::string tree_text(const SceneFacts& facts) {
-  return fmt::format(
-      "tree: {}, {} nodes, depth {}, SAH cost {:.1f}, {:.1f} bytes per triangle, built in {:.0f} "
-      "ms\n",
-      facts.tree.builder, facts.tree.nodes, facts.tree.depth, facts.tree.sah_cost,
-      facts.tree.bytes_per_triangle, facts.tree.build_ms);
-}
-
 }  // namespace
+
+TreeFacts tree_facts(const TreeSummary& tree, std::uint64_t triangles) {
+  TreeFacts facts;
+  if (tree.quality.nodes == 0) return facts;
+  facts.builder = tree.builder;
+  facts.nodes = tree.quality.nodes;
+  facts.references = tree.quality.slots;
+  facts.depth = tree.quality.depth;
+  facts.sah_cost = tree.quality.sah_cost(triangle_cost);
+  facts.bytes_per_triangle = static_cast<double>(tree.size_bytes) /
+                             static_cast<double>(std::max<std::uint64_t>(triangles, 1));
+  facts.build_ms = tree.build_ms;
+  return facts;
+}
 
 void describe_scene(const SceneData& scene, SceneFacts& facts) {
   facts.triangles = scene.triangle_count();
@@ -75,7 +68,7 @@ void describe_scene(const SceneData& scene, SceneFacts& facts) {
       {"environment", bytes(scene.environment_map.texels) + bytes(scene.environment_map.alias)},
       {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection)}};
   std::erase_if(facts.memory, [](const BufferSize& buffer) { return buffer.size_bytes == 0; });
-  describe_tree(scene.tree, facts);
+  facts.tree = tree_facts(summarize(scene.tree), facts.triangles);
 }
 
 std::string scene_text(const SceneFacts& facts) {
@@ -94,8 +87,16 @@ std::string scene_text(const SceneFacts& facts) {
   }
   std::string text = fmt::format("scene: {}\n", counts);
   if (!memory.empty()) text += fmt::format("memory: {}\n", memory);
-  if (facts.tree.nodes > 0) text += tree_text(facts);
-  return text;
+  return text + tree_text(facts.tree);
+}
+
+std::string tree_text(const TreeFacts& tree) {
+  if (tree.nodes == 0) return "";
+  return fmt::format(
+      "tree: {}, {} nodes, depth {}, SAH cost {:.1f}, {:.1f} bytes per triangle, built in {:.{}f} "
+      "ms\n",
+      tree.builder, tree.nodes, tree.depth, tree.sah_cost, tree.bytes_per_triangle, tree.build_ms,
+      tree.build_ms < 10 ? 1 : 0);
 }
 
 }  // namespace pt

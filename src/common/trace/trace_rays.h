@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "common/accel/build_triangle_tree.h"
+#include "common/accel/tree_summary.h"
 #include "common/accel/triangle_tree_data.h"
 #include "common/render/options.h"
 #include "common/trace/ray_file.h"
@@ -30,5 +32,16 @@ TraceResult trace_rays_cpu(const TriangleTreeData& tree, const RaySet& rays, con
 /// memory, or where the tree is not one that the variant can traverse.
 TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
                             int index);
+
+struct BuiltTrace {
+  TraceResult result;
+  TreeSummary tree;
+};
+
+/// The same with a tree built on the device: `tree` has one of its builders. Throws Error for
+/// geometry that is not valid, too.
+BuiltTrace build_and_trace_cuda(std::span<const Mesh> meshes, std::span<const Instance> instances,
+                                const TreeOptions& tree, const RaySet& rays, const TraceRuns& runs,
+                                int index);
 
 }  // namespace pt

@@ -2,6 +2,7 @@
 
 #include "common/device/cuda_check.cuh"
 #include "common/device/cuda_memory.cuh"
+#include "common/device/device_triangle_tree.cuh"
 #include "common/error.h"
 #include "common/trace/trace_kernels.cuh"
 #include "common/trace/trace_rays.h"
@@ -51,13 +52,8 @@ TraceVariant choose_variant(TraceVariant wanted, const TriangleTree& tree, const
   return wanted;
 }
 
-}  // namespace
-
-TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& set, const TraceRuns& runs,
-                            int index) {
-  check_cuda(cudaSetDevice(index), "cudaSetDevice");
-  CudaMemory memory;
-  const TriangleTree view = upload(tree, memory);
+TraceResult trace(const TriangleTree& view, const RaySet& set, const TraceRuns& runs,
+                  CudaMemory& memory) {
   const auto count = static_cast<std::uint32_t>(set.rays.size());
   const RayArrays rays = {memory.upload("rays", set.rays),
                           memory.allocate<HitRecord>("hits", set.rays.size()), count,
@@ -79,6 +75,25 @@ TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& set, con
                         cudaMemcpyDeviceToHost),
              "reading the hits");
   return result;
+}
+
+}  // namespace
+
+TraceResult trace_rays_cuda(const TriangleTreeData& tree, const RaySet& rays, const TraceRuns& runs,
+                            int index) {
+  check_cuda(cudaSetDevice(index), "cudaSetDevice");
+  CudaMemory memory;
+  return trace(upload(tree, memory), rays, runs, memory);
+}
+
+BuiltTrace build_and_trace_cuda(std::span<const Mesh> meshes, std::span<const Instance> instances,
+                                const TreeOptions& tree, const RaySet& rays, const TraceRuns& runs,
+                                int index) {
+  check_geometry(meshes, instances);
+  check_cuda(cudaSetDevice(index), "cudaSetDevice");
+  CudaMemory memory;
+  const DeviceTriangleTree built = build_device_triangle_tree(meshes, instances, tree, memory);
+  return {trace(built.view, rays, runs, memory), built.summary};
 }
 
 }  // namespace pt
