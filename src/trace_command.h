@@ -1,7 +1,6 @@
 // `ptexp trace`: a file of rays against a mesh; `ptexp rays`: makes such files.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +24,10 @@ struct TraceCommand {
 };
 
 struct RaysCommand {
-  std::string scene;  ///< as load_triangles takes it
+  std::string scene;  ///< as load_traced_scene takes it
   std::string output;
   RayKind kind = RayKind::primary;
-  std::optional<int> bounce;  ///< instead of `kind`
+  int bounces = 0;  ///< RayKind::bounce
   int size = 2048;
   CameraOverrides camera;  ///< else the scene's, or inside a mesh's bounding box, looking along it
 };
