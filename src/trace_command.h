@@ -21,6 +21,7 @@ struct TraceCommand {
   DeviceChoice device;
   TraceRuns runs;
   bool quiet = false;
+  std::string command_line;  ///< for the record: the program's arguments
 };
 
 struct RaysCommand {
