@@ -11,6 +11,7 @@
 
 #include "common/error.h"
 #include "common/render/option_list.h"
+#include "shell_text.h"
 
 namespace pt {
 namespace {
@@ -190,7 +191,9 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   }
   if (parser.trace.is_parsed()) {
     check_alone(parser, "trace", nullptr);
-    return parser.trace.parse();
+    TraceCommand command = parser.trace.parse();
+    command.command_line = shell_text(arguments);
+    return command;
   }
   if (parser.rays.is_parsed()) {
     check_alone(parser, "rays", nullptr);

@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
-#include "common/accel/build_triangle_tree.h"
 #include "common/error.h"
 #include "common/image/atomic_file.h"
 #include "common/render/option_values.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_scene.h"
-#include "common/trace/path_rays.h"
 #include "trace_command.h"
 #include "trace_scene.h"
 
@@ -28,24 +26,11 @@ CameraParameters default_camera(const Bounds& bounds) {
 int rays_command(const RaysCommand& command) {
   if (command.scene.empty()) throw Error("rays: expected --scene NAME|FILE or --mesh FILE");
   check_writable(command.output);
-  SceneData scene = load_triangles(command.scene);
-  const Bounds bounds = scene_bounds(scene);
-  if (command.scene.ends_with(".mesh")) scene.camera = default_camera(bounds);
+  SceneData scene = load_traced_scene(command.scene);
+  if (command.scene.ends_with(".mesh")) scene.camera = default_camera(scene_bounds(scene));
   override_camera(scene.camera, command.camera);
-  check_camera(scene.camera);
-  RaySet rays;
-  if (command.bounce) {
-    prepare_scene(scene, {});
-    rays = generate_path_rays(scene, *command.bounce, command.size);
-  } else {
-    if (!scene.instances.empty()) {
-      throw Error(
-          fmt::format("--scene {}: has instances; expected --kind bounce:K", command.scene));
-    }
-    const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, {});
-    const Camera camera = make_camera(scene.camera, command.size, command.size);
-    rays = generate_rays(command.kind, tree, camera, command.size, scale_ray_kinds(bounds));
-  }
+  prepare_scene(scene, {});
+  const RaySet rays = generate_rays(command.kind, scene, command.size, command.bounces);
   write_rays(command.output, rays);
   fmt::print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
   return 0;

@@ -27,6 +27,7 @@ struct TraceReport {
   TreeSummary tree;
   Spread time_ms;
   TraceVariant variant = TraceVariant::automatic;
+  int threads = 0;
 
   double mrays_per_s() const {
     return time_ms.median > 0 ? static_cast<double>(rays) / time_ms.median / 1e3 : 0;
@@ -64,9 +65,17 @@ std::string driver_version() {
 CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
   const bool is_cuda = report.device.choice.kind == DeviceChoice::Kind::cuda;
   const auto number = [](double x) { return fmt::format("{:.6g}", x); };
-  return {{"version", build_info().version},
-          {"commit", build_info().commit},
+  const BuildInfo& build = build_info();
+  return {{"version", build.version},
+          {"commit", build.commit},
+          {"build_type", build.build_type},
+          {"compiler", build.compiler},
+          {"cuda", build.cuda},
+          {"fast_math", build.fast_math ? "on" : "off"},
+          {"command", command.command_line},
           {"device", report.device.name},
+          {"device_kind", is_cuda ? "cuda" : "cpu"},
+          {"threads", is_cuda ? "" : std::to_string(report.threads)},
           {"driver", is_cuda ? driver_version() : ""},
           {"mesh", command.mesh},
           {"triangles", std::to_string(report.triangles)},
@@ -171,6 +180,7 @@ int trace_command(const TraceCommand& given) {
   report.rays = rays.rays.size();
   report.type = rays.type;
   report.tree = tree;
+  report.threads = result.threads;
   report.time_ms = spread(result.times_ms);
   report.variant = result.variant;
   if (!command.quiet) print_report(command, report);

@@ -1,7 +1,6 @@
 // `ptexp trace`: a file of rays against a mesh; `ptexp rays`: makes such files.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,13 +21,14 @@ struct TraceCommand {
   DeviceChoice device;
   TraceRuns runs;
   bool quiet = false;
+  std::string command_line;  ///< for the record: the program's arguments
 };
 
 struct RaysCommand {
-  std::string scene;  ///< as load_triangles takes it
+  std::string scene;  ///< as load_traced_scene takes it
   std::string output;
   RayKind kind = RayKind::primary;
-  std::optional<int> bounce;  ///< instead of `kind`
+  int bounces = 0;  ///< RayKind::bounce
   int size = 2048;
   CameraOverrides camera;  ///< else the scene's, or inside a mesh's bounding box, looking along it
 };

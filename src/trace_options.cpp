@@ -10,8 +10,11 @@ inline constexpr auto enum_names<TraceVariant> =
                                            {TraceVariant::persistent, "persistent"},
                                            {TraceVariant::beam, "beam"}});
 template <>
-inline constexpr auto enum_names<RayKind> = std::to_array<EnumName<RayKind>>(
-    {{RayKind::primary, "primary"}, {RayKind::ao, "ao"}, {RayKind::diffuse, "diffuse"}});
+inline constexpr auto enum_names<RayKind> =
+    std::to_array<EnumName<RayKind>>({{RayKind::primary, "primary"},
+                                      {RayKind::ao, "ao"},
+                                      {RayKind::diffuse, "diffuse"},
+                                      {RayKind::bounce, "bounce:K"}});
 
 namespace {
 
@@ -37,7 +40,8 @@ int parse_size(const std::string& text) {
 void parse_kind(const std::string& text, RaysCommand& command) {
   const std::string prefix = "bounce:";
   if (text.starts_with(prefix)) {
-    command.bounce = static_cast<int>(parse_integer("kind", text.substr(prefix.size()), 0, 1000));
+    command.kind = RayKind::bounce;
+    command.bounces = static_cast<int>(parse_integer("kind", text.substr(prefix.size()), 0, 1000));
   } else {
     command.kind = parse_name<RayKind>("kind", text);
   }

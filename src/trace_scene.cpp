@@ -10,7 +10,7 @@
 
 namespace pt {
 
-SceneData load_triangles(const std::string& name) {
+SceneData load_traced_scene(const std::string& name) {
   SceneData scene;
   if (name.ends_with(".mesh")) {
     scene.meshes.push_back(read_trace_mesh(name));
@@ -20,10 +20,15 @@ SceneData load_triangles(const std::string& name) {
     options.scene = name;
     scene = load_scene(options, choose_device({DeviceChoice::Kind::cpu, 0}));
     convert_quads(scene);
-    scene.spheres.clear();
-    scene.sphere_material.clear();
   }
   scene.name = name;
+  return scene;
+}
+
+SceneData load_triangles(const std::string& name) {
+  SceneData scene = load_traced_scene(name);
+  scene.spheres.clear();
+  scene.sphere_material.clear();
   if (scene.triangle_count() == 0) throw Error(fmt::format("{}: has no triangles", name));
   return scene;
 }

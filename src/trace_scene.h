@@ -1,4 +1,4 @@
-// The triangles that `ptexp trace` and `ptexp rays` work on.
+// What `ptexp trace` and `ptexp rays` work on.
 #pragma once
 
 #include <string>
@@ -7,8 +7,10 @@
 
 namespace pt {
 
-/// A .mesh file (TRBMESH1), or any scene as --scene takes it: its quads become triangles, its
-/// spheres are left out. Throws Error where there are no triangles.
+/// A .mesh file (TRBMESH1), or any scene as --scene takes it; its quads become triangles.
+SceneData load_traced_scene(const std::string& name);
+
+/// The same without its spheres. Throws Error where there are no triangles.
 SceneData load_triangles(const std::string& name);
 
 }  // namespace pt

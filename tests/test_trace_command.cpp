@@ -30,6 +30,11 @@ TEST(TraceCommandLine, ReadsAllOptions) {
   EXPECT_TRUE(c.quiet);
 }
 
+TEST(TraceCommandLine, IsKeptForTheRecord) {
+  const auto c = parse<TraceCommand>({"trace", "--mesh", "a b", "--rays", "it's", "--hits", ""});
+  EXPECT_EQ(c.command_line, "trace --mesh 'a b' --rays 'it'\\''s' --hits ''");
+}
+
 TEST(TraceCommandLine, RefusesWhatItCannotDo) {
   const auto refuse = [](std::vector<std::string> arguments, const std::string& part) {
     expect_error([&] { parse_command_line(arguments); }, part);
@@ -86,10 +91,13 @@ TEST_F(TraceFiles, ComparesWithAReference) {
 TEST_F(TraceFiles, AppendsRows) {
   command_.csv = folder_.file("c");
   command_.runs.repeat = 2;
+  command_.command_line = "trace --mesh m,n";
   trace_command(command_);
   trace_command(command_);
   const std::string text = read_text(command_.csv);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
+  EXPECT_NE(text.find(",fast_math,command,device,device_kind,threads,driver,"), std::string::npos);
+  EXPECT_NE(text.find(",\"trace --mesh m,n\",CPU,cpu,"), std::string::npos) << text;
 }
 
 TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {

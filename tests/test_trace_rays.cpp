@@ -8,10 +8,11 @@
 #include "common/accel/build_triangle_tree.h"
 #include "common/scene/generate_terrain.h"
 #include "common/trace/compare_hits.h"
-#include "common/trace/generate_rays.h"
 #include "common/trace/trace_rays.h"
 #include "instanced_meshes.h"
 #include "shared_file.h"
+#include "temp_folder.h"
+#include "terrain_rays.h"
 
 namespace pt {
 namespace {
@@ -24,23 +25,10 @@ TriangleTreeData tree_over(const Mesh& mesh, AccelKind accel,
   return build_triangle_tree({&mesh, 1}, {}, options);
 }
 
-Camera terrain_camera(int size) {
-  CameraParameters camera;
-  camera.look_from = {-490, 175, 490};
-  camera.look_at = {0, 10, 0};
-  return make_camera(camera, size, size);
-}
-
-RaySet terrain_rays(const TriangleTreeData& tree, RayKind kind, int size) {
-  return generate_rays(kind, tree, terrain_camera(size), size,
-                       scale_ray_kinds(tree.groups.front().bounds));
-}
-
 TEST(TraceRays, StructuresAgree) {
   const Mesh mesh = generate_terrain(3000);
-  const TriangleTreeData wide = tree_over(mesh, AccelKind::cwbvh);
   for (const RayKind kind : {RayKind::primary, RayKind::ao, RayKind::diffuse}) {
-    const RaySet rays = terrain_rays(wide, kind, 32);
+    const RaySet rays = terrain_rays(mesh, kind, 32);
     ASSERT_GT(rays.rays.size(), 100u);
     const auto expected = trace_rays_cpu(tree_over(mesh, AccelKind::brute), rays, {}).hits;
     for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
@@ -93,16 +81,66 @@ TEST(TraceRays, ComparisonTellsWhatDiffers) {
 TEST(TraceRays, RaySetsAreWhatTheySay) {
   const Mesh mesh = generate_terrain(3000);
   const TriangleTreeData tree = tree_over(mesh, AccelKind::cwbvh);
-  const RaySet primary = terrain_rays(tree, RayKind::primary, 32);
+  const RaySet primary = terrain_rays(mesh, RayKind::primary, 32);
   EXPECT_EQ(primary.rays.size(), 1024u);
   EXPECT_EQ(primary.type, RayType::closest);
   const auto hits = trace_rays_cpu(tree, primary, {}).hits;
   std::size_t hit_count = 0;
   for (const HitRecord& hit : hits) hit_count += hit.t >= 0;
-  const RaySet ao = terrain_rays(tree, RayKind::ao, 32);
+  const RaySet ao = terrain_rays(mesh, RayKind::ao, 32);
   EXPECT_EQ(ao.type, RayType::any);
   EXPECT_EQ(ao.rays.size(), 8 * hit_count);
   for (const RayRecord& ray : ao.rays) EXPECT_NEAR(glm::length(ray.direction), 1.0f, 1e-5f);
+}
+
+/// The same terrain twice, once as instances of a group: one stretched, one mirrored.
+TEST(TraceRays, InstancesGiveTheRaysOfTheirTriangles) {
+  Mesh mesh = generate_terrain(3000);
+  const Affine placed[] = {scale({0.5f, 1.0f, 1.0f}),
+                           translate({250, 5, 0}) * scale({-0.5f, 1, 1})};
+  std::vector<Mesh> flat;
+  for (const Affine& to_world : placed) {
+    flat.push_back(mesh);
+    for (Vec3& p : flat.back().positions) p = to_world.point(p);
+  }
+  mesh.group = 1;
+  const SceneData instanced = terrain_scene({mesh}, {{1, placed[0]}, {1, placed[1]}});
+  const SceneData triangles = terrain_scene(flat);
+  for (const RayKind kind : {RayKind::primary, RayKind::ao, RayKind::diffuse}) {
+    const RaySet a = generate_rays(kind, instanced, 32), b = generate_rays(kind, triangles, 32);
+    ASSERT_EQ(a.rays.size(), b.rays.size());
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < a.rays.size(); ++i) {
+      near += glm::length(a.rays[i].origin - b.rays[i].origin) < 0.05f &&
+              glm::length(a.rays[i].direction - b.rays[i].direction) < 1e-3f;
+    }
+    EXPECT_GE(near + 20, a.rays.size());  // rounding may send a ray past an edge
+  }
+}
+
+TEST(TraceRays, SpheresStopPaths) {
+  SceneData scene = terrain_scene({generate_terrain(3000)});
+  scene.add_sphere({0, 10, 0}, 400, 0);
+  prepare_scene(scene, {});
+  const RaySet rays = generate_rays(RayKind::ao, scene, 32);
+  std::size_t outside = 0;
+  for (const RayRecord& ray : rays.rays) {
+    const Vec3 from = ray.origin - Vec3(0, 10, 0);
+    if (std::abs(glm::length(from) - 400) > 0.1f) continue;
+    EXPECT_GE(glm::dot(from, ray.direction), 0.0f);
+    ++outside;
+  }
+  EXPECT_GT(outside, rays.rays.size() / 4);
+}
+
+TEST(TraceRays, BouncesFollowTheMaterials) {
+  SceneData scene = terrain_scene({generate_terrain(3000)});
+  EXPECT_EQ(generate_rays(RayKind::bounce, scene, 32, 0).rays.size(), 1024u);
+  const RaySet rays = generate_rays(RayKind::bounce, scene, 32, 2);
+  EXPECT_EQ(rays.type, RayType::closest);
+  EXPECT_GT(rays.rays.size(), 100u);
+  scene.camera.look_at = {-490, 900, 491};
+  expect_error([&] { generate_rays(RayKind::bounce, scene, 32, 2); }, "no path of scene 'terrain'");
 }
 
 class TraceVectors : public testing::TestWithParam<const char*> {};

@@ -2,9 +2,9 @@
 #include "common/accel/build_triangle_tree.h"
 #include "common/scene/generate_terrain.h"
 #include "common/trace/compare_hits.h"
-#include "common/trace/generate_rays.h"
 #include "common/trace/trace_rays.h"
 #include "cuda_test.h"
+#include "terrain_rays.h"
 
 namespace pt {
 namespace {
@@ -16,13 +16,8 @@ TriangleTreeData terrain_tree(AccelKind accel) {
   return build_triangle_tree({&mesh, 1}, {}, options);
 }
 
-RaySet terrain_rays(const TriangleTreeData& tree, RayKind kind) {
-  constexpr int size = 64;
-  CameraParameters camera;
-  camera.look_from = {-490, 175, 490};
-  camera.look_at = {0, 10, 0};
-  RaySet rays = generate_rays(kind, tree, make_camera(camera, size, size), size,
-                              scale_ray_kinds(tree.groups.front().bounds));
+RaySet uneven_rays(RayKind kind) {
+  RaySet rays = terrain_rays(generate_terrain(20000), kind, 64);
   rays.rays.resize(rays.rays.size() - 5);  // the last warp is not full
   rays.rays[7].t_max = 1e-3f;
   rays.rays[9].direction = {0, -1, 0};
@@ -44,7 +39,7 @@ class CudaTraceRays : public CudaTest {
 TEST_F(CudaTraceRays, AllVariantsAgreeWithTheCpu) {
   const TriangleTreeData wide = terrain_tree(AccelKind::cwbvh);
   for (const RayKind kind : {RayKind::primary, RayKind::ao, RayKind::diffuse}) {
-    const RaySet rays = terrain_rays(wide, kind);
+    const RaySet rays = uneven_rays(kind);
     for (const TraceVariant variant : {TraceVariant::automatic, TraceVariant::threads,
                                        TraceVariant::persistent, TraceVariant::beam})
       expect_same(wide, rays, variant);
@@ -55,7 +50,7 @@ TEST_F(CudaTraceRays, AllVariantsAgreeWithTheCpu) {
 TEST_F(CudaTraceRays, ChoosesByCoherence) {
   const TriangleTreeData tree = terrain_tree(AccelKind::cwbvh);
   const auto chosen = [&](RayKind kind) {
-    return trace_rays_cuda(tree, terrain_rays(tree, kind), {}, 0).variant;
+    return trace_rays_cuda(tree, uneven_rays(kind), {}, 0).variant;
   };
   EXPECT_EQ(chosen(RayKind::primary), TraceVariant::beam);
   EXPECT_EQ(chosen(RayKind::ao), TraceVariant::persistent);
@@ -65,7 +60,7 @@ TEST_F(CudaTraceRays, ChoosesByCoherence) {
 TEST_F(CudaTraceRays, NoRaysAndNoTriangles) {
   const TriangleTreeData tree = terrain_tree(AccelKind::cwbvh);
   EXPECT_TRUE(trace_rays_cuda(tree, {}, {}, 0).hits.empty());
-  const auto hits = trace_rays_cuda({}, terrain_rays(tree, RayKind::primary), {}, 0).hits;
+  const auto hits = trace_rays_cuda({}, uneven_rays(RayKind::primary), {}, 0).hits;
   for (const HitRecord& hit : hits) EXPECT_EQ(hit.t, -1.0f);
 }
 

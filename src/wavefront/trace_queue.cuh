@@ -4,6 +4,7 @@
 
 #include "common/device/stage_stamp.cuh"
 #include "common/trace/persistent_cwbvh.cuh"
+#include "common/trace/reserve_rays.cuh"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -22,17 +23,7 @@ struct QueuedRays {
   template <class Load>
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, int& count,
                                  Load&& load) const {
-    constexpr std::uint32_t batch = 128;
-    std::uint32_t first = reserved.next;
-    if (first == reserved.end) {
-      if (lane == 0) first = atomicAdd(next, batch);
-      first = __shfl_sync(0xffffffffu, first, 0);
-      reserved.end = first + batch;
-    }
-    __syncwarp();
-    reserved.next = first + 32;
-    const std::uint32_t all = *queues.count;
-    count = first < all ? static_cast<int>(min(32u, all - first)) : 0;
+    const std::uint32_t first = reserve_rays<128>(next, *queues.count, lane, reserved, count);
     if (static_cast<int>(lane) < count) load(slot(first + lane));
     return first;
   }

@@ -26,7 +26,7 @@ struct alignas(16) Light {
   float weight;
   Vec3 c;                  ///< triangle: a vertex; spot: cosines of both angles, falloff; sphere:
                            ///< square of the radius
-  std::uint32_t triangle;  ///< its id, where the emission has a texture; else no_texture
+  std::uint32_t triangle;  ///< its id, where it has texture coordinates; else no_texture
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;
 

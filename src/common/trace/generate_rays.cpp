@@ -1,96 +1,80 @@
 #include "common/trace/generate_rays.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "common/accel/traverse_cwbvh.h"
-#include "common/trace/ray_sets.h"
+#include <limits>
+
+#include "common/error.h"
+#include "common/render/dispatch.h"
+#include "common/scene/frame_scene.h"
+#include "common/scene/prepare_scene.h"
+#include "common/trace/ray_paths.h"
 
 namespace pt {
 namespace {
 
-constexpr float no_end = 1e30f;
-constexpr RayRecord no_ray = {{0, 0, 0}, 0.0f, {0, 0, 0}, -1.0f};
+/// How often each pixel may be gone through.
+std::uint32_t samples_max(RayKind kind) {
+  if (kind == RayKind::bounce) return 64;
+  return kind == RayKind::diffuse ? std::numeric_limits<std::uint32_t>::max() : 1;
+}
 
-/// Follows paths through a mesh.
-class PathMaker {
- public:
-  PathMaker(const TriangleTree& tree, const Camera& camera, const RayKindSizes& sizes)
-      : tree_(tree), camera_(camera), sizes_(sizes) {}
-
-  Hit trace(const RayRecord& ray) const {
-    return closest_triangle_cwbvh<false>(tree_, ray.ray(), ray.t_min, ray.t_max);
+template <class Traits>
+void follow(const RayPaths<Traits>& paths, RayKind kind, int bounces, std::uint32_t pixel,
+            std::uint32_t sample, RayRecord* rays) {
+  switch (kind) {
+    case RayKind::primary:
+      *rays = paths.primary(pixel);
+      return;
+    case RayKind::ao:
+      paths.occlusion(pixel, rays);
+      return;
+    case RayKind::diffuse:
+      *rays = paths.third_segment(pixel, sample);
+      return;
+    case RayKind::bounce:
+      *rays = paths.after_bounces(pixel, sample, bounces);
+      return;
   }
+}
 
-  RayRecord bounce(const RayRecord& ray, const Hit& hit, float t_max, std::uint32_t pixel,
-                   std::uint32_t dimension) const {
-    const Triangle& t = tree_.triangles[hit.primitive];
-    return make_bounce_ray(ray, hit.t, t.v0, t.v1, t.v2, sizes_.offset, t_max, pixel, dimension);
-  }
-
-  void occlusion(std::uint32_t pixel, RayRecord* rays) const {
-    const RayRecord ray = make_primary_ray(camera_, pixel);
-    const Hit hit = trace(ray);
-    for (std::uint32_t i = 0; i < ao_rays; ++i)
-      rays[i] = hit.is_miss() ? no_ray : bounce(ray, hit, sizes_.ao_distance, pixel, i);
-  }
-
-  /// The third segment of a path, or no_ray; `sample` tells the paths of a pixel apart.
-  RayRecord third_segment(std::uint32_t pixel, std::uint32_t sample) const {
-    RayRecord ray = make_primary_ray(camera_, pixel);
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      const Hit hit = trace(ray);
-      if (hit.is_miss()) return no_ray;
-      ray = bounce(ray, hit, no_end, pixel, ao_rays + 2 * sample + i);
+template <class Traits>
+std::vector<RayRecord> collect(const RayPaths<Traits>& paths, RayKind kind, int bounces,
+                               std::uint32_t pixels) {
+  const std::size_t per_pixel = kind == RayKind::ao ? ao_rays : 1;
+  std::vector<RayRecord> rays, made(per_pixel * pixels);
+  for (std::uint32_t sample = 0; sample < samples_max(kind); ++sample) {
+    tbb::parallel_for(std::uint32_t{0}, pixels, [&](std::uint32_t i) {
+      follow(paths, kind, bounces, i, sample, &made[per_pixel * i]);
+    });
+    const std::size_t before = rays.size();
+    for (const RayRecord& ray : made) {
+      if (ray.t_max > 0.0f && rays.size() < made.size()) rays.push_back(ray);
     }
-    return ray;
+    if (rays.size() == made.size()) break;
+    if (kind == RayKind::diffuse && rays.size() == before) break;
   }
-
- private:
-  const TriangleTree& tree_;
-  const Camera& camera_;
-  const RayKindSizes& sizes_;
-};
-
-void append_rays(std::vector<RayRecord>& rays, const std::vector<RayRecord>& more) {
-  for (const RayRecord& ray : more)
-    if (ray.t_max > 0.0f) rays.push_back(ray);
+  return rays;
 }
 
 }  // namespace
 
-RayKindSizes scale_ray_kinds(const Bounds& bounds) {
-  const float diagonal = glm::length(bounds.max - bounds.min);
-  return {5e-6f * diagonal, 0.05f * diagonal};
-}
-
-RaySet generate_rays(RayKind kind, const TriangleTreeData& tree, const Camera& camera, int size,
-                     const RayKindSizes& sizes) {
-  const TriangleTree view = tree.view();
-  const PathMaker paths(view, camera, sizes);
+RaySet generate_rays(RayKind kind, const SceneData& scene, int size, int bounces) {
+  const Scene view = host_view(scene, size, size);
+  const RayKindSizes sizes = scale_ray_kinds(scene_bounds(scene));
   const auto pixels = static_cast<std::uint32_t>(size) * static_cast<std::uint32_t>(size);
   RaySet set;
   set.type = kind == RayKind::ao ? RayType::any : RayType::closest;
-  if (kind == RayKind::primary) {
-    set.rays.resize(pixels);
-    tbb::parallel_for(0u, pixels,
-                      [&](std::uint32_t i) { set.rays[i] = make_primary_ray(camera, i); });
-    return set;
+  dispatch_traits(CpuSceneKinds{}, scene.traits, [&](auto traits) {
+    set.rays = collect(RayPaths<decltype(traits)>(view, sizes), kind, bounces, pixels);
+  });
+  if (set.rays.empty()) {
+    throw Error(
+        fmt::format("rays: no path of scene '{}' gets far enough; expected a camera that "
+                    "sees surfaces, or fewer bounces",
+                    scene.name));
   }
-  std::vector<RayRecord> made(kind == RayKind::ao ? std::size_t{ao_rays} * pixels : pixels);
-  if (kind == RayKind::ao) {
-    tbb::parallel_for(
-        0u, pixels, [&](std::uint32_t i) { paths.occlusion(i, &made[std::size_t{ao_rays} * i]); });
-    append_rays(set.rays, made);
-    return set;
-  }
-  for (std::uint32_t sample = 0; set.rays.size() < pixels; ++sample) {
-    const std::size_t before = set.rays.size();
-    tbb::parallel_for(0u, pixels,
-                      [&](std::uint32_t i) { made[i] = paths.third_segment(i, sample); });
-    append_rays(set.rays, made);
-    if (set.rays.size() == before) break;
-  }
-  if (set.rays.size() > pixels) set.rays.resize(pixels);
   return set;
 }
 

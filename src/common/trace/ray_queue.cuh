@@ -1,7 +1,7 @@
 // Hands the rays of an array to persistent warps, and takes their hits.
 #pragma once
 
-#include "common/trace/ray_arrays.h"
+#include "common/trace/reserve_rays.cuh"
 
 namespace pt {
 
@@ -21,27 +21,18 @@ __device__ void store_result(const TriangleTree& tree, const Query& query, HitRe
   store_hit(record, hit.t, hit.primitive);
 }
 
-/// A warp's share of the array. Warps take `batch` rays at once, a multiple of 32: few atomic
-/// operations.
+/// A warp's share of the array; see reserve_rays.
 template <std::uint32_t batch>
 class RayQueue {
  public:
   __device__ RayQueue(const TriangleTree& tree, const RayArrays& arrays)
       : tree_(tree), arrays_(arrays) {}
 
-  /// All threads of the warp call it together and get up to 32 rays with successive numbers, one
-  /// each; the first one's number is returned.
+  /// See PersistentTracer.
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& ray,
                                  int& count) const {
-    std::uint32_t first = reserved.next;
-    if (first == reserved.end) {
-      if (lane == 0) first = atomicAdd(arrays_.next, batch);
-      first = __shfl_sync(0xffffffffu, first, 0);
-      reserved.end = first + batch;
-    }
-    __syncwarp();
-    reserved.next = first + 32;
-    count = first < arrays_.count ? static_cast<int>(min(32u, arrays_.count - first)) : 0;
+    const std::uint32_t first =
+        reserve_rays<batch>(arrays_.next, arrays_.count, lane, reserved, count);
     if (static_cast<int>(lane) < count) ray = load_ray(arrays_.rays + first + lane);
     return first;
   }

@@ -1,4 +1,4 @@
-// Sets of rays to measure traversal with: primary rays, ambient occlusion, diffuse bounces.
+// The rays of sets to measure traversal with: through a pixel's centre, off a diffuse surface.
 #pragma once
 
 #include "common/sampling/philox.h"
@@ -25,13 +25,13 @@ PT_HD RayRecord make_primary_ray(const Camera& camera, std::uint32_t pixel) {
   return {ray.origin, 0.0f, ray.direction, 1e30f};
 }
 
-/// A cosine-distributed ray from where `ray` met a triangle, on the side from which it came, its
-/// origin `offset` off the triangle. The draw is numbered by (index, dimension).
-PT_HD RayRecord make_bounce_ray(const RayRecord& ray, float t, const Vec3& v0, const Vec3& v1,
-                                const Vec3& v2, float offset, float t_max, std::uint32_t index,
+/// A cosine-distributed ray from where `ray` met a surface, on the side from which it came, its
+/// origin `offset` off the surface. The draw is numbered by (index, dimension).
+PT_HD RayRecord make_bounce_ray(const RayRecord& ray, float t, const Vec3& surface_normal,
+                                float offset, float t_max, std::uint32_t index,
                                 std::uint32_t dimension) {
-  Vec3 normal = normalize(glm::cross(v1 - v0, v2 - v0));
-  if (glm::dot(normal, ray.direction) > 0.0f) normal = -normal;
+  const Vec3 normal =
+      glm::dot(surface_normal, ray.direction) > 0.0f ? -surface_normal : surface_normal;
   const Uint4 bits = philox4x32_10({index, dimension, 0, 0}, 0x7261u, 0x7973u);
   const Vec3 direction =
       sample_cosine_hemisphere(normal, to_unit_float(bits.x), to_unit_float(bits.y));

@@ -23,6 +23,7 @@ struct TraceResult {
   std::vector<HitRecord> hits;                     ///< by ray
   std::vector<double> times_ms;                    ///< of the measured runs: of kernels on CUDA
   TraceVariant variant = TraceVariant::automatic;  ///< what ran; automatic on the CPU
+  int threads = 0;                                 ///< of the CPU; 0 on CUDA
 };
 
 /// On all threads of the processor.

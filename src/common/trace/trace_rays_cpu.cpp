@@ -1,4 +1,5 @@
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <chrono>
 
@@ -53,6 +54,7 @@ TraceResult trace_rays_cpu(const TriangleTreeData& tree, const RaySet& set, cons
   const TraceOne trace_one = choose(tree);
   TraceResult result;
   result.hits.resize(set.rays.size());
+  result.threads = tbb::this_task_arena::max_concurrency();
   for (int run = -runs.warmup; run < runs.repeat; ++run) {
     const auto begin = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, set.rays.size(), [&](std::size_t i) {

@@ -34,8 +34,8 @@ PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
 
 PT_HD Color textured_radiance(const Scene& scene, const Light& light, const Vec3& barycentric) {
   if (light.emission_texture == no_texture) return light.radiance;
-  const Vec2 uv = light.triangle != no_texture ? scene.attributes.uv(light.triangle, barycentric)
-                                               : Vec2(barycentric.y, barycentric.z);
+  const bool has_uvs = light.triangle != no_texture;
+  const Vec2 uv = texture_coordinates(scene, light.triangle, has_uvs, barycentric);
   return light.radiance * sample_texture(scene.textures[light.emission_texture], scene.texels, uv);
 }
 

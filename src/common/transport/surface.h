@@ -30,12 +30,19 @@ PT_HD Triangle world_triangle(const Scene& scene, const Hit& hit) {
   return t;
 }
 
+/// Where a triangle's point lies in textures: by its vertices' coordinates, or by barycentric ones
+/// where it has none.
+PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bool has_uvs,
+                               const Vec3& barycentric) {
+  return has_uvs ? scene.attributes.uv(triangle_id, barycentric)
+                 : Vec2(barycentric.y, barycentric.z);
+}
+
 PT_HD void apply_textures(const Scene& scene, const Triangle& triangle, const Vec3& barycentric,
                           Material& material) {
   const MaterialTextures textures = scene.material_textures[material.textures];
-  const Vec2 uv = (triangle.attributes & TriangleAttributes::uvs) != 0
-                      ? scene.attributes.uv(triangle.id, barycentric)
-                      : Vec2(barycentric.y, barycentric.z);
+  const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
+  const Vec2 uv = texture_coordinates(scene, triangle.id, has_uvs, barycentric);
   if (textures.albedo != no_texture) {
     material.albedo *= sample_texture(scene.textures[textures.albedo], scene.texels, uv);
   }
