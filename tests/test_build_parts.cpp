@@ -144,7 +144,7 @@ double wide_cost(const RandomTree& tree, TreeRef ref, const Choose& choose,
     }
     EXPECT_LE(ref_count(child), tree.costs.leaf_max);
     for_each_primitive(view, child, [&](std::uint32_t p) { ++seen[p]; });
-    cost += load_node(view, child).bounds().half_area() * ref_count(child) * tree.costs.triangle;
+    cost += load_node(view, child).bounds().half_area() * tree.costs.triangle;  // as one
   }
   return cost;
 }

@@ -27,7 +27,9 @@ class Exhaustive {
 
   /// A forest of at most `roots` wide trees over a subtree.
   double wide(std::uint32_t child, double area, int roots) const {
-    double best = leaf(child, area, std::min<std::uint32_t>(costs_.leaf_max, cwbvh_leaf_max));
+    // The triangles of a leaf are tested together.
+    const std::uint32_t most = std::min<std::uint32_t>(costs_.leaf_max, cwbvh_leaf_max);
+    double best = count(child) > most ? HUGE_VAL : costs_.triangle * area;
     if (is_leaf(child)) return best;
     best = std::min(best, wide_node(child, area));
     for (int i = 2; i <= roots; ++i) best = std::min(best, shared(child, i));
@@ -37,7 +39,8 @@ class Exhaustive {
     return costs_.node * area + shared(child, 8);
   }
   double binary(std::uint32_t child, double area) const {
-    const double whole = leaf(child, area, costs_.leaf_max);
+    const std::uint32_t n = count(child);
+    const double whole = n > costs_.leaf_max ? HUGE_VAL : costs_.triangle * area * n;
     if (is_leaf(child)) return whole;
     const Bvh2Node& node = tree_.nodes[child];
     return std::min(whole, costs_.node * area + binary(node.child[0], area_of(node, 0)) +
@@ -50,10 +53,6 @@ class Exhaustive {
     if (is_leaf(child)) return 1;
     const Bvh2Node& node = tree_.nodes[child];
     return count(node.child[0]) + count(node.child[1]);
-  }
-  double leaf(std::uint32_t child, double area, std::uint32_t most) const {
-    const std::uint32_t n = count(child);
-    return n > most ? HUGE_VAL : costs_.triangle * area * n;
   }
   double shared(std::uint32_t child, int roots) const {
     const Bvh2Node& node = tree_.nodes[child];
@@ -78,7 +77,7 @@ double chosen_cost(const CollapseChoices& choices, const TreeCosts& costs, std::
     const CollapsedChild& child = children.child[c];
     const double child_area = child.bounds.half_area();
     sum += child.is_inner ? chosen_cost(choices, costs, child.subtree, child_area)
-                          : costs.triangle * child_area * choices.members_of(child.subtree).size();
+                          : costs.triangle * child_area;
   }
   return sum;
 }

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_invoke.h>
 
+#include "common/accel/collapse_cost.h"
+
 namespace pt {
 
 namespace {
@@ -13,7 +15,6 @@ constexpr int task_depth = 10;  // so far down, the two children are tasks of th
 CollapseChoices::CollapseChoices(const BinaryTree& tree, const TreeCosts& costs)
     : tree_(tree),
       costs_(costs),
-      leaf_max_(std::min<std::uint32_t>(costs.leaf_max, cwbvh_leaf_max)),
       entries_(new Entry[tree.node_capacity]) {
   if (!is_leaf(tree.root)) choose(tree.root, tree.bounds.half_area(), 0);
 }
@@ -38,10 +39,9 @@ CollapseChoices::Below CollapseChoices::choose(std::uint32_t subtree, float area
   below.members.add(half[1].members);
   Entry& entry = entries_[subtree];
   share_out(node, half, entry);
-  const std::uint32_t count = below.members.size();
-  const float leaf_cost = costs_.triangle * area * static_cast<float>(count);
+  const float leaf_cost = wide_leaf_cost(costs_, area, below.members.size());
   const float inner_cost = costs_.node * area + entry.cost[0];
-  const bool is_inner = count > leaf_max_ || inner_cost < leaf_cost;
+  const bool is_inner = inner_cost < leaf_cost;
   entry.share[0] = is_inner ? 1 : 0;
   entry.cost[0] = is_inner ? inner_cost : leaf_cost;
   for (int i = 1; i < 7; ++i) {
@@ -67,7 +67,7 @@ void CollapseChoices::share_out(const Bvh2Node& node, const Below (&half)[2], En
 }
 
 float CollapseChoices::cost_of(std::uint32_t subtree, float area, int forest) const {
-  return is_leaf(subtree) ? costs_.triangle * area : entries_[subtree].cost[forest - 1];
+  return is_leaf(subtree) ? wide_leaf_cost(costs_, area, 1) : entries_[subtree].cost[forest - 1];
 }
 
 void CollapseChoices::gather(std::uint32_t subtree, const Bounds& bounds, int forest,

@@ -50,7 +50,6 @@ class CollapseChoices {
 
   const BinaryTree& tree_;
   TreeCosts costs_;
-  std::uint32_t leaf_max_;
   std::unique_ptr<Entry[]> entries_;  // by binary node
 };
 

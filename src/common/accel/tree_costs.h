@@ -6,7 +6,7 @@
 
 namespace pt {
 
-/// Of testing a triangle, relative to a wide node, whose eight boxes are tested together.
+/// Of testing the one or two triangles of a wide tree's leaf, relative to a node's eight boxes.
 inline constexpr float cwbvh_triangle_cost = 0.5f;
 
 inline constexpr TreeCosts default_bvh2_costs = {1.0f, 1.0f, 4};
