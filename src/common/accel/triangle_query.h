@@ -55,6 +55,37 @@ class ClosestTriangle {
   Hit hit_;
 };
 
+/// As ClosestTriangle, for trees without instances, where nothing but t and the triangle's number
+/// is asked for: the record of the hit need not be read again.
+class ClosestTriangleId {
+ public:
+  PT_HD ClosestTriangleId(float t_min, float t_max) : t_min_(t_min), t_(t_max) {}
+
+  PT_HD float t_max() const { return multiply_rounded(t_, 1.0f + 1.0f / 65536.0f); }
+  PT_HD float t_min() const { return t_min_; }
+
+  PT_HD bool offer_nearer(const TriangleTree&, const MetTriangle& a, const MetTriangle& b) {
+    offer(a);
+    offer(b);
+    return false;
+  }
+
+  PT_HD bool is_miss() const { return id_ == no_id; }
+  PT_HD float t() const { return t_; }
+  PT_HD std::uint32_t id() const { return id_; }
+
+ private:
+  static constexpr std::uint32_t no_id = 0xffffffffu;
+
+  PT_HD void offer(const MetTriangle& met) {
+    const bool is_nearer = met.t < t_ || (met.t == t_ && met.id < id_ && !is_miss());
+    if (met.t > t_min_ && is_nearer) t_ = met.t, id_ = met.id;
+  }
+
+  float t_min_, t_;
+  std::uint32_t id_ = no_id;
+};
+
 /// Whether there is a hit with t_min < t < t_max.
 class AnyTriangle {
  public:

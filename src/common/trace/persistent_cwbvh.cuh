@@ -43,9 +43,9 @@ struct SlotGroup {
 };
 
 struct PersistentTuning {
-  static constexpr int refill = 6;  ///< idle lanes that make the warp hand out rays
+  static constexpr int refill = 8;  ///< idle lanes that make the warp hand out rays
   /// A warp steps if stepping lanes * step_weight >= testing lanes * test_weight.
-  static constexpr int step_weight = 2, test_weight = 3;
+  static constexpr int step_weight = 1, test_weight = 2;
 };
 
 /// Traces what `work` hands out, one lane's view. Query: ClosestTriangle or AnyTriangle. Work has
@@ -89,7 +89,7 @@ class PersistentTracer {
 
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
 
-  /// Finishes the rays of idle lanes and hands out others. False: none were left.
+  /// Finishes the rays of idle lanes and hands out others. False: there are not enough left.
   __device__ bool refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
     if (!is_active() && warp_.number[lane] != PersistentWarp::none) {
@@ -97,19 +97,33 @@ class PersistentTracer {
       warp_.number[lane] = PersistentWarp::none;
     }
     int next = warp_.next_ray, count = warp_.ray_count;
+    int place = next + __popc(idle & ((1u << lane) - 1));  // also of lanes that need none
+    const int end = next + __popc(idle);
+    const bool wants = (idle >> lane & 1u) != 0;
     __syncwarp();
-    if (next >= count) {
-      RayRecord record;
-      const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
-      next = 0;
-      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
-      warp_.ray_count = count;
+    if (wants && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
+    next = end;
+    while (next > count) {  // some lanes got none
+      place -= count, next -= count;
+      __syncwarp();
+      count = fetch(lane);
+      if (count == 0) break;
+      if (wants && place >= 0 && place < count)
+        begin(warp_.rays.load(static_cast<unsigned>(place)));
     }
-    warp_.next_ray = next + __popc(idle);
+    if (lane == 0) warp_.next_ray = next, warp_.ray_count = count;
     __syncwarp();
-    const int place = next + __popc(idle & ((1u << lane) - 1));
-    if (!is_active() && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
     return count > 0;
+  }
+
+  /// Prepares up to 32 more rays.
+  __device__ int fetch(unsigned lane) {
+    RayRecord record;
+    int count;
+    const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
+    if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
+    __syncwarp();
+    return count;
   }
 
   __device__ void begin(const PreparedRay& ray) {

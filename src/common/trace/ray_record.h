@@ -30,6 +30,10 @@ PT_HD HitRecord hit_record(const TriangleTree& tree, const ClosestTriangle& quer
   return {hit.t, tree.triangles[hit.primitive].id};
 }
 
+PT_HD HitRecord hit_record(const TriangleTree&, const ClosestTriangleId& query) {
+  return query.is_miss() ? HitRecord{-1.0f, no_primitive} : HitRecord{query.t(), query.id()};
+}
+
 PT_HD HitRecord hit_record(const TriangleTree&, const AnyTriangle& query) {
   return {query.result() ? 0.0f : -1.0f, no_primitive};
 }

@@ -34,13 +34,13 @@ __global__ void __launch_bounds__(block_size)
   store_result(tree, query, arrays.hits + i);
 }
 
-template <class Query>
+template <class PersistentQuery>
 __global__ void __launch_bounds__(block_size, blocks_least)
     trace_by_persistent_warps(const __grid_constant__ TriangleTree tree,
                               const __grid_constant__ RayArrays arrays) {
   __shared__ PersistentMemory<block_size> memory;
   RayQueue<batch> queue(tree, arrays);
-  trace_persistent<Query>(tree, memory, queue);
+  trace_persistent<PersistentQuery>(tree, memory, queue);
 }
 
 /// Apart from the beam's code: what few warps need must not cost all of them registers. By value:
@@ -87,9 +87,9 @@ Kernel choose_threads(const TriangleTree& tree) {
   return trace_by_threads<Structure::brute, instanced, Query>;
 }
 
-template <class Query>
+template <class Query, class PersistentQuery>
 Kernel choose_kernel(TraceVariant variant, const TriangleTree& tree) {
-  if (variant == TraceVariant::persistent) return trace_by_persistent_warps<Query>;
+  if (variant == TraceVariant::persistent) return trace_by_persistent_warps<PersistentQuery>;
   if (variant == TraceVariant::beam) return trace_by_beams<Query>;
   return tree.instance_count > 0 ? choose_threads<true, Query>(tree)
                                  : choose_threads<false, Query>(tree);
@@ -101,7 +101,7 @@ int persistent_blocks(RayType type) {
   const void* kernel =
       type == RayType::any
           ? reinterpret_cast<const void*>(trace_by_persistent_warps<AnyTriangle>)
-          : reinterpret_cast<const void*>(trace_by_persistent_warps<ClosestTriangle>);
+          : reinterpret_cast<const void*>(trace_by_persistent_warps<ClosestTriangleId>);
   int device = 0, multiprocessors = 0, per_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "cudaGetDevice");
   check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
@@ -115,8 +115,9 @@ int persistent_blocks(RayType type) {
 void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,
                   const RayArrays& rays, int blocks) {
   if (rays.count == 0) return;
-  const Kernel kernel = type == RayType::any ? choose_kernel<AnyTriangle>(variant, tree)
-                                             : choose_kernel<ClosestTriangle>(variant, tree);
+  const Kernel kernel = type == RayType::any
+                            ? choose_kernel<AnyTriangle, AnyTriangle>(variant, tree)
+                            : choose_kernel<ClosestTriangle, ClosestTriangleId>(variant, tree);
   const auto all = (rays.count + block_size - 1) / block_size;
   const bool is_persistent = variant == TraceVariant::persistent;
   kernel<<<is_persistent ? static_cast<unsigned>(blocks) : all, block_size>>>(tree, rays);
