@@ -21,11 +21,10 @@ from harness import Experiment, HarnessError, Plot
 TERRAIN_CAMERA = "--look-from -490,175,490 --look-at 0,10,0 --vfov 38"
 BUILT_IN = [("terrain:10M", TERRAIN_CAMERA), ("statue:1M", "")]
 KINDS = ["primary", "ao", "diffuse"]
-PATHS = ["bounce:0", "bounce:1", "bounce:3"]  # of scenes, which have materials
+PATHS = ["bounce:0", "bounce:1", "bounce:3"]  # of scene files, which have materials
 CPU = [("bvh2", "sah", ""), ("cwbvh", "sah", ""), ("cwbvh", "sbvh", "")]
-CUDA = [("bvh2", "sah", "threads"), ("bvh2", "sbvh", "threads"), ("cwbvh", "sah", "threads"),
-        ("cwbvh", "sah", "persistent"), ("cwbvh", "sah", "beam"), ("cwbvh", "sah", "auto"),
-        ("cwbvh", "sbvh", "auto"), ("cwbvh", "hploc", "auto"), ("cwbvh", "lbvh", "auto")]
+CUDA = [("bvh2", "sah", "threads"), ("cwbvh", "sah", "threads"), ("cwbvh", "sah", "persistent"),
+        ("cwbvh", "sah", "beam"), ("cwbvh", "sbvh", "auto"), ("cwbvh", "hploc", "auto")]
 
 
 def add_arguments(parser):
@@ -57,13 +56,13 @@ def trace(program, device, scene, rays, way, arguments, table):
 
 def measure(program, device, arguments, folder):
     """A row for every set of rays and way to trace it."""
-    scenes = BUILT_IN + [(scene, "") for scene in arguments.scenes]
+    scenes = [(scene, "") for scene in arguments.scenes] + BUILT_IN
     size = arguments.size
     if arguments.quick:
         scenes, size = [("terrain:2K", TERRAIN_CAMERA), ("statue:2K", "")], 32
     table = Path(folder, "rows.csv")
     for scene, camera in scenes:
-        for kind in KINDS + ([] if scene.endswith(".mesh") else PATHS):
+        for kind in KINDS + (PATHS if scene.endswith((".xml", ".gltf", ".glb")) else []):
             rays = f"{Path(scene).parent.name or scene}.{kind}.rays".replace(":", "")
             path = str(Path(folder, rays))
             ptexp(program, ["rays", "--scene", scene, "--kind", kind, "--size", str(size),

@@ -40,7 +40,8 @@ PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
 struct TriangleRay {
   Vec3 origin;
   Vec3 x_axis, y_axis;  ///< of the plane of projection
-  Vec3 along;           ///< direction / |direction|^2: measures t
+  float inverse;        ///< of the direction's largest component, to measure t,
+  std::uint32_t axis;   ///< and which it is
 };
 
 /// `direction` is finite and not zero; its length is the unit of t.
@@ -52,18 +53,17 @@ PT_HD TriangleRay make_triangle_ray(const Vec3& origin, const Vec3& direction) {
   const bool y = !z && size.y >= size.x;
   const float largest = z ? direction.z : y ? direction.y : direction.x;
   const float inverse = 1.0f / largest;
+  ray.inverse = inverse;
+  ray.axis = z ? 2 : y ? 1 : 0;
   if (z) {
     ray.x_axis = {1, 0, -direction.x * inverse};
     ray.y_axis = {0, 1, -direction.y * inverse};
-    ray.along = {0, 0, inverse};
   } else if (y) {
     ray.x_axis = {0, -direction.z * inverse, 1};
     ray.y_axis = {1, -direction.x * inverse, 0};
-    ray.along = {0, inverse, 0};
   } else {
     ray.x_axis = {-direction.y * inverse, 1, 0};
     ray.y_axis = {-direction.z * inverse, 0, 1};
-    ray.along = {inverse, 0, 0};
   }
   return ray;
 }
@@ -98,7 +98,11 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float determinant = add_rounded(add_rounded(u, v), w);
   const bool miss = (least < 0.0f && most > 0.0f) || determinant == 0.0f;
   const float inverse = approximate_inverse(determinant);
-  const float az = project(ray.along, a), bz = project(ray.along, b), cz = project(ray.along, c);
+  const auto depth = [&ray](const Vec3& v) {
+    const float component = ray.axis == 2 ? v.z : ray.axis == 1 ? v.y : v.x;
+    return multiply_rounded(component, ray.inverse);
+  };
+  const float az = depth(a), bz = depth(b), cz = depth(c);
   const float sum = fused_multiply_add(u, az, fused_multiply_add(v, bz, multiply_rounded(w, cz)));
   return {miss ? bits_to_float(0x7fffffffu) : multiply_rounded(sum, inverse),
           multiply_rounded(v, inverse), multiply_rounded(w, inverse)};

@@ -114,8 +114,7 @@ class BeamTracer {
     const unsigned leaves = __ballot_sync(whole_warp, is_hit && !is_inner);
     size_ = max(size_ - 4, 0) + __popc(inner);
     if (is_hit && is_inner) {
-      memory_.stack[size_ - 1 - __popc(inner & below)] =
-          more.z + __popc(head.w & before);
+      memory_.stack[size_ - 1 - __popc(inner & below)] = more.z + __popc(head.w & before);
     }
     if (is_hit && !is_inner) {
       memory_.leaves[leaf_count_ + __popc(leaves & below)] = {

@@ -97,19 +97,16 @@ class PersistentTracer {
       warp_.number[lane] = PersistentWarp::none;
     }
     int next = warp_.next_ray, count = warp_.ray_count;
-    int place = next + __popc(idle & ((1u << lane) - 1));  // also of lanes that need none
-    const int end = next + __popc(idle);
-    const bool wants = (idle >> lane & 1u) != 0;
+    int place = (idle >> lane & 1u) != 0 ? next + __popc(idle & ((1u << lane) - 1)) : -1;
+    next += __popc(idle);
     __syncwarp();
-    if (wants && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
-    next = end;
-    while (next > count) {  // some lanes got none
-      place -= count, next -= count;
+    while (true) {
+      if (place >= 0 && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
+      if (next <= count) break;
+      place -= count, next -= count;  // lanes that got none
       __syncwarp();
       count = fetch(lane);
       if (count == 0) break;
-      if (wants && place >= 0 && place < count)
-        begin(warp_.rays.load(static_cast<unsigned>(place)));
     }
     if (lane == 0) warp_.next_ray = next, warp_.ray_count = count;
     __syncwarp();
@@ -187,8 +184,8 @@ __device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<bloc
   memory.order.fill();
   __syncthreads();
   uint2 stack[bvh_depth_max];
-  PersistentTracer<Query, Work> tracer(tree, work, memory.order,
-                                                        memory.warps[threadIdx.x / 32], stack);
+  PersistentTracer<Query, Work> tracer(tree, work, memory.order, memory.warps[threadIdx.x / 32],
+                                       stack);
   tracer.run();
 }
 

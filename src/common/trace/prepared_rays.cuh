@@ -29,25 +29,25 @@ class PreparedRays {
     part_[0][place] = {r.origin.x, r.origin.y, r.origin.z, record.t_min};
     part_[1][place] = {r.inverse.x, r.inverse.y, r.inverse.z, t_max};
     part_[2][place] = {t.x_axis.x, t.x_axis.y, t.x_axis.z, __uint_as_float(number)};
-    part_[3][place] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(r.octant)};
-    part_[4][place] = {t.along.x, t.along.y, t.along.z, 0.0f};
+    part_[3][place] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(r.octant | t.axis << 3)};
+    inverse_[place] = t.inverse;
   }
 
   __device__ PreparedRay load(unsigned place) const {
-    const float4 a = part_[0][place], b = part_[1][place], c = part_[2][place], d = part_[3][place],
-                 e = part_[4][place];
+    const float4 a = part_[0][place], b = part_[1][place], c = part_[2][place], d = part_[3][place];
     const Vec3 origin = {a.x, a.y, a.z};
     return {origin,
             a.w,
             {b.x, b.y, b.z},
             b.w,
-            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, {e.x, e.y, e.z}},
+            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, inverse_[place], __float_as_uint(d.w) >> 3},
             __float_as_uint(c.w),
-            __float_as_uint(d.w)};
+            __float_as_uint(d.w) & 7u};
   }
 
  private:
-  float4 part_[5][32];
+  float4 part_[4][32];
+  float inverse_[32];
 };
 
 }  // namespace pt

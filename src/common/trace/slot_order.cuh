@@ -6,7 +6,8 @@
 namespace pt {
 
 /// For the octant of a ray's direction and a set of slots, at [octant << 8 | slots]: the slot to
-/// visit first, that is the one with the least (slot XOR octant). In shared memory: one load instead of a dozen instructions.
+/// visit first, that is the one with the least (slot XOR octant). In shared memory: one load
+/// instead of a dozen instructions.
 struct SlotOrder {
   std::uint8_t first[8 * 256];
 
