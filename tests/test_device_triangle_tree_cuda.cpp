@@ -186,7 +186,8 @@ TEST_F(CudaDeviceTree, TheTraceCommandBuildsOnTheDevice) {
   const TempFolder folder;
   for (const std::string scene : {"instances:20", "terrain:3K"}) {
     RaysCommand rays;
-    rays.scene = scene, rays.output = folder.file("r"), rays.size = 64, rays.kind = RayKind::bounce, rays.bounces = 1;
+    rays.scene = scene, rays.output = folder.file("r"), rays.size = 64, rays.kind = RayKind::bounce,
+    rays.bounces = 1;
     rays_command(rays);
     TraceCommand command;
     command.mesh = scene, command.rays = rays.output, command.quiet = true;

@@ -13,9 +13,7 @@ constexpr int task_depth = 10;  // so far down, the two children are tasks of th
 }  // namespace
 
 CollapseChoices::CollapseChoices(const BinaryTree& tree, const TreeCosts& costs)
-    : tree_(tree),
-      costs_(costs),
-      entries_(new Entry[tree.node_capacity]) {
+    : tree_(tree), costs_(costs), entries_(new Entry[tree.node_capacity]) {
   if (!is_leaf(tree.root)) choose(tree.root, tree.bounds.half_area(), 0);
 }
 

@@ -54,7 +54,8 @@ PT_HD CwbvhChild cwbvh_child(const CwbvhNode& node, std::uint32_t slot) {
 template <class Visit>
 PT_HD void for_each_cwbvh_child(const CwbvhNode& node, Visit&& visit) {
   for (std::uint32_t slot = 0; slot < cwbvh_width; ++slot) {
-    if ((node.used_mask() >> slot & 1u) != 0) visit(static_cast<int>(slot), cwbvh_child(node, slot));
+    if ((node.used_mask() >> slot & 1u) != 0)
+      visit(static_cast<int>(slot), cwbvh_child(node, slot));
   }
 }
 

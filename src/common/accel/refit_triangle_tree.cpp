@@ -87,9 +87,8 @@ CwbvhNode encode_again(const TriangleTreeData& tree, const CwbvhNode& node,
     const int c = children.count++;
     slots.child[s] = static_cast<std::uint8_t>(c);
     children.triangles[c] = child.count;
-    children.bounds[c] =
-        child.count == 0 ? bounds[child.place - first_node]
-                         : widened(slot_bounds(tree, child.place, child.count));
+    children.bounds[c] = child.count == 0 ? bounds[child.place - first_node]
+                                          : widened(slot_bounds(tree, child.place, child.count));
   });
   return encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);
 }

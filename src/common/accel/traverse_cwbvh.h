@@ -79,7 +79,8 @@ PT_HD std::uint32_t intersect_cwbvh_node(const CwbvhNode& node, const CwbvhRay& 
 
 /// Children of a node that are left to visit, and what finds them in memory. Inner ones: bits 0..7
 /// are the slots, each XOR the ray's octant, so that the lowest is the nearest; bits 8..15 are the
-/// node's inner_mask. Leaves: bits 0..7 are the slots, 8..15 leaf_mask, 16..23 pair_mask, 31 is set.
+/// node's inner_mask. Leaves: bits 0..7 are the slots, 8..15 leaf_mask, 16..23 pair_mask, 31 is
+/// set.
 struct CwbvhGroup {
   std::uint32_t base;
   std::uint32_t bits;
@@ -163,8 +164,7 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
         local = make_cwbvh_ray(inner);
         nodes = root_group(tree.instances[instance].root, local.octant);
         leaves.bits = 0;
-      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, instance,
-                             query)) {
+      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, instance, query)) {
         return;
       }
     }

@@ -98,8 +98,8 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float determinant = add_rounded(add_rounded(u, v), w);
   const bool miss = (least < 0.0f && most > 0.0f) || determinant == 0.0f;
   const float inverse = approximate_inverse(determinant);
-  const auto depth = [&ray](const Vec3& v) {
-    const float component = ray.axis == 2 ? v.z : ray.axis == 1 ? v.y : v.x;
+  const auto depth = [&ray](const Vec3& p) {
+    const float component = ray.axis == 2 ? p.z : ray.axis == 1 ? p.y : p.x;
     return multiply_rounded(component, ray.inverse);
   };
   const float az = depth(a), bz = depth(b), cz = depth(c);
