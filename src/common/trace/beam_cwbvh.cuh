@@ -113,6 +113,7 @@ class BeamTracer {
     const unsigned inner = __ballot_sync(whole_warp, is_hit && is_inner);
     const unsigned leaves = __ballot_sync(whole_warp, is_hit && !is_inner);
     size_ = max(size_ - 4, 0) + __popc(inner);
+    __syncwarp();  // all have read the stack
     if (is_hit && is_inner) {
       memory_.stack[size_ - 1 - __popc(inner & below)] = more.z + __popc(head.w & before);
     }

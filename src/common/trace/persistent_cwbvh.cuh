@@ -89,7 +89,7 @@ class PersistentTracer {
 
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
 
-  /// Finishes the rays of idle lanes and hands out others. False: there are not enough left.
+  /// Finishes the rays of idle lanes and hands out others. False: there were none.
   __device__ bool refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
     if (!is_active() && warp_.number[lane] != PersistentWarp::none) {
@@ -97,6 +97,7 @@ class PersistentTracer {
       warp_.number[lane] = PersistentWarp::none;
     }
     int next = warp_.next_ray, count = warp_.ray_count;
+    bool are_left = next < count;
     int place = (idle >> lane & 1u) != 0 ? next + __popc(idle & ((1u << lane) - 1)) : -1;
     next += __popc(idle);
     __syncwarp();
@@ -107,10 +108,11 @@ class PersistentTracer {
       __syncwarp();
       count = fetch(lane);
       if (count == 0) break;
+      are_left = true;
     }
     if (lane == 0) warp_.next_ray = next, warp_.ray_count = count;
     __syncwarp();
-    return count > 0;
+    return are_left;
   }
 
   /// Prepares up to 32 more rays.
