@@ -47,7 +47,7 @@ PT_HD T load_wide(const T* p) {
 #ifdef __CUDA_ARCH__
   static_assert(sizeof(T) % 16 == 0 && alignof(T) % 16 == 0);
   T value;
-  PT_UNROLL(4)
+  PT_UNROLL(8)
   for (int i = 0; i < static_cast<int>(sizeof(T) / 16); ++i) {
     const uint4 part = reinterpret_cast<const uint4*>(p)[i];
     memcpy(reinterpret_cast<char*>(&value) + 16 * i, &part, 16);
@@ -63,7 +63,7 @@ template <class T>
 PT_HD void store_wide(T* p, const T& value) {
 #ifdef __CUDA_ARCH__
   static_assert(sizeof(T) % 16 == 0 && alignof(T) % 16 == 0);
-  PT_UNROLL(4)
+  PT_UNROLL(8)
   for (int i = 0; i < static_cast<int>(sizeof(T) / 16); ++i) {
     uint4 part;
     memcpy(&part, reinterpret_cast<const char*>(&value) + 16 * i, 16);

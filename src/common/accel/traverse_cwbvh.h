@@ -65,10 +65,11 @@ PT_HD std::uint32_t intersect_cwbvh_node(const CwbvhNode& node, const CwbvhRay& 
     float near = t_min, far = t_max;
     PT_UNROLL(3)
     for (int i = 0; i < 3; ++i) {
-      const std::uint8_t* planes = &node.planes[i][2 * s];
+      // Selected after loading: an address that depends on the ray would keep the node in memory.
+      const std::uint8_t low = node.planes[i][2 * s], high = node.planes[i][2 * s + 1];
       const bool negative = ray.inverse[i] < 0.0f;
-      const auto first = static_cast<float>(planes[negative ? 1 : 0]);
-      const auto second = static_cast<float>(planes[negative ? 0 : 1]);
+      const auto first = static_cast<float>(negative ? high : low);
+      const auto second = static_cast<float>(negative ? low : high);
       near = max_number(fused_multiply_add(first, axis[i].step, axis[i].near), near);
       far = min_number(fused_multiply_add(second, axis[i].step, axis[i].far), far);
     }
