@@ -45,6 +45,12 @@ def ptexp(program, command, timeout_s):
                            f"{run.stderr.strip()}")
 
 
+def name_of(scene):
+    """modern-hall for .../modern-hall/scene.xml, bunny_room for .../bunny_room.mesh."""
+    path = Path(scene).resolve()
+    return path.parent.name if path.stem == "scene" else path.stem
+
+
 def trace(program, device, scene, rays, way, arguments, table):
     accel, builder, variant = way
     chosen = ["--variant", variant] if variant else []
@@ -63,7 +69,7 @@ def measure(program, device, arguments, folder):
     table = Path(folder, "rows.csv")
     for scene, camera in scenes:
         for kind in KINDS + (PATHS if scene.endswith((".xml", ".gltf", ".glb")) else []):
-            rays = f"{Path(scene).parent.name or scene}.{kind}.rays".replace(":", "")
+            rays = f"{name_of(scene)}.{kind}.rays".replace(":", "")
             path = str(Path(folder, rays))
             ptexp(program, ["rays", "--scene", scene, "--kind", kind, "--size", str(size),
                             *camera.split(), "--output", path], arguments.timeout)
@@ -75,7 +81,7 @@ def measure(program, device, arguments, folder):
         rows = list(csv.DictReader(file))
     for row in rows:  # not where it was measured
         row["ray_file"] = Path(row["ray_file"]).name
-        row["mesh"] = "/".join(Path(row["mesh"]).parts[-2:])
+        row["mesh"] = "/".join(p for p in Path(row["mesh"]).parts[-2:] if p != "..")
         row["command"] = row["command"].replace(str(folder) + "/", "").replace(str(table), "rows.csv")
     return [{"experiment": EXPERIMENT.name, "status": "measured", **row} for row in rows]
 

@@ -5,6 +5,7 @@ Also the promises for one H200: the Cornell box and a statue of a million triang
 be named as further arguments of --scenes.
 """
 import sys
+from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot
@@ -23,7 +24,9 @@ def add_arguments(parser):
 
 
 def configurations(arguments, device):
-    scenes = BUILT_IN + [(path, 1024, 64, None) for path in arguments.scenes]
+    # Each configuration runs in a folder of its own: only whole paths lead anywhere.
+    files = [str(Path(path).resolve()) for path in arguments.scenes]
+    scenes = BUILT_IN + [(path, 1024, 64, None) for path in files]
     if arguments.quick:
         scenes = [(scene.replace("M", "K").replace("10K", "10"), size // 32, 2, target)
                   for scene, size, _, target in scenes]
@@ -38,11 +41,12 @@ def configurations(arguments, device):
                     has_triangles = scene not in STRUCTURES
                     label = f"{accel}, {builder}" if has_triangles else accel
                     chosen = f"--builder {builder} " if has_triangles else ""
+                    name = "/".join(Path(scene).parts[-2:])
                     rows.append(Configuration(
-                        f"{scene}: {mode}, {label}",
+                        f"{name}: {mode}, {label}",
                         f"--mode {mode} --scene {scene} --accel {accel} {chosen}"
                         f"--width {size} --height {size} --spp {spp} --max-depth {DEPTH}",
-                        {"panel": scene, "x": f"{mode}, {label}",
+                        {"panel": name, "x": f"{mode}, {label}",
                          "target_msamples_per_s": target or "", "verdict": ""}))
     return rows
 

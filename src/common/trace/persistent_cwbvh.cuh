@@ -5,8 +5,8 @@
 // are idle. And the warp does one thing at a time, whatever more of its lanes wait for: steps down
 // the tree or tests of leaves. A lane that has found leaves waits until they are tested: going on
 // without knowing the hit would visit nodes behind it. The two triangles of a leaf are tested side
-// by side. All votes are explicit and by the whole warp: since Volta,
-// threads that part do not meet again by themselves.
+// by side. All votes are explicit and by the whole warp: since Volta, threads that part do not meet
+// again by themselves.
 #pragma once
 
 #include "common/trace/cwbvh_step.cuh"
@@ -48,7 +48,7 @@ struct PersistentTuning {
   static constexpr int step_weight = 1, test_weight = 2;
 };
 
-/// Traces what `work` hands out, one lane's view. Query: ClosestTriangle or AnyTriangle. Work has
+/// Traces what `work` hands out, one lane's view. Query: one with offer_nearer. Work has
 ///   std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord&, int& count)  by the whole warp:
 ///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
 ///     first's number; count 0: there is none left
