@@ -75,8 +75,8 @@ def no_columns(_rows, _arguments):
 class Experiment:
     name: str
     question: str
-    configurations: Callable  # (arguments, device) -> list of Configuration
-    plot: Plot
+    configurations: Callable  # (arguments, device) -> list of Configuration; None: see main()
+    plot: Plot  # None: a table without a picture
     add_arguments: Callable = no_arguments
     finish: Callable = no_columns  # fills in labels of measured rows: (rows, arguments)
     table: tuple = ()  # labels to print besides name and time
@@ -196,8 +196,8 @@ def csv_text(rows):
     return text.getvalue()
 
 
-def origin(experiment, configurations, program, device, arguments):
-    """Where a table comes from: enough to measure it again."""
+def provenance(experiment, program, device, arguments):
+    """Where a table comes from, whatever was measured."""
     return {
         "experiment": experiment.name,
         "question": experiment.question,
@@ -210,6 +210,13 @@ def origin(experiment, configurations, program, device, arguments):
                           "clocks.max.mem,power.limit", "--format=csv").splitlines(),
         "host": {"cpu": cpu_model(), "cores": os.cpu_count(), "system": system_name(),
                  "python": platform.python_version()},
+    }
+
+
+def origin(experiment, configurations, program, device, arguments):
+    """The same with all command lines: enough to measure it again."""
+    return {
+        **provenance(experiment, program, device, arguments),
         "plot": asdict(experiment.plot),
         "configurations": {
             c.name: shlex.join(["ptexp", *command_line(program, c, device, arguments)[1:]])
@@ -230,6 +237,18 @@ def write_atomically(path, text):
     except BaseException:
         os.unlink(temporary)
         raise
+
+
+def table_path(experiment, device, arguments):
+    """The table's file; its folder is made now, not after the measurement."""
+    folder = arguments.output / device_folder(device)
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder / f"{experiment.name}{'-' if arguments.label else ''}{arguments.label}.csv"
+
+
+def write_table(path, rows, facts):
+    write_atomically(path.with_suffix(".json"), json.dumps(facts, indent=2) + "\n")
+    write_atomically(path, csv_text(rows))
 
 
 def table_text(rows, labels):
@@ -300,23 +319,20 @@ def run(experiment, arguments):
             print(shlex.join(command_line(program, configuration, device, arguments)))
         return
     print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
-    folder = arguments.output / device_folder(device)
-    folder.mkdir(parents=True, exist_ok=True)  # now, not after the measurement
+    path = table_path(experiment, device, arguments)
     rows = measure_all(experiment, configurations, program, device, arguments)
     experiment.finish([row for row in rows if row["status"] == "measured"], arguments)
 
-    path = folder / f"{experiment.name}{'-' if arguments.label else ''}{arguments.label}.csv"
-    facts = origin(experiment, configurations, program, device, arguments)
-    write_atomically(path.with_suffix(".json"), json.dumps(facts, indent=2) + "\n")
-    write_atomically(path, csv_text(rows))
+    write_table(path, rows, origin(experiment, configurations, program, device, arguments))
     print(f"\n{table_text(rows, experiment.table)}\n\nwrote {path}\n{draw(path)}")
 
 
-def main(experiment, command=None):
-    """Runs the experiment as the command line says; returns the exit code."""
+def main(experiment, command=None, runner=run):
+    """Runs the experiment as the command line says; returns the exit code. `runner`, called with
+    the experiment and the arguments, measures and writes the table."""
     arguments = parse_arguments(experiment, command)
     try:
-        run(experiment, arguments)
+        runner(experiment, arguments)
     except BrokenPipeError:  # whoever read the output has gone
         sys.stdout = None
         return 1

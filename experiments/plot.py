@@ -89,10 +89,15 @@ def draw_bars(axes, rows, style):
         label_times(axes.xaxis)
 
 
+def read_facts(path):
+    """What was measured, and how its table is drawn."""
+    return json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+
+
 def draw(path):
     """Draws the table at `path`; returns the path of the picture."""
     path = Path(path)
-    facts = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
+    facts = read_facts(path)
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["x"]]  # without x: not for the picture
     style = facts["plot"]
@@ -118,7 +123,10 @@ def main():
     parser.add_argument("tables", metavar="NAME.csv", nargs="+", type=Path)
     for path in parser.parse_args().tables:
         try:
-            print(f"wrote {draw(path)}")
+            if "plot" in read_facts(path):
+                print(f"wrote {draw(path)}")
+            else:
+                print(f"{path}: a table without a picture")
         except (OSError, ValueError, KeyError) as error:
             sys.exit(f"plot.py: error: {path}: {error}")
 

@@ -5,8 +5,6 @@ Makes sets of rays by `ptexp rays` and traces them by `ptexp trace` (docs/tracin
 files may be named by --scenes.
 """
 import csv
-import datetime
-import json
 import os
 import shlex
 import subprocess
@@ -15,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 import harness
-from harness import Experiment, HarnessError, Plot
+from harness import Experiment, HarnessError
 
 # What a built-in scene is looked at from; files have cameras of their own.
 TERRAIN_CAMERA = "--look-from -490,175,490 --look-at 0,10,0 --vfov 38"
@@ -51,76 +49,61 @@ def name_of(scene):
     return path.parent.name if path.stem == "scene" else path.stem
 
 
-def trace(program, device, scene, rays, way, arguments, table):
-    accel, builder, variant = way
-    chosen = ["--variant", variant] if variant else []
-    ptexp(program, ["trace", "--quiet", "--mesh", scene, "--rays", rays, "--accel", accel,
-                    "--builder", builder, *chosen, "--device", device.choice, "--repeat",
-                    str(arguments.repeat), "--warmup", str(arguments.warmup), "--csv", table],
-          arguments.timeout)
-
-
-def measure(program, device, arguments, folder):
-    """A row for every set of rays and way to trace it."""
+def ray_sets(device, arguments, folder):
+    """For every set of rays: its file, the command that makes it, and those that trace it."""
     scenes = [(scene, "") for scene in arguments.scenes] + BUILT_IN
     size = arguments.size
     if arguments.quick:
         scenes, size = [("terrain:2K", TERRAIN_CAMERA), ("statue:2K", "")], 32
-    table = Path(folder, "rows.csv")
     for scene, camera in scenes:
         for kind in KINDS + (PATHS if scene.endswith((".xml", ".gltf", ".glb")) else []):
-            rays = f"{name_of(scene)}.{kind}.rays".replace(":", "")
-            path = str(Path(folder, rays))
-            ptexp(program, ["rays", "--scene", scene, "--kind", kind, "--size", str(size),
-                            *camera.split(), "--output", path], arguments.timeout)
-            for way in CUDA if device.kind == "cuda" else CPU:
-                trace(program, device, scene, path, way, arguments, str(table))
-            os.unlink(path)
-            print(f"{scene}: {kind}", flush=True)
-    with open(table, newline="", encoding="utf-8") as file:
+            rays = str(Path(folder, f"{name_of(scene)}.{kind}.rays".replace(":", "")))
+            make = ["rays", "--scene", scene, "--kind", kind, "--size", str(size),
+                    *camera.split(), "--output", rays]
+            traces = [["trace", "--quiet", "--mesh", scene, "--rays", rays, "--accel", accel,
+                       "--builder", builder, *(["--variant", variant] if variant else []),
+                       "--device", device.choice, "--repeat", str(arguments.repeat),
+                       "--warmup", str(arguments.warmup), "--csv", str(Path(folder, "rows.csv"))]
+                      for accel, builder, variant in (CUDA if device.kind == "cuda" else CPU)]
+            yield rays, make, traces
+
+
+def measure(program, device, arguments, folder):
+    """A row for every set of rays and way to trace it."""
+    for rays, make, traces in ray_sets(device, arguments, folder):
+        for command in [make, *traces]:
+            ptexp(program, command, arguments.timeout)
+        os.unlink(rays)
+        print(Path(rays).name, flush=True)
+    with open(Path(folder, "rows.csv"), newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     for row in rows:  # not where it was measured
         row["ray_file"] = Path(row["ray_file"]).name
         row["mesh"] = "/".join(p for p in Path(row["mesh"]).parts[-2:] if p != "..")
-        row["command"] = row["command"].replace(str(folder) + "/", "").replace(str(table), "rows.csv")
+        row["command"] = row["command"].replace(f"{folder}/", "")
     return [{"experiment": EXPERIMENT.name, "status": "measured", **row} for row in rows]
 
 
-def run(arguments):
+def run(experiment, arguments):
     program = harness.find_program(arguments.ptexp)
     device = harness.find_device(program, arguments.device)
-    target = arguments.output / harness.device_folder(device)
-    target.mkdir(parents=True, exist_ok=True)
+    if arguments.list:
+        for _, make, traces in ray_sets(device, arguments, "."):
+            for command in [make, *traces]:
+                print(shlex.join([str(program), *command]))
+        return
+    path = harness.table_path(experiment, device, arguments)
     with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
         rows = measure(program, device, arguments, folder)
-    path = target / f"{EXPERIMENT.name}{'-' if arguments.label else ''}{arguments.label}.csv"
-    facts = {"experiment": EXPERIMENT.name, "question": EXPERIMENT.question,
-             "command": shlex.join(["python3", *sys.argv]),
-             "date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
-             "program": harness.output_of(program, "--version").splitlines(),
-             "gpus": harness.output_of("nvidia-smi", "--query-gpu=name,driver_version,"
-                                       "clocks.max.sm", "--format=csv").splitlines(),
-             "host": {"cpu": harness.cpu_model(), "cores": os.cpu_count()}}
-    harness.write_atomically(path.with_suffix(".json"), json.dumps(facts, indent=2) + "\n")
-    harness.write_atomically(path, harness.csv_text(rows))
+    harness.write_table(path, rows, harness.provenance(experiment, program, device, arguments))
     for row in rows:
         print(f"{row['ray_file']:40} {row['accel']:6} {row['builder']:6} {row['variant']:10} "
               f"{float(row['mrays_per_s']):10.1f} Mrays/s")
     print(f"\nwrote {path}")
 
 
-EXPERIMENT = Experiment("ray_sets", __doc__.splitlines()[0], None, Plot("bars", "Ray sets"),
+EXPERIMENT = Experiment("ray_sets", __doc__.splitlines()[0], None, None,
                         add_arguments=add_arguments)
 
-
-def main():
-    try:
-        run(harness.parse_arguments(EXPERIMENT, None))
-    except (HarnessError, OSError) as error:
-        print(f"{EXPERIMENT.name}: error: {error}; no result was written", file=sys.stderr)
-        return 2
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(harness.main(EXPERIMENT, runner=run))

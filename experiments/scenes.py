@@ -33,6 +33,7 @@ def configurations(arguments, device):
     builders = ["sah", "hploc"] if device.kind == "cuda" else ["sah"]
     rows = []
     for scene, size, spp, target in scenes:
+        name = "/".join(Path(scene).parts[-2:])
         for mode in ["megakernel", "wavefront"]:
             for accel in STRUCTURES.get(scene, TRIANGLES):
                 for builder in builders:
@@ -41,7 +42,6 @@ def configurations(arguments, device):
                     has_triangles = scene not in STRUCTURES
                     label = f"{accel}, {builder}" if has_triangles else accel
                     chosen = f"--builder {builder} " if has_triangles else ""
-                    name = "/".join(Path(scene).parts[-2:])
                     rows.append(Configuration(
                         f"{name}: {mode}, {label}",
                         f"--mode {mode} --scene {scene} --accel {accel} {chosen}"
