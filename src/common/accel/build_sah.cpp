@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "common/accel/build_children.h"
+#include "common/accel/invoke_both.h"
 #include "common/accel/object_split.h"
 
 namespace pt {
@@ -41,7 +42,7 @@ class Builder {
     const auto build_right = [&] {
       if (right.size() > 1) build_node(right, children[1], depth + 1);
     };
-    build_halves(range.size() >= task_min, build_left, build_right);
+    invoke_both(range.size() >= task_min, build_left, build_right);
   }
 
   RangeHalves split(const ReferenceRange& range, int depth) const {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "common/accel/build_children.h"
+#include "common/accel/invoke_both.h"
 #include "common/accel/object_split.h"
 
 namespace pt {
@@ -51,7 +52,7 @@ class Builder {
     const auto build_right = [&, segment_right = right] {
       if (segment_right.range.size() > 1) build_node(segment_right, children[1], depth + 1);
     };
-    build_halves(segment.range.size() >= task_min, build_left, build_right);
+    invoke_both(segment.range.size() >= task_min, build_left, build_right);
   }
 
   // Shares the room out by the numbers of references.

@@ -1,8 +1,7 @@
 #include "common/accel/collapse_choices.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include "common/accel/collapse_cost.h"
+#include "common/accel/invoke_both.h"
 
 namespace pt {
 
@@ -28,11 +27,8 @@ CollapseChoices::Below CollapseChoices::choose(std::uint32_t subtree, float area
   const auto choose_half = [&](int i) {
     half[i] = choose(node.child[i], child_bounds(node, i).half_area(), depth + 1);
   };
-  if (depth < task_depth) {
-    tbb::parallel_invoke([&] { choose_half(0); }, [&] { choose_half(1); });
-  } else {
-    choose_half(0), choose_half(1);
-  }
+  invoke_both(
+      depth < task_depth, [&] { choose_half(0); }, [&] { choose_half(1); });
   below.members = half[0].members;
   below.members.add(half[1].members);
   Entry& entry = entries_[subtree];

@@ -9,6 +9,9 @@
 
 namespace pt {
 
+/// See CwbvhNode::packed.
+PT_HD float unpack_cwbvh_step(std::uint32_t packed) { return bits_to_float(packed & 0xffffff00u); }
+
 /// The children's boxes lie on a grid of 8 bits per axis: origin + step * q, to within
 /// cwbvh_grid_tolerance of a step. Inner children follow each other in memory from child_base, in
 /// the order of their slots, and so do the triangles of leaves from triangle_base; slots are chosen
@@ -21,7 +24,7 @@ struct alignas(16) CwbvhNode {
   std::uint32_t triangle_base;
   std::uint8_t planes[3][16];  ///< by axis: low and high of slot 0, of slot 1, ...
 
-  PT_HD float step(int axis) const { return bits_to_float(packed[axis] & 0xffffff00u); }
+  PT_HD float step(int axis) const { return unpack_cwbvh_step(packed[axis]); }
   PT_HD std::uint32_t inner_mask() const { return packed[0] & 0xffu; }  ///< slots of inner nodes
   PT_HD std::uint32_t leaf_mask() const { return packed[1] & 0xffu; }   ///< slots of leaves
   PT_HD std::uint32_t pair_mask() const { return packed[2] & 0xffu; }   ///< leaves of two

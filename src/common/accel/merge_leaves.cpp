@@ -1,7 +1,6 @@
 #include "common/accel/merge_leaves.h"
 
-#include <tbb/parallel_invoke.h>
-
+#include "common/accel/invoke_both.h"
 #include "common/accel/leaf_members.h"
 
 namespace pt {
@@ -9,15 +8,6 @@ namespace pt {
 namespace {
 
 constexpr int task_depth = 10;  // so far down, the two children are tasks of their own
-
-template <class First, class Second>
-void invoke_both(int depth, First first, Second second) {
-  if (depth < task_depth) {
-    tbb::parallel_invoke(first, second);
-  } else {
-    first(), second();
-  }
-}
 
 class Merger {
  public:
@@ -58,7 +48,7 @@ class Merger {
       half[i] = weigh(node.child[i], child_bounds(node, i).half_area(), depth + 1);
     };
     invoke_both(
-        depth, [&] { weigh_half(0); }, [&] { weigh_half(1); });
+        depth < task_depth, [&] { weigh_half(0); }, [&] { weigh_half(1); });
     sum.cost = costs_.node * area + half[0].cost + half[1].cost;
     sum.nodes = 1 + half[0].nodes + half[1].nodes;
     sum.slots = half[0].slots + half[1].slots;
@@ -98,7 +88,7 @@ class Merger {
       if (!becomes_leaf(child)) emit(child, to, at, depth + 1);
     };
     invoke_both(
-        depth, [&] { emit_child(0, first, index + 1, slot); },
+        depth < task_depth, [&] { emit_child(0, first, index + 1, slot); },
         [&] { emit_child(1, second, index + 1 + first_nodes, slot + slots_of(first)); });
   }
 

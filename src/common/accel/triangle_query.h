@@ -13,6 +13,10 @@ struct MetTriangle {
   std::uint32_t slot, id;
 };
 
+/// How far boxes need a visit once a hit at `t` is known: to 2^-16 behind it, so that of triangles
+/// that nearly coincide all are tested, and the answer does not depend on the structure.
+PT_HD float visit_limit(float t) { return multiply_rounded(t, 1.0f + 1.0f / 65536.0f); }
+
 /// The closest hit with t_min < t < t_max. Of several at the same t the one of the lowest triangle
 /// number wins, then of the lowest instance number, so that the answer does not depend on the order
 /// in which a structure finds them.
@@ -20,10 +24,8 @@ class ClosestTriangle {
  public:
   PT_HD ClosestTriangle(float t_min, float t_max) : t_min_(t_min) { hit_.t = t_max; }
 
-  /// Boxes that the ray enters beyond this need no visit. It lies 2^-16 behind the hit: of
-  /// triangles that nearly coincide, all are tested, so that the answer does not depend on the
-  /// structure.
-  PT_HD float t_max() const { return multiply_rounded(hit_.t, 1.0f + 1.0f / 65536.0f); }
+  /// Boxes that the ray enters beyond this need no visit.
+  PT_HD float t_max() const { return visit_limit(hit_.t); }
   PT_HD float t_min() const { return t_min_; }
 
   /// A triangle was met at `t`, NaN for none. True: there is no need to look any further.
@@ -61,7 +63,7 @@ class ClosestTriangleId {
  public:
   PT_HD ClosestTriangleId(float t_min, float t_max) : t_min_(t_min), t_(t_max) {}
 
-  PT_HD float t_max() const { return multiply_rounded(t_, 1.0f + 1.0f / 65536.0f); }
+  PT_HD float t_max() const { return visit_limit(t_); }
   PT_HD float t_min() const { return t_min_; }
 
   PT_HD bool offer_nearer(const TriangleTree&, const MetTriangle& a, const MetTriangle& b) {

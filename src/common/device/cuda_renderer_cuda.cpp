@@ -13,6 +13,7 @@
 #include "common/render/batches.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_scene.h"
+#include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_facts.h"
 
 namespace pt {
@@ -131,11 +132,8 @@ void CudaRenderer::upload_tree(const TriangleTreeData& data) {
 
 void CudaRenderer::upload_triangles(const SceneData& scene) {
   if (is_device_builder(options_.builder)) {
-    TreeOptions tree;
-    tree.accel = traits_.accel == Accel::bvh2 ? AccelKind::bvh2 : AccelKind::cwbvh;
-    tree.builder = options_.builder;
-    const DeviceTriangleTree built =
-        build_device_triangle_tree(scene.meshes, scene.instances, tree, memory_);
+    const DeviceTriangleTree built = build_device_triangle_tree(
+        scene.meshes, scene.instances, tree_options(traits_.accel, options_.builder), memory_);
     scene_.triangles = built.view;
     tree_facts_ = tree_facts(built.summary, scene.triangle_count());
   } else {

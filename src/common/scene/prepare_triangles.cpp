@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/accel/build_triangle_tree.h"
 #include "common/accel/check_builder.h"
 #include "common/accel/embree_tree.h"
 #include "common/scene/convert_quads.h"
@@ -35,12 +34,6 @@ Accel structure_of(const SceneData& scene, const Options& options) {
     default:
       return automatic_structure(scene, options);
   }
-}
-
-/// What is built for a structure. Embree, which builds its own, wants the triangles alone.
-AccelKind tree_kind(Accel accel) {
-  if (accel == Accel::bvh2) return AccelKind::bvh2;
-  return accel == Accel::cwbvh ? AccelKind::cwbvh : AccelKind::brute;
 }
 
 bool is_on_cuda(const Options& options) {
@@ -79,6 +72,15 @@ std::vector<Affine> instance_transforms(const SceneData& scene) {
 
 }  // namespace
 
+TreeOptions tree_options(Accel accel, TreeBuilder builder) {
+  TreeOptions options;
+  options.accel = accel == Accel::bvh2    ? AccelKind::bvh2
+                  : accel == Accel::cwbvh ? AccelKind::cwbvh
+                                          : AccelKind::brute;
+  options.builder = builder;
+  return options;
+}
+
 void prepare_triangles(SceneData& scene, const Options& options) {
   convert_quads(scene);
   const Bounds bounds = scene_bounds(scene);
@@ -88,13 +90,11 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
                      accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
-  check_builder(options.builder, tree_kind(accel), is_on_cuda(options));
+  const TreeOptions tree = tree_options(accel, options.builder);
+  check_builder(tree.builder, tree.accel, is_on_cuda(options));
   if (is_device_builder(options.builder)) {
     check_geometry(scene.meshes, scene.instances);
   } else {
-    TreeOptions tree;
-    tree.accel = tree_kind(accel);
-    tree.builder = options.builder;
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }

@@ -1,6 +1,7 @@
 // Scenes with triangles made ready for tracing.
 #pragma once
 
+#include "common/accel/build_triangle_tree.h"
 #include "common/render/options.h"
 #include "common/scene/scene_data.h"
 
@@ -9,5 +10,9 @@ namespace pt {
 /// Turns quads into triangles, builds the tree, collects the vertices' attributes, the lights, the
 /// environment, and sets the traits. Throws Error for what cannot be built.
 void prepare_triangles(SceneData& scene, const Options& options);
+
+/// What tree is to be built for a structure, on either device. Embree, which builds its own, wants
+/// the triangles alone.
+TreeOptions tree_options(Accel accel, TreeBuilder builder);
 
 }  // namespace pt

@@ -83,7 +83,7 @@ class BeamTracer {
   __device__ Planes planes(int i, const CwbvhNode* node, float origin, std::uint32_t packed) const {
     constexpr float grid_slack = 2048.0f;  // in units of slab_tolerance: 2^-10 of a step
     static_assert(grid_slack * slab_tolerance > 1.1f * cwbvh_grid_tolerance);
-    const float step = __uint_as_float(packed & 0xffffff00u);
+    const float step = unpack_cwbvh_step(packed);
     const float outward = memory_.beam.outward[i];
     const float base = origin - memory_.beam.center[i];
     const float size = __fmaf_rn(step, grid_slack, fabsf(base));

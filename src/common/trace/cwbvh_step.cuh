@@ -53,7 +53,7 @@ struct BiasedAxis {
 
 __device__ inline BiasedAxis make_biased_axis(float grid_origin, std::uint32_t packed, float origin,
                                               float inverse) {
-  const float step = __uint_as_float(packed & 0xffffff00u) * inverse;
+  const float step = unpack_cwbvh_step(packed) * inverse;
   const float base = (grid_origin - origin) * inverse;
   const float slack = __fmaf_rn(fabsf(base), slab_tolerance, fabsf(step) * cwbvh_grid_tolerance);
   const float biased = __fmaf_rn(step, -byte_bias, base);
