@@ -33,6 +33,7 @@ RenderReport make_report() {
   report.primitives = 51;
   report.scene_ms = 1.5;
   report.setup_ms = 2.5;
+  report.load_ms = 6.5;
   report.transfer_ms = 3.5;
   report.image_write_ms = 4.5;
   report.counts = {9'000'000, 18'000'000, 3'000'000, 7, {9'000'000, 8'000'000, 1'000'000}};
@@ -209,6 +210,7 @@ TEST(ReportCsv, Row) {
   EXPECT_EQ(fields["live_paths"], "9000000;8000000;1000000");
   EXPECT_EQ(fields["memory_bytes"], "1024");
   EXPECT_EQ(fields["setup_ms"], "2.500000");
+  EXPECT_EQ(fields["load_ms"], "6.500000");
   EXPECT_EQ(fields["kernels"], "intersect:61:16:128:256:0.7500;shadow:40:0:0:128:1.0000");
 }
 

@@ -154,6 +154,19 @@ PT_HD float fused_multiply_add(float a, float b, float c) {
 #endif
 }
 
+/// a * b - c * d within 2 half ulps of the result, so that its sign is right and it is 0 only where
+/// both products are equal (Kahan's algorithm; Jeannerod, Louvet and Muller 2013, 'Further analysis
+/// of Kahan's algorithm for the accurate computation of 2 x 2 determinants'). On the CPU doubles
+/// hold both products exactly.
+PT_HD float difference_of_products(float a, float b, float c, float d) {
+#ifdef __CUDA_ARCH__
+  const float cd = __fmul_rn(c, d);
+  return __fadd_rn(__fmaf_rn(a, b, -cd), __fmaf_rn(-c, d, cd));
+#else
+  return static_cast<float>(static_cast<double>(a) * b - static_cast<double>(c) * d);
+#endif
+}
+
 /// (bits << 1) | sign of x: one instruction on CUDA.
 PT_HD std::uint32_t shift_in_sign(std::uint32_t bits, float x) {
 #ifdef __CUDA_ARCH__

@@ -13,14 +13,16 @@ namespace pt {
 /// Primitives that a tree can hold: leaf_first has 28 bits.
 inline constexpr std::uint32_t build_primitives_max = 1u << 28;
 
-/// A leaf is one place of `order`. Nodes lie in depth-first order, so that those below a node
-/// follow it, the first child's before the second's; there may be unused ones in between.
+/// Boxes are those of the primitives (of triangles hit_bounds), or of the parts that a spatial
+/// split cut off, or contain such. A leaf is one place of `order`. Nodes lie in depth-first order,
+/// so that those below a node follow it, the first child's before the second's; there may be unused
+/// ones in between.
 struct BinaryTree {
   std::unique_ptr<Bvh2Node[]> nodes;
   std::uint32_t node_capacity = 0;   ///< size of `nodes`
   std::vector<std::uint32_t> order;  ///< place -> primitive
   std::uint32_t root = 0;            ///< a node, or the leaf of the only primitive
-  Bounds bounds;                     ///< of the root, not widened
+  Bounds bounds;                     ///< of the root
 };
 
 /// What traversal pays, in any unit: the builders choose leaves so that the expected sum along a
@@ -30,15 +32,6 @@ struct TreeCosts {
   float triangle = 1.0f;  ///< for testing a triangle
   std::uint32_t leaf_max = leaf_size_max;
 };
-
-/// Boxes in trees are wider than their content by 4 ulps of their largest coordinate: more than
-/// the rounding of a box's own planes and that of the triangle test, so that a ray that begins on a
-/// triangle meets it, or does not, whatever the structure. Larger boxes are widened more: parents
-/// go on containing their children.
-PT_HD Bounds widened(const Bounds& box) {
-  const float margin = 8.0f * half_ulp * fmaxf(max_abs(box.min), max_abs(box.max));
-  return {box.min - margin, box.max + margin};
-}
 
 /// A point so far away that no ray gets there: the box of a child that is to be passed over.
 PT_HD Bounds unreachable_bounds() { return {Vec3(1e30f), Vec3(1e30f)}; }

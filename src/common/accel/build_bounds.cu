@@ -6,7 +6,7 @@
 namespace pt::device_build {
 namespace {
 
-constexpr float coordinate_max = 1e15f;  // larger ones have areas that are not finite
+constexpr float coordinate_max = 1e12f;  // see mesh_triangles.cpp
 
 __device__ MeshRange range_of(const TriangleSource& source, std::uint32_t triangle) {
   if (source.ranges == nullptr) return {};
@@ -49,7 +49,7 @@ __device__ Primitive load_primitive(const PrimitiveSource& source, std::uint32_t
     return {box, is_usable(box.min) && is_usable(box.max)};
   }
   const Triangle t = load_triangle(source.triangles, i);
-  return {triangle_bounds(t.v0, t.v1, t.v2), is_usable(t.v0) && is_usable(t.v1) && is_usable(t.v2)};
+  return {hit_bounds(t.v0, t.v1, t.v2), is_usable(t.v0) && is_usable(t.v1) && is_usable(t.v2)};
 }
 
 // Lower bounds first, then inverted upper ones; all shrink.
@@ -71,8 +71,7 @@ __global__ void __launch_bounds__(block_size)
   const std::uint32_t step = gridDim.x * blockDim.x;
   for (std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x; i < count; i += step) {
     const auto [box, usable] = load_primitive(source, i);
-    const Bounds wider = widened(box);
-    store_wide(&primitives[i], BuildNode{wider.min, 0, wider.max, 0});
+    store_wide(&primitives[i], BuildNode{box.min, 0, box.max, 0});
     if (usable) {
       shrink(bits, 0, box.center(), box.center());
       shrink(bits, 6, box.min, box.max);
@@ -85,7 +84,7 @@ __global__ void __launch_bounds__(block_size)
   __syncthreads();
   PT_UNROLL(12)
   for (int k = 0; k < 12; ++k) {
-    const std::uint32_t least = __reduce_min_sync(0xffffffffu, bits[k]);
+    const std::uint32_t least = warp_min(bits[k]);
     if (threadIdx.x % 32 == 0) atomicMin(&block_bits[k], least);
   }
   if (bad) block_bits[12] = 0;

@@ -95,7 +95,7 @@ __device__ void drain_queue(const CollapseJob& job, const Maker& maker) {
     depth_max = max(depth_max, depth);
     k += gridDim.x * blockDim.x;
   }
-  depth_max = __reduce_max_sync(all_lanes, depth_max);
+  depth_max = warp_max(depth_max);
   if (lane == 0 && depth_max > 0) atomicMax(&job.counters->depth, depth_max);
 }
 

@@ -100,7 +100,7 @@ class DeviceTreeBuilder {
   ~DeviceTreeBuilder();
 
   /// The tree over `count` triangles, 0..tree_primitives_max; none has no nodes. Throws Error for
-  /// more, for coordinates that are not finite or beyond 1e15, and for trees deeper than allowed.
+  /// more, for coordinates that are not finite or beyond 1e12, and for trees deeper than allowed.
   DeviceTree build(const TriangleSource& source, std::uint32_t count,
                    const DeviceBuildOptions& options);
 

@@ -65,7 +65,7 @@ class DeviceTreeBuilder::Work {
     const CollapseCounters counters = build_nodes(tree);
     const SharedBounds shared = download(bounds_, "reading the scene's bounds");
     if (shared.is_bad == 0) {
-      throw Error("building a tree: coordinates must be finite and within 1e15");
+      throw Error("building a tree: coordinates must be finite and within 1e12");
     }
     tree.bounds = read_bounds(shared, 6);
     tree.depth = static_cast<int>(counters.depth);

@@ -14,10 +14,10 @@ __device__ Bounds slot_bounds(const RefitJob& job, std::uint32_t first, std::uin
   Bounds box;
   for (std::uint32_t slot = first - job.first_slot; slot < first - job.first_slot + count; ++slot) {
     if (job.boxes != nullptr) {
-      box.grow(widened(job.boxes[job.order[slot]]));
+      box.grow(job.boxes[job.order[slot]]);
     } else {
       const Triangle t = load_wide(&job.triangles[slot]);
-      box.grow(widened(triangle_bounds(t.v0, t.v1, t.v2)));
+      box.grow(hit_bounds(t.v0, t.v1, t.v2));
     }
   }
   return box;

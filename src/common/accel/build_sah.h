@@ -11,7 +11,7 @@ namespace pt {
 /// A primitive's box by its number, from several threads at once.
 using BoundsOf = std::function<Bounds(std::uint32_t)>;
 
-/// 1..build_primitives_max primitives, their coordinates within 1e15. The tree is no deeper than
+/// 1..build_primitives_max primitives, their coordinates within 1e12. The tree is no deeper than
 /// bvh_depth_max and does not depend on the number of threads.
 BinaryTree build_sah(std::uint32_t count, const BoundsOf& bounds_of);
 

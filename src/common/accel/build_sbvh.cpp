@@ -120,7 +120,7 @@ BinaryTree build_sbvh(std::uint32_t count, const TriangleOf& triangle_of,
   const std::span<BuildReference> references(memory.get(), capacity);
   tbb::parallel_for(0u, count, [&](std::uint32_t i) {
     const Triangle t = triangle_of(i);
-    references[i] = make_reference(triangle_bounds(t.v0, t.v1, t.v2), i);
+    references[i] = make_reference(hit_bounds(t.v0, t.v1, t.v2), i);
   });
   tbb::parallel_for(count, capacity, [&](std::uint32_t i) { references[i] = BuildReference(); });
   const ReferenceRange all = measured_range(references, 0, count);

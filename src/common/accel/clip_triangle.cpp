@@ -42,14 +42,8 @@ float round_up(double x) { return -round_down(-x); }
 
 }  // namespace
 
-float clip_tolerance(const Vec3 (&vertices)[3]) {
-  Bounds all;
-  for (const Vec3& v : vertices) all.grow(v);
-  return 16.0f * half_ulp * max_abs(all.max - all.min);
-}
-
 Bounds clipped_bounds(const Vec3 (&vertices)[3], const Bounds& box) {
-  const double tolerance = clip_tolerance(vertices);
+  const double tolerance = hit_margin(triangle_bounds(vertices[0], vertices[1], vertices[2]));
   Polygon polygon;
   for (const Vec3& v : vertices) polygon.add(DVec3(v));
   for (int axis = 0; axis < 3; ++axis) {

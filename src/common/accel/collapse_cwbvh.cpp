@@ -38,7 +38,7 @@ class Collapser {
   void single_leaf() {
     CwbvhChildren children;
     children.count = 1;
-    children.bounds[0] = widened(tree_.bounds);
+    children.bounds[0] = tree_.bounds;
     children.triangles[0] = 1;
     result_.nodes = {encode_cwbvh_node(children, assign_cwbvh_slots(children), 1, 0)};
     result_.order = {tree_.order[leaf_first(tree_.root)]};

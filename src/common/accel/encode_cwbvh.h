@@ -30,8 +30,9 @@ struct CwbvhGrid {
   PT_HD float floor_of(float x) const { return floorf(place_of(x) + snap); }
   PT_HD float ceil_of(float x) const { return ceilf(fmaxf(place_of(x) - snap, 0.0f)); }
 
-  static constexpr float snap = cwbvh_grid_tolerance * (2.0f / 3.0f);
-  static constexpr float fit = cwbvh_grid_tolerance / 6.0f;  ///< the rest is left to rounding
+  // Of the tolerance, what is beyond `snap` is left to the traversal.
+  static constexpr float snap = cwbvh_grid_tolerance / 4.0f;
+  static constexpr float fit = cwbvh_grid_tolerance / 6.0f;
 
  private:
   PT_HD float place_of(float x) const { return add_rounded(x, -origin) / step; }

@@ -56,8 +56,8 @@ Bounds world_bounds(const Bounds& box, const Affine& to_object) {
 }
 
 InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t number) {
-  return {to_object, group.root, static_cast<std::uint32_t>(number), group.first_slot,
-          group.slot_count};
+  return {to_object,        group.root,       static_cast<std::uint32_t>(number),
+          group.first_slot, group.slot_count, world_bounds(group.bounds, to_object)};
 }
 
 const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t number) {
@@ -67,23 +67,17 @@ const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t num
   return found == groups.end() || found->group != number ? nullptr : &*found;
 }
 
-struct Placed {
+std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
+                                            std::span<const Instance> instances) {
   std::vector<InstanceRecord> records;
-  std::vector<Bounds> bounds;
-};
-
-Placed place_instances(std::span<const GroupTree> groups, std::span<const Instance> instances) {
-  Placed placed;
   const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t number) {
-    if (group == nullptr) return;
-    placed.records.push_back(make_record(*group, to_object, number));
-    placed.bounds.push_back(world_bounds(group->bounds, to_object));
+    if (group != nullptr) records.push_back(make_record(*group, to_object, number));
   };
   for (std::size_t i = 0; i < instances.size(); ++i) {
     add(find_group(groups, instances[i].group), inverse(instances[i].to_world), i);
   }
   add(find_group(groups, 0), Affine(), instances.size());
-  return placed;
+  return records;
 }
 
 /// Nodes that are numbered from 0 get the numbers from `first` on.
@@ -121,15 +115,15 @@ std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
 InstanceTree build_instance_tree(std::span<const GroupTree> groups,
                                  std::span<const Instance> instances, AccelKind accel,
                                  std::uint32_t first_node) {
-  Placed placed = place_instances(groups, instances);
+  std::vector<InstanceRecord> records = place_instances(groups, instances);
   InstanceTree tree;
   const bool wide = accel == AccelKind::cwbvh;
-  if (placed.records.empty() || (!wide && accel != AccelKind::bvh2)) {
-    tree.instances = std::move(placed.records);
+  if (records.empty() || (!wide && accel != AccelKind::bvh2)) {
+    tree.instances = std::move(records);
     return tree;
   }
-  BinaryTree binary = build_sah(static_cast<std::uint32_t>(placed.bounds.size()),
-                                [&](std::uint32_t i) { return placed.bounds[i]; });
+  BinaryTree binary = build_sah(static_cast<std::uint32_t>(records.size()),
+                                [&](std::uint32_t i) { return records[i].bounds; });
   std::vector<std::uint32_t> order;
   if (wide) {
     Cwbvh top = collapse_cwbvh(binary, instance_costs);
@@ -140,7 +134,7 @@ InstanceTree build_instance_tree(std::span<const GroupTree> groups,
     tree.bvh2 = numbered_from(first_node, std::move(top.nodes));
     order = std::move(top.order);
   }
-  for (const std::uint32_t i : order) tree.instances.push_back(placed.records[i]);
+  for (const std::uint32_t i : order) tree.instances.push_back(records[i]);
   return tree;
 }
 

@@ -19,7 +19,7 @@ class Merger {
     result_.order.resize(all.slots);
     if (all.nodes == 0) {
       Bvh2Node& root = result_.nodes[0] = {};
-      set_child_bounds(root, 0, widened(tree_.bounds));
+      set_child_bounds(root, 0, tree_.bounds);
       root.child[0] = root.child[1] = emit_leaf(tree_.root, 0);
       set_child_bounds(root, 1, unreachable_bounds());
     } else {

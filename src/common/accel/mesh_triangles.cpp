@@ -13,7 +13,7 @@ namespace pt {
 
 namespace {
 
-constexpr float coordinate_max = 1e15f;  // the product of two areas is still a float
+constexpr float coordinate_max = 1e12f;  // area times distance is still a float
 
 bool is_in_range(const Vec3& p) { return max_abs(p) <= coordinate_max && p == p; }
 
@@ -90,7 +90,7 @@ Triangle MeshTriangles::operator[](std::uint32_t i) const {
 
 Bounds MeshTriangles::bounds(std::uint32_t i) const {
   const Triangle t = (*this)[i];
-  return triangle_bounds(t.v0, t.v1, t.v2);
+  return hit_bounds(t.v0, t.v1, t.v2);
 }
 
 void MeshTriangles::check() const {

@@ -27,7 +27,7 @@ class MeshTriangles {
   Triangle operator[](std::uint32_t i) const;
   Bounds bounds(std::uint32_t i) const;
   /// Throws Error for a triangle that names no vertex, or one whose coordinates are not finite or
-  /// beyond 1e15.
+  /// beyond 1e12.
   void check() const;
 
  private:

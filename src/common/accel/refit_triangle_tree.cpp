@@ -20,7 +20,7 @@ Bounds slot_bounds(const TriangleTreeData& tree, std::uint32_t first, std::uint3
   Bounds box;
   for (std::uint32_t i = first; i < first + count; ++i) {
     const Triangle& t = tree.triangles[i];
-    box.grow(triangle_bounds(t.v0, t.v1, t.v2));
+    box.grow(hit_bounds(t.v0, t.v1, t.v2));
   }
   return box;
 }
@@ -63,7 +63,7 @@ void refit_bvh2(TriangleTreeData& tree, const GroupTree& group) {
     for (int i = 0; i < 2; ++i) {
       const std::uint32_t child = node.child[i];
       if (!is_leaf(child) || !is_reachable(node, i)) continue;
-      set_child_bounds(node, i, widened(slot_bounds(tree, leaf_first(child), leaf_count(child))));
+      set_child_bounds(node, i, slot_bounds(tree, leaf_first(child), leaf_count(child)));
     }
   });
   for (std::uint32_t n = end; n-- > group.first_node;) {
@@ -88,7 +88,7 @@ CwbvhNode encode_again(const TriangleTreeData& tree, const CwbvhNode& node,
     slots.child[s] = static_cast<std::uint8_t>(c);
     children.triangles[c] = child.count;
     children.bounds[c] = child.count == 0 ? bounds[child.place - first_node]
-                                          : widened(slot_bounds(tree, child.place, child.count));
+                                          : slot_bounds(tree, child.place, child.count);
   });
   return encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);
 }
@@ -98,7 +98,7 @@ void refit_cwbvh(TriangleTreeData& tree, const GroupTree& group) {
   std::vector<Bounds> bounds(nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
     for_each_cwbvh_child(nodes[n], [&](int, const CwbvhChild& child) {
-      if (child.count > 0) bounds[n].grow(widened(slot_bounds(tree, child.place, child.count)));
+      if (child.count > 0) bounds[n].grow(slot_bounds(tree, child.place, child.count));
     });
   });
   for (std::size_t n = nodes.size(); n-- > 0;) {

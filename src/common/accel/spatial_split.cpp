@@ -162,8 +162,8 @@ Side cheapest_side(const BuildReference& r, const SpatialSplit& split) {
 Bounds half_of(const BuildReference& r, const SpatialSplit& split, Side side, float tolerance) {
   Bounds box{{r.low[0], r.low[1], r.low[2]}, {r.high[0], r.high[1], r.high[2]}};
   float& border = side == Side::left ? box.max[split.axis] : box.min[split.axis];
-  border = side == Side::left ? std::min(border, split.plane + tolerance)
-                              : std::max(border, split.plane - tolerance);
+  border = side == Side::left ? std::min(border, raised(split.plane, tolerance))
+                              : std::max(border, lowered(split.plane, tolerance));
   return box;
 }
 
@@ -178,7 +178,7 @@ void cut(BuildReference& r, const SpatialSplit& split, const TriangleOf& triangl
   if (side == Side::both) {
     const Triangle t = triangle_of(r.id());
     const Vec3 v[3] = {t.v0, t.v1, t.v2};
-    const float tolerance = clip_tolerance(v);
+    const float tolerance = hit_margin(triangle_bounds(t.v0, t.v1, t.v2));
     const Bounds left = clipped_bounds(v, half_of(r, split, Side::left, tolerance));
     const Bounds right = clipped_bounds(v, half_of(r, split, Side::right, tolerance));
     side = right.is_empty() ? Side::left : Side::right;

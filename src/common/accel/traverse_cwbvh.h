@@ -36,9 +36,15 @@ PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
   return result;
 }
 
+/// How much nearer the planes of a node's grid count where the ray enters, and farther where it
+/// leaves, relative to the distance of the grid's origin: 7 half ulps for rounding and
+/// hit_error_distance for the triangle test. What both are relative to the size of the grid is in
+/// cwbvh_grid_tolerance.
+inline constexpr float cwbvh_origin_tolerance = 26.0f * half_ulp;
+
 /// The distances of a node's grid planes along one axis: q * step + near for the planes where the
-/// ray enters, q * step + far where it leaves. `near` and `far` are apart by more than the rounding
-/// errors, which are relative to the distance of the grid's origin and to the size of the grid.
+/// ray enters, q * step + far where it leaves. `near` is no larger, and `far` no smaller, than the
+/// t of any hit in a child with this plane.
 struct CwbvhAxis {
   float step, near, far;
 };
@@ -47,7 +53,7 @@ PT_HD CwbvhAxis make_cwbvh_axis(float grid_origin, float grid_step, float origin
   const float step = grid_step * inverse;
   const float base = (grid_origin - origin) * inverse;
   const float slack =
-      fused_multiply_add(fabsf(base), slab_tolerance, fabsf(step) * cwbvh_grid_tolerance);
+      fused_multiply_add(fabsf(base), cwbvh_origin_tolerance, fabsf(step) * cwbvh_grid_tolerance);
   return {step, base - slack, base + slack};
 }
 
@@ -142,6 +148,7 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
   // The stack's depth on entering the instance.
   int entered = instanced && tree.instance_count > 0 ? in_world : only_level;
   std::uint32_t instance = 0;
+  InstanceVisit visit;
   CwbvhRay local = make_cwbvh_ray(ray);
   CwbvhGroup nodes = root_group(tree.root, local.octant), leaves{0, 0};
   while (true) {
@@ -149,23 +156,30 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
       const std::uint32_t child = take_child(nodes, local.octant);
       if (nodes.has_slots()) stack[depth++] = nodes;
       const CwbvhNode node = load_wide(&tree.cwbvh[child]);
-      const std::uint32_t hits = intersect_cwbvh_node(node, local, query.t_min(), query.t_max());
+      const bool inside = instanced && entered >= 0;
+      const std::uint32_t hits = intersect_cwbvh_node(
+          node, local, query.t_min(), inside ? visit.limit(query.t_max()) : query.t_max());
       nodes = inner_group(node, hits, local.octant);
       leaves = leaf_group(node, hits);
     }
     while (leaves.has_slots()) {
       const CwbvhLeaf leaf = take_leaf(leaves);
       if (instanced && entered == in_world) {
-        const Ray inner = object_ray(tree.instances[leaf.first], ray);
-        if (!is_traceable(inner)) continue;
+        visit = visit_instance(tree.instances[leaf.first], ray, make_slab_test_ray(ray),
+                               query.t_min(), query.t_max());
+        if (visit.is_empty) continue;
         if (leaves.has_slots()) stack[depth++] = leaves;
         if (nodes.has_slots()) stack[depth++] = nodes;
         entered = depth;
         instance = leaf.first;
-        local = make_cwbvh_ray(inner);
+        local = make_cwbvh_ray(visit.ray);
         nodes = root_group(tree.instances[instance].root, local.octant);
         leaves.bits = 0;
-      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, instance, query)) {
+      } else if (instanced && entered >= 0) {
+        if (offer_slots(tree, local.triangles, leaf.first, leaf.count, visit, instance, query)) {
+          return;
+        }
+      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, query)) {
         return;
       }
     }

@@ -45,12 +45,15 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
   // The stack's depth on entering the instance.
   int entered = instanced && tree.instance_count > 0 ? in_world : only_level;
   std::uint32_t instance = 0;
+  InstanceVisit visit;
   Bvh2Ray local = make_bvh2_ray(ray);
   std::uint32_t current = tree.root;
   while (true) {
     if (!is_leaf(current)) {
       const Bvh2Node node = load_wide(&tree.bvh2[current]);
-      const Bvh2Step step = step_bvh2(node, local.slabs, query.t_min(), query.t_max());
+      const bool inside = instanced && entered >= 0;
+      const Bvh2Step step = step_bvh2(node, local.slabs, query.t_min(),
+                                      inside ? visit.limit(query.t_max()) : query.t_max());
       if (step.children > 1) stack[depth++] = step.second;
       if (step.children > 0) {
         current = step.first;
@@ -61,15 +64,21 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
       if (leaf_count(current) > 1) {
         stack[depth++] = make_leaf(instance + 1, leaf_count(current) - 1);
       }
-      const Ray inner = object_ray(tree.instances[instance], ray);
-      if (is_traceable(inner)) {
+      visit =
+          visit_instance(tree.instances[instance], ray, local.slabs, query.t_min(), query.t_max());
+      if (!visit.is_empty) {
         entered = depth;
-        local = make_bvh2_ray(inner);
+        local = make_bvh2_ray(visit.ray);
         current = tree.instances[instance].root;
         continue;
       }
+    } else if (instanced && entered >= 0) {
+      if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current), visit,
+                      instance, query)) {
+        return;
+      }
     } else if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current),
-                           instance, query)) {
+                           query)) {
       return;
     }
     if (depth == 0) return;

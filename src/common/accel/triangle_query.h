@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include "common/accel/slab_test.h"
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/ray.h"
 
@@ -13,10 +14,6 @@ struct MetTriangle {
   std::uint32_t slot, id;
 };
 
-/// How far boxes need a visit once a hit at `t` is known: to 2^-16 behind it, so that of triangles
-/// that nearly coincide all are tested, and the answer does not depend on the structure.
-PT_HD float visit_limit(float t) { return multiply_rounded(t, 1.0f + 1.0f / 65536.0f); }
-
 /// The closest hit with t_min < t < t_max. Of several at the same t the one of the lowest triangle
 /// number wins, then of the lowest instance number, so that the answer does not depend on the order
 /// in which a structure finds them.
@@ -25,7 +22,7 @@ class ClosestTriangle {
   PT_HD ClosestTriangle(float t_min, float t_max) : t_min_(t_min) { hit_.t = t_max; }
 
   /// Boxes that the ray enters beyond this need no visit.
-  PT_HD float t_max() const { return visit_limit(hit_.t); }
+  PT_HD float t_max() const { return hit_.t; }
   PT_HD float t_min() const { return t_min_; }
 
   /// A triangle was met at `t`, NaN for none. True: there is no need to look any further.
@@ -63,7 +60,7 @@ class ClosestTriangleId {
  public:
   PT_HD ClosestTriangleId(float t_min, float t_max) : t_min_(t_min), t_(t_max) {}
 
-  PT_HD float t_max() const { return visit_limit(t_); }
+  PT_HD float t_max() const { return t_; }
   PT_HD float t_min() const { return t_min_; }
 
   PT_HD bool offer_nearer(const TriangleTree&, const MetTriangle& a, const MetTriangle& b) {
@@ -122,19 +119,70 @@ PT_HD bool is_traceable(const Ray& ray) {
   return sum < HUGE_VALF && size > 0.0f;
 }
 
-/// The ray in an instance's own space. The direction keeps its new length, and so t its meaning.
+/// A ray in an instance's own space, and the part of it in which the instance lies. Outside of its
+/// box in the world an instance is not met, whatever rounding says inside: so which hits there are
+/// depends on the ray, the instance and the triangle alone.
+struct InstanceVisit {
+  Ray ray;            ///< its direction keeps the new length, and so t its meaning
+  SlabInterval part;  ///< hits are moved into it
+  bool is_empty;
+
+  /// How far boxes inside need a visit if hits up to `t_max` are of interest: what lies behind the
+  /// part counts as lying at its end.
+  PT_HD float limit(float t_max) const { return t_max >= part.far ? HUGE_VALF : t_max; }
+  /// NaN stays NaN.
+  PT_HD float moved(float t) const {
+    return t < part.near ? part.near : t > part.far ? part.far : t;
+  }
+};
+
+/// No fused operation but those that are written, so that all kernels see the same ray.
+PT_HD Vec3 transform_rounded(const Affine& a, const Vec3& v, float w) {
+  const auto row = [&](const Vec4& r) {
+    return fused_multiply_add(
+        r.x, v.x,
+        fused_multiply_add(r.y, v.y, fused_multiply_add(r.z, v.z, multiply_rounded(r.w, w))));
+  };
+  return {row(a.row[0]), row(a.row[1]), row(a.row[2])};
+}
+
 PT_HD Ray object_ray(const InstanceRecord& instance, const Ray& ray) {
-  return {instance.to_object.point(ray.origin), instance.to_object.vector(ray.direction)};
+  return {transform_rounded(instance.to_object, ray.origin, 1.0f),
+          transform_rounded(instance.to_object, ray.direction, 0.0f)};
+}
+
+/// `world` is `ray`, prepared.
+PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ray,
+                                   const SlabTestRay& world, float t_min, float t_max) {
+  const SlabInterval part =
+      intersect_slabs(world, instance.bounds.min, instance.bounds.max, -HUGE_VALF, HUGE_VALF);
+  InstanceVisit visit{object_ray(instance, ray), part, false};
+  visit.is_empty =
+      !(part.is_hit() && part.near <= t_max && part.far > t_min) || !is_traceable(visit.ray);
+  return visit;
 }
 
 /// Offers the triangles of `count` slots to the query; true: the traversal ends.
 template <class Query>
 PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::uint32_t first,
-                       std::uint32_t count, std::uint32_t instance, Query& query) {
+                       std::uint32_t count, Query& query) {
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
     const Triangle triangle = load_wide(&tree.triangles[slot]);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
-    if (query.offer(tree, hit.t, slot, instance)) return true;
+    if (query.offer(tree, hit.t, slot, 0)) return true;
+  }
+  return false;
+}
+
+/// The same in an instance.
+template <class Query>
+PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::uint32_t first,
+                       std::uint32_t count, const InstanceVisit& visit, std::uint32_t instance,
+                       Query& query) {
+  for (std::uint32_t slot = first; slot < first + count; ++slot) {
+    const Triangle triangle = load_wide(&tree.triangles[slot]);
+    const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
+    if (query.offer(tree, visit.moved(hit.t), slot, instance)) return true;
   }
   return false;
 }

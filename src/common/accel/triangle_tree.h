@@ -17,6 +17,7 @@ struct alignas(16) InstanceRecord {
   std::uint32_t root;  ///< the group's root among the nodes
   std::uint32_t number;
   std::uint32_t first_slot, slot_count;  ///< the group's triangles
+  Bounds bounds;                         ///< in the world; widened
 };
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are

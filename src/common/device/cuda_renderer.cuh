@@ -124,6 +124,9 @@ class CudaRenderer : public Renderer {
   void launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
                      std::size_t shared_bytes, void** arguments);
   void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
+  /// For an image of `pixels` pixels; the samples are still to be chosen.
+  SampleBuffer sample_buffer(std::uint32_t width, std::uint32_t pixels) const;
+  void load_kernels();
   void render_batch(const SampleBuffer& batch, RenderRun& run);
   void read_clock(RenderRun& run);
 
@@ -145,6 +148,7 @@ class CudaRenderer : public Renderer {
   std::vector<KernelInfo> kernels_;
   std::vector<const void*> kernel_pointers_;
   double setup_ms_ = 0;
+  double load_ms_ = 0;  ///< 0: not loaded yet
   double transfer_ms_ = 0;
 };
 

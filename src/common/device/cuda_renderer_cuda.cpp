@@ -253,16 +253,38 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   run.kernel_ms += elapsed_ms;
 }
 
+SampleBuffer CudaRenderer::sample_buffer(std::uint32_t width, std::uint32_t pixels) const {
+  SampleBuffer batch;
+  batch.samples = samples_;
+  batch.width = FastDivider(width);
+  batch.pixel_count = FastDivider(pixels);
+  return batch;
+}
+
+// CUDA loads a kernel when it is first asked for, which takes longer than most of them run. A batch
+// of a few pixels asks for all that the render will.
+void CudaRenderer::load_kernels() {
+  const Stopwatch watch;
+  const int width = std::min(options_.width, 8), height = std::min(options_.height, 4);
+  SampleBuffer batch =
+      sample_buffer(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(width * height));
+  batch.sample_count = 1;
+  batch.path_count = batch.pixel_count.divisor();
+  RenderRun run;
+  render_batch(batch, run);
+  take_wave_count();
+  load_ms_ = watch.ms();
+}
+
 RenderRun CudaRenderer::render(const RenderHooks& hooks) {
   check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+  if (load_ms_ == 0) load_kernels();
   const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
   check_cuda(cudaMemsetAsync(film_, 0, pixels * sizeof(FilmPixel), stream_), "cudaMemset");
   check_cuda(cudaMemsetAsync(tally_, 0, sizeof(PathTally), stream_), "cudaMemset");
   check_cuda(cudaMemsetAsync(clock_, 0, sizeof(StageClock), stream_), "cudaMemset");
-  SampleBuffer batch;
-  batch.samples = samples_;
-  batch.width = FastDivider(static_cast<std::uint32_t>(options_.width));
-  batch.pixel_count = FastDivider(static_cast<std::uint32_t>(pixels));
+  SampleBuffer batch =
+      sample_buffer(static_cast<std::uint32_t>(options_.width), static_cast<std::uint32_t>(pixels));
   RenderRun run;
   run.samples_done = for_each_batch(
       options_.spp, batch_samples_, pixels, hooks, [&](int first_sample, int samples) {
@@ -308,6 +330,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.primitives = primitive_count_;
   if (tree_facts_.nodes > 0) report.scene.tree = tree_facts_;
   report.setup_ms = setup_ms_;
+  report.load_ms = load_ms_;
   report.transfer_ms = transfer_ms_;
   report.counts = summarize(tally);
   report.memory = memory_.buffers();

@@ -2,11 +2,14 @@
 //
 // As Woop, Benthin and Wald 2013 ('Watertight Ray/Triangle Intersection', JCGT 2:1): the vertices
 // are projected along the ray onto a plane, each by itself and always in the same way, so that
-// triangles that share a vertex see the same projected point. The edge functions are differences of
-// two rounded products: rounding is monotone, so their sign is right or they are zero, and zero
-// counts as inside. Two triangles that share an edge therefore leave no gap. Where the paper
-// permutes the axes, the projection here is written as two vectors of which one component is 0 and
-// one is 1: the same numbers without a selection per vertex.
+// triangles that share a vertex see the same projected point. The edge functions have the right
+// sign, or are zero where that is exact, and zero counts as inside. Two triangles that share an
+// edge therefore leave no gap. Where the paper permutes the axes, the projection here is written as
+// two vectors of which one component is 0 and one is 1: the same numbers without a selection per
+// vertex.
+//
+// The edge functions are right to 2 half ulps, too, and so the weights of the three vertices. That
+// is what makes the distance good for something on needles: see hit_error_extent.
 #pragma once
 
 #include "common/geometry/bounds.h"
@@ -34,6 +37,35 @@ struct TriangleAttributes {
 
 PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+}
+
+/// How good a hit is. Where intersect_triangle finds one at t > 0, there is a point P of the
+/// triangle such that along every axis
+///   |origin + t direction - P| <= hit_error_distance |P - origin| + hit_error_extent E,
+/// E being the largest extent of the triangle's box. docs/tracing.md has the proof; coordinates are
+/// within 1e12. Boxes that are wider than the triangle by the second term, and box tests that allow
+/// for the first, therefore never hide a hit: so all acceleration structures find the same.
+inline constexpr float hit_error_distance = 18.0f * half_ulp;
+inline constexpr float hit_error_extent = 16.0f * half_ulp;
+
+/// How far a ray may be from the point of a triangle with these bounds that it meets.
+PT_HD float hit_margin(const Bounds& triangle) {
+  return hit_error_extent * max_abs(triangle.max - triangle.min);
+}
+
+/// A bound that lies `margin` below, or above, `x` in spite of rounding.
+PT_HD float lowered(float x, float margin) { return x - (margin + 2.0f * half_ulp * fabsf(x)); }
+PT_HD float raised(float x, float margin) { return x + (margin + 2.0f * half_ulp * fabsf(x)); }
+
+/// The box in which trees keep a triangle.
+PT_HD Bounds hit_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
+  Bounds box = triangle_bounds(a, b, c);
+  const float margin = hit_margin(box);
+  for (int i = 0; i < 3; ++i) {
+    box.min[i] = lowered(box.min[i], margin);
+    box.max[i] = raised(box.max[i], margin);
+  }
+  return box;
 }
 
 /// The projection along a ray.
@@ -87,25 +119,22 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float ax = project(ray.x_axis, a), ay = project(ray.y_axis, a);
   const float bx = project(ray.x_axis, b), by = project(ray.y_axis, b);
   const float cx = project(ray.x_axis, c), cy = project(ray.y_axis, c);
-  const auto edge = [](float px, float py, float qx, float qy) {
-    return add_rounded(multiply_rounded(px, qy), -multiply_rounded(py, qx));
-  };
-  const float u = edge(cx, cy, bx, by);
-  const float v = edge(ax, ay, cx, cy);
-  const float w = edge(bx, by, ax, ay);
+  const float u = difference_of_products(cx, by, cy, bx);
+  const float v = difference_of_products(ax, cy, ay, cx);
+  const float w = difference_of_products(bx, ay, by, ax);
   const float least = fminf(fminf(u, v), w);
   const float most = fmaxf(fmaxf(u, v), w);
   const float determinant = add_rounded(add_rounded(u, v), w);
   const bool miss = (least < 0.0f && most > 0.0f) || determinant == 0.0f;
   const float inverse = approximate_inverse(determinant);
   const auto depth = [&ray](const Vec3& p) {
-    const float component = ray.axis == 2 ? p.z : ray.axis == 1 ? p.y : p.x;
-    return multiply_rounded(component, ray.inverse);
+    return ray.axis == 2 ? p.z : ray.axis == 1 ? p.y : p.x;
   };
-  const float az = depth(a), bz = depth(b), cz = depth(c);
-  const float sum = fused_multiply_add(u, az, fused_multiply_add(v, bz, multiply_rounded(w, cz)));
-  return {miss ? bits_to_float(0x7fffffffu) : multiply_rounded(sum, inverse),
-          multiply_rounded(v, inverse), multiply_rounded(w, inverse)};
+  const float sum = fused_multiply_add(
+      u, depth(a), fused_multiply_add(v, depth(b), multiply_rounded(w, depth(c))));
+  const float t = multiply_rounded(multiply_rounded(sum, inverse), ray.inverse);
+  return {miss ? bits_to_float(0x7fffffffu) : t, multiply_rounded(v, inverse),
+          multiply_rounded(w, inverse)};
 }
 
 }  // namespace pt

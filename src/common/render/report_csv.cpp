@@ -122,6 +122,7 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   add_counts(row, report.counts);
   row.emplace_back("scene_ms", ms(report.scene_ms));
   row.emplace_back("setup_ms", ms(report.setup_ms));
+  row.emplace_back("load_ms", ms(report.load_ms));
   row.emplace_back("transfer_ms", ms(report.transfer_ms));
   row.emplace_back("image_write_ms", ms(report.image_write_ms));
   row.emplace_back("memory_bytes", std::to_string(memory_bytes(report)));

@@ -133,6 +133,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},
                      {"scene", report.scene_ms},
                      {"setup", report.setup_ms},
+                     {"load", report.load_ms},
                      {"transfer", report.transfer_ms},
                      {"image_write", report.image_write_ms}};
   json["rates"] = {{"mpaths_per_s", summary.mpaths_per_s}, {"mrays_per_s", summary.mrays_per_s}};

@@ -23,6 +23,7 @@ std::map<std::string, std::string> report_metadata(const Options& options,
       {"ptexp.kernel_ms", fmt::format("{:.6f}", summary.kernel_ms.median)},
       {"ptexp.scene_ms", fmt::format("{:.6f}", report.scene_ms)},
       {"ptexp.setup_ms", fmt::format("{:.6f}", report.setup_ms)},
+      {"ptexp.load_ms", fmt::format("{:.6f}", report.load_ms)},
       {"ptexp.transfer_ms", fmt::format("{:.6f}", report.transfer_ms)}};
   // An option that the scene decides is left out: an empty attribute would look like a value.
   for (const OptionEntry& entry : option_list())

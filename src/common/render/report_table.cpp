@@ -59,9 +59,11 @@ std::string report_table(const Options& options, const RenderReport& report) {
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
          stage_rows(report, summary) + '\n' + count_rows(report.counts, summary) +
          fmt::format(
-             "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, "
+             "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",
-             report.scene_ms, report.setup_ms, report.transfer_ms, report.image_write_ms);
+             report.scene_ms, report.setup_ms,
+             report.load_ms > 0 ? fmt::format("loading kernels {:.1f} ms, ", report.load_ms) : "",
+             report.transfer_ms, report.image_write_ms);
 }
 
 }  // namespace pt

@@ -77,6 +77,7 @@ struct RenderReport {
   SceneFacts scene;
   double scene_ms = 0;     ///< loading and preparing the scene (host wall time)
   double setup_ms = 0;     ///< device initialisation and allocation
+  double load_ms = 0;      ///< loading of kernels, before the first render; 0 on the CPU
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
   PathCounts counts;

@@ -1,7 +1,7 @@
 // What bounds a warp's coherent rays: intervals of origins and of inverse directions.
 #pragma once
 
-#include "common/accel/slab_test.h"
+#include "common/accel/traverse_cwbvh.h"
 
 namespace pt {
 
@@ -10,10 +10,13 @@ namespace pt {
 /// and leaves it not after d * far_inverse + far_offset; behind the origins both are negative.
 struct alignas(16) Beam {
   float center[4];
-  float outward[4];  ///< slab_tolerance, or less that for positive directions
+  float outward[4];  ///< beam_tolerance, or less that for positive directions
   float near_inverse[4], near_offset[4];
   float far_inverse[4], far_offset[4];
 };
+
+/// As cwbvh_origin_tolerance, of a beam's rays, relative to the distance from its center.
+inline constexpr float beam_tolerance = 32.0f * half_ulp;
 
 /// Beams wider than this, relative to their direction, do not pay.
 inline constexpr float beam_width_max = 0.25f;
@@ -34,10 +37,10 @@ __device__ inline bool make_beam_axis(float origin, float inverse, int i, Beam& 
   const float center = __shfl_sync(whole_warp, origin, 0);
   const float spread = __all_sync(whole_warp, origin == center)
                            ? 0.0f
-                           : warp_max_magnitude(origin - center) * (1.0f + slab_tolerance);
+                           : warp_max_magnitude(origin - center) * (1.0f + beam_tolerance);
   const float least = warp_min_magnitude(inverse), most = warp_max_magnitude(inverse);
   beam.center[i] = center;
-  beam.outward[i] = negative != 0 ? slab_tolerance : -slab_tolerance;
+  beam.outward[i] = negative != 0 ? beam_tolerance : -beam_tolerance;
   beam.near_inverse[i] = negative != 0 ? -least : least;
   beam.far_inverse[i] = negative != 0 ? -most : most;
   beam.near_offset[i] = -spread * least;
@@ -65,7 +68,7 @@ __device__ inline bool beam_meets(const Beam& beam, const Vec3& near_planes, con
     near = fmaxf(near, __fmaf_rn(near_planes[i], beam.near_inverse[i], beam.near_offset[i]));
     far = fminf(far, __fmaf_rn(far_planes[i], beam.far_inverse[i], beam.far_offset[i]));
   }
-  return near <= far * (1.0f + 2.0f * slab_tolerance);
+  return near <= far * (1.0f + slab_tolerance);
 }
 
 }  // namespace pt

@@ -81,8 +81,8 @@ class BeamTracer {
 
   /// Planes of the lane's child along axis `i`, widened by more than rounding errors.
   __device__ Planes planes(int i, const CwbvhNode* node, float origin, std::uint32_t packed) const {
-    constexpr float grid_slack = 2048.0f;  // in units of slab_tolerance: 2^-10 of a step
-    static_assert(grid_slack * slab_tolerance > 1.1f * cwbvh_grid_tolerance);
+    constexpr float grid_slack = 512.0f;  // in units of beam_tolerance
+    static_assert(grid_slack * beam_tolerance > 1.05f * cwbvh_grid_tolerance);
     const float step = unpack_cwbvh_step(packed);
     const float outward = memory_.beam.outward[i];
     const float base = origin - memory_.beam.center[i];
@@ -133,7 +133,7 @@ class BeamTracer {
     const int near = __vimax3_s32(at(leaf.near, 0), at(leaf.near, 1), max(at(leaf.near, 2), 0));
     const int far = __vimin3_s32(at(leaf.far, 0), at(leaf.far, 1),
                                  min(at(leaf.far, 2), __float_as_int(query_.t_max())));
-    return __int_as_float(near) <= __int_as_float(far) * (1.0f + 2.0f * slab_tolerance);
+    return __int_as_float(near) <= __int_as_float(far) * (1.0f + slab_tolerance);
   }
 
   /// Up to 32 leaves: their boxes by all lanes together, then each lane the triangles of its own.

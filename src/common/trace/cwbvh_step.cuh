@@ -55,7 +55,8 @@ __device__ inline BiasedAxis make_biased_axis(float grid_origin, std::uint32_t p
                                               float inverse) {
   const float step = unpack_cwbvh_step(packed) * inverse;
   const float base = (grid_origin - origin) * inverse;
-  const float slack = __fmaf_rn(fabsf(base), slab_tolerance, fabsf(step) * cwbvh_grid_tolerance);
+  const float slack =
+      __fmaf_rn(fabsf(base), cwbvh_origin_tolerance, fabsf(step) * cwbvh_grid_tolerance);
   const float biased = __fmaf_rn(step, -byte_bias, base);
   const bool negative = inverse < 0.0f;
   return {step, biased - slack, biased + slack, select_plane(negative), select_plane(!negative)};

@@ -1,6 +1,7 @@
 // What a path finds at the surface that it met: where, how it is turned, of which material.
 #pragma once
 
+#include "common/accel/triangle_query.h"
 #include "common/scene/scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/path.h"
@@ -61,14 +62,13 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const Triangle triangle = load_wide(&scene.triangles.triangles[slot]);
   const bool placed = is_placed<Traits>(scene);
   InstanceRecord instance;
-  Vec3 origin = ray.origin, direction = ray.direction;
+  Ray local = ray;
   if (placed) {
     instance = load_wide(&scene.triangles.instances[hit.instance]);
-    origin = instance.to_object.point(ray.origin);
-    direction = instance.to_object.vector(ray.direction);
+    local = object_ray(instance, ray);
   }
-  const TriangleHit inside = intersect_triangle(make_triangle_ray(origin, direction), triangle.v0,
-                                                triangle.v1, triangle.v2);
+  const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
+                                                triangle.v0, triangle.v1, triangle.v2);
   const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
   Vec3 position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
   Vec3 extent =
