@@ -37,6 +37,12 @@ inline std::string command_of(const Options& options) {
   return command;
 }
 
+inline Options cuda_options(const std::string& mode, const Settings& settings = {}) {
+  Options options = with(Options(), settings);
+  apply(options, {{"device", "cuda"}, {"mode", mode}});
+  return options;
+}
+
 struct Rendered {
   Image image;
   PathCounts counts;

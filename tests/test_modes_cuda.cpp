@@ -22,12 +22,6 @@ constexpr const char *tiny_width = "13", *tiny_height = "7";
 // For the comparison with the CPU.
 constexpr int compared_width = 200, compared_height = 100, compared_spp = 16;
 
-Options cuda_options(const std::string& mode, const Settings& settings = {}) {
-  Options options = with(Options(), settings);
-  apply(options, {{"device", "cuda"}, {"mode", mode}});
-  return options;
-}
-
 /// Every scene with what changes its image.
 const std::vector<ImageKind> image_kinds = [] {
   std::vector<ImageKind> kinds;

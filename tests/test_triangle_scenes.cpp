@@ -1,5 +1,6 @@
 // Scenes with triangles through the whole renderer: what is known of an image must be in it.
 #include <cmath>
+#include <filesystem>
 
 #include "common/accel/embree_tree.h"
 #include "common/error.h"
@@ -10,6 +11,7 @@
 #include "mixed_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"
+#include "shared_file.h"
 #include "statistics.h"
 #include "temp_folder.h"
 
@@ -245,6 +247,24 @@ TEST(TriangleScenes, StructureAndBuilderDoNotChangeABit) {
     const Rendered expected = render_options(options);
     for (const Settings& settings : {Settings{{"accel", "cwbvh"}}, Settings{{"builder", "sbvh"}},
                                      Settings{{"accel", "cwbvh"}, {"builder", "sbvh"}}}) {
+      SCOPED_TRACE(command_of(with(options, settings)));
+      expect_same(render_options(with(options, settings)), expected);
+    }
+  }
+}
+
+/// Where real scenes parted: ../shared/scenes.
+TEST(TriangleScenes, StructureDoesNotChangeFiles) {
+  for (const char* file :
+       {"modern-hall/scene.xml", "grey-white-room/scene.xml", "balloon-gltf/scene.gltf"}) {
+    Options options = image_options(160, 90, 8, 8);
+    options.scene = shared_file(std::string("scenes/") + file);
+    if (!std::filesystem::exists(options.scene)) GTEST_SKIP() << "no " << options.scene;
+    options.device.kind = DeviceChoice::Kind::cpu;
+    const Rendered expected = render_options(with(options, {{"accel", "bvh2"}}));
+    for (const Settings& settings :
+         {Settings{{"accel", "bvh2"}, {"builder", "sbvh"}}, Settings{{"accel", "cwbvh"}},
+          Settings{{"accel", "cwbvh"}, {"builder", "sbvh"}}}) {
       SCOPED_TRACE(command_of(with(options, settings)));
       expect_same(render_options(with(options, settings)), expected);
     }
