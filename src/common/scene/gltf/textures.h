@@ -31,7 +31,8 @@ class Textures {
   /// A colour texture (sRGB); its number in the scene. `place` is that of the textureInfo.
   std::uint32_t add_color(const TextureUse& use, const std::string& place);
 
-  /// Mean of the image's linear R, G, B over all texels, in [0, 1].
+  /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
+  /// image cannot be decoded: a factor is then used alone.
   Color mean(const TextureUse& use, const std::string& place);
 
  private:
@@ -41,7 +42,9 @@ class Textures {
   };
 
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
+  /// Bytes that are empty where the file is missing.
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
+  TextureImage decoded_image(const Encoded& encoded) const;
 
   File& file_;
   TextureStore store_;
