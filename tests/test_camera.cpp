@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_scene.h"
 #include "statistics.h"
 #include "temp_folder.h"

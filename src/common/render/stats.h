@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,7 @@ struct RenderReport {
   double setup_ms = 0;     ///< device initialisation and allocation
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
+  std::optional<float> exposure;  ///< stops by which a PNG or PPM was multiplied
   PathCounts counts;
   std::vector<RenderRun> runs;  ///< the measured repeats
   std::vector<BufferSize> memory;
