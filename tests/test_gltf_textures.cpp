@@ -148,7 +148,7 @@ TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {
   pbr["metallicFactor"] = 1, pbr["roughnessFactor"] = 0.8;
   pbr["metallicRoughnessTexture"] = {{"index", 1}};
   maker.root["textures"].push_back({{"source", 1}});
-  for (const char* uri : {"data:image/webp;base64,AAAA", "missing.ktx2"}) {
+  for (const char* uri : {"data:image/png;base64,AAAA", "missing.ktx2"}) {
     maker.root["images"][1] = {{"uri", uri}};
     const Loaded loaded(maker);
     EXPECT_EQ(loaded.scene.materials.at(0).kind, MaterialKind::metal);
@@ -157,6 +157,9 @@ TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {
     EXPECT_EQ(loaded.count("the factor alone is used"), 1u);
     expect_error([&] { Loaded strict(maker, true); }, "--strict");
   }
+  maker.root["textures"][1] = {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
+  EXPECT_EQ(Loaded(maker).count("textures[1].source"), 1u);
+  maker.root["textures"][1] = {{"source", 1}};
   pbr["baseColorTexture"] = {{"index", 1}};
   expect_error([&] { Loaded first_rank(maker); }, "images[1]");
 }

@@ -43,6 +43,7 @@ TEST(MitsubaXml, camelCaseIsSnakeCase) {
                                             rr +
                                             "\" value=\"4\"/></integrator>"
                                             "<sensor type=\"perspective\"/>"
+                                            "<emitter type=\"constant\"/>"
                                             "<shape type=\"sphere\"><transform name=\"" +
                                             place +
                                             "\"><translate x=\"2\"/>"

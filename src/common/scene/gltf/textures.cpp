@@ -83,11 +83,14 @@ Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::stri
     const auto& buffer = file_.at(file_.model.buffers, view.buffer, "buffers", image_place);
     return {text(buffer.data.data() + view.byteOffset, view.byteLength), name};
   }
+  if (image.image.empty()) {
+    file_.fail(image_place, fmt::format("cannot read '{:.200}'", image.uri));
+  }
   return {text(image.image.data(), image.image.size()), name};
 }
 
-TextureImage Textures::decoded_image(const Encoded& encoded) const {
-  if (encoded.bytes.empty()) throw Error("cannot read " + encoded.name);
+TextureImage Textures::integers(const TextureUse& use, const std::string& place) const {
+  const Encoded encoded = encoded_image(use, place);
   TextureImage image = decode_texture_image(encoded.bytes, encoded.name, TextureFormat::linear8);
   if (image.format != TextureFormat::linear8) {
     throw Error(encoded.name + ": an image of floats, expected one of integers");
@@ -97,7 +100,6 @@ TextureImage Textures::decoded_image(const Encoded& encoded) const {
 
 std::uint32_t Textures::add_color(const TextureUse& use, const std::string& place) {
   const Encoded image = encoded_image(use, place);
-  if (image.bytes.empty()) throw Error("cannot read " + image.name);
   if (use.tex_coord != 0) {
     file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
   }
@@ -108,10 +110,10 @@ std::uint32_t Textures::add_color(const TextureUse& use, const std::string& plac
 }
 
 Color Textures::mean(const TextureUse& use, const std::string& place) {
-  const Encoded encoded = encoded_image(use, place);
+  texture(use, place);  // a wrong number is an Error, a picture that we lack is not
   TextureImage image;
   try {
-    image = decoded_image(encoded);
+    image = integers(use, place);
   } catch (const Error& error) {
     file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
     return Color(1.0f);

@@ -42,9 +42,8 @@ class Textures {
   };
 
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
-  /// Bytes that are empty where the file is missing.
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
-  TextureImage decoded_image(const Encoded& encoded) const;
+  TextureImage integers(const TextureUse& use, const std::string& place) const;
 
   File& file_;
   TextureStore store_;
