@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/render/option_list.h"
 #include "common/render/option_names.h"
+#include "common/render/option_values.h"
 
 namespace pt {
 namespace {
@@ -84,7 +85,7 @@ void check_files(const Options& o, const GivenOptions& given) {
                                 files[j].first));
   if (given.contains("exposure") && o.output.ends_with(".exr"))
     throw Error(fmt::format("--exposure {}: applies to .png and .ppm; {} holds linear radiance",
-                            o.exposure, o.output));
+                            exposure_text(o.exposure), o.output));
 }
 
 void check_camera(const CameraOverrides& camera) {

@@ -9,6 +9,7 @@
 #include "common/device/devices.h"
 #include "common/image/atomic_file.h"
 #include "common/image/image_io.h"
+#include "common/image/measure_exposure.h"
 #include "common/render/csv_file.h"
 #include "common/render/option_names.h"
 #include "common/render/report.h"
@@ -51,9 +52,23 @@ DeviceInfo find_device(const RenderCommand& command) {
   return device;
 }
 
+/// The stops for a format that has no place for radiance.
+std::optional<float> exposure_of(const Options& options, const Image& image, bool by_default) {
+  using Kind = ExposureChoice::Kind;
+  const std::string ending = image_ending(options.output);
+  if (ending == ".exr") return std::nullopt;
+  const bool measured = options.exposure.kind == Kind::measured ||
+                        (options.exposure.kind == Kind::scene && by_default && ending == ".png");
+  const float stops = measured ? measure_exposure(image) : options.exposure.stops;
+  if (measured && !options.quiet) {
+    fmt::print("exposure {:+.2f} stops, measured; --exposure sets another\n", stops);
+  }
+  return stops;
+}
+
 /// The image, then what there is to tell about it. CSV rows are for comparing: complete runs only.
 void write_outputs(const Options& options, const Image& image, RenderReport& report) {
-  const ToneMapping tone_mapping{options.exposure};
+  const ToneMapping tone_mapping{report.exposure.value_or(0.0f)};
   report.image_write_ms = timed_ms(
       [&] { write_image(options.output, image, report_metadata(options, report), tone_mapping); });
   if (!options.quiet) {
@@ -119,6 +134,7 @@ int render_command(const RenderCommand& command) {
     renderer->describe(report);
     if (is_new && !options.quiet) fmt::print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
+    report.exposure = exposure_of(options, image, scene.defaults.measure_exposure);
     write_outputs(options, image, report);
   }
   if (!measurement.interrupted) return 0;

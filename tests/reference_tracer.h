@@ -19,7 +19,7 @@ class ReferenceTracer {
     const CameraParameters& c = scene_.camera;
     const Vec3d forward = glm::normalize(Vec3d(c.look_at) - Vec3d(c.look_from));
     const Vec3d right = glm::normalize(glm::cross(forward, Vec3d(c.up)));
-    const double half = std::tan(c.vertical_fov_degrees * pi_double / 360);
+    const double half = std::tan(c.fov_degrees * pi_double / 360);
     const Vec3d direction =
         forward + s * aspect * half * right + t * half * glm::cross(right, forward);
     return trace(Vec3d(c.look_from), glm::normalize(direction), random);

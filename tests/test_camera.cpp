@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_scene.h"
 #include "statistics.h"
 #include "temp_folder.h"
@@ -18,7 +19,7 @@ CameraParameters random_parameters(TestRandom& random) {
     camera.look_at[i] = static_cast<float>(random.uniform(-20, 20));
     camera.up[i] = static_cast<float>(random.uniform(-1, 1));
   }
-  camera.vertical_fov_degrees = static_cast<float>(random.uniform(2, 150));
+  camera.fov_degrees = static_cast<float>(random.uniform(2, 150));
   camera.focus_distance = static_cast<float>(random.log_uniform(0.1, 100));
   camera.aperture = static_cast<float>(random.uniform(0, 2));
   return camera;
@@ -38,7 +39,7 @@ Axes exact_axes(const CameraParameters& c) {
 /// Direction through the film point (s, t), each in [-1, 1], to the right and up.
 Vec3d pinhole_direction(const CameraParameters& c, double aspect, double s, double t) {
   const Axes axes = exact_axes(c);
-  const double half_height = std::tan(c.vertical_fov_degrees * pi_double / 360);
+  const double half_height = std::tan(c.fov_degrees * pi_double / 360);
   return glm::normalize(axes.forward + s * aspect * half_height * axes.right +
                         t * half_height * axes.up);
 }
@@ -165,8 +166,39 @@ TEST(CameraOptions, ReplaceTheScenesValues) {
   EXPECT_EQ(c.look_from, Vec3(1, 2, 3));
   EXPECT_EQ(c.look_at, Vec3(4, 5, 6));
   EXPECT_EQ(c.up, Vec3(0, 0, 1));
-  EXPECT_EQ((std::vector{c.vertical_fov_degrees, c.aperture, c.focus_distance}),
+  EXPECT_EQ((std::vector{c.fov_degrees, c.aperture, c.focus_distance}),
             (std::vector{50.0f, 0.25f, 8.0f}));
+}
+
+TEST(Camera, TheFixedAxisKeepsItsAngle) {
+  CameraParameters c{{0, 0, 5}, {0, 0, 0}};
+  c.fov_degrees = 90;  // half a side is as long as the distance
+  const auto expect = [&](FovAxis axis, int width, int height, double half_height) {
+    c.fov_axis = axis;
+    EXPECT_NEAR(vertical_tangent(c, width, height), half_height, 1e-6);
+    const Camera camera = make_camera(c, width, height);
+    EXPECT_NEAR(camera.corner.y, half_height, 1e-6);
+    EXPECT_NEAR(camera.corner.x, -half_height * width / height, 1e-6);
+  };
+  for (const auto& [width, height] : {std::pair{160, 90}, {90, 90}, {90, 160}}) {
+    const double smaller = std::min(width, height), larger = std::max(width, height);
+    expect(FovAxis::vertical, width, height, 1);
+    expect(FovAxis::horizontal, width, height, double(height) / width);
+    expect(FovAxis::smaller, width, height, height / smaller);
+    expect(FovAxis::larger, width, height, height / larger);
+    expect(FovAxis::diagonal, width, height, height / std::hypot(width, height));
+  }
+}
+
+TEST(CameraOptions, TheAngleIsVertical) {
+  CameraParameters c;
+  c.fov_axis = FovAxis::horizontal;
+  CameraOverrides overrides;
+  override_camera(c, overrides);
+  EXPECT_EQ(c.fov_axis, FovAxis::horizontal);
+  overrides.vertical_fov_degrees = 50;
+  override_camera(c, overrides);
+  EXPECT_EQ(c.fov_axis, FovAxis::vertical);
 }
 
 TEST(CameraOptions, ErrorsNameTheOption) {

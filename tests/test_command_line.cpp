@@ -137,7 +137,10 @@ TEST(CommandLine, FieldsGetTheValues) {
   EXPECT_TRUE(o.quiet);
   o = parse_options("-o x.ppm --exposure .5 --seed 0 --accel brute --aperture 0.25 --fov 179.5");
   EXPECT_EQ(o.output, "x.ppm");
-  EXPECT_EQ(o.exposure, 0.5f);
+  EXPECT_EQ(o.exposure.stops, 0.5f);
+  EXPECT_EQ(o.exposure.kind, ExposureChoice::Kind::fixed);
+  EXPECT_EQ(parse_options("-o x.png --exposure auto").exposure.kind,
+            ExposureChoice::Kind::measured);
   EXPECT_EQ(o.seed, 0u);
   EXPECT_EQ(o.accel, AccelKind::brute);
   EXPECT_EQ(o.camera.aperture, 0.25f);
@@ -281,7 +284,7 @@ TEST(Refused, NumbersAndVectors) {
                     {std::string("--aperture ") + value, "a length of 0 or more"},
                     {std::string("--focus-distance ") + value, "a length above 0"}});
   expect_refused({
-      {"--exposure 101 -o a.png", "--exposure 101: expected a number from -100 to 100"},
+      {"--exposure 101 -o a.png", "--exposure 101: expected auto or a number from -100 to 100"},
       {"--fov 0", "--fov 0: expected an angle"},
       {"--fov 180", "--fov 180: expected an angle"},
       {"--aperture -0.1", "--aperture -0.1: expected a length of 0 or more"},

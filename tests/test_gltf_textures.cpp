@@ -142,6 +142,28 @@ TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
   EXPECT_EQ(loaded.scene.texels.size(), 16u);
 }
 
+TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {
+  GltfMaker maker = with_texture();
+  auto& pbr = maker.root["materials"][0]["pbrMetallicRoughness"];
+  pbr["metallicFactor"] = 1, pbr["roughnessFactor"] = 0.8;
+  pbr["metallicRoughnessTexture"] = {{"index", 1}};
+  maker.root["textures"].push_back({{"source", 1}});
+  for (const char* uri : {"data:image/png;base64,AAAA", "missing.ktx2"}) {
+    maker.root["images"][1] = {{"uri", uri}};
+    const Loaded loaded(maker);
+    EXPECT_EQ(loaded.scene.materials.at(0).kind, MaterialKind::metal);
+    EXPECT_NEAR(loaded.scene.materials.at(0).parameter, 0.64f, 1e-6f);
+    EXPECT_EQ(loaded.count("images[1]"), 1u);
+    EXPECT_EQ(loaded.count("the factor alone is used"), 1u);
+    expect_error([&] { Loaded strict(maker, true); }, "--strict");
+  }
+  maker.root["textures"][1] = {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
+  EXPECT_EQ(Loaded(maker).count("textures[1].source"), 1u);
+  maker.root["textures"][1] = {{"source", 1}};
+  pbr["baseColorTexture"] = {{"index", 1}};
+  expect_error([&] { Loaded first_rank(maker); }, "images[1]");
+}
+
 TEST(GltfTextures, OtherCoordinatesAreReported) {
   EXPECT_EQ(Loaded(with_texture({{"texCoord", 1}})).count("TEXCOORD_0"), 1u);
   EXPECT_EQ(Loaded(with_texture({{"texCoord", 0}})).count("TEXCOORD_0"), 0u);

@@ -217,7 +217,13 @@ TEST(ExrFormats, AnyLosslessCompressionAndTiles) {
 }
 
 TEST(ExrFormats, ChannelsThatAreNotPlainRgb) {
-  expect_error([] { read_exr({{"Y", half_channel}}); }, "no channel R, only Y");
+  expect_counting(read_exr({{"Y", half_channel}}));
+  expect_counting(read_exr({{"A", half_channel}, {"Y", float_channel}}));
+  expect_error(
+      [] {
+        read_exr({{"Y", half_channel}, {"RY", half_channel}});
+      },
+      "no channel R, only RY, Y");
   expect_error(
       [] {
         read_exr({{"R", half_channel}, {"B", half_channel}});

@@ -43,6 +43,7 @@ TEST(MitsubaXml, camelCaseIsSnakeCase) {
                                             rr +
                                             "\" value=\"4\"/></integrator>"
                                             "<sensor type=\"perspective\"/>"
+                                            "<emitter type=\"constant\"/>"
                                             "<shape type=\"sphere\"><transform name=\"" +
                                             place +
                                             "\"><translate x=\"2\"/>"
@@ -177,7 +178,8 @@ TEST(MitsubaXml, whatIsNotKnownIsReportedOnce) {
   EXPECT_EQ(loaded.count("<surprise>"), 1);
   EXPECT_EQ(loaded.count("integrator 'sppm'"), 1);
   EXPECT_EQ(loaded.count("no sensor"), 1);
-  EXPECT_EQ(loaded.warnings.size(), 7u);
+  EXPECT_EQ(loaded.count("NO LIGHT OF THE FILE IS LEFT"), 1);
+  EXPECT_EQ(loaded.warnings.size(), 8u);
   EXPECT_EQ(loaded.scene.quads.size(), 2u);
   LoadOptions strict;
   strict.strict = true;

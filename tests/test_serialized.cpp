@@ -18,6 +18,7 @@ struct Kind {
   std::uint32_t flags = 0;  ///< besides the precision
   std::uint64_t vertices = 3, triangles = 1;
   std::uint32_t last_index = 2;
+  std::uint32_t float_flag = 0x1000;
 };
 
 void put_floats(ByteWriter& out, bool in_double, std::initializer_list<double> values) {
@@ -38,7 +39,7 @@ std::string compressed(const std::string& bytes) {
 /// One triangle, at height z.
 std::string shape(const Kind& kind, double z) {
   ByteWriter body;
-  body.put<std::uint32_t>(kind.flags | (kind.in_double ? 0x2000 : 0x1000));
+  body.put<std::uint32_t>(kind.flags | (kind.in_double ? 0x2000 : kind.float_flag));
   if (kind.version == 4) body.text += std::string("a name\0", 7);
   body.put(kind.vertices).put(kind.triangles);
   put_floats(body, kind.in_double, {0, 0, z, 1, 0, z, 0, 1, z});
@@ -85,6 +86,20 @@ TEST(Serialized, EveryKindOfShape) {
       }
     }
   }
+}
+
+TEST(Serialized, WithoutAPrecisionTheNumbersAreFloats) {
+  std::vector<std::string> warnings;
+  MeshFileOptions options;
+  options.warnings = &warnings;
+  // Flags 0x103: two files in circulation have them. 0x100 is none of the manual's.
+  const std::string bytes = file_of({.flags = 0x103, .float_flag = 0});
+  const Mesh mesh = decode_serialized(bytes, "a.serialized", 1, options);
+  EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}));
+  EXPECT_EQ(mesh.uvs.size(), 3u);
+  EXPECT_EQ(warnings, std::vector<std::string>{"flags 0x103 say neither float nor double: float"});
+  decode_serialized(file_of({}), "a.serialized", 1, options);
+  EXPECT_EQ(warnings.size(), 1u);
 }
 
 TEST(Serialized, BrokenFilesAreRefused) {

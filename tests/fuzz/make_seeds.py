@@ -231,7 +231,9 @@ SEEDS = {
     "mtl": [MTL],
     "serialized": [serialized(v, d) for v in (3, 4) for d in (False, True)],
     "image": [png(0, 8, 1), png(2, 8, 3), png(6, 16, 4, 1), png(3, 8, 1), png(4, 8, 2), bmp(),
-              tga(2, 24), tga(10, 32), tga(3, 8), jpeg(False), jpeg(True), *hdr(), exr()],
+              tga(2, 24), tga(10, 32), tga(3, 8), jpeg(False), jpeg(True), *hdr(), exr(),
+              b"P6 1 1 255\nabc", b"P5 1 1 65535\nab",
+              b"PF 1 1 -1\n" + struct.pack("<3f", 1, 2, 3)],
     "mitsuba_xml": [XML_START + part + b"</scene>\n" for part in XML_PARTS],
     "gltf": gltf(),
 }

@@ -16,17 +16,21 @@ bool is_exr(std::string_view bytes) { return bytes.starts_with("\x76\x2f\x31\x01
 bool is_hdr(std::string_view bytes) { return bytes.starts_with("#?"); }
 bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG"); }
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8"); }
+bool is_ppm(std::string_view bytes) { return bytes.starts_with("P6") || bytes.starts_with("P5"); }
+bool is_pfm(std::string_view bytes) { return bytes.starts_with("PF") || bytes.starts_with("Pf"); }
 
 /// Of formats that store floats.
-bool is_float(std::string_view bytes) { return is_exr(bytes) || is_hdr(bytes); }
+bool is_float(std::string_view bytes) { return is_exr(bytes) || is_hdr(bytes) || is_pfm(bytes); }
 
 Image decode_floats(std::string_view bytes) {
+  if (is_pfm(bytes)) return decode_pfm(bytes);
   ImageMetadata metadata;
   return is_exr(bytes) ? exr_codec.decode(bytes, &metadata) : decode_hdr(bytes);
 }
 
 Rgba8Image decode_integers(std::string_view bytes) {
   if (is_png(bytes)) return decode_png_rgba8(bytes);
+  if (is_ppm(bytes)) return decode_ppm_rgba8(bytes);
   return is_jpeg(bytes) ? decode_jpeg(bytes) : decode_bmp_or_tga(bytes);
 }
 

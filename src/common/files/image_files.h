@@ -1,5 +1,5 @@
-// Images in files, as texels and as radiance: JPEG, PNG, BMP, TGA, Radiance (.hdr) and OpenEXR. The
-// content decides the format, not the file's name.
+// Images in files, as texels and as radiance: JPEG, PNG, BMP, TGA, PPM, PGM, PFM, Radiance (.hdr)
+// and OpenEXR. The content decides the format, not the file's name.
 //
 // Errors are Error, one line with the file's name, for one that is missing, of another format,
 // truncated, corrupted or larger than 65535 pixels a side.
@@ -24,8 +24,8 @@ struct TextureImage {
 };
 
 /// Integers become `integers`, srgb8 or linear8, with 8 bits a value (16 bits in a file lose the
-/// lower half); floats (.hdr, .exr) become rgb32f. Grey becomes RGB; alpha is kept with 8 bits and
-/// opaque where the file has none.
+/// lower half); floats (.hdr, .exr, .pfm) become rgb32f. Grey becomes RGB; alpha is kept with 8
+/// bits and opaque where the file has none.
 TextureImage read_texture_image(const std::filesystem::path& path,
                                 TextureFormat integers = TextureFormat::srgb8);
 

@@ -23,6 +23,7 @@ struct MeshFileOptions {
   /// its textures from the head, so its `ply` and `serialized` shapes need this (unless they say
   /// flip_tex_coords) and its `obj` shapes do not (unless they say not to flip).
   bool flip_v = false;
+  std::vector<std::string>* warnings = nullptr;  ///< gets what was guessed, a line each; or null
 };
 
 /// PLY: ASCII or binary of either byte order, any properties in any order. Vertices give x y z,
@@ -50,7 +51,8 @@ struct ObjFile {
 ObjFile read_obj_with_materials(const std::filesystem::path& path,
                                 const MeshFileOptions& options = {});
 
-/// Shape number `shape_index` (0 is the first) of Mitsuba's .serialized, version 3 or 4.
+/// Shape number `shape_index` (0 is the first) of Mitsuba's .serialized, version 3 or 4. Flags that
+/// do not say how precise its numbers are get a warning: they are floats.
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options = {});
 

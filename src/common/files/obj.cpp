@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "common/error_context.h"
+#include "common/files/find_file.h"
 #include "common/files/mapped_file.h"
 #include "common/files/mesh_files.h"
 #include "common/files/mesh_finish.h"
@@ -45,7 +46,8 @@ class MeshesByMaterial : public ObjSink {
   /// The names are one with spaces or several without.
   void read_library(std::string_view names) override {
     std::error_code ignored;
-    if (std::filesystem::is_regular_file(folder_ / names, ignored)) return read(names);
+    const std::filesystem::path whole = find_file(folder_, names, {});
+    if (std::filesystem::is_regular_file(whole, ignored)) return read(names);
     std::size_t begin = 0;
     while ((begin = names.find_first_not_of(" \t", begin)) != names.npos) {
       const std::size_t end = std::min(names.find_first_of(" \t", begin), names.size());
@@ -66,8 +68,10 @@ class MeshesByMaterial : public ObjSink {
  private:
   void read(std::string_view name) {
     const std::size_t before = file_.materials.size();
+    const auto warn = [&](const std::string& line) { file_.warnings.push_back(line); };
+    const std::filesystem::path found = find_file(folder_, name, warn);
     try {
-      read_mtl(folder_ / name, file_);
+      read_mtl(found.empty() ? folder_ / name : found, file_);
     } catch (const Error& error) {
       file_.warnings.push_back(std::string(name) + ": " + error.what());
     }

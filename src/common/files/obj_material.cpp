@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "common/error.h"
+#include "common/files/find_file.h"
 #include "common/files/mapped_file.h"
 
 namespace pt {
@@ -49,10 +50,13 @@ Material nearest_material(const tinyobj::material_t& mtl) {
 }
 
 /// `name` of a texture, beside the MTL file, with the separators of any system.
-std::filesystem::path map_path(const std::filesystem::path& mtl_path, std::string name) {
+std::filesystem::path map_path(const std::filesystem::path& mtl_path, std::string name,
+                               std::vector<std::string>& warnings) {
   if (name.empty()) return {};
   std::ranges::replace(name, '\\', '/');
-  return mtl_path.parent_path() / name;
+  const auto warn = [&](const std::string& line) { warnings.push_back(line); };
+  const std::filesystem::path found = find_file(mtl_path.parent_path(), name, warn);
+  return found.empty() ? mtl_path.parent_path() / name : found;
 }
 
 void warn_of_losses(const tinyobj::material_t& mtl, const Material& material,
@@ -76,10 +80,10 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
   ObjMaterial result{mtl.name, nearest_material(mtl), {}, {}};
   warn_of_losses(mtl, result.material, warnings);
   if (result.material.kind != MaterialKind::dielectric) {
-    result.albedo_map = map_path(mtl_path, mtl.diffuse_texname);
+    result.albedo_map = map_path(mtl_path, mtl.diffuse_texname, warnings);
   }
   if (result.material.kind == MaterialKind::diffuse) {
-    result.emission_map = map_path(mtl_path, mtl.emissive_texname);
+    result.emission_map = map_path(mtl_path, mtl.emissive_texname, warnings);
     result.material.emission = limited(mtl.emission, 1e30f);
     if (!result.emission_map.empty() && is_black(result.material.emission)) {
       result.material.emission = Color(1.0f);  // a map alone means the map itself

@@ -83,7 +83,7 @@ void read_vertices(Inflater& stream, std::uint32_t flags, std::uint64_t count, M
   if (flags & has_colors) next_vectors<Vec3, Float>(stream, count);
 }
 
-Mesh read_shape(std::string_view bytes, std::uint64_t offset) {
+Mesh read_shape(std::string_view bytes, std::uint64_t offset, std::vector<std::string>* warnings) {
   const int version = version_at(bytes, offset);
   Inflater stream(bytes.substr(offset + header_bytes));
   const auto flags = stream.next<std::uint32_t>();
@@ -99,10 +99,11 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset) {
   Mesh mesh;
   if (flags & double_precision) {
     read_vertices<double>(stream, flags, vertices, mesh);
-  } else if (flags & single_precision) {
-    read_vertices<float>(stream, flags, vertices, mesh);
   } else {
-    throw Error(fmt::format("flags {:#x} say neither float nor double", flags));
+    read_vertices<float>(stream, flags, vertices, mesh);
+    if (!(flags & single_precision) && warnings) {
+      warnings->push_back(fmt::format("flags {:#x} say neither float nor double: float", flags));
+    }
   }
   if (flags & face_normals) mesh.normals = {};
   mesh.triangles = stream.next_array<TriangleIndices>(triangles);
@@ -110,7 +111,7 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset) {
 }
 
 Mesh decode(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
-  Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index));
+  Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index), options.warnings);
   finish_mesh(mesh, options);
   return mesh;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "common/error.h"
 #include "common/image/exr_header.h"
@@ -18,16 +19,18 @@
 namespace pt {
 namespace {
 
-constexpr const char* channel_names[3] = {"R", "G", "B"};
 constexpr int max_tile_size = 4096;
 
-/// The R, G and B of `pixels`, wherever the data window lies.
-Imf::FrameBuffer frame_buffer(const float* pixels, const Imath::Box2i& window) {
+/// Channels and the places that their values take in a pixel: R, G and B, or Y alone in the first.
+using Names = std::vector<const char*>;
+
+/// The `names` of `pixels`, wherever the data window lies.
+Imf::FrameBuffer frame_buffer(const float* pixels, const Imath::Box2i& window, const Names& names) {
   const std::size_t stride = 3 * sizeof(float);
   const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
   Imf::FrameBuffer buffer;
-  for (int c = 0; c < 3; ++c) {
-    buffer.insert(channel_names[c],
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    buffer.insert(names[c],
                   Imf::Slice::Make(Imf::FLOAT, pixels + c, window, stride, stride * width));
   }
   return buffer;
@@ -43,7 +46,8 @@ bool is_reserved(const std::string& name) {
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  for (const char* name : channel_names) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  const Names rgb = {"R", "G", "B"};
+  for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   for (const auto& [key, value] : metadata) {
     if (is_reserved(key)) throw Error(fmt::format("metadata key '{}' is taken by OpenEXR", key));
     header.insert(key, Imf::StringAttribute(value));
@@ -51,28 +55,48 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
   ExrWriter stream;
   {
     Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow()));
+    file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow(), rgb));
     file.writePixels(image.height);
   }  // writes the table of offsets
   return std::move(stream.bytes);
 }
 
-/// Refuses files without plain R, G and B. Returns the decompressed size of one pixel.
-int check_channels(const Imf::ChannelList& channels) {
+std::string all_names(const Imf::ChannelList& channels) {
   std::string names;
-  int pixel_bytes = 0;
   for (auto it = channels.begin(); it != channels.end(); ++it) {
     names += names.empty() ? it.name() : fmt::format(", {}", it.name());
-    pixel_bytes += it.channel().type == Imf::HALF ? 2 : 4;
   }
-  for (const char* name : channel_names) {
+  return names;
+}
+
+/// Luminance without the differences that would make it a colour.
+bool is_grey(const Imf::ChannelList& channels) {
+  for (const char* name : {"R", "G", "B", "RY", "BY"}) {
+    if (channels.findChannel(name)) return false;
+  }
+  return channels.findChannel("Y") != nullptr;
+}
+
+/// R, G and B, or Y where there is none of them. Refuses files without or with fewer pixels in one.
+Names channels_to_read(const Imf::ChannelList& channels) {
+  const Names names = is_grey(channels) ? Names{"Y"} : Names{"R", "G", "B"};
+  for (const char* name : names) {
     const Imf::Channel* channel = channels.findChannel(name);
-    if (!channel) throw Error(fmt::format("no channel {}, only {}", name, names));
+    if (!channel) throw Error(fmt::format("no channel {}, only {}", name, all_names(channels)));
     if (channel->xSampling != 1 || channel->ySampling != 1) {
       throw Error(fmt::format("channel {} is subsampled", name));
     }
   }
-  return pixel_bytes;
+  return names;
+}
+
+/// Decompressed, of all channels.
+int bytes_per_pixel(const Imf::ChannelList& channels) {
+  int bytes = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    bytes += it.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return bytes;
 }
 
 Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
@@ -83,16 +107,21 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
   ExrReader stream(bytes);
   Imf::InputFile file(stream, 0);
   const Imf::Header& header = file.header();
-  const int pixel_bytes = check_channels(header.channels());
+  const Names names = channels_to_read(header.channels());
   if (!file.isComplete()) throw Error("truncated: some of its pixels are missing");
 
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const double decoded_bytes = 1.0 * pixel_bytes * width * height;
+  const double decoded_bytes = 1.0 * bytes_per_pixel(header.channels()) * width * height;
   Image image = allocate_image(width, height, decoded_bytes, bytes.size());
-  file.setFrameBuffer(frame_buffer(image.rgb.data(), window));
+  file.setFrameBuffer(frame_buffer(image.rgb.data(), window, names));
   file.readPixels(window.min.y, window.max.y);
+  if (names.size() == 1) {
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+      image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
+    }
+  }
 
   for (auto it = header.begin(); it != header.end(); ++it) {
     const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());

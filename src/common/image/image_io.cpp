@@ -88,6 +88,8 @@ Image allocate_image(std::int64_t width, std::int64_t height, double decoded_byt
   return image;
 }
 
+std::string image_ending(const std::string& path) { return std::string(codec_of(path).ending); }
+
 void check_image_path(const std::string& path) {
   codec_of(path);
   check_writable(path);

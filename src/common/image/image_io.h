@@ -19,6 +19,9 @@ struct ToneMapping {
   float exposure = 0.0f;  ///< stops
 };
 
+/// The lower case ending of an image's name: ".exr", ".png" or ".ppm". Throws Error for others.
+std::string image_ending(const std::string& path);
+
 /// Throws Error when `path`'s ending is not .exr, .png or .ppm or a file cannot be created in its
 /// folder. Leaves nothing behind and touches no existing file: called before any work is done.
 void check_image_path(const std::string& path);
@@ -28,10 +31,11 @@ void check_image_path(const std::string& path);
 void write_image(const std::string& path, const Image& image, const ImageMetadata& metadata,
                  const ToneMapping& tone_mapping = {});
 
-/// Reads .exr (flat, channels R, G, B of any type), .png (any kind; alpha is dropped) or .ppm (P6)
-/// into linear RGB; integers are decoded with the curve that write_image uses, exposure 0, whatever
-/// gamma the file announces. Fills `metadata` where given. Throws Error naming the file for one
-/// that is missing, of another format, truncated, corrupted or larger than 65535 pixels a side.
+/// Reads .exr (flat, channels R, G, B or Y alone, of any type), .png (any kind; alpha is dropped)
+/// or .ppm (P6) into linear RGB; integers are decoded with the curve that write_image uses,
+/// exposure 0, whatever gamma the file announces. Fills `metadata` where given. Throws Error naming
+/// the file for one that is missing, of another format, truncated, corrupted or larger than 65535
+/// pixels a side.
 Image read_image(const std::string& path, ImageMetadata* metadata = nullptr);
 
 }  // namespace pt

@@ -74,6 +74,17 @@ class JpegReader {
   char message_[JMSG_LENGTH_MAX] = "";
 };
 
+/// A pixel of four inks. Adobe's programs store how much of an ink is missing, and say that they
+/// wrote the file (libjpeg's libjpeg.txt, 'CMYK').
+void put_cmyk(const unsigned char* inks, bool missing, std::byte* rgb) {
+  const auto passed = [&](int i) { return missing ? inks[i] : 255 - inks[i]; };
+  for (int c = 0; c < 3; ++c) rgb[c] = std::byte((passed(c) * passed(3) + 127) / 255);
+}
+
+void put_rgb(const unsigned char* values, std::byte* rgb) {
+  for (int c = 0; c < 3; ++c) rgb[c] = std::byte{values[c]};
+}
+
 }  // namespace
 
 Rgba8Image decode_jpeg(std::string_view bytes) {
@@ -84,22 +95,25 @@ Rgba8Image decode_jpeg(std::string_view bytes) {
   const double pixels = static_cast<double>(jpeg.image_width) * jpeg.image_height;
   check_image_size(jpeg.image_width, jpeg.image_height, 4 * pixels, bytes.size());
   if (pixels / 512 > static_cast<double>(bytes.size())) throw Error("truncated or corrupted");
+  const bool inks = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
   reader.attempt([&] {
-    jpeg.out_color_space = JCS_RGB;
+    jpeg.out_color_space = inks ? JCS_CMYK : JCS_RGB;
     jpeg_start_decompress(&jpeg);
   });
 
   const std::size_t width = jpeg.output_width, height = jpeg.output_height;
   Rgba8Image image{static_cast<int>(width), static_cast<int>(height), {}};
   image.rgba.resize(4 * width * height, std::byte{255});
-  std::vector<unsigned char> row(3 * width);
+  const std::size_t channels = inks ? 4 : 3;
+  std::vector<unsigned char> row(channels * width);
   reader.attempt([&] {
     unsigned char* rows[] = {row.data()};
     std::byte* out = image.rgba.data();
     while (jpeg.output_scanline < jpeg.output_height) {
       jpeg_read_scanlines(&jpeg, rows, 1);
       for (std::size_t x = 0; x < width; ++x, out += 4) {
-        for (std::size_t c = 0; c < 3; ++c) out[c] = std::byte{row[3 * x + c]};
+        const unsigned char* pixel = row.data() + channels * x;
+        inks ? put_cmyk(pixel, jpeg.saw_Adobe_marker, out) : put_rgb(pixel, out);
       }
     }
     jpeg_finish_decompress(&jpeg);

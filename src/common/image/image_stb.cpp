@@ -111,7 +111,7 @@ const Value* load(std::string_view bytes, int& width, int& height, Load load_pix
   Source header(bytes);
   if (bytes.empty() ||
       stbi_info_from_callbacks(&callbacks, &header, &width, &height, &channels) == 0) {
-    throw Error("not a PNG, JPEG, BMP, TGA, Radiance or OpenEXR image, or corrupted");
+    throw Error("not a PNG, JPEG, BMP, TGA, PPM, PFM, Radiance or OpenEXR image, or corrupted");
   }
   const double decoded_bytes = 4.0 * sizeof(Value) * width * height;
   check_image_size(width, height, decoded_bytes, bytes.size());

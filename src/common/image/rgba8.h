@@ -20,7 +20,11 @@ struct Rgba8Image {
 /// Any PNG; 16 bits are rounded to 8.
 Rgba8Image decode_png_rgba8(std::string_view bytes);
 
-/// Baseline or progressive JPEG, grey or YCbCr.
+/// PPM or PGM, P6 or P5; more than 8 bits are rounded to 8.
+Rgba8Image decode_ppm_rgba8(std::string_view bytes);
+
+/// Baseline or progressive JPEG, grey, YCbCr, CMYK or YCCK; ink is taken for a filter of red, green
+/// or blue, as there is no profile of the press.
 Rgba8Image decode_jpeg(std::string_view bytes);
 
 /// BMP or TGA (which has no signature), by stb_image.
@@ -28,5 +32,8 @@ Rgba8Image decode_bmp_or_tga(std::string_view bytes);
 
 /// Radiance's .hdr, by stb_image: linear.
 Image decode_hdr(std::string_view bytes);
+
+/// PFM, colour (PF) or grey (Pf): linear.
+Image decode_pfm(std::string_view bytes);
 
 }  // namespace pt

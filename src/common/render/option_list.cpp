@@ -60,13 +60,12 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(text("output", "FILE", &Options::output),
            "Image to write: .exr (linear float), .png (8-bit sRGB) or\n.ppm (8-bit, gamma 2)", "-o")
       .add(custom(
-               "exposure", OptionForm::number, "STOPS",
-               [](Options& o, const std::string& s) {
-                 o.exposure = parse_number("exposure", s, "a number from -100 to 100",
-                                           [](float x) { return x >= -100 && x <= 100; });
-               },
-               [](const Options& o) { return number_text(o.exposure); }),
-           "Multiplies a .png or .ppm by 2^STOPS; an .exr is linear");
+               "exposure", OptionForm::number, "auto|STOPS",
+               [](Options& o, const std::string& s) { o.exposure = parse_exposure("exposure", s); },
+               [](const Options& o) { return exposure_text(o.exposure); }),
+           "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
+           "is a middle grey. By default 0, but auto for a .png of a file\n"
+           "in photometric units or without lights. An .exr is linear");
 }
 
 void add_scene(std::vector<OptionEntry>& list) {

@@ -67,6 +67,19 @@ float parse_number(const std::string& name, const std::string& text, const char*
   return *value;
 }
 
+ExposureChoice parse_exposure(const std::string& name, const std::string& text) {
+  using Kind = ExposureChoice::Kind;
+  if (text == "auto") return {Kind::measured, 0.0f};
+  return {Kind::fixed, parse_number(name, text, "auto or a number from -100 to 100",
+                                    [](float x) { return x >= -100 && x <= 100; })};
+}
+
+std::string exposure_text(const ExposureChoice& exposure) {
+  using Kind = ExposureChoice::Kind;
+  if (exposure.kind == Kind::scene) return "";
+  return exposure.kind == Kind::measured ? "auto" : number_text(exposure.stops);
+}
+
 std::array<float, 3> parse_vector(const std::string& name, const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   std::array<float, 3> vector{};

@@ -45,6 +45,11 @@ std::string stage_blocks_text(const std::array<int, stage_count>& blocks);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
 
+/// "auto" or stops.
+ExposureChoice parse_exposure(const std::string& name, const std::string& text);
+/// Empty where the scene decides.
+std::string exposure_text(const ExposureChoice& exposure);
+
 /// Adds NAME=VALUE to `definitions`.
 void parse_definition(const std::string& name, const std::string& text,
                       std::map<std::string, std::string>& definitions);

@@ -35,6 +35,13 @@ struct BlockSize {
   int y = 16;
 };
 
+/// How bright a PNG or PPM is.
+struct ExposureChoice {
+  /// `scene`: measured in a PNG where SceneDefaults::measure_exposure, else 0 stops.
+  enum class Kind { scene, measured, fixed } kind = Kind::scene;
+  float stops = 0.0f;  ///< of Kind::fixed
+};
+
 /// Overrides of the scene's own camera; absent values keep the scene's.
 /// Lengths in scene units, `vertical_fov_degrees` in (0, 180), `aperture` is the lens diameter.
 struct CameraOverrides {
@@ -52,7 +59,7 @@ struct Options {
   bool nee = true;     ///< next-event estimation: ask the lights
   std::uint64_t seed = 1;
   std::string output = "image.exr";  ///< .exr, .png or .ppm
-  float exposure = 0.0f;             ///< stops, for PNG and PPM only
+  ExposureChoice exposure;           ///< for PNG and PPM only
 
   // Scene
   std::string scene = "spheres";

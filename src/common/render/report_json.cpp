@@ -126,7 +126,8 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["used"] = {{"accel", report.accel},
                   {"schedule", report.schedule},
                   {"pool_size", report.pool_size},
-                  {"primitives", report.primitives}};
+                  {"primitives", report.primitives},
+                  {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
   json["scene"] = scene_json(report.scene);
   json["complete"] = is_complete(options, report);
   json["samples_done"] = summary.samples_done;

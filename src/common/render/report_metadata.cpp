@@ -25,6 +25,7 @@ std::map<std::string, std::string> report_metadata(const Options& options,
       {"ptexp.setup_ms", fmt::format("{:.6f}", report.setup_ms)},
       {"ptexp.load_ms", fmt::format("{:.6f}", report.load_ms)},
       {"ptexp.transfer_ms", fmt::format("{:.6f}", report.transfer_ms)}};
+  if (report.exposure) metadata["ptexp.exposure"] = fmt::format("{}", *report.exposure);
   // An option that the scene decides is left out: an empty attribute would look like a value.
   for (const OptionEntry& entry : option_list())
     if (const std::string text = entry.text(options); !text.empty())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,7 @@ struct RenderReport {
   double load_ms = 0;      ///< loading of kernels, before the first render; 0 on the CPU
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
+  std::optional<float> exposure;  ///< stops by which a PNG or PPM was multiplied
   PathCounts counts;
   std::vector<RenderRun> runs;  ///< the measured repeats
   std::vector<BufferSize> memory;

@@ -6,16 +6,39 @@
 
 namespace pt {
 
+/// The side of the image along which an angle of view is measured; of the two equal sides of a
+/// square either. The others follow from the image's final size.
+enum class FovAxis { vertical, horizontal, diagonal, smaller, larger };
+
 /// What a user says of a camera: lengths in scene units.
 struct CameraParameters {
   Vec3 look_from{0, 0, 1};
   Vec3 look_at{0, 0, 0};
   Vec3 up{0, 1, 0};
-  float vertical_fov_degrees = 40.0f;  ///< in (0, 180)
-  float aperture = 0.0f;               ///< diameter of the lens, 0: a pinhole
-  float focus_distance = 1.0f;         ///< distance of the plane in perfect focus, > 0
-  bool mirrored = false;               ///< left and right exchanged
+  float fov_degrees = 40.0f;    ///< along `fov_axis`, in (0, 180)
+  float aperture = 0.0f;        ///< diameter of the lens, 0: a pinhole
+  float focus_distance = 1.0f;  ///< distance of the plane in perfect focus, > 0
+  bool mirrored = false;        ///< left and right exchanged
+  FovAxis fov_axis = FovAxis::vertical;
 };
+
+/// The tangent of half the vertical angle of view of an image of this size.
+PT_HD float vertical_tangent(const CameraParameters& parameters, int width, int height) {
+  const float tangent = tanf(0.5f * parameters.fov_degrees * pi / 180.0f);
+  const float aspect = static_cast<float>(width) / static_cast<float>(height);
+  switch (parameters.fov_axis) {
+    case FovAxis::horizontal:
+      return tangent / aspect;
+    case FovAxis::diagonal:
+      return tangent / sqrtf(1.0f + aspect * aspect);
+    case FovAxis::smaller:
+      return aspect < 1.0f ? tangent / aspect : tangent;
+    case FovAxis::larger:
+      return aspect > 1.0f ? tangent / aspect : tangent;
+    default:
+      return tangent;
+  }
+}
 
 /// Directions are relative to `origin`; pixel (0, 0) is the upper left corner.
 struct Camera {
@@ -32,7 +55,7 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
   const Vec3 right = normalize(glm::cross(parameters.up, backward));
   const Vec3 up = glm::cross(backward, right);
   const float plane_height =
-      2.0f * parameters.focus_distance * tanf(0.5f * parameters.vertical_fov_degrees * pi / 180.0f);
+      2.0f * parameters.focus_distance * vertical_tangent(parameters, width, height);
   const float pixel = plane_height / static_cast<float>(height);
   const Vec3 step_x = (parameters.mirrored ? -pixel : pixel) * right;
   const Vec3 step_y = -pixel * up;

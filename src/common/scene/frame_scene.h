@@ -10,8 +10,9 @@ namespace pt {
 /// their groups, turned.
 Bounds scene_bounds(const SceneData& scene);
 
-/// A camera that sees all of `bounds` (not empty) from the front, right and above: +z, +x and +y.
-CameraParameters frame_bounds(const Bounds& bounds);
+/// A camera that sees all of the scene from the front, right and above (+z, +x and +y) in an image
+/// of any shape, whose smaller side the scene all but fills. It looks at the middle of the bounds.
+CameraParameters frame_scene(const SceneData& scene);
 
 /// Is anything to be seen by: a sky, an environment, a light or a surface that emits?
 bool has_light(const SceneData& scene);

@@ -11,6 +11,7 @@
 #include "common/scene/gltf/meshes.h"
 #include "common/scene/gltf/nodes.h"
 #include "common/scene/gltf/read_model.h"
+#include "common/scene/studio.h"
 
 namespace pt {
 
@@ -93,7 +94,9 @@ void add_meshes(File& file, const std::vector<PlacedNode>& nodes, SceneData& sce
 }  // namespace
 
 SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& options) {
-  File file(path.string(), read_model(path), options);
+  ReadModel read = read_model(path);
+  File file(path.string(), std::move(read.model), options);
+  for (const std::string& warning : read.warnings) file.report("", warning);
   check_extensions(file);
   report_ignored(file);
   SceneData scene;
@@ -108,11 +111,11 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   }
   if (!set_camera(file, nodes, bounds, scene)) {
     file.note("no camera: one that frames the scene is used");
-    scene.camera = frame_bounds(bounds);
+    scene.camera = frame_scene(scene);
   }
   if (!has_light(scene)) {
-    file.note("no light: a white sky of radiance 1 is used");
-    scene.sky = {Color(1.0f), Color(1.0f)};
+    file.note(fmt::format("no light: {} is used", studio_text));
+    add_studio(scene);
   }
   return scene;
 }

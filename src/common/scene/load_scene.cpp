@@ -11,6 +11,7 @@
 #include "common/scene/frame_scene.h"
 #include "common/scene/gltf.h"
 #include "common/scene/mitsuba_xml.h"
+#include "common/scene/studio.h"
 
 namespace pt {
 
@@ -23,12 +24,13 @@ void complete(const std::filesystem::path& path, const LoadOptions& options, Sce
     throw Error(fmt::format("{}: no triangles: expected at least one", path.string()));
   }
   scene.name = path.filename().string();
-  scene.camera = frame_bounds(bounds);
+  scene.camera = frame_scene(scene);
   const bool is_lit = has_light(scene);
-  if (!is_lit) scene.sky = {Color(1.0f), Color(1.0f)};
+  if (!is_lit) add_studio(scene);
   if (options.warn) {
-    options.warn(fmt::format("{}: the format has no camera: one that frames the scene is used{}",
-                             path.string(), is_lit ? "" : ", and a white sky of radiance 1"));
+    options.warn(fmt::format("{}: the format has no camera: one that frames the scene is used{}{}",
+                             path.string(),
+                             is_lit ? "" : ", and no light: ", is_lit ? "" : studio_text));
   }
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "common/scene/frame_scene.h"
 #include "common/scene/mitsuba/emitters.h"
 #include "common/scene/mitsuba/sensor.h"
 #include "common/scene/mitsuba/shapes.h"
@@ -12,16 +15,21 @@ namespace {
 using mitsuba::Context;
 using mitsuba::Object;
 
-/// The sensor, in the name of 0.x's first versions or of today.
+/// A camera that frames what there is.
+void add_sensor(Context& context, const Object& root) {
+  const Bounds bounds = scene_bounds(context.scene);
+  context.note(root.element(), "no sensor: a camera that frames the scene is used");
+  if (std::isfinite(glm::length(bounds.max - bounds.min)) && !bounds.is_empty()) {
+    context.scene.camera = frame_scene(context.scene);
+  }
+}
+
+/// The sensor, in the name of 0.x's first versions or of today. After the shapes, for it may have
+/// to frame them.
 void load_sensor(Context& context, const Object& root) {
   std::vector<const Object*> sensors = root.children("sensor");
   for (const Object* camera : root.children("camera")) sensors.push_back(camera);
-  if (sensors.empty()) {
-    context.warn_once("no sensor", root.element(),
-                      "the scene has no sensor: a camera at (0, 0, 1) that looks at the origin is "
-                      "used");
-    return;
-  }
+  if (sensors.empty()) return add_sensor(context, root);
   if (sensors.size() > 1) {
     context.warn_once("sensors", sensors[1]->element(), "more than one sensor: the first is used");
   }
@@ -30,8 +38,8 @@ void load_sensor(Context& context, const Object& root) {
 
 void load_objects(Context& context, const Object& root) {
   if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
-  load_sensor(context, root);
   for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
+  load_sensor(context, root);
   for (const Object* emitter : root.children("emitter")) add_emitter(context, *emitter);
   for (const Object* emitter : root.children("luminaire")) add_emitter(context, *emitter);
 }
@@ -48,6 +56,7 @@ SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions&
       stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
+  context.add_studio_if_dark();
   context.report_unused();
   return scene;
 }

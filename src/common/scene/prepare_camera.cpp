@@ -15,8 +15,10 @@ void override_camera(CameraParameters& camera, const CameraOverrides& overrides)
   if (overrides.look_from) camera.look_from = to_vec3(*overrides.look_from);
   if (overrides.look_at) camera.look_at = to_vec3(*overrides.look_at);
   if (overrides.up) camera.up = to_vec3(*overrides.up);
-  camera.vertical_fov_degrees =
-      overrides.vertical_fov_degrees.value_or(camera.vertical_fov_degrees);
+  if (overrides.vertical_fov_degrees) {
+    camera.fov_degrees = *overrides.vertical_fov_degrees;
+    camera.fov_axis = FovAxis::vertical;
+  }
   camera.aperture = overrides.aperture.value_or(camera.aperture);
   camera.focus_distance = overrides.focus_distance.value_or(camera.focus_distance);
 }
@@ -32,9 +34,9 @@ void check_camera(const CameraParameters& camera) {
         1e-12f * glm::dot(camera.up, camera.up) * glm::dot(backward, backward))) {
     throw Error("--up is zero or parallel to the view direction; choose another vector");
   }
-  if (!(camera.vertical_fov_degrees > 0.0f && camera.vertical_fov_degrees < 180.0f)) {
+  if (!(camera.fov_degrees > 0.0f && camera.fov_degrees < 180.0f)) {
     throw Error(fmt::format("--fov {}: expected degrees between 0 and 180, both excluded",
-                            camera.vertical_fov_degrees));
+                            camera.fov_degrees));
   }
   if (!(camera.aperture >= 0.0f)) {
     throw Error(fmt::format("--aperture {}: expected a diameter >= 0", camera.aperture));

@@ -27,6 +27,9 @@ struct EnvironmentData {
 /// What a scene file asks for where the command line does not.
 struct SceneDefaults {
   std::optional<int> width, height, spp, max_depth, rr_depth;
+  /// The file's radiance has no relation to a display's white: photometric units, or a light that
+  /// it does not bring.
+  bool measure_exposure = false;
 };
 
 /// The memory behind VertexAttributes; empty where no mesh has any.

@@ -23,7 +23,7 @@ void set_perspective(const File& file, const tinygltf::PerspectiveCamera& source
     file.fail(place + ".perspective.yfov",
               fmt::format("{}: expected radians between 0 and pi", source.yfov));
   }
-  scene.camera.vertical_fov_degrees = to_degrees(source.yfov);
+  scene.camera.fov_degrees = to_degrees(source.yfov);
   set_image_shape(source.aspectRatio, scene);
 }
 
@@ -37,7 +37,7 @@ void set_orthographic(File& file, const tinygltf::OrthographicCamera& source,
     file.fail(place + ".orthographic.ymag", "expected a number that is not 0");
   }
   CameraParameters& camera = scene.camera;
-  camera.vertical_fov_degrees = 5.0f;
+  camera.fov_degrees = 5.0f;
   const double distance = half_height / std::tan(2.5 * 3.14159265358979 / 180.0);
   const Vec3 direction = normalize(camera.look_at - camera.look_from);
   camera.look_from = camera.look_at - static_cast<float>(distance) * direction;

@@ -71,7 +71,9 @@ void add_lights(File& file, const std::vector<PlacedNode>& nodes, SceneData& sce
                                 node_place(node.node));
     const std::string place = fmt::format("extensions.KHR_lights_punctual.lights[{}]", index);
     const DeltaLight made = make_light(file, light, node.to_world, place);
-    if (!is_black(made.intensity)) scene.delta_lights.push_back(made);
+    if (is_black(made.intensity)) continue;
+    scene.delta_lights.push_back(made);
+    scene.defaults.measure_exposure = true;
   }
 }
 

@@ -6,7 +6,8 @@
 
 namespace pt::gltf {
 
-/// Adds the lights of the nodes to the scene.
+/// Adds the lights of the nodes to the scene. Their units are photometric, so that the exposure
+/// must be measured.
 void add_lights(File& file, const std::vector<PlacedNode>& nodes, SceneData& scene);
 
 }  // namespace pt::gltf

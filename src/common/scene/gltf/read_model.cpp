@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/files/find_file.h"
 #include "common/scene/gltf/check_json.h"
 #include "common/scene/gltf/file.h"
 
@@ -77,14 +78,29 @@ bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, 
   return true;
 }
 
+/// Where tinygltf looks for files.
+struct Folder {
+  std::filesystem::path path;  ///< absolute
+  std::vector<std::string> warnings;
+};
+
+/// The file at the path that the model names, whatever its case; the path itself where there is
+/// none.
+std::string found_path(const std::string& path, void* user) {
+  auto& folder = *static_cast<Folder*>(user);
+  const std::filesystem::path name = std::filesystem::path(path).lexically_relative(folder.path);
+  if (name.empty()) return path;
+  const auto warn = [&](const std::string& line) { folder.warnings.push_back(line); };
+  const std::filesystem::path found = find_file(folder.path, name, warn);
+  return found.empty() ? path : found.string();
+}
+
 /// Only what lies at the path that the file names: tinygltf would also look in the working folder.
 bool exists_beside(const std::string& path, void*) {
   std::error_code ignored;
   return std::filesystem::path(path).is_absolute() &&
          std::filesystem::is_regular_file(path, ignored);
 }
-
-std::string same_path(const std::string& path, void*) { return path; }
 
 /// tinygltf's complaints as one line. It takes a skin's inverseBindMatrices for required.
 std::string one_line(const std::string& complaints) {
@@ -102,7 +118,7 @@ std::string one_line(const std::string& complaints) {
 
 }  // namespace
 
-tinygltf::Model read_model(const std::filesystem::path& path) {
+ReadModel read_model(const std::filesystem::path& path) {
   const std::string file = path.string();
   const std::string bytes = read_bytes(path);
   const bool is_glb = bytes.starts_with("glTF");
@@ -110,9 +126,10 @@ tinygltf::Model read_model(const std::filesystem::path& path) {
 
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
+  Folder files{std::filesystem::absolute(path).parent_path(), {}};
   loader.SetFsCallbacks(
-      {exists_beside, same_path, tinygltf::ReadWholeFile, tinygltf::WriteWholeFile, nullptr});
-  const std::string folder = std::filesystem::absolute(path).parent_path().string();
+      {exists_beside, found_path, tinygltf::ReadWholeFile, tinygltf::WriteWholeFile, &files});
+  const std::string folder = files.path.string();
   const auto size = static_cast<unsigned int>(bytes.size());
   tinygltf::Model model;
   std::string error, warning;
@@ -133,7 +150,7 @@ tinygltf::Model read_model(const std::filesystem::path& path) {
   if (!model.asset.version.starts_with("2.")) {
     fail(file, "asset.version", fmt::format("{:.20}: expected 2.x", model.asset.version));
   }
-  return model;
+  return {std::move(model), std::move(files.warnings)};
 }
 
 }  // namespace pt::gltf

@@ -89,6 +89,15 @@ Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::stri
   return {text(image.image.data(), image.image.size()), name};
 }
 
+TextureImage Textures::integers(const TextureUse& use, const std::string& place) const {
+  const Encoded encoded = encoded_image(use, place);
+  TextureImage image = decode_texture_image(encoded.bytes, encoded.name, TextureFormat::linear8);
+  if (image.format != TextureFormat::linear8) {
+    throw Error(encoded.name + ": an image of floats, expected one of integers");
+  }
+  return image;
+}
+
 std::uint32_t Textures::add_color(const TextureUse& use, const std::string& place) {
   const Encoded image = encoded_image(use, place);
   if (use.tex_coord != 0) {
@@ -101,11 +110,13 @@ std::uint32_t Textures::add_color(const TextureUse& use, const std::string& plac
 }
 
 Color Textures::mean(const TextureUse& use, const std::string& place) {
-  const Encoded encoded = encoded_image(use, place);
-  const TextureImage image =
-      decode_texture_image(encoded.bytes, encoded.name, TextureFormat::linear8);
-  if (image.format != TextureFormat::linear8) {
-    file_.fail(place, "an image of floats: expected one of integers");
+  texture(use, place);  // a wrong number is an Error, a picture that we lack is not
+  TextureImage image;
+  try {
+    image = integers(use, place);
+  } catch (const Error& error) {
+    file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
+    return Color(1.0f);
   }
   double sum[3] = {};
   for (std::size_t i = 0; i < image.texels.size(); i += 4) {

@@ -31,7 +31,8 @@ class Textures {
   /// A colour texture (sRGB); its number in the scene. `place` is that of the textureInfo.
   std::uint32_t add_color(const TextureUse& use, const std::string& place);
 
-  /// Mean of the image's linear R, G, B over all texels, in [0, 1].
+  /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
+  /// image cannot be decoded: a factor is then used alone.
   Color mean(const TextureUse& use, const std::string& place);
 
  private:
@@ -42,6 +43,7 @@ class Textures {
 
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
+  TextureImage integers(const TextureUse& use, const std::string& place) const;
 
   File& file_;
   TextureStore store_;

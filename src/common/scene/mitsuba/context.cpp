@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "common/files/find_file.h"
 #include "common/scene/mitsuba/values.h"
+#include "common/scene/studio.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -32,16 +34,41 @@ void Context::warn_once(const std::string& kind, const Element& at, const std::s
   if (warned_.insert(kind).second) options_.report(at.place() + ": " + message);
 }
 
-std::filesystem::path Context::resolve(const Element& at, const std::string& name) const {
-  const std::filesystem::path beside = at.file->parent_path() / name;
+void Context::note(const Element& at, const std::string& message) const {
+  if (options_.warn) options_.warn(at.place() + ": " + message);
+}
+
+std::filesystem::path Context::resolve(const Element& at, const std::string& name) {
+  const std::filesystem::path beside = at.file->parent_path();
   const std::filesystem::path folder = graph_.scene().element().file->parent_path();
+  std::vector<std::filesystem::path> folders = {beside, folder};
+  for (const std::string& path : graph_.search_paths()) folders.push_back(folder / path);
   std::error_code ignored;
-  if (std::filesystem::exists(beside, ignored)) return beside;
-  if (std::filesystem::exists(folder / name, ignored)) return folder / name;
-  for (const std::string& path : graph_.search_paths()) {
-    if (std::filesystem::exists(folder / path / name, ignored)) return folder / path / name;
+  for (const std::filesystem::path& place : folders) {
+    if (std::filesystem::exists(place / name, ignored)) return place / name;
   }
-  return beside;
+  const auto warn = [&](const std::string& line) { warn_once("case " + name, at, line); };
+  for (const std::filesystem::path& place : folders) {
+    const std::filesystem::path found = find_file(place, name, warn);
+    if (!found.empty()) return found;
+  }
+  return beside / name;
+}
+
+void Context::add_studio_if_dark() {
+  if (lit_) return;
+  add_studio(scene);
+  const Element& at = graph_.scene().element();
+  if (left_out_.empty()) return note(at, fmt::format("no light: {} is used", studio_text));
+  std::string names;
+  for (const Object* emitter : left_out_) {
+    names += fmt::format("{}'{}' of line {}", names.empty() ? "" : ", ", emitter->type(),
+                         emitter->element().line);
+  }
+  options_.report(
+      fmt::format("{}: NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used "
+                  "instead, so brightness and colours are not the file's",
+                  at.place(), names, studio_text));
 }
 
 void Context::report_unused() {

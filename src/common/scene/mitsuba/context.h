@@ -27,9 +27,20 @@ class Context {
   /// Reports what is replaced or ignored, once for each `kind`.
   void warn_once(const std::string& kind, const Element& at, const std::string& message);
 
+  /// Says what was chosen where the file leaves it open.
+  void note(const Element& at, const std::string& message) const;
+
   /// The existing file that a property names: beside the XML file that names it, beside the scene,
-  /// or on a <path>. Where there is none: the first of these, for an error that names it.
-  std::filesystem::path resolve(const Element& at, const std::string& name) const;
+  /// or on a <path>; failing that, one whose case differs, which is reported. Where there is none:
+  /// the first of these, for an error that names it.
+  std::filesystem::path resolve(const Element& at, const std::string& name);
+
+  /// An emitter becomes a light, or it is left out; add_studio_if_dark() needs to know.
+  void add_lit() { lit_ = true; }
+  void add_left_out(const Object& emitter) { left_out_.push_back(&emitter); }
+
+  /// Lights a scene in which no emitter is left.
+  void add_studio_if_dark();
 
   /// Reports what is inside of objects in use and nothing asked for.
   void report_unused();
@@ -44,6 +55,8 @@ class Context {
   const LoadOptions& options_;
   const ObjectGraph& graph_;
   std::set<std::string> warned_;
+  bool lit_ = false;
+  std::vector<const Object*> left_out_;
 };
 
 }  // namespace pt::mitsuba

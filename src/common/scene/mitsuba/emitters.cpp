@@ -93,19 +93,27 @@ const std::map<std::string_view, Adder>& adders() {
   return table;
 }
 
+std::string why_left_out(const std::string& type) {
+  if (type == "envmap") return "more than one 'envmap': the first is used";
+  if (type == "area") return "an emitter 'area' that is in no shape: it is left out";
+  return fmt::format("emitter '{}' is not supported: it is left out", type);
+}
+
 }  // namespace
 
 void add_emitter(Context& context, const Object& emitter) {
   const std::string type = emitter.type();
   if (type == "envmap" && context.scene.environment.width == 0) {
-    return add_environment_map(context, emitter);
+    add_environment_map(context, emitter);
+    return context.add_lit();
   }
   const auto adder = adders().find(type);
-  if (adder != adders().end()) return adder->second(context, emitter);
-  context.warn_once("emitter " + type, emitter.element(),
-                    type == "envmap"
-                        ? "more than one 'envmap': the first is used"
-                        : fmt::format("emitter '{}' is not supported: it is left out", type));
+  if (adder == adders().end()) {
+    context.warn_once("emitter " + type, emitter.element(), why_left_out(type));
+    return context.add_left_out(emitter);
+  }
+  adder->second(context, emitter);
+  type == "sun" ? context.add_left_out(emitter) : context.add_lit();
 }
 
 }  // namespace pt::mitsuba

@@ -87,8 +87,9 @@ float relative_ior(const Object& bsdf) {
 Color conductor_reflectance(Context& context, const Object& bsdf) {
   const bool given = bsdf.find("eta") || bsdf.child_named("eta") || bsdf.find("k");
   if (!given) return named_metal(context, bsdf);
-  const Color eta = read_plain_color(context, bsdf, "eta", Color(0.0f), Quantity::plain);
-  const Color k = read_plain_color(context, bsdf, "k", Color(1.0f), Quantity::plain);
+  const Color eta =
+      read_plain_color(context, bsdf, "eta", Color(0.0f), Quantity::index_of_refraction);
+  const Color k = read_plain_color(context, bsdf, "k", Color(1.0f), Quantity::index_of_refraction);
   const auto outside = static_cast<float>(ior_of(bsdf, "ext_eta", 1.0));
   const Color minus = eta - outside, plus = eta + outside;
   const Color denominator = plus * plus + k * k;  // above 0, as `outside` is

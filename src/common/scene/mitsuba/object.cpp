@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -29,11 +30,9 @@ std::string Object::type() const {
   return type ? *type : std::string();
 }
 
-void Object::add_property(const Element& element) {
+bool Object::add_property(const Element& element) {
   const std::string name = snake_case(element.required("name"));
-  if (!properties_.try_emplace(name, Property{&element}).second) {
-    fail(element, fmt::format("'{}' is given twice in the same <{}>", name, tag()));
-  }
+  return properties_.insert_or_assign(name, Property{&element}).second;
 }
 
 const Element* Object::find(std::string_view name) const {
@@ -111,12 +110,11 @@ const Object* Object::child(std::string_view tag) const {
 
 const Object* Object::child_named(std::string_view name) const {
   touched_ = true;
-  for (const Nested& nested : nested_) {
-    if (nested.name != name) continue;
-    nested.used = true;
-    return nested.object;
-  }
-  return nullptr;
+  const auto nested = std::find_if(nested_.rbegin(), nested_.rend(),
+                                   [&](const Nested& one) { return one.name == name; });
+  if (nested == nested_.rend()) return nullptr;
+  nested->used = true;
+  return nested->object;
 }
 
 std::vector<const Object*> Object::children(std::string_view tag) const {

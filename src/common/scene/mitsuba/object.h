@@ -54,15 +54,16 @@ class Object {
   void ignore_all() const;  ///< properties and objects inside: nothing is reported as unused
 
   // Objects inside.
-  const Object* child(std::string_view tag) const;  ///< the first of this tag, or nullptr
-  const Object* child_named(std::string_view name) const;
+  const Object* child(std::string_view tag) const;         ///< the first of this tag, or nullptr
+  const Object* child_named(std::string_view name) const;  ///< the last of this name
   std::vector<const Object*> children(std::string_view tag) const;
 
   bool touched() const { return touched_; }  ///< has been asked for anything
   const std::map<std::string, Property, std::less<>>& properties() const { return properties_; }
   std::vector<Nested>& nested() { return nested_; }
   const std::vector<Nested>& nested() const { return nested_; }
-  void add_property(const Element& element);
+  /// False where it replaces one of the same name.
+  bool add_property(const Element& element);
 
  private:
   const Element* element_;

@@ -76,7 +76,10 @@ void ObjectGraph::add_child(Object& object, const Element& child, const LoadOpti
   } else if (child.tag == "path") {
     search_paths_.push_back(child.required("value"));
   } else if (is_property(child)) {
-    object.add_property(child);
+    if (!object.add_property(child)) {
+      options.report(fmt::format("{}: '{}' is given twice in the same <{}>: this one is used",
+                                 child.place(), child.required("name"), object.tag()));
+    }
   } else {
     options.report(fmt::format("{}: <{}> in <{}> is not known: it is ignored", child.place(),
                                child.tag, object.tag()));

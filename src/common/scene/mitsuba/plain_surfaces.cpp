@@ -59,8 +59,11 @@ Surface diffuse_of(const ColorTexture& reflectance) {
   return surface;
 }
 
+/// 0.x takes either name.
 Surface read_diffuse(Context& context, const Object& bsdf) {
-  return diffuse_of(read_color_texture(context, bsdf, "reflectance", Color(0.5f)));
+  const bool usual = bsdf.find("reflectance") || bsdf.child_named("reflectance");
+  const char* name = usual ? "reflectance" : "diffuse_reflectance";
+  return diffuse_of(read_color_texture(context, bsdf, name, Color(0.5f)));
 }
 
 Surface read_rough_diffuse(Context& context, const Object& bsdf) {

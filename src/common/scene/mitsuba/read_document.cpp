@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <pugixml.hpp>
 
+#include "common/files/find_file.h"
 #include "common/files/mapped_file.h"
 #include "common/scene/mitsuba/element.h"
 #include "common/scene/mitsuba/variables.h"
@@ -38,7 +39,8 @@ class SourceFile {
 
 class DocumentReader {
  public:
-  explicit DocumentReader(const LoadOptions& options) : variables_(options.definitions) {}
+  explicit DocumentReader(const LoadOptions& options)
+      : options_(options), variables_(options.definitions) {}
 
   Element read(const std::filesystem::path& path) {
     Element root = read_file(path);
@@ -104,7 +106,7 @@ class DocumentReader {
   }
 
   Element include(const Element& element) {
-    const std::filesystem::path path = stack_.back().parent_path() / element.required("filename");
+    const std::filesystem::path path = included_path(element);
     const std::filesystem::path canonical = std::filesystem::weakly_canonical(path);
     if (std::find(stack_.begin(), stack_.end(), canonical) != stack_.end()) {
       fail(element, fmt::format("{} includes itself", path.string()));
@@ -119,6 +121,16 @@ class DocumentReader {
     }
   }
 
+  std::filesystem::path included_path(const Element& element) const {
+    const std::string& name = element.required("filename");
+    const std::filesystem::path folder = stack_.back().parent_path();
+    const auto warn = [&](const std::string& line) {
+      options_.report(element.place() + ": " + line);
+    };
+    const std::filesystem::path found = find_file(folder, name, warn);
+    return found.empty() ? folder / name : found;
+  }
+
   std::string substitute(const Element& element, const char* text) {
     try {
       return variables_.substitute(text);
@@ -127,6 +139,7 @@ class DocumentReader {
     }
   }
 
+  const LoadOptions& options_;
   Variables variables_;
   std::vector<std::filesystem::path> stack_;  ///< files being read
 };

@@ -4,23 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "common/scene/mitsuba/values.h"
 
 namespace pt::mitsuba {
 namespace {
 
-/// The tangent of half the vertical field of view of a film `aspect` times as wide as high, from
-/// that along an axis.
-double vertical_tangent(const Object& sensor, double tangent, const std::string& axis,
-                        double aspect) {
-  if (axis == "x" || (axis == "larger" && aspect > 1) || (axis == "smaller" && aspect <= 1)) {
-    return tangent / aspect;
-  }
-  if (axis == "y" || axis == "larger" || axis == "smaller") return tangent;
-  if (axis == "diagonal") return tangent / std::sqrt(1 + aspect * aspect);
+FovAxis fov_axis_of(const Object& sensor) {
+  static const std::map<std::string_view, FovAxis> axes = {{"x", FovAxis::horizontal},
+                                                           {"y", FovAxis::vertical},
+                                                           {"diagonal", FovAxis::diagonal},
+                                                           {"smaller", FovAxis::smaller},
+                                                           {"larger", FovAxis::larger}};
+  const std::string name = sensor.text("fov_axis", "x");
+  const auto axis = axes.find(name);
+  if (axis != axes.end()) return axis->second;
   fail(*sensor.find("fov_axis"),
-       fmt::format("fov_axis '{}'; expected x, y, diagonal, smaller or larger", axis));
+       fmt::format("fov_axis '{}'; expected x, y, diagonal, smaller or larger", name));
 }
 
 /// Millimetres, of film 36 mm x 24 mm: "50mm".
@@ -35,22 +36,20 @@ double focal_length_mm(const Object& sensor) {
   return *length;
 }
 
-float vertical_fov_degrees(const Object& sensor, double aspect) {
-  const double degree = std::acos(-1.0) / 180.0;
-  double tangent = 0;
-  std::string axis = sensor.text("fov_axis", "x");
+/// The angle of view along the axis that the file fixes, whatever the image's final size.
+void read_fov(const Object& sensor, CameraParameters& camera) {
+  camera.fov_axis = fov_axis_of(sensor);
   if (const std::optional<double> fov = sensor.number("fov")) {
     if (!(*fov > 0 && *fov < 180)) {
       fail(*sensor.find("fov"),
            fmt::format("fov {}; expected degrees between 0 and 180, both excluded", *fov));
     }
-    tangent = std::tan(0.5 * *fov * degree);
-  } else {
-    tangent = 0.5 * std::hypot(36.0, 24.0) / focal_length_mm(sensor);
-    axis = "diagonal";
+    camera.fov_degrees = static_cast<float>(*fov);
+    return;
   }
-  const double vertical = vertical_tangent(sensor, tangent, axis, aspect);
-  return static_cast<float>(2.0 * std::atan(vertical) / degree);
+  const double tangent = 0.5 * std::hypot(36.0, 24.0) / focal_length_mm(sensor);
+  camera.fov_degrees = static_cast<float>(2.0 * std::atan(tangent) * 180.0 / std::acos(-1.0));
+  camera.fov_axis = FovAxis::diagonal;
 }
 
 /// Mitsuba's camera looks along its z, with y up and x to the left of the image.
@@ -97,9 +96,8 @@ void read_sensor(Context& context, const Object& sensor) {
     context.warn_once("sensor " + type, sensor.element(),
                       fmt::format("sensor '{}' is not supported: perspective is used", type));
   }
-  const double aspect = static_cast<double>(*defaults.width) / *defaults.height;
   context.scene.camera = {};
-  context.scene.camera.vertical_fov_degrees = vertical_fov_degrees(sensor, aspect);
+  read_fov(sensor, context.scene.camera);
   place_camera(context, sensor);
   sensor.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close"});
   if (type == "thinlens") {

@@ -20,8 +20,9 @@ void add_emission(Context& context, const Object& emitter, Surface& surface) {
     context.warn_once(
         "shape emitter " + emitter.type(), emitter.element(),
         fmt::format("emitter '{}' on a shape is not supported: it is left out", emitter.type()));
-    return;
+    return context.add_left_out(emitter);
   }
+  context.add_lit();
   emitter.ignore({"sampling_weight"});
   const ColorTexture radiance =
       read_color_texture(context, emitter, "radiance", Color(1.0f), Quantity::emission);
@@ -57,6 +58,7 @@ const Object* emitter_of(Context& context, const Object& shape, std::uint32_t gr
   if (!emitter || group == 0) return emitter;
   context.warn_once("instanced emitter", emitter->element(),
                     "an emitter in a shapegroup is not supported: it is black instead");
+  context.add_left_out(*emitter);
   return nullptr;
 }
 
@@ -66,6 +68,11 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
                                          std::uint32_t group) {
   const Object* bsdf = shape.child("bsdf");
   const Object* emitter = emitter_of(context, shape, group);
+  if (!bsdf && !emitter && shape.child("medium")) {
+    context.warn_once("medium", shape.element(),
+                      "media are not supported: light passes a shape that has one and no bsdf");
+    return std::nullopt;
+  }
   constexpr std::uint32_t invisible = 0xffffffffu;
   const auto [entry, is_new] = context.materials.try_emplace({bsdf, emitter}, invisible);
   if (is_new) {

@@ -115,6 +115,11 @@ Color color_of(Context& context, const Element& element, Quantity quantity) {
 Color read_color(Context& context, const Element& element, Quantity quantity) {
   Color color = color_of(context, element, quantity);
   for (int i = 0; i < 3; ++i) {
+    if (quantity == Quantity::index_of_refraction && color[i] < 0.0f) {
+      context.warn_once("negative index", element,
+                        "a negative component of an index of refraction: 0 is used");
+      color[i] = 0.0f;
+    }
     if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) {
       fail(element, fmt::format("a colour with the component {}; expected one that is finite and "
                                 "not negative",

@@ -7,10 +7,10 @@
 namespace pt::mitsuba {
 
 /// What a colour is for: it decides the white point of spectra and what is out of range.
-enum class Quantity { reflectance, emission, plain };
+enum class Quantity { reflectance, emission, index_of_refraction, plain };
 
 /// <rgb>, <srgb>, <spectrum>, <blackbody> or <float> as linear sRGB. Reflectances above 1 become 1
-/// with a warning; negative numbers are an Error.
+/// and indices of refraction below 0 become 0 with a warning; other negative numbers are an Error.
 Color read_color(Context& context, const Element& element, Quantity quantity);
 
 /// A <spectrum type="...">: d65 and uniform; others become grey with a warning.
