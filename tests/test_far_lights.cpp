@@ -114,7 +114,7 @@ TEST(FarLights, NoLampShadowsItselfAndDensitiesAgree) {
           const IncidentLight light = sample_light(scene, from, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
           ++asked;
-          const ShadowRay shadow = spawn_shadow_ray(point, from, light, Color(1.0f));
+          const ShadowRay shadow = spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f));
           blocked += intersect_shadow<FullTraits>(scene, shadow);
           const Hit hit = intersect_closest<FullTraits>(scene, {from, light.wi});
           if (hit.is_miss()) {
@@ -128,7 +128,7 @@ TEST(FarLights, NoLampShadowsItselfAndDensitiesAgree) {
         EXPECT_GT(asked, 1000);
         EXPECT_EQ(blocked, 0);
         EXPECT_LT(missed, asked * (0.02 + 4e-6 * double{d}));
-        EXPECT_LT(unlike, asked / 200);
+        EXPECT_LT(unlike, asked / 100);
       }
     }
   }
@@ -148,8 +148,8 @@ TEST(FarLights, WhatLiesJustBelowALampBlocksIt) {
           const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
           const IncidentLight light = sample_light(scene, from, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
-          free += !intersect_shadow<FullTraits>(scene,
-                                                spawn_shadow_ray(point, from, light, Color(1.0f)));
+          free += !intersect_shadow<FullTraits>(
+              scene, spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f)));
         }
         EXPECT_EQ(free, 0) << name_of(lamp) << " at " << d << " scale " << scale;
       }

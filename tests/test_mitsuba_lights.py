@@ -120,7 +120,7 @@ class EnvironmentMaps(Scenes):
                 '<transform name="to_world"><rotate x="1" angle="25"/></transform></emitter>')
 
     def test_what_the_camera_sees(self):
-        ball = '<shape type="sphere"><point name="center" z="90"/></shape>'
+        ball = '<shape type="sphere"><point name="center" x="0" y="0" z="90"/></shape>'
         for width, height in ((128, 64), (16, 8)):
             for target, up in (("0.1, 1, -0.4", "0, 0, 1"), ("0, -1, 0.3", "0, 0, 1"),
                                ("1, 0.1, 0", "0, 1, 0")):

@@ -171,7 +171,7 @@ TEST(DeltaLight, ADirectionalOneIsTheSameEverywhere) {
   for (const Vec3& from : {Vec3(0.0f), Vec3(1e6f, -5, 2)}) {
     const DeltaLightSample s = sample_delta_light(light, from);
     EXPECT_EQ(s.wi, Vec3(-0.6f, 0.8f, 0));
-    EXPECT_EQ(s.end, far_away * s.wi);
+    EXPECT_EQ(s.end, beyond_scene * s.wi);
     EXPECT_EQ(s.irradiance, light.intensity);
   }
 }

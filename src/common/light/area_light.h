@@ -20,8 +20,8 @@ PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, floa
   const Vec3 to_light = (quad.corner - from) + u0 * quad.edge_a + u1 * quad.edge_b;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
+  const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
+  const Vec3 wi = inverse_distance * to_light;
   const float size = max_abs(quad.edge_a) + max_abs(quad.edge_b);
   return {wi, quad_solid_angle_pdf(quad, wi, distance),
           to_light + light_rounding * (distance + size) * quad.normal};

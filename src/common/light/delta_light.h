@@ -43,19 +43,19 @@ struct DeltaLightSample {
 /// There is nothing to choose. Black at the light's own position.
 PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
   if (light.kind == DeltaLight::Kind::directional) {
-    return {-light.direction, -far_away * light.direction, light.intensity};
+    return {-light.direction, -beyond_scene * light.direction, light.intensity};
   }
   const Vec3 to_light = light.position - from;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
+  const float inverse_distance = inverse_sqrt(distance2);
+  const Vec3 wi = inverse_distance * to_light;
   const float share = light.kind == DeltaLight::Kind::spot
                           ? spot_share(light, -glm::dot(light.direction, wi))
                           : 1.0f;
   // A light on a surface shines in front of it: its position has been rounded.
-  const float error = light_rounding * distance + 4.0f * half_ulp * max_abs(light.position);
-  return {wi, to_light - error * wi, light.intensity * (share / distance2)};
+  const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
+  return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
 }
 
 /// W of the whole light for choosing among lights; of a directional one over a disk of

@@ -64,6 +64,8 @@ struct alignas(16) Light {
   }
 };
 
+static_assert(sizeof(Light) == 64);
+
 /// A view. One of the lights is chosen with a probability proportional to its weight, about its
 /// power; the environment, whose power depends on the size of the scene more than on what it does
 /// for it, with a fixed one.

@@ -36,6 +36,6 @@ struct LightError {
 inline constexpr float light_rounding = 32.0f * half_ulp;
 
 /// The end of a ray to a light at infinity: beyond any scene, and its square is a float.
-inline constexpr float far_away = 1e18f;
+inline constexpr float beyond_scene = 1e18f;
 
 }  // namespace pt

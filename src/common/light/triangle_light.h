@@ -39,8 +39,8 @@ PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, con
   const Vec3 to_light = (v0 - from) + point.b1 * edge1 + point.b2 * edge2;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
+  const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
+  const Vec3 wi = inverse_distance * to_light;
   const Vec3 normal = glm::cross(edge1, edge2);
   const float inverse_length = inverse_sqrt(fmaxf(glm::dot(normal, normal), 1e-37f));
   const Vec3 end = to_light + (error.bound(distance) * inverse_length) * normal;

@@ -62,7 +62,7 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec
   const float p = list.environment_probability;
   if (u.z < p) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
-    return {s.wi, far_away * s.wi, s.radiance, p * s.pdf};
+    return {s.wi, beyond_scene * s.wi, s.radiance, p * s.pdf};
   }
   if (list.count == 0) return {};
   const AliasSample choice = sample_alias(list.selection, list.count, (u.z - p) / (1.0f - p), u.w);

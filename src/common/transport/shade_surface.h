@@ -31,10 +31,12 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
 
 /// The ray from a surface to where `light`, sampled as seen from `from`, wants it to end. Where a
 /// shading normal lets the light come through the surface, the ray begins on its other side.
+template <class Traits>
 PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
                                  const IncidentLight& light, const Color& radiance) {
-  const Vec3 origin = spawn_origin(point, light.wi);
-  const Vec3 way = light.end + (from - origin);
+  constexpr bool shading_normals = Traits::geometry != Geometry::spheres_and_quads;
+  const Vec3 origin = shading_normals ? spawn_origin(point, light.wi) : from;
+  const Vec3 way = shading_normals ? light.end + (from - origin) : light.end;
   const float distance2 = glm::dot(way, way);
   if (!(distance2 > 0.0f)) return {};
   const float inverse = inverse_sqrt(distance2);
@@ -61,8 +63,8 @@ PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, c
   if (is_black(f)) return {};
   const float weight =
       light.is_delta ? 1.0f : power_heuristic(light.pdf, bsdf.pdf(wo, light.wi, n));
-  return spawn_shadow_ray(surface.point, from, light,
-                          path.beta * f * light.radiance * (weight / light.pdf));
+  return spawn_shadow_ray<Traits>(surface.point, from, light,
+                                  path.beta * f * light.radiance * (weight / light.pdf));
 }
 
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
