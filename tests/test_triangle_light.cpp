@@ -16,7 +16,8 @@ using Corners = std::array<Vec3, 3>;
 
 TriangleLightSample sample(const Corners& t, const Vec3& from, TestRandom& random) {
   const float u0 = random.unit();
-  return sample_triangle(t[0], t[1], t[2], from, u0, random.unit());
+  return sample_triangle(t[0], t[1] - t[0], t[2] - t[0], {1e-6f, light_rounding}, from, u0,
+                         random.unit());
 }
 
 /// A triangle whose front faces the origin, neither thin nor too obliquely.
@@ -80,8 +81,11 @@ TEST(TriangleLight, SamplesLieOnTheTriangleAndDensitiesAgree) {
                       double{point.b2} * Vec3d(t[2] - t[0]);
       const double distance = glm::length(p);
       ASSERT_LT(glm::length(p - distance * Vec3d(s.wi)), 1e-5 * (1 + distance));
-      ASSERT_LT(s.distance, distance);
-      ASSERT_GT(s.distance, 0.999 * distance);
+      // In front of the triangle by the error that was given.
+      const double error = 1e-6 + light_rounding * distance;
+      const Vec3d unit = glm::normalize(Vec3d(normal));
+      ASSERT_NEAR(glm::dot(Vec3d(s.end) - p, unit), error, 1e-6 * (1 + distance));
+      ASSERT_LT(glm::length(Vec3d(s.end) - p - error * unit), 2e-6 * (1 + distance));
       const auto d = static_cast<float>(distance);
       ASSERT_NEAR(triangle_solid_angle_pdf(normal, s.wi, d), s.pdf, 1e-4 * s.pdf);
       angle.add(1 / s.pdf);
@@ -126,13 +130,15 @@ TEST(TriangleLight, SamplesArePreciseFarFromTheOrigin) {
 
 TEST(TriangleLight, IsDarkFromBehindFromItsPlaneAndWithoutArea) {
   const Vec3 a(-1, 2, -1), b(1, 2, -1), c(-1, 2, 1);  // cross(b - a, c - a) points down
-  EXPECT_GT(sample_triangle(a, b, c, {0, 0, 0}, 0.5f, 0.5f).light.pdf, 0.0f);
-  EXPECT_EQ(sample_triangle(a, b, c, {0, 3, 0}, 0.3f, 0.6f).light.pdf, 0.0f);
-  EXPECT_EQ(sample_triangle(a, b, c, {5, 2, 0}, 0.3f, 0.6f).light.pdf, 0.0f);
-  EXPECT_EQ(sample_triangle(a, b, b, {0, 0, 0}, 0.3f, 0.6f).light.pdf, 0.0f) << "no area";
+  EXPECT_GT(sample_triangle(a, b - a, c - a, {}, {0, 0, 0}, 0.5f, 0.5f).light.pdf, 0.0f);
+  EXPECT_EQ(sample_triangle(a, b - a, c - a, {}, {0, 3, 0}, 0.3f, 0.6f).light.pdf, 0.0f);
+  EXPECT_EQ(sample_triangle(a, b - a, c - a, {}, {5, 2, 0}, 0.3f, 0.6f).light.pdf, 0.0f);
+  EXPECT_EQ(sample_triangle(a, b - a, b - a, {}, {0, 0, 0}, 0.3f, 0.6f).light.pdf, 0.0f)
+      << "no area";
   const TrianglePoint p = sample_triangle_point(0.25f, 0.25f);
   const Vec3 itself = a + p.b1 * (b - a) + p.b2 * (c - a);
-  EXPECT_EQ(sample_triangle(a, b, c, itself, 0.25f, 0.25f).light.pdf, 0.0f) << "the point itself";
+  EXPECT_EQ(sample_triangle(a, b - a, c - a, {}, itself, 0.25f, 0.25f).light.pdf, 0.0f)
+      << "the point itself";
 }
 
 DeltaLight spot(SpotFalloff falloff, double inner_degrees, double outer_degrees) {
@@ -151,7 +157,8 @@ TEST(DeltaLight, APointFollowsTheInverseSquare) {
   light.intensity = {8, 4, 2};
   const DeltaLightSample s = sample_delta_light(light, {1, 2, 1});
   EXPECT_EQ(s.wi, Vec3(0, 0, 1));
-  EXPECT_EQ(s.distance, 2.0f);
+  EXPECT_NEAR(s.end.z, 2, 1e-5) << "short of it by rounding errors, for it may lie on a surface";
+  EXPECT_LT(s.end.z, 2 - 1e-6f);
   EXPECT_EQ(s.irradiance, Color(2, 1, 0.5f));
   EXPECT_EQ(sample_delta_light(light, light.position).irradiance, Color(0.0f));
 }
@@ -164,7 +171,7 @@ TEST(DeltaLight, ADirectionalOneIsTheSameEverywhere) {
   for (const Vec3& from : {Vec3(0.0f), Vec3(1e6f, -5, 2)}) {
     const DeltaLightSample s = sample_delta_light(light, from);
     EXPECT_EQ(s.wi, Vec3(-0.6f, 0.8f, 0));
-    EXPECT_EQ(s.distance, HUGE_VALF);
+    EXPECT_EQ(s.end, beyond_scene * s.wi);
     EXPECT_EQ(s.irradiance, light.intensity);
   }
 }
@@ -181,7 +188,7 @@ TEST(DeltaLight, ASpotWithLinearAngleIsMitsubas) {
     const DeltaLightSample s =
         sample_delta_light(light, Vec3(Vec3d(3 * std::sin(a), 0, -3 * std::cos(a))));
     EXPECT_NEAR(s.irradiance.x, irradiance, 2e-6) << degrees;
-    EXPECT_NEAR(s.distance, 3, 1e-6);
+    EXPECT_NEAR(glm::length(s.end), 3, 2e-5);
   }
 }
 

@@ -31,11 +31,18 @@ struct SurfacePoint {
   float error_bound;  ///< how far `position` and the surface may be apart through rounding
 };
 
-/// A ray from `point` towards `direction` that cannot meet the surface it leaves: its origin lies
-/// beyond the rounding error, on the side to which it goes (pbrt-v4, section 6.8.6).
-PT_HD Ray spawn_ray(const SurfacePoint& point, const Vec3& direction) {
+/// Where a ray from `point` towards `direction` begins, so that it cannot meet the surface it
+/// leaves: beyond the rounding error, on the side to which it goes (pbrt-v4, section 6.8.6).
+PT_HD Vec3 spawn_origin(const SurfacePoint& point, const Vec3& direction) {
   const float side = glm::dot(direction, point.normal) < 0.0f ? -1.0f : 1.0f;
-  return {point.position + (side * point.error_bound) * point.normal, direction};
+  const float offset = side * point.error_bound;
+  return {fused_multiply_add(offset, point.normal.x, point.position.x),
+          fused_multiply_add(offset, point.normal.y, point.position.y),
+          fused_multiply_add(offset, point.normal.z, point.position.z)};
+}
+
+PT_HD Ray spawn_ray(const SurfacePoint& point, const Vec3& direction) {
+  return {spawn_origin(point, direction), direction};
 }
 
 }  // namespace pt

@@ -2,16 +2,11 @@
 #pragma once
 
 #include "common/geometry/primitives.h"
+#include "common/light/light_sample.h"
 #include "common/math/frame.h"
 #include "common/sampling/warp.h"
 
 namespace pt {
-
-struct LightSample {
-  Vec3 wi = Vec3(0.0f);   ///< unit vector to the light
-  float distance = 0.0f;  ///< to the sampled point, less the rounding error
-  float pdf = 0.0f;       ///< per solid angle; 0: nothing to be gained
-};
 
 /// Density per solid angle of sample_quad at a point of the quad `distance` away along `wi`.
 PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distance) {
@@ -21,12 +16,15 @@ PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distanc
 
 /// Uniform over the area, on the side to which the normal points.
 PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, float u1) {
-  const Vec3 to_light = quad.corner + u0 * quad.edge_a + u1 * quad.edge_b - from;
+  // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
+  const Vec3 to_light = (quad.corner - from) + u0 * quad.edge_a + u1 * quad.edge_b;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
-  return {wi, distance * (1.0f - 1e-4f), quad_solid_angle_pdf(quad, wi, distance)};
+  const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
+  const Vec3 wi = inverse_distance * to_light;
+  const float size = max_abs(quad.edge_a) + max_abs(quad.edge_b);
+  return {wi, quad_solid_angle_pdf(quad, wi, distance),
+          to_light + light_rounding * (distance + size) * quad.normal};
 }
 
 PT_HD float sphere_area(const Sphere& sphere) { return 4.0f * pi * sphere.radius_squared; }
@@ -54,13 +52,17 @@ PT_HD LightSample sample_sphere(const Sphere& sphere, const Vec3& from, float u0
   const float cos_theta = 1.0f - one_minus_cos;
   const float sin_theta = sqrtf(fmaxf(0.0f, one_minus_cos * (2.0f - one_minus_cos)));
   const SinCos phi = sincos_2pi(u1);
-  const Frame frame = make_frame(normalize(sphere.center - from));
+  const Vec3 to_center = sphere.center - from;
+  const Frame frame = make_frame(normalize(to_center));
   const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
   float distance = sphere_distance(sphere, {from, wi});
   if (distance <= 0.0f) {  // grazing: rounding has moved the ray past the sphere
-    distance = glm::dot(sphere.center - from, wi);
+    distance = glm::dot(to_center, wi);
   }
-  return {wi, distance * (1.0f - 1e-4f), 0.5f * inverse_pi / one_minus_cos_max};
+  const Vec3 normal = normalize(distance * wi - to_center);
+  const float radius = sphere.radius();
+  const float end_radius = radius + light_rounding * (distance + radius);
+  return {wi, 0.5f * inverse_pi / one_minus_cos_max, to_center + end_radius * normal};
 }
 
 PT_HD LightSample sample_primitive(const Primitives& primitives, std::uint32_t primitive,

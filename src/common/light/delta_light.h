@@ -1,7 +1,7 @@
 // Lights without extent: no ray ever meets them, so they are sampled only, with weight 1.
 #pragma once
 
-#include "common/math/vec.h"
+#include "common/light/light_sample.h"
 
 namespace pt {
 
@@ -36,24 +36,26 @@ PT_HD float spot_share(const DeltaLight& light, float cosine) {
 
 struct DeltaLightSample {
   Vec3 wi = Vec3(0.0f);            ///< unit vector to the light
-  float distance = 0.0f;           ///< HUGE_VALF: infinitely far
+  Vec3 end = Vec3(0.0f);           ///< of a shadow ray, relative to its origin
   Color irradiance = Color(0.0f);  ///< across wi: what is reflected is this times f times |cos|
 };
 
 /// There is nothing to choose. Black at the light's own position.
 PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
   if (light.kind == DeltaLight::Kind::directional) {
-    return {-light.direction, HUGE_VALF, light.intensity};
+    return {-light.direction, -beyond_scene * light.direction, light.intensity};
   }
   const Vec3 to_light = light.position - from;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
+  const float inverse_distance = inverse_sqrt(distance2);
+  const Vec3 wi = inverse_distance * to_light;
   const float share = light.kind == DeltaLight::Kind::spot
                           ? spot_share(light, -glm::dot(light.direction, wi))
                           : 1.0f;
-  return {wi, distance, light.intensity * (share / distance2)};
+  // A light on a surface shines in front of it: its position has been rounded.
+  const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
+  return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
 }
 
 /// W of the whole light for choosing among lights; of a directional one over a disk of

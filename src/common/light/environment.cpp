@@ -56,27 +56,31 @@ Affine orthogonal(const Affine& to_world) {
   return result;
 }
 
-/// Luminance of the interpolated map, averaged over texel (x, y): along each axis 1/8 of either
-/// neighbour and 6/8 of the texel.
-double average_luminance(int width, int height, std::span<const Color> pixels, int x, int y) {
-  constexpr double share[3] = {0.125, 0.75, 0.125};
-  double sum = 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    const int row = std::clamp(y + dy, 0, height - 1);
-    for (int dx = -1; dx <= 1; ++dx) {
-      const int column = (x + dx + width) % width;
-      const std::size_t i = static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                            static_cast<std::size_t>(column);
-      sum += share[dx + 1] * share[dy + 1] * luminance(pixels[i]);
-    }
-  }
-  return sum;
+/// Luminance along a row, averaged over a column's width: 1/8 of either neighbour and 6/8 of the
+/// column itself.
+double row_luminance(int width, std::span<const Color> pixels, int x, int row) {
+  const auto at = [&](int column) {
+    return luminance(pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(column)]);
+  };
+  return 0.125 * at((x + width - 1) % width) + 0.75 * at(x) + 0.125 * at((x + 1) % width);
 }
 
-/// Solid angle of each texel of a row: 2 pi (cos a - cos b) / width, without cancellation.
-double texel_solid_angle(int width, int height, int row) {
-  const double step = double{pi} / height;
-  return 4 * double{pi} / width * std::sin((row + 0.5) * step) * std::sin(0.5 * step);
+/// The directions between two rows, theta from band * step to (band + 1) * step: the solid angle of
+/// a full turn, and the mean of the way from the first row to the second.
+struct Band {
+  double solid_angle, mean;
+};
+
+/// Without cancellation in fine maps: with m the middle and d half of the step, the integral of
+/// sin(m + x) is 2 sin m sin d, and that of x sin(m + x) is 2 cos m (sin d - d cos d).
+Band measure_band(int band, int bands) {
+  const double d = 0.5 * double{pi} / bands, m = (2 * band + 1) * d;
+  // The series of sin d - d cos d, where the difference would lose digits.
+  const double moment = d > 0.1 ? std::sin(d) - d * std::cos(d)
+                                : d * d * d * (1.0 / 3 - d * d * (1.0 / 30 - d * d / 840));
+  const double tilt = std::cos(m) * moment / (std::sin(m) * std::sin(d) * 2 * d);
+  return {4 * double{pi} * std::sin(m) * std::sin(d), 0.5 + tilt};
 }
 
 }  // namespace
@@ -89,29 +93,34 @@ EnvironmentMap make_environment(int width, int height, std::span<const Color> pi
   map.height = static_cast<std::uint32_t>(height);
   map.to_world = orthogonal(to_world);
   map.texels.resize(pixels.size());
-  std::vector<float> weights(pixels.size());
-  std::vector<double> row_power(map.height);
+  const int bands = static_cast<int>(map.view().bands());
+  std::vector<float> weights(static_cast<std::size_t>(bands) * map.width);
+  std::vector<double> band_power(static_cast<std::size_t>(bands));
   tbb::parallel_for(0, height, [&](int y) {
-    const double solid_angle = texel_solid_angle(width, height, y);
+    const Band band = measure_band(std::min(y, bands - 1), bands);
     double power = 0;
     for (int x = 0; x < width; ++x) {
-      const double brightness = average_luminance(width, height, pixels, x, y);
       const std::size_t i = static_cast<std::size_t>(y) * map.width + static_cast<std::size_t>(x);
-      map.texels[i] = {pixels[i], static_cast<float>(brightness)};
-      weights[i] = static_cast<float>(brightness * solid_angle);
-      power += brightness * solid_angle;
+      map.texels[i] = {pixels[i], 0.0f};
+      if (y >= bands) continue;
+      const double here = row_luminance(width, pixels, x, y);
+      const double next = row_luminance(width, pixels, x, std::min(y + 1, height - 1));
+      const double brightness = here + band.mean * (next - here);
+      map.texels[i].pdf = static_cast<float>(brightness);
+      weights[i] = static_cast<float>(brightness * band.solid_angle / width);
+      power += brightness * band.solid_angle / width;
     }
-    row_power[static_cast<std::size_t>(y)] = power;
+    if (y < bands) band_power[static_cast<std::size_t>(y)] = power;
   });
   double power = 0;
-  for (const double row : row_power) power += row;
+  for (const double band : band_power) power += band;
   map.average = static_cast<float>(power / (4 * double{pi}));
-  tbb::parallel_for(0, height, [&](int y) {
+  tbb::parallel_for(0, bands, [&](int y) {
     for (std::size_t x = 0; x < map.width; ++x) {
       const std::size_t i = static_cast<std::size_t>(y) * map.width + x;
       EnvironmentTexel& texel = map.texels[i];
       texel.pdf = power > 0 ? static_cast<float>(texel.pdf / power) : 0.25f * inverse_pi;
-      if (!(power > 0)) weights[i] = static_cast<float>(texel_solid_angle(width, height, y));
+      if (!(power > 0)) weights[i] = static_cast<float>(measure_band(y, bands).solid_angle);
     }
   });
   map.alias = build_alias_table(weights);

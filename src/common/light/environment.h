@@ -1,10 +1,14 @@
 // Light from infinitely far, looked up in a picture of all directions and chosen by its brightness.
 //
-// The picture is a map by latitude and longitude: in its own space row 0 is the zenith (+y), the
-// middle column is -z, and u grows towards +x. Radiance is interpolated between the texels' centres
-// (around in u, clamped in v). Density per solid angle is constant over each texel: the luminance
-// that the interpolation gives on average there, so that whatever shines can be chosen. Within a
-// texel directions are uniform in solid angle, so no density is infinite at the poles.
+// The picture is a map by latitude and longitude: in its own space the middle column's border is -z
+// and u grows towards +x. Columns are centred in their share of the turn, as texels are; rows reach
+// from pole to pole: row 0 is the zenith (+y) itself and the last row the nadir. That is Mitsuba's
+// convention, whose scenes bring such maps. Radiance is interpolated between them, around in u.
+//
+// Directions are chosen by cells: as wide as a column, from one row to the next. Density per solid
+// angle is constant over a cell, proportional to the mean luminance of its directions, so that
+// whatever shines can be chosen: the ratio of the two is at most 12 times that of their means.
+// Within a cell directions are uniform in solid angle, so no density is infinite at the poles.
 #pragma once
 
 #include <span>
@@ -18,22 +22,24 @@ namespace pt {
 
 /// One 16-byte load.
 struct alignas(16) EnvironmentTexel {
-  Color radiance = Color(0.0f);  ///< at the centre
-  float pdf = 0.0f;              ///< of the texel's directions, per solid angle
+  Color radiance = Color(0.0f);  ///< at the middle of the column, on the row
+  float pdf = 0.0f;  ///< per solid angle, of the cell from here to the next row; last row: none
 };
 
 /// A view for kernels. EnvironmentMap owns the memory.
 struct Environment {
   const EnvironmentTexel* texels = nullptr;  ///< [row * width + column]
-  const AliasEntry* alias = nullptr;         ///< by texel
+  const AliasEntry* alias = nullptr;         ///< [cell], numbered as texels
   std::uint32_t width = 0, height = 0;       ///< 0: none
   float average = 0.0f;                      ///< luminance, over the sphere
   Affine to_world;                           ///< orthogonal
 
   PT_HD bool is_empty() const { return width == 0; }
+  /// Of cells; a picture of one row is one band from pole to pole.
+  PT_HD std::uint32_t bands() const { return height > 1 ? height - 1 : 1; }
 };
 
-/// A place in the map, in texels: texel (i, j) reaches from i to i + 1 and from j to j + 1.
+/// A place in the map: cell (i, j) reaches from i to i + 1 and from j to j + 1.
 struct MapPoint {
   float x, y;
 };
@@ -45,20 +51,20 @@ PT_HD MapPoint environment_point(const Environment& env, const Vec3& direction) 
   const float from_zenith =
       atan2f(sqrtf(direction.x * direction.x + direction.z * direction.z), direction.y);
   return {(0.5f + 0.5f * inverse_pi * azimuth) * static_cast<float>(env.width),
-          inverse_pi * from_zenith * static_cast<float>(env.height)};
+          inverse_pi * from_zenith * static_cast<float>(env.bands())};
 }
 
-/// The number of the texel that contains the point.
-PT_HD std::uint32_t environment_texel(const Environment& env, const MapPoint& point) {
+/// The number of the cell that contains the point.
+PT_HD std::uint32_t environment_cell(const Environment& env, const MapPoint& point) {
   const auto column = static_cast<std::uint32_t>(fmaxf(point.x, 0.0f));
-  const auto row = static_cast<std::uint32_t>(fmaxf(point.y, 0.0f));
-  return (row < env.height ? row : env.height - 1) * env.width +
+  const auto band = static_cast<std::uint32_t>(fmaxf(point.y, 0.0f));
+  return (band < env.bands() ? band : env.bands() - 1) * env.width +
          (column < env.width ? column : env.width - 1);
 }
 
 /// Radiance at a place of the map, between four texels.
 PT_HD Color environment_lookup(const Environment& env, const MapPoint& point) {
-  const float x = point.x - 0.5f, y = point.y - 0.5f;
+  const float x = point.x - 0.5f, y = point.y;
   const float left = floorf(x), top = floorf(y);
   const int width = static_cast<int>(env.width), height = static_cast<int>(env.height);
   const auto wrap = [width](int i) { return i < 0 ? i + width : i >= width ? i - width : i; };
@@ -81,7 +87,7 @@ PT_HD Color environment_radiance(const Environment& env, const Vec3& direction) 
 /// Density per solid angle with which sample_environment chooses `direction`.
 PT_HD float environment_pdf(const Environment& env, const Vec3& direction) {
   const MapPoint point = environment_point(env, env.to_world.transposed(direction));
-  return env.texels[environment_texel(env, point)].pdf;
+  return env.texels[environment_cell(env, point)].pdf;
 }
 
 struct EnvironmentSample {
@@ -90,22 +96,24 @@ struct EnvironmentSample {
   Color radiance = Color(0.0f);
 };
 
-/// A direction of row `row`, uniform in solid angle, as its distance from the nearer pole, measured
-/// in sin^2(theta / 2): uniform on the sphere like cos(theta), and precise at the pole.
-PT_HD float sample_row(std::uint32_t row, std::uint32_t height, float u) {
-  const float step = 0.25f / static_cast<float>(height);  // half an angle, in turns
-  const float sin0 = sincos_2pi(static_cast<float>(row) * step).sin;
-  const float sin1 = sincos_2pi(static_cast<float>(row + 1) * step).sin;
+/// A direction of band `band` of `bands`, uniform in solid angle, as its distance from the nearer
+/// pole, measured in sin^2(theta / 2): uniform on the sphere like cos(theta), and precise at the
+/// pole.
+PT_HD float sample_band(std::uint32_t band, std::uint32_t bands, float u) {
+  const float step = 0.25f / static_cast<float>(bands);  // half an angle, in turns
+  const float sin0 = sincos_2pi(static_cast<float>(band) * step).sin;
+  const float sin1 = sincos_2pi(static_cast<float>(band + 1) * step).sin;
   return fused_multiply_add(u, (sin1 - sin0) * (sin1 + sin0), sin0 * sin0);
 }
 
 /// From three uniform numbers, multiples of 2^-24 in [0, 1). Where rounding moves a direction over
-/// the border of its texel, `pdf` is that of the texel which was chosen.
+/// the border of its cell, `pdf` is that of the cell which was chosen.
 PT_HD EnvironmentSample sample_environment(const Environment& env, float u0, float u1, float u2) {
-  const AliasSample chosen = sample_alias(env.alias, env.width * env.height, u0, u1);
-  const std::uint32_t row = chosen.index / env.width, column = chosen.index % env.width;
-  const bool below = 2 * row >= env.height;
-  const float h = fminf(sample_row(below ? env.height - 1 - row : row, env.height, u2), 1.0f);
+  const std::uint32_t bands = env.bands();
+  const AliasSample chosen = sample_alias(env.alias, env.width * bands, u0, u1);
+  const std::uint32_t band = chosen.index / env.width, column = chosen.index % env.width;
+  const bool below = 2 * band >= bands;
+  const float h = fminf(sample_band(below ? bands - 1 - band : band, bands, u2), 1.0f);
   const float sin_theta = 2.0f * sqrtf(h * (1.0f - h));
   const float cos_theta = 1.0f - 2.0f * h;
   const SinCos phi =  // of the angle from column 0, which is +z

@@ -9,28 +9,49 @@ namespace pt {
 
 /// A turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors,
 /// and mirroring would turn the side that shines away.
-enum class LightKind : std::uint32_t {
-  triangle,
-  turned_triangle,
-  sphere,
-  point,
-  spot,
-  directional
+enum class LightKind : std::uint8_t { triangle, turned_triangle, sphere, point, spot, directional };
+
+/// A LightError in three bytes, rounded up: the relative part to a power of two, by its exponent;
+/// the absolute one to the upper half of a float.
+struct PackedLightError {
+  std::uint8_t relative = 0;
+  std::uint16_t absolute = 0;
+
+  PT_HD LightError unpack() const {
+    return {bits_to_float(std::uint32_t{absolute} << 16),
+            bits_to_float(std::uint32_t{relative} << 23)};
+  }
 };
 
-/// 64 bytes: four loads.
+/// `error` is neither negative nor NaN.
+inline PackedLightError pack_light_error(const LightError& error) {
+  const auto round_up = [](float x, int bits) {
+    const std::uint32_t unit = 1u << bits, largest = float_to_bits(3e38f) >> bits;
+    const std::uint32_t up = (float_to_bits(x) + (unit - 1)) >> bits;
+    return up < largest ? up : largest;
+  };
+  return {static_cast<std::uint8_t>(round_up(error.relative, 23)),
+          static_cast<std::uint16_t>(round_up(error.absolute, 16))};
+}
+
+/// 64 bytes: four loads. Edges, not vertices: far from the origin they are more precise.
 struct alignas(16) Light {
   Vec3 a;  ///< triangle: a vertex; sphere: centre; point, spot: position
   LightKind kind;
-  Vec3 b;  ///< triangle: a vertex; spot, directional: where the light goes
+  std::uint8_t relative_error;   ///< triangle: see PackedLightError
+  std::uint16_t absolute_error;  ///< triangle
+  Vec3 b;  ///< triangle: the edge to the second vertex; spot, directional: where the light goes
   float weight;
-  Vec3 c;                  ///< triangle: a vertex; spot: cosines of both angles, falloff; sphere:
-                           ///< square of the radius
+  Vec3 c;  ///< triangle: the edge to the third vertex; spot: cosines of both angles,
+           ///< falloff; sphere: square of the radius
   std::uint32_t triangle;  ///< its id, where it has texture coordinates; else no_texture
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;
 
   PT_HD bool is_delta() const { return kind >= LightKind::point; }
+  PT_HD LightError error() const {
+    return PackedLightError{relative_error, absolute_error}.unpack();
+  }
   PT_HD DeltaLight delta() const {
     return {static_cast<DeltaLight::Kind>(static_cast<std::uint32_t>(kind) -
                                           static_cast<std::uint32_t>(LightKind::point)),
@@ -42,6 +63,8 @@ struct alignas(16) Light {
             static_cast<SpotFalloff>(float_to_bits(c.z))};
   }
 };
+
+static_assert(sizeof(Light) == 64);
 
 /// A view. One of the lights is chosen with a probability proportional to its weight, about its
 /// power; the environment, whose power depends on the size of the scene more than on what it does
@@ -61,7 +84,10 @@ struct LightList {
 
 PT_HD float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
-/// The weight of a surface of this area (in world space) that emits this radiance.
-PT_HD float emitter_weight(const Color& radiance, float area) { return luminance(radiance) * area; }
+/// The weight of a surface of this area (in world space) that emits this radiance, times a texture
+/// of this mean luminance.
+PT_HD float emitter_weight(const Color& radiance, float area, float texture_mean = 1.0f) {
+  return luminance(radiance) * area * texture_mean;
+}
 
 }  // namespace pt

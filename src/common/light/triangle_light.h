@@ -29,19 +29,22 @@ struct TriangleLightSample {
   TrianglePoint point = {0.0f, 0.0f};  ///< where, for a textured emission
 };
 
-/// Uniform over the area, on the side to which the normal points.
-PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& v1, const Vec3& v2,
-                                          const Vec3& from, float u0, float u1) {
-  const Vec3 edge1 = v1 - v0, edge2 = v2 - v0;
+/// Uniform over the area of the triangle v0, v0 + edge1, v0 + edge2, on the side to which
+/// cross(edge1, edge2) points.
+PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, const Vec3& edge2,
+                                          const LightError& error, const Vec3& from, float u0,
+                                          float u1) {
   const TrianglePoint point = sample_triangle_point(u0, u1);
   // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
   const Vec3 to_light = (v0 - from) + point.b1 * edge1 + point.b2 * edge2;
   const float distance2 = glm::dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
-  const float distance = sqrtf(distance2);
-  const Vec3 wi = to_light / distance;
-  const float pdf = triangle_solid_angle_pdf(glm::cross(edge1, edge2), wi, distance);
-  return {{wi, distance * (1.0f - 1e-4f), pdf}, point};
+  const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
+  const Vec3 wi = inverse_distance * to_light;
+  const Vec3 normal = glm::cross(edge1, edge2);
+  const float inverse_length = inverse_sqrt(fmaxf(glm::dot(normal, normal), 1e-37f));
+  const Vec3 end = to_light + (error.bound(distance) * inverse_length) * normal;
+  return {{wi, triangle_solid_angle_pdf(normal, wi, distance), end}, point};
 }
 
 }  // namespace pt

@@ -16,6 +16,7 @@ namespace pt {
 struct BsdfSample {
   Vec3 wi = Vec3(0.0f);
   Color weight = Color(0.0f);  ///< f |cos| / pdf; black: the path is absorbed
+  float outside = 1.0f;        ///< weight times this is what Russian roulette goes by
 };
 
 PT_HD Vec3 reflect(const Vec3& wo, const Vec3& n) { return 2.0f * glm::dot(wo, n) * n - wo; }

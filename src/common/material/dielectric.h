@@ -28,14 +28,17 @@ struct Dielectric {
     const Vec3 facing = entering ? n : -n;
     const float relative_eta = entering ? eta : 1.0f / eta;
     const float cos_i = fminf(fabsf(cos_o), 1.0f);
-    // Radiance is not scaled by eta^2: paths start and end outside, where the factors cancel.
+    // Inside of glass radiance is eta^2 times that outside, so a path carries 1 / eta^2 there
+    // (pbrt-v4, section 9.5.2). Roulette must not take that for a loss.
+    const float inside_eta2 = eta * eta;
     if (u.x < fresnel_dielectric(cos_i, relative_eta)) {
-      return {normalize(reflect(wo, facing)), tint};
+      return {normalize(reflect(wo, facing)), tint, entering ? 1.0f : inside_eta2};
     }
     const float inverse_eta = 1.0f / relative_eta;
     const float sin2_t = fmaxf(0.0f, (1.0f - cos_i * cos_i) * inverse_eta * inverse_eta);
     const float cos_t = sqrtf(fmaxf(0.0f, 1.0f - sin2_t));
-    return {normalize((inverse_eta * cos_i - cos_t) * facing - inverse_eta * wo), tint};
+    return {normalize((inverse_eta * cos_i - cos_t) * facing - inverse_eta * wo),
+            tint * (inverse_eta * inverse_eta), entering ? inside_eta2 : 1.0f};
   }
 
   PT_HD Color evaluate(const Vec3&, const Vec3&, const Vec3&) const { return Color(0.0f); }

@@ -24,6 +24,7 @@ struct alignas(16) Material {
 struct MaterialTextures {
   std::uint32_t albedo = no_texture;
   std::uint32_t emission = no_texture;
+  float emission_mean = 1.0f;  ///< luminance of the texture of emission, set by prepare_scene()
 };
 
 PT_HD Material make_diffuse(const Color& albedo, const Color& emission = Color(0.0f)) {

@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/light/area_light.h"
 #include "common/light/triangle_light.h"
+#include "common/scene/light_errors.h"
 
 namespace pt {
 namespace {
@@ -33,7 +34,7 @@ class Lister {
     }
     if (!weights.empty()) data.selection = build_alias_table(weights);
     data.lights = std::move(lights_);
-    data.total_weight = static_cast<float>(total_weight_);
+    data.total_weight = total_weight_ > 0 ? static_cast<float>(total_weight_) : 1.0f;  // a divisor
     if (scene_.environment.width > 0) {
       data.environment_probability = data.lights.empty() ? 1.0f : 0.5f;
     }
@@ -50,27 +51,33 @@ class Lister {
 
   void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world) {
     const Material& material = scene_.materials[mesh.material];
-    const std::uint32_t texture = scene_.material_textures[material.textures].emission;
+    const MaterialTextures& textures = scene_.material_textures[material.textures];
+    const PlacementErrors errors(to_world);
     if (lights_.size() + mesh.triangles.size() > lights_max) {
       throw Error(fmt::format("scene '{}' has more than {} triangles that emit light", scene_.name,
                               lights_max));
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
       Vec3 v[3];
-      for (int k = 0; k < 3; ++k) {
-        v[k] = mesh.positions[mesh.triangles[i].v[k]];
-        if (to_world != nullptr) v[k] = to_world->point(v[k]);
-      }
+      for (int k = 0; k < 3; ++k) v[k] = mesh.positions[mesh.triangles[i].v[k]];
+      Vec3 edge1 = v[1] - v[0], edge2 = v[2] - v[0];
       Light light{};
+      light.a = v[0];
+      if (to_world != nullptr) {
+        light.a = to_world->point(v[0]);
+        edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
+      }
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
-      light.a = v[0], light.b = v[turned ? 2 : 1], light.c = v[turned ? 1 : 2];
-      light.weight = emitter_weight(material.emission,
-                                    0.5f * glm::length(glm::cross(v[1] - v[0], v[2] - v[0])));
+      light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
+      const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
+      light.relative_error = error.relative, light.absolute_error = error.absolute;
+      light.weight = emitter_weight(material.emission, 0.5f * glm::length(glm::cross(edge1, edge2)),
+                                    textures.emission_mean);
       light.triangle =
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
       light.radiance = material.emission;
-      light.emission_texture = texture;
+      light.emission_texture = textures.emission;
       add(light);
     }
   }

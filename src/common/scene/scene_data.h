@@ -19,8 +19,8 @@ namespace pt {
 /// Light from infinitely far: a picture of all directions, latitude by longitude.
 struct EnvironmentData {
   int width = 0, height = 0;  ///< 0: none
-  std::vector<Color> pixels;  ///< radiance; row 0 is the zenith (+y before to_world), the middle
-                              ///< column is the direction -z, u grows towards +x
+  std::vector<Color> pixels;  ///< radiance, placed as environment.h tells: row 0 is the zenith (+y
+                              ///< before to_world), the middle of a row -z, u grows towards +x
   Affine to_world;            ///< a rotation
 };
 

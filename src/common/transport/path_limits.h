@@ -18,9 +18,12 @@ struct PathLimits {
 
 /// Russian roulette (pbrt-v4, section 2.2.4): a dim path ends, black, or counts for those that did.
 /// `u` in [0, 1) decides. The probability to go on is not above 0.95, so that no path between
-/// perfect mirrors lives for ever.
-PT_HD void play_roulette(Color& beta, float u) {
-  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z), 0.95f);
+/// perfect mirrors lives for ever. `outside` times beta is what it is judged by: in glass, what
+/// beta would be outside of it, known from the surface alone, so that a path need not keep it.
+/// (Where it meets something else in there, its chance is smaller than it might be, and the mean
+/// the same.)
+PT_HD void play_roulette(Color& beta, float u, float outside = 1.0f) {
+  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * outside, 0.95f);
   const float scale = u < survival ? 1.0f / survival : 0.0f;
   beta = multiply_rounded(beta, Color(scale));
 }

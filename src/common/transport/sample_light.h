@@ -11,7 +11,7 @@ namespace pt {
 /// What a light sends to a point, if nothing lies between.
 struct IncidentLight {
   Vec3 wi = Vec3(0.0f);
-  float distance = 0.0f;         ///< to the light, less the rounding error
+  Vec3 end = Vec3(0.0f);         ///< of a shadow ray, relative to its origin
   Color radiance = Color(0.0f);  ///< of a delta light: radiance times density
   float pdf = 0.0f;              ///< per solid angle, of light and direction; 0: nothing arrives
   bool is_delta = false;         ///< no BSDF sample could have found it
@@ -24,7 +24,7 @@ PT_HD IncidentLight sample_emitter(const Scene& scene, const Vec3& from, const V
   const std::uint32_t primitive =
       scene.lights[choice < scene.light_count ? choice : scene.light_count - 1];
   const LightSample light = sample_primitive(scene.primitives, primitive, from, u.x, u.y);
-  return {light.wi, light.distance, scene.material(primitive).emission, light.pdf / count};
+  return {light.wi, light.end, scene.material(primitive).emission, light.pdf / count};
 }
 
 PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -43,17 +43,18 @@ PT_HD Color textured_radiance(const Scene& scene, const Light& light, const Vec3
 PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
                                         float u0, float u1) {
   if (light.kind <= LightKind::turned_triangle) {
-    const TriangleLightSample s = sample_triangle(light.a, light.b, light.c, from, u0, u1);
+    const TriangleLightSample s =
+        sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
     if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
-    return {s.light.wi, s.light.distance, textured_radiance(scene, light, b), s.light.pdf};
+    return {s.light.wi, s.light.end, textured_radiance(scene, light, b), s.light.pdf};
   }
   if (light.kind == LightKind::sphere) {
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
-    return {s.wi, s.distance, light.radiance, s.pdf};
+    return {s.wi, s.end, light.radiance, s.pdf};
   }
   const DeltaLightSample s = sample_delta_light(light.delta(), from);
-  return {s.wi, s.distance, s.irradiance, 1.0f, true};
+  return {s.wi, s.end, s.irradiance, 1.0f, true};
 }
 
 PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
@@ -61,7 +62,7 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec
   const float p = list.environment_probability;
   if (u.z < p) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
-    return {s.wi, infinite_distance, s.radiance, p * s.pdf};
+    return {s.wi, beyond_scene * s.wi, s.radiance, p * s.pdf};
   }
   if (list.count == 0) return {};
   const AliasSample choice = sample_alias(list.selection, list.count, (u.z - p) / (1.0f - p), u.w);
@@ -69,6 +70,18 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec
   IncidentLight incident = sample_listed_light(scene, light, from, u.x, u.y);
   incident.pdf *= list.probability(light.weight);
   return incident;
+}
+
+/// Twice the area of a triangle times its normal, in the world: from its edges as list_lights() has
+/// them, which do not know where the instance lies.
+template <class Traits>
+PT_HD Vec3 world_normal(const Scene& scene, const Triangle& triangle, std::uint32_t instance) {
+  Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
+  if (is_placed<Traits>(scene)) {
+    const Affine to_world = load_wide(&scene.to_world[scene.triangles.instances[instance].number]);
+    edge1 = to_world.vector(edge1), edge2 = to_world.vector(edge2);
+  }
+  return glm::cross(edge1, edge2);
 }
 
 /// The density with which sample_light would have found the surface that a ray hit.
@@ -83,12 +96,15 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
                  emitter_weight(scene.material(hit.primitive).emission, sphere_area(sphere))) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
-    const Triangle t = world_triangle<Traits>(scene, hit);
-    const Vec3 normal = glm::cross(t.v1 - t.v0, t.v2 - t.v0);
-    const Color& emission = scene.materials[t.material].emission;
+    const Triangle t =
+        load_wide(&scene.triangles.triangles[hit.primitive - scene.primitives.count()]);
+    const Vec3 normal = world_normal<Traits>(scene, t, hit.instance);
+    const Material& material = scene.materials[t.material];
+    const float mean = scene.material_textures[material.textures].emission_mean;
     // The side is the caller's affair: in an instance that mirrors, this normal is turned.
     const float side = glm::dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
-    return scene.light_list.probability(emitter_weight(emission, 0.5f * glm::length(normal))) *
+    return scene.light_list.probability(
+               emitter_weight(material.emission, 0.5f * glm::length(normal), mean)) *
            triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);
   }
 }

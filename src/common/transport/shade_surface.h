@@ -29,15 +29,33 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   return path.beta * emission * power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
 }
 
-/// One light, asked for its direct contribution (next-event estimation).
+/// The ray from a surface to where `light`, sampled as seen from `from`, wants it to end. Where a
+/// shading normal lets the light come through the surface, the ray begins on its other side.
+template <class Traits>
+PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
+                                 const IncidentLight& light, const Color& radiance) {
+  constexpr bool shading_normals = Traits::geometry != Geometry::spheres_and_quads;
+  const Vec3 origin = shading_normals ? spawn_origin(point, light.wi) : from;
+  const Vec3 way = shading_normals ? light.end + (from - origin) : light.end;
+  const float distance2 = glm::dot(way, way);
+  if (!(distance2 > 0.0f)) return {};
+  const float inverse = inverse_sqrt(distance2);
+  return {{origin, multiply_rounded(way, Vec3(inverse))},
+          multiply_rounded(distance2, inverse),
+          radiance};
+}
+
+/// One light, asked for its direct contribution (next-event estimation), as seen from where rays
+/// begin that the BSDF sends: see light_sample.h.
 template <class Traits, class Bsdf>
 PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, const Bsdf& bsdf,
                                     const Surface& surface, const Vec3& wo, const Vec4& u) {
+  const Vec3 from = spawn_origin(surface.point, wo);
   IncidentLight light;
   if constexpr (Traits::lighting == Lighting::emitters) {
-    light = sample_emitter(scene, surface.point.position, u);
+    light = sample_emitter(scene, from, u);
   } else {
-    light = sample_light(scene, surface.point.position, u);
+    light = sample_light(scene, from, u);
   }
   if (light.pdf <= 0.0f) return {};
   const Vec3& n = surface.shading_normal;
@@ -45,8 +63,8 @@ PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, c
   if (is_black(f)) return {};
   const float weight =
       light.is_delta ? 1.0f : power_heuristic(light.pdf, bsdf.pdf(wo, light.wi, n));
-  return {spawn_ray(surface.point, light.wi), light.distance,
-          path.beta * f * light.radiance * (weight / light.pdf)};
+  return spawn_shadow_ray<Traits>(surface.point, from, light,
+                                  path.beta * f * light.radiance * (weight / light.pdf));
 }
 
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
@@ -86,7 +104,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w);
+  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w, next.outside);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, next.wi);
   return result;

@@ -19,18 +19,6 @@ PT_HD bool is_placed(const Scene& scene) {
   return Traits::has_instances && scene.triangles.instance_count > 0;
 }
 
-/// The triangle of a hit as it lies in the world.
-template <class Traits>
-PT_HD Triangle world_triangle(const Scene& scene, const Hit& hit) {
-  Triangle t = load_wide(&scene.triangles.triangles[hit.primitive - scene.primitives.count()]);
-  if (is_placed<Traits>(scene)) {
-    const std::uint32_t number = scene.triangles.instances[hit.instance].number;
-    const Affine to_world = load_wide(&scene.to_world[number]);
-    t.v0 = to_world.point(t.v0), t.v1 = to_world.point(t.v1), t.v2 = to_world.point(t.v2);
-  }
-  return t;
-}
-
 /// Where a triangle's point lies in textures: by its vertices' coordinates, or by barycentric ones
 /// where it has none.
 PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bool has_uvs,

@@ -1,0 +1,40 @@
+#include "common/scene/weigh_textures.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <functional>
+
+#include "common/light/light_list.h"
+#include "common/texture/sample_texture.h"
+
+namespace pt {
+
+double mean_luminance(const Texture& texture, const std::byte* texels) {
+  if (texture.kind == TextureKind::checkerboard) {
+    return 0.5 * (double{luminance(texture.color0)} + double{luminance(texture.color1)});
+  }
+  // Deterministic: the sum must not depend on the number of threads.
+  const double sum = tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::uint32_t>(0, texture.height, 64), 0.0,
+      [&](const tbb::blocked_range<std::uint32_t>& rows, double part) {
+        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+          for (std::uint32_t x = 0; x < texture.width; ++x)
+            part += std::fmax(0.0f, luminance(texture.color0 * load_texel(texture, texels, x, y)));
+        }
+        return part;
+      },
+      std::plus<>());
+  return sum / (double{texture.width} * texture.height);
+}
+
+void weigh_emission_textures(SceneData& scene) {
+  for (MaterialTextures& textures : scene.material_textures) {
+    if (textures.emission == no_texture) continue;
+    const Texture& texture = scene.textures[textures.emission];
+    const auto mean = static_cast<float>(mean_luminance(texture, scene.texels.data()));
+    textures.emission_mean = std::isfinite(mean) ? mean : 1.0f;
+  }
+}
+
+}  // namespace pt

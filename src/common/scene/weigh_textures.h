@@ -1,0 +1,14 @@
+// How bright textures are on average.
+#pragma once
+
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Luminance of a texture's colours, on average over the whole of it.
+double mean_luminance(const Texture& texture, const std::byte* texels);
+
+/// Sets MaterialTextures::emission_mean, by which lights are chosen.
+void weigh_emission_textures(SceneData& scene);
+
+}  // namespace pt
