@@ -10,6 +10,7 @@
 #include "check_tree.h"
 #include "common/accel/binary_tree.h"
 #include "common/accel/encode_cwbvh.h"
+#include "common/geometry/triangle.h"
 #include "triangle_meshes.h"
 
 namespace pt {
@@ -78,14 +79,14 @@ TEST(EncodeCwbvh, WallsOfARoomAreFlat) {
   TestRandom random(8);
   int flat = 0, walls = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Vec3 half = Vec3(400) + point_in_cube(random, 300), center = point_in_cube(random, 200);
+    const Vec3 half = Vec3(600) + point_in_cube(random, 100), center = point_in_cube(random, 200);
     const Bounds room = {center - half, center + half};
     CwbvhChildren children;
     children.count = 6;
     for (int c = 0; c < 6; ++c) {
       Bounds wall = room;
       (c % 2 == 0 ? wall.max : wall.min)[c / 2] = (c % 2 == 0 ? room.min : room.max)[c / 2];
-      children.bounds[c] = widened(wall);
+      children.bounds[c] = hit_bounds(wall.min, wall.max, wall.min);
       children.triangles[c] = 2;
     }
     const CwbvhSlots slots = assign_cwbvh_slots(children);

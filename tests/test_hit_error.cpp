@@ -22,10 +22,11 @@ double error_in_bounds(const Triangle& v, const Ray& ray, const TriangleHit& hit
   const glm::dvec3 o(ray.origin), at = o + double{hit.t} * glm::dvec3(ray.direction);
   const Bounds box = triangle_bounds(v.v0, v.v1, v.v2);
   const double extent = max_abs(box.max - box.min);
+  const glm::dvec3 margin(hit_margin(box));
   double worst = 0;
   for (int i = 0; i < 3; ++i) {
-    const double bound = double{hit_error_distance} * std::abs(p[i] - o[i]) +
-                         (double{hit_error_extent} + 8.0 * double{half_ulp}) * extent;
+    const double bound = double{hit_error_distance} * std::abs(p[i] - o[i]) + margin[i] +
+                         8.0 * double{half_ulp} * extent;
     worst = std::max(worst, std::abs(at[i] - p[i]) / bound);
   }
   return worst;

@@ -43,12 +43,12 @@ float round_up(double x) { return -round_down(-x); }
 }  // namespace
 
 Bounds clipped_bounds(const Vec3 (&vertices)[3], const Bounds& box) {
-  const double tolerance = hit_margin(triangle_bounds(vertices[0], vertices[1], vertices[2]));
+  const DVec3 tolerance(hit_margin(triangle_bounds(vertices[0], vertices[1], vertices[2])));
   Polygon polygon;
   for (const Vec3& v : vertices) polygon.add(DVec3(v));
   for (int axis = 0; axis < 3; ++axis) {
-    polygon = clip(polygon, axis, box.max[axis] + tolerance, 1);
-    polygon = clip(polygon, axis, box.min[axis] - tolerance, -1);
+    polygon = clip(polygon, axis, box.max[axis] + tolerance[axis], 1);
+    polygon = clip(polygon, axis, box.min[axis] - tolerance[axis], -1);
   }
   if (polygon.count == 0) return {};
   DVec3 low(HUGE_VAL), high(-HUGE_VAL);
@@ -57,8 +57,10 @@ Bounds clipped_bounds(const Vec3 (&vertices)[3], const Bounds& box) {
   }
   Bounds result;
   for (int axis = 0; axis < 3; ++axis) {
-    result.min[axis] = std::clamp(round_down(low[axis] - tolerance), box.min[axis], box.max[axis]);
-    result.max[axis] = std::clamp(round_up(high[axis] + tolerance), box.min[axis], box.max[axis]);
+    result.min[axis] =
+        std::clamp(round_down(low[axis] - tolerance[axis]), box.min[axis], box.max[axis]);
+    result.max[axis] =
+        std::clamp(round_up(high[axis] + tolerance[axis]), box.min[axis], box.max[axis]);
   }
   return result;
 }

@@ -34,7 +34,7 @@ static_assert(sizeof(CwbvhNode) == 80);
 
 inline constexpr int cwbvh_width = 8;
 inline constexpr int cwbvh_leaf_max = 2;                       ///< triangles in a leaf
-inline constexpr float cwbvh_grid_tolerance = 1.5f / 2048.0f;  ///< in steps
+inline constexpr float cwbvh_grid_tolerance = 5.0f / 4096.0f;  ///< in steps
 
 /// What a child is.
 struct CwbvhChild {

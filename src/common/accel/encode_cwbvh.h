@@ -30,9 +30,10 @@ struct CwbvhGrid {
   PT_HD float floor_of(float x) const { return floorf(place_of(x) + snap); }
   PT_HD float ceil_of(float x) const { return ceilf(fmaxf(place_of(x) - snap, 0.0f)); }
 
-  // Of the tolerance, what is beyond `snap` is left to the traversal.
-  static constexpr float snap = cwbvh_grid_tolerance / 4.0f;
-  static constexpr float fit = cwbvh_grid_tolerance / 6.0f;
+  // 12,288 and 2,048 half ulps: with the margins of hit_bounds, walls of a room that is not too
+  // long are flat. What is left of the tolerance is the traversal's.
+  static constexpr float snap = 0.6f * cwbvh_grid_tolerance;
+  static constexpr float fit = 0.1f * cwbvh_grid_tolerance;
 
  private:
   PT_HD float place_of(float x) const { return add_rounded(x, -origin) / step; }

@@ -178,7 +178,7 @@ void cut(BuildReference& r, const SpatialSplit& split, const TriangleOf& triangl
   if (side == Side::both) {
     const Triangle t = triangle_of(r.id());
     const Vec3 v[3] = {t.v0, t.v1, t.v2};
-    const float tolerance = hit_margin(triangle_bounds(t.v0, t.v1, t.v2));
+    const float tolerance = hit_margin(triangle_bounds(t.v0, t.v1, t.v2))[split.axis];
     const Bounds left = clipped_bounds(v, half_of(r, split, Side::left, tolerance));
     const Bounds right = clipped_bounds(v, half_of(r, split, Side::right, tolerance));
     side = right.is_empty() ? Side::left : Side::right;

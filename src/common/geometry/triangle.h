@@ -9,7 +9,7 @@
 // vertex.
 //
 // The edge functions are right to 2 half ulps, too, and so the weights of the three vertices. That
-// is what makes the distance good for something on needles: see hit_error_extent.
+// is what makes the distance good for something on needles: see hit_error_distance.
 #pragma once
 
 #include "common/geometry/bounds.h"
@@ -41,16 +41,16 @@ PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 /// How good a hit is. Where intersect_triangle finds one at t > 0, there is a point P of the
 /// triangle such that along every axis
-///   |origin + t direction - P| <= hit_error_distance |P - origin| + hit_error_extent E,
-/// E being the largest extent of the triangle's box. docs/tracing.md has the proof; coordinates are
-/// within 1e12. Boxes that are wider than the triangle by the second term, and box tests that allow
-/// for the first, therefore never hide a hit: so all acceleration structures find the same.
+///   |origin + t direction - P| <= hit_error_distance |P - origin| + hit_margin.
+/// docs/tracing.md has the proof; coordinates are within 1e12. Boxes that are wider than the
+/// triangle by the margin, and box tests that allow for the first term, therefore never hide a hit:
+/// so all acceleration structures find the same.
 inline constexpr float hit_error_distance = 18.0f * half_ulp;
-inline constexpr float hit_error_extent = 16.0f * half_ulp;
 
-/// How far a ray may be from the point of a triangle with these bounds that it meets.
-PT_HD float hit_margin(const Bounds& triangle) {
-  return hit_error_extent * max_abs(triangle.max - triangle.min);
+/// By axis, for a triangle with these bounds.
+PT_HD Vec3 hit_margin(const Bounds& triangle) {
+  const Vec3 extent = triangle.max - triangle.min;
+  return 4.0f * half_ulp * extent + Vec3(12.0f * half_ulp * max_abs(extent));
 }
 
 /// A bound that lies `margin` below, or above, `x` in spite of rounding.
@@ -60,10 +60,10 @@ PT_HD float raised(float x, float margin) { return x + (margin + 2.0f * half_ulp
 /// The box in which trees keep a triangle.
 PT_HD Bounds hit_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
   Bounds box = triangle_bounds(a, b, c);
-  const float margin = hit_margin(box);
+  const Vec3 margin = hit_margin(box);
   for (int i = 0; i < 3; ++i) {
-    box.min[i] = lowered(box.min[i], margin);
-    box.max[i] = raised(box.max[i], margin);
+    box.min[i] = lowered(box.min[i], margin[i]);
+    box.max[i] = raised(box.max[i], margin[i]);
   }
   return box;
 }
