@@ -2,7 +2,7 @@
 //
 // Where a ray meets a triangle at t there is a point P of the triangle nearby, by
 // hit_error_distance and hit_margin (geometry/triangle.h). A box in a tree contains P with
-// the second term to spare. A plane's distance (plane - origin) * inverse carries three rounding
+// the margin to spare. A plane's distance (plane - origin) * inverse carries three rounding
 // errors, all relative to itself. So the planes where the ray enters lie at no more than t (1 + 21
 // half ulps), and those where it leaves at no less than t (1 - 21 half ulps): a tolerance of 42 and
 // a few makes the test conservative (Ize 2013, 'Robust BVH Ray Traversal', JCGT 2:2, did so for
