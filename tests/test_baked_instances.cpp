@@ -19,11 +19,13 @@ Mesh smooth_body(std::uint32_t material) {
   return mesh;
 }
 
-/// Triangles without normals, of the default texture coordinates.
+/// Flat triangles. They have texture coordinates: without any a mirrored triangle, whose vertices
+/// are turned when it is baked, would show its texture from another corner.
 Mesh wedge(std::uint32_t material) {
   Mesh mesh;
   mesh.positions = {{-1, 0, -1}, {1, 0, -1}, {0, 1.5f, 0}, {0, 0, 1}};
   mesh.triangles = {{{0, 2, 1}}, {{0, 3, 2}}, {{1, 2, 3}}};
+  mesh.uvs = {{0, 0}, {1, 0.2f}, {0.4f, 1}, {0.7f, 0.6f}};
   mesh.material = material;
   return mesh;
 }

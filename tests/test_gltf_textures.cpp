@@ -157,6 +157,13 @@ TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
   EXPECT_NEAR(material.parameter, 0.25f, 1e-6f);
   EXPECT_EQ(loaded.count("their means are used"), 1u);
   EXPECT_EQ(loaded.scene.texels.size(), 16u);
+  // Without the green and red of the white texel: metalness is blue, roughness green.
+  std::string texels = four_texels();
+  texels[54 + 4] = texels[54 + 5] = '\0';
+  maker.root["images"][0]["uri"] = "data:image/bmp;base64," + base64(texels);
+  const Loaded blue(maker);
+  EXPECT_EQ(blue.scene.materials.at(0).kind, MaterialKind::metal);
+  EXPECT_NEAR(blue.scene.materials.at(0).parameter, 0.0625f, 1e-6f);
 }
 
 TEST(GltfTextures, OtherCoordinatesAreReported) {

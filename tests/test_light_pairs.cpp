@@ -68,8 +68,8 @@ struct ChannelMeans {
   MeanEstimate of[3];
 };
 
-ChannelMeans sampled(const SceneData& scene, bool nee, int size = 96) {
-  Options options = image_options(size, size, 24, 2);
+ChannelMeans sampled(const SceneData& scene, bool nee, int size = 96, int depth = 2) {
+  Options options = image_options(size, size, 24, depth);
   options.nee = nee;
   const Image image = render(scene, options).image;
   ChannelMeans means;
@@ -78,11 +78,12 @@ ChannelMeans sampled(const SceneData& scene, bool nee, int size = 96) {
 }
 
 /// With light sampling and without. `precision`: the standard error that the scene must allow.
-void expect_irradiance(SceneData scene, const LightsAround& lights, double precision = 4e-3) {
+void expect_irradiance(SceneData scene, const LightsAround& lights, double precision = 6e-3,
+                       int depth = 2) {
   prepare_scene(scene, {});
   const glm::dvec3 expected = glm::dvec3(floor_albedo) / pi_double * floor_irradiance(lights);
   for (const bool nee : {true, false}) {
-    const ChannelMeans means = sampled(scene, nee);
+    const ChannelMeans means = sampled(scene, nee, 96, depth);
     for (int c = 0; c < 3; ++c) {
       SCOPED_TRACE(testing::Message() << "nee " << nee << ", channel " << c);
       const MeanEstimate& mean = means.of[c];
@@ -274,6 +275,37 @@ TEST(LightPairs, LampsAreHiddenByWhatLiesBetween) {
       }
     }
   }
+}
+
+// A sphere in front of a lamp of triangles, in the half of the way that is nearer to the lamp.
+TEST(LightPairs, LampsAreHiddenBySpheres) {
+  SceneData scene = floor_seen_in_a_point();
+  LightsAround lights;
+  add_lamp(scene, lights, {{-0.1f, 2, -0.1f}, {0.1f, 2, -0.1f}, {0, 2, 0.1f}}, {1, 2, 3});
+  scene.add_sphere({0, 1.5f, 0}, 0.4f, scene.add_material(make_diffuse(Color(0.0f))));
+  scene.camera.look_from = 0.01f * scene.camera.look_from;
+  prepare_scene(scene, {});
+  for (const bool nee : {true, false}) {
+    EXPECT_EQ(sampled(scene, nee, 16).of[1].mean(), 0) << "nee " << nee;
+  }
+}
+
+// A lamp and its image in a large mirror: no light sampling finds the image, whose light counts in
+// full although the bounce before the mirror could be sampled.
+TEST(LightPairs, AMirrorShowsALamp) {
+  SceneData scene = floor_seen_in_a_point();
+  LightsAround lights;
+  add_lamp(scene, lights, wide_lamp, {1, 2, 0.5f});
+  Mesh mirror;  // the plane x = -2
+  mirror.positions = {{-2, -90, -90}, {-2, 90, -90}, {-2, 90, 90}, {-2, -90, 90}};
+  mirror.triangles = {{{0, 1, 2}}, {{0, 2, 3}}};
+  mirror.material = scene.add_material(make_metal(Color(1.0f), 0.0f));
+  scene.meshes.push_back(mirror);
+  LampTriangle image = lights.triangles[0];
+  for (glm::dvec3& p : image.v) p.x = -4 - p.x;
+  std::swap(image.v[1], image.v[2]);
+  lights.triangles.push_back(image);
+  expect_irradiance(scene, lights, 2e-2, 3);
 }
 
 }  // namespace

@@ -224,6 +224,28 @@ TEST_F(Batches, DoNotChangeTheImageOfXorwow) {
   expect_same(render_options(with(batch_options("wavefront"), xorwow)), expected);
 }
 
+// Samples of a scene with lamps gather light in the buffer, which is not that of the last batch.
+TEST_F(Batches, ASecondRenderIsAsTheFirst) {
+  for (const char* scene : {"cornell", "boxes"}) {
+    for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+      SCOPED_TRACE(testing::Message() << scene << ", " << mode);
+      const Options options = with(Options(), {{"device", "cpu"},
+                                               {"mode", mode},
+                                               {"scene", scene},
+                                               {"width", "24"},
+                                               {"height", "16"},
+                                               {"spp", "4"},
+                                               {"max-depth", "5"}});
+      const DeviceInfo device = choose_device(options.device);
+      const SceneData made = make_scene_for(options, device);
+      const auto renderer = make_renderer(options, made, device);
+      const Rendered first = take_image(*renderer);
+      expect_plausible(first, options);
+      expect_same(take_image(*renderer), first);
+    }
+  }
+}
+
 using Progress = std::vector<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// Notes the progress and stops after so many batches.
