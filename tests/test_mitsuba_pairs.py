@@ -30,7 +30,7 @@ PROGRAM = os.environ.get("PTEXP", str(ROOT / "build" / "release" / "src" / "ptex
 # Sanitizers take ten times as long; there the images matter less than what is done with memory.
 QUICK = bool(os.environ.get("PTEXP_QUICK_TESTS"))
 DEPTH, SIDE, SPP, SEEDS = 4, 24, 16 if QUICK else 256, 8
-NOISE = 2e-2 if QUICK else 5e-3  # of a mean: more would say nothing
+NOISE = 4e-2 if QUICK else 8e-3  # of a mean: more would say nothing
 
 LAMP = '<emitter type="area"><rgb name="radiance" value="{}"/></emitter>'
 BLACK = '<bsdf type="diffuse"><rgb name="reflectance" value="0"/></bsdf>'
