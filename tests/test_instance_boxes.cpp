@@ -39,7 +39,12 @@ Crowd far_crowd(TestRandom& random, float far) {
     const std::uint32_t group = 1 + random.below(3);
     const Vec3 place = far * Vec3(random.direction()) + point_in_cube(random, 8);
     Affine to_world = translate(place) * scale(Vec3(0.5f + random.unit()));
-    if (i % 2 == 1) to_world = to_world * rotate(Vec3(random.direction()), 70);
+    if (i % 3 == 1) to_world = to_world * rotate(Vec3(random.direction()), 70);
+    // Stretched in a direction that is no axis: rounding in object space is stretched, too.
+    if (i % 3 == 2) {
+      to_world = to_world * rotate(Vec3(random.direction()), 50) * scale({60, 1, 0.5f}) *
+                 rotate(Vec3(random.direction()), 110);
+    }
     crowd.instances.push_back({group, to_world});
     const Mesh& mesh = meshes[group - 1];
     for (int k = 0; k < 1000; ++k) {
