@@ -212,5 +212,30 @@ TEST(ShadingNormal, OfThreeDifferentVerticesIsInterpolated) {
   }
 }
 
+// As in Mitsuba: (u, v) is (b1, b2).
+TEST(DefaultCoordinates, OfATextureAreBarycentric) {
+  for (const Vec3& b : {Vec3(0.2f, 0.6f, 0.2f), Vec3(0.2f, 0.2f, 0.6f), Vec3(0.6f, 0.2f, 0.2f)}) {
+    SceneData scene;
+    scene.name = "stripes";
+    Mesh mesh;
+    mesh.positions = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, -1}};
+    mesh.triangles = {{{0, 1, 2}}};
+    mesh.material = scene.add_material(make_diffuse(Color(1.0f)));
+    Texture stripes;  // dark for u <= 1/2
+    stripes.kind = TextureKind::checkerboard;
+    stripes.color0 = Color(0.25f), stripes.color1 = Color(0.75f);
+    stripes.v_row[1] = 0;
+    scene.textures.push_back(stripes);
+    scene.material_textures.push_back({0, no_texture});
+    scene.materials[0].textures = 1;
+    const Vec3 at = b.x * mesh.positions[0] + b.y * mesh.positions[1] + b.z * mesh.positions[2];
+    scene.camera = {at + Vec3(0, 2, 0), at, {0, 0, 1}, 0.001f, 0.0f, 2.0f};
+    scene.meshes.push_back(mesh);
+    scene.sky = {Color(1.0f), Color(1.0f)};
+    EXPECT_NEAR(image_of(scene, image_options(2, 2, 4, 2)).rgb[0], b.y > 0.5f ? 0.75f : 0.25f, 1e-5)
+        << b.y << " " << b.z;
+  }
+}
+
 }  // namespace
 }  // namespace pt

@@ -161,6 +161,9 @@ void add_stripes(SceneData& scene, std::uint32_t material) {
   stripes.color0 = Color(static_cast<float>(dark)), stripes.color1 = Color(bright);
   stripes.u_row[0] = 1, stripes.u_row[2] = 0;                        // dark for u <= 1/2
   stripes.v_row[0] = 0, stripes.v_row[1] = 0, stripes.v_row[2] = 0;  // v plays no part
+  Texture other = stripes;  // of no material: a lamp must not take the first there is
+  other.color0 = other.color1 = Color(0.5f);
+  scene.textures.push_back(other);
   scene.textures.push_back(stripes);
   const auto number = static_cast<std::uint32_t>(scene.textures.size()) - 1;
   scene.material_textures.push_back({no_texture, number});

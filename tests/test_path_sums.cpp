@@ -4,7 +4,9 @@
 
 #include "common/film/develop.h"
 #include "common/render/batches.h"
+#include "common/scene/builtin_scenes.h"
 #include "common/scene/prepare_scene.h"
+#include "common/transport/generate_camera_path.h"
 #include "common/transport/path_limits.h"
 #include "render_serial.h"
 #include "statistics.h"
@@ -140,6 +142,27 @@ TEST(BatchSizes, AreOfEqualSizeAndFitTheBuffer) {
       }
       EXPECT_EQ(sum, spp);
     }
+  }
+}
+
+TEST(CameraPath, TakesBothNumbersOfItsPixel) {
+  Scene scene;
+  scene.camera = make_camera({}, 40, 30);
+  for (const Vec4& u : {Vec4(0.3f, 0.1f, 0, 0), Vec4(0.3f, 0.9f, 0, 0), Vec4(0.8f, 0.1f, 0, 0)}) {
+    const Ray ray = generate_camera_path(scene, pack_pixel(7, 11), u);
+    const Ray expected = camera_ray(scene.camera, 7 + u.x, 11 + u.y, 0, 0);
+    EXPECT_EQ(ray.direction, expected.direction);
+  }
+}
+
+TEST(LightSampling, CanBeTurnedOff) {
+  for (const char* name : {"cornell", "boxes"}) {
+    Options options = image_options(16, 12, 2, 4);
+    options.scene = name;
+    const SceneData scene = make_scene(options);
+    EXPECT_GT(render(scene, options).counts.shadow_rays, 0u) << name;
+    options.nee = false;
+    EXPECT_EQ(render(scene, options).counts.shadow_rays, 0u) << name;
   }
 }
 
