@@ -50,6 +50,38 @@ install_missing() {
     apt-get install --yes --no-install-recommends "${missing[@]}"
 }
 
+# has_requirements PYTHON: whether it has the packages of tests/requirements.txt.
+has_requirements() {
+  "$1" - "$root/tests/requirements.txt" 2>/dev/null <<'PYTHON'
+import importlib.metadata, re, sys
+for line in open(sys.argv[1]):
+    name, operator, version = re.fullmatch(r"([\w-]*)([=<>]*)(.*)\n?", line).groups()
+    found = name and importlib.metadata.version(name)
+    assert operator != "==" or found == version
+PYTHON
+}
+
+# set_test_python: PTEXP_TEST_PYTHON becomes a Python with the packages of tests/requirements.txt:
+# the system's if it has them, else one below build/, made once. Where the packages cannot be had
+# the tests that need them skip; with PTEXP_NEEDS_MITSUBA set that is an error.
+set_test_python() {
+  local folder=$root/build/test_python
+  export PTEXP_TEST_PYTHON
+  PTEXP_TEST_PYTHON=$(command -v python3)
+  if has_requirements "$PTEXP_TEST_PYTHON"; then return; fi
+  PTEXP_TEST_PYTHON=$folder/bin/python3
+  if [[ -x $PTEXP_TEST_PYTHON ]] && has_requirements "$PTEXP_TEST_PYTHON"; then return; fi
+  printf 'Installing the packages of tests/requirements.txt into %s\n' "$folder"
+  if [[ ${PTEXP_INSTALL:-on} != off ]] && install_missing python3-venv python3-pip &&
+    python3 -m venv "$folder" && "$PTEXP_TEST_PYTHON" -m pip install --quiet \
+    --disable-pip-version-check --requirement "$root/tests/requirements.txt"; then
+    return
+  fi
+  [[ -z ${PTEXP_NEEDS_MITSUBA:-} ]] || die "the packages of tests/requirements.txt are not there"
+  printf 'Without the packages of tests/requirements.txt: tests against Mitsuba skip\n' >&2
+  PTEXP_TEST_PYTHON=$(command -v python3)
+}
+
 # build PRESET [TARGET]: installs what is missing, configures and builds in build/PRESET below the
 # repository.
 build() {
@@ -57,6 +89,9 @@ build() {
   install_missing "${ptexp_packages[@]}"
   if [[ -n ${PTEXP_CUDA_ARCHITECTURES:-} ]]; then
     options+=("-DCMAKE_CUDA_ARCHITECTURES=$PTEXP_CUDA_ARCHITECTURES")
+  fi
+  if [[ -n ${PTEXP_TEST_PYTHON:-} ]]; then
+    options+=("-DPTEXP_TEST_PYTHON=$PTEXP_TEST_PYTHON")
   fi
   # A compiler that was not there last time may have been installed since.
   if grep -qs '^CMAKE_CUDA_COMPILER:.*NOTFOUND$' "$root/build/$1/CMakeCache.txt"; then

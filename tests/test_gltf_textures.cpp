@@ -64,6 +64,23 @@ TEST(GltfTextures, BaseColourIsSrgbAndHeadUp) {
   EXPECT_EQ(texel_at(loaded.scene, texture, 0.25f, 0.25f), (std::vector{0, 0, 255}));
 }
 
+TEST(GltfTextures, FactorsMultiplyTheirTextures) {
+  GltfMaker maker = with_texture();
+  Json& material = maker.root["materials"][0];
+  material["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.25, 0.125, 1};
+  material["emissiveFactor"] = {0.75, 0.5, 0.25};
+  material["emissiveTexture"] = {{"index", 0}};
+  const Loaded loaded(maker);
+  EXPECT_EQ(loaded.scene.materials.at(0).albedo, Color(0.5f, 0.25f, 0.125f));
+  EXPECT_EQ(loaded.scene.materials.at(0).emission, Color(0.75f, 0.5f, 0.25f));
+  const MaterialTextures& textures = loaded.scene.material_textures.at(1);
+  EXPECT_NE(textures.albedo, no_texture);
+  EXPECT_NE(textures.emission, no_texture);
+  // The texture itself is not coloured: the factor would count twice.
+  EXPECT_EQ(loaded.scene.textures.at(textures.albedo).color0, Color(1.0f));
+  EXPECT_EQ(loaded.scene.textures.at(textures.emission).color0, Color(1.0f));
+}
+
 TEST(GltfTextures, SamplersSayWrapAndFilter) {
   const Loaded loaded(
       with_texture(Json::object(), {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}));
@@ -140,6 +157,13 @@ TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
   EXPECT_NEAR(material.parameter, 0.25f, 1e-6f);
   EXPECT_EQ(loaded.count("their means are used"), 1u);
   EXPECT_EQ(loaded.scene.texels.size(), 16u);
+  // Without the green and red of the white texel: metalness is blue, roughness green.
+  std::string texels = four_texels();
+  texels[54 + 4] = texels[54 + 5] = '\0';
+  maker.root["images"][0]["uri"] = "data:image/bmp;base64," + base64(texels);
+  const Loaded blue(maker);
+  EXPECT_EQ(blue.scene.materials.at(0).kind, MaterialKind::metal);
+  EXPECT_NEAR(blue.scene.materials.at(0).parameter, 0.0625f, 1e-6f);
 }
 
 TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {

@@ -4,6 +4,7 @@
 #include "common/math/fast_divide.h"
 #include "common/math/frame.h"
 #include "common/math/sincos.h"
+#include "common/math/transform.h"
 #include "common/sampling/mis.h"
 #include "statistics.h"
 
@@ -155,6 +156,19 @@ TEST(PowerHeuristic, SquaresMayLeaveTheRangeOfFloats) {
   EXPECT_NEAR(power_heuristic(1e25f, 1e25f), 0.5, 1e-6);
   EXPECT_NEAR(power_heuristic(1, 1e25f), 0, 1e-6);
   EXPECT_NEAR(power_heuristic(1e-25f, 1e-25f), 0.5, 1e-6);
+}
+
+TEST(Affine, DeterminantIsThatOfTheColumns) {
+  TestRandom random(9);
+  for (int k = 0; k < 100; ++k) {
+    Affine m;
+    for (Vec4& row : m.row) {
+      for (int j = 0; j < 4; ++j) row[j] = 2 * random.unit() - 1;
+    }
+    const Vec3 x = m.vector({1, 0, 0}), y = m.vector({0, 1, 0}), z = m.vector({0, 0, 1});
+    EXPECT_NEAR(m.determinant(), glm::dot(glm::dvec3(x), glm::cross(glm::dvec3(y), glm::dvec3(z))),
+                1e-5);
+  }
 }
 
 }  // namespace

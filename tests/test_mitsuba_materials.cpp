@@ -187,6 +187,27 @@ TEST(MitsubaTexture, imagesBeginAtTheirHead) {
             Color(0, 0, 1));
 }
 
+// Raw pictures hold numbers, not colours in the sRGB curve.
+TEST(MitsubaTexture, rawIsLinear) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.png");
+  write_image(path, Image{1, 1, {0.2f, 0.5f, 1}}, {});  // as bytes: 124, 188, 255
+  const auto color_of = [&](const std::string& inside) {
+    const SceneData scene = load_xml(
+                                "<shape type=\"rectangle\"><bsdf type=\"diffuse\"><texture "
+                                "type=\"bitmap\" name=\"reflectance\"><string "
+                                "name=\"filename\" value=\"" +
+                                path + "\"/>" + inside + "</texture></bsdf></shape>")
+                                .scene;
+    return sample_texture(scene.textures.at(0), scene.texels.data(), {0.5f, 0.5f});
+  };
+  const Vec3 linear(124.0 / 255, 188.0 / 255, 1), decoded(0.2, 0.5, 1);
+  expect_near(color_of(""), decoded, 4e-3f);
+  expect_near(color_of("<boolean name=\"raw\" value=\"false\"/>"), decoded, 4e-3f);
+  expect_near(color_of("<boolean name=\"raw\" value=\"true\"/>"), linear, 1e-6f);
+  expect_near(color_of("<float name=\"gamma\" value=\"1\"/>"), linear, 1e-6f);
+}
+
 TEST(MitsubaTexture, scaleMultiplies) {
   const SceneData scene =
       load_xml(

@@ -219,6 +219,55 @@ TEST_F(Ply, LargeFilesAreReadInParallel) {
   expect_error_of(large_file(count, 70'001), "face 70001: index 100000 into 100000 vertices");
 }
 
+// Many faces of `corners[i % size]` vertices, in binary. Where all are alike they are read in
+// parallel, else one after the other.
+std::string polygons_file(const std::vector<std::uint32_t>& corners, std::uint32_t count,
+                          bool big_endian) {
+  ByteWriter body(big_endian);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    body.put(static_cast<float>(i)).put(0.5f).put(-static_cast<float>(i));
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t n = corners[i % corners.size()];
+    body.put<float>(0.25f).put(static_cast<std::uint8_t>(n));
+    for (std::uint32_t k = 0; k < n; ++k) body.put<std::uint32_t>((i + k * k) % count);
+    body.put<std::uint16_t>(77);
+  }
+  return fmt::format(
+             "ply\nformat binary_{1}_endian 1.0\nelement vertex {0}\nproperty float x\n"
+             "property float y\nproperty float z\nelement face {0}\nproperty float quality\n"
+             "property list uchar uint vertex_indices\nproperty ushort flags\nend_header\n",
+             count, big_endian ? "big" : "little") +
+         body.text;
+}
+
+TEST_F(Ply, PolygonsAreFansWhetherReadInParallelOrInTurn) {
+  constexpr std::uint32_t count = 20'000;
+  const std::vector<std::vector<std::uint32_t>> kinds = {{3}, {4},          {5},   {6},
+                                                         {9}, {3, 4, 5, 6}, {6, 3}};
+  for (const std::vector<std::uint32_t>& corners : kinds) {
+    for (const bool big_endian : {false, true}) {
+      SCOPED_TRACE(testing::Message() << corners.size() << " kinds, first of " << corners[0]
+                                      << ", big " << big_endian);
+      const Mesh mesh = read(polygons_file(corners, count, big_endian));
+      ASSERT_EQ(mesh.positions.size(), count);
+      for (std::uint32_t i = 0; i < count; ++i)
+        ASSERT_EQ(mesh.positions[i], Vec3(i, 0.5f, -1.0f * i));
+      std::size_t triangle = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        for (std::uint32_t k = 2; k < corners[i % corners.size()]; ++k) {
+          ASSERT_LT(triangle, mesh.triangles.size());
+          const TriangleIndices& t = mesh.triangles[triangle++];
+          ASSERT_EQ(t.v[0], i);
+          ASSERT_EQ(t.v[1], (i + (k - 1) * (k - 1)) % count);
+          ASSERT_EQ(t.v[2], (i + k * k) % count);
+        }
+      }
+      ASSERT_EQ(triangle, mesh.triangles.size());
+    }
+  }
+}
+
 TEST_F(Ply, BrokenFilesAreRefusedWithTheirPlace) {
   expect_error([&] { read_ply(folder_.file("missing.ply")); }, "No such file");
   expect_error([&] { read_ply(folder_.file("")); }, "not a regular file");
