@@ -187,7 +187,8 @@ int trace_command(const TraceCommand& given) {
   if (!command.output.empty()) write_hits(command.output, {rays.type, result.hits});
   if (!command.csv.empty()) append_csv_row(command.csv, csv_row(command, report));
   if (command.hits.empty()) return 0;
-  return print_comparison(command, compare_hits(result.hits, reference.hits));
+  return print_comparison(
+      command, compare_hits(result.hits, reference.hits, position_resolution(rays.rays)));
 }
 
 }  // namespace pt

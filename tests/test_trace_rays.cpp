@@ -154,7 +154,8 @@ TEST_P(TraceVectors, AgreeWithAnIndependentTracer) {
   const HitSet reference = read_hits(name + ".hits");
   for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
     const auto hits = trace_rays_cpu(tree_over(mesh, accel), rays, {}).hits;
-    const HitComparison comparison = compare_hits(hits, reference.hits);
+    const HitComparison comparison =
+        compare_hits(hits, reference.hits, position_resolution(rays.rays));
     EXPECT_TRUE(comparison.agrees()) << comparison.first;
     EXPECT_GT(comparison.same, 4090u);
   }

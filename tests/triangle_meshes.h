@@ -131,7 +131,7 @@ inline Mesh make_degenerate(int count) {
 inline Mesh make_geometric_series(int count) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
-    const float s = std::ldexp(1.0f, 40 - i);
+    const float s = std::ldexp(1.0f, 38 - i);
     add_triangle(mesh, {s, s, s}, {1.5f * s, s, s}, {s, 1.5f * s, 1.2f * s});
   }
   return mesh;

@@ -33,8 +33,8 @@ struct alignas(16) CwbvhNode {
 static_assert(sizeof(CwbvhNode) == 80);
 
 inline constexpr int cwbvh_width = 8;
-inline constexpr int cwbvh_leaf_max = 2;                       ///< triangles in a leaf
-inline constexpr float cwbvh_grid_tolerance = 5.0f / 4096.0f;  ///< in steps
+inline constexpr int cwbvh_leaf_max = 2;                        ///< triangles in a leaf
+inline constexpr float cwbvh_grid_tolerance = 4.75f / 4096.0f;  ///< in steps
 
 /// What a child is.
 struct CwbvhChild {

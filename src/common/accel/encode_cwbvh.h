@@ -30,10 +30,10 @@ struct CwbvhGrid {
   PT_HD float floor_of(float x) const { return floorf(place_of(x) + snap); }
   PT_HD float ceil_of(float x) const { return ceilf(fmaxf(place_of(x) - snap, 0.0f)); }
 
-  // 12,288 and 2,048 half ulps: with the margins of hit_bounds, walls of a room that is not too
-  // long are flat. What is left of the tolerance is the traversal's.
-  static constexpr float snap = 0.6f * cwbvh_grid_tolerance;
-  static constexpr float fit = 0.1f * cwbvh_grid_tolerance;
+  // With the margins of hit_bounds, walls of a room up to twice as long as wide are flat. What is
+  // left of the tolerance is the traversal's.
+  static constexpr float snap = 4.0f / 4096.0f;
+  static constexpr float fit = 0.5f / 4096.0f;
 
  private:
   PT_HD float place_of(float x) const { return add_rounded(x, -origin) / step; }

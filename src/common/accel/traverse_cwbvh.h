@@ -37,14 +37,14 @@ PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
 }
 
 /// How much nearer the planes of a node's grid count where the ray enters, and farther where it
-/// leaves, relative to the distance of the grid's origin: 7 half ulps for rounding and
-/// hit_error_distance for the triangle test. What both are relative to the size of the grid is in
-/// cwbvh_grid_tolerance.
-inline constexpr float cwbvh_origin_tolerance = 26.0f * half_ulp;
+/// leaves, relative to the distance of the grid's origin: more than the rounding of this distance.
+/// That of a plane's place in the grid is in cwbvh_grid_tolerance, the triangle test's error in the
+/// comparison.
+inline constexpr float cwbvh_origin_tolerance = 8.0f * half_ulp;
 
 /// The distances of a node's grid planes along one axis: q * step + near for the planes where the
 /// ray enters, q * step + far where it leaves. `near` is no larger, and `far` no smaller, than the
-/// t of any hit in a child with this plane.
+/// exact distance of the plane that was encoded.
 struct CwbvhAxis {
   float step, near, far;
 };
@@ -79,7 +79,7 @@ PT_HD std::uint32_t intersect_cwbvh_node(const CwbvhNode& node, const CwbvhRay& 
       near = max_number(fused_multiply_add(first, axis[i].step, axis[i].near), near);
       far = min_number(fused_multiply_add(second, axis[i].step, axis[i].far), far);
     }
-    if (near <= far) hits |= 1u << s;
+    if (near <= far * (1.0f + slab_tolerance)) hits |= 1u << s;
   }
   return hits & node.used_mask();
 }

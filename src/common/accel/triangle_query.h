@@ -166,6 +166,7 @@ PT_HD InstanceVisit visit_instance(const InstanceRecord& instance, const Ray& ra
 template <class Query>
 PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::uint32_t first,
                        std::uint32_t count, Query& query) {
+  PT_UNROLL(2)
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
     const Triangle triangle = load_wide(&tree.triangles[slot]);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);

@@ -18,6 +18,7 @@ struct alignas(16) InstanceRecord {
   std::uint32_t number;
   std::uint32_t first_slot, slot_count;  ///< the group's triangles
   Bounds bounds;                         ///< in the world; widened
+  std::uint32_t padding[2] = {};
 };
 
 /// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are

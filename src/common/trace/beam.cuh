@@ -16,7 +16,7 @@ struct alignas(16) Beam {
 };
 
 /// As cwbvh_origin_tolerance, of a beam's rays, relative to the distance from its center.
-inline constexpr float beam_tolerance = 32.0f * half_ulp;
+inline constexpr float beam_tolerance = 16.0f * half_ulp;
 
 /// Beams wider than this, relative to their direction, do not pay.
 inline constexpr float beam_width_max = 0.25f;

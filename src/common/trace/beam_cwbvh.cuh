@@ -81,7 +81,7 @@ class BeamTracer {
 
   /// Planes of the lane's child along axis `i`, widened by more than rounding errors.
   __device__ Planes planes(int i, const CwbvhNode* node, float origin, std::uint32_t packed) const {
-    constexpr float grid_slack = 704.0f;  // in units of beam_tolerance
+    constexpr float grid_slack = 1280.0f;  // in units of beam_tolerance
     static_assert(grid_slack * beam_tolerance > 1.05f * cwbvh_grid_tolerance);
     const float step = unpack_cwbvh_step(packed);
     const float outward = memory_.beam.outward[i];

@@ -15,13 +15,19 @@ std::string describe(const HitRecord& hit) {
 
 }  // namespace
 
+float position_resolution(const std::vector<RayRecord>& rays) {
+  float largest = 0.0f;
+  for (const RayRecord& ray : rays) largest = std::fmax(largest, max_abs(ray.origin));
+  return 4.0f * half_ulp * largest;
+}
+
 HitComparison compare_hits(const std::vector<HitRecord>& hits,
-                           const std::vector<HitRecord>& reference) {
+                           const std::vector<HitRecord>& reference, float resolution) {
   HitComparison result;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const HitRecord &a = hits[i], &b = reference[i];
     const bool hit = !(a.t < 0.0f), expected = !(b.t < 0.0f);
-    const bool same_t = std::fabs(a.t - b.t) <= hit_tolerance * std::fabs(b.t);
+    const bool same_t = std::fabs(a.t - b.t) <= hit_tolerance * std::fabs(b.t) + resolution;
     if (hit == expected && (same_t || !hit)) {
       ++(a.primitive == b.primitive ? result.same : result.ties);
       continue;

@@ -21,8 +21,12 @@ struct HitComparison {
   bool agrees() const { return other + missed + invented == 0; }
 };
 
-/// The same number of both, of the same type.
+/// The same number of both, of the same type. Distances may differ by `resolution`, too: what
+/// floats can say of positions.
 HitComparison compare_hits(const std::vector<HitRecord>& hits,
-                           const std::vector<HitRecord>& reference);
+                           const std::vector<HitRecord>& reference, float resolution = 0.0f);
+
+/// Two ulps of the rays' largest coordinate.
+float position_resolution(const std::vector<RayRecord>& rays);
 
 }  // namespace pt

@@ -77,7 +77,7 @@ __device__ inline void shift_in_miss(std::uint32_t x, std::uint32_t y, std::uint
       __vimax3_s32_relu(near_of(x, axis[0]), near_of(y, axis[1]), near_of(z, axis[2]));
   const int far =
       __vimin3_s32(far_of(x, axis[0]), far_of(y, axis[1]), min(far_of(z, axis[2]), t_max));
-  const float room = __int_as_float(far) - __int_as_float(near);
+  const float room = __fmaf_rn(__int_as_float(far), 1.0f + slab_tolerance, -__int_as_float(near));
   misses = __funnelshift_l(__float_as_uint(room), misses, 1);
 }
 
