@@ -154,16 +154,39 @@ PT_HD float fused_multiply_add(float a, float b, float c) {
 #endif
 }
 
-/// a * b - c * d within 2 half ulps of the result, so that its sign is right and it is 0 only where
-/// both products are equal (Kahan's algorithm; Jeannerod, Louvet and Muller 2013, 'Further analysis
-/// of Kahan's algorithm for the accurate computation of 2 x 2 determinants'). On the CPU doubles
-/// hold both products exactly.
+/// a * b - c * d within 2 half ulps of the result, so that its sign is right and it is 0, never -0,
+/// only where both products are equal (Kahan's algorithm; Jeannerod, Louvet and Muller 2013,
+/// 'Further analysis of Kahan's algorithm for the accurate computation of 2 x 2 determinants'). On
+/// the CPU doubles hold both products exactly.
 PT_HD float difference_of_products(float a, float b, float c, float d) {
 #ifdef __CUDA_ARCH__
   const float cd = __fmul_rn(c, d);
   return __fadd_rn(__fmaf_rn(a, b, -cd), __fmaf_rn(-c, d, cd));
 #else
   return static_cast<float>(static_cast<double>(a) * b - static_cast<double>(c) * d);
+#endif
+}
+
+/// a * b + c * d + e * f with three roundings on CUDA, and one on the CPU.
+PT_HD float sum_of_products(float a, float b, float c, float d, float e, float f) {
+#ifdef __CUDA_ARCH__
+  return __fmaf_rn(a, b, __fmaf_rn(c, d, __fmul_rn(e, f)));
+#else
+  return static_cast<float>(static_cast<double>(a) * b + static_cast<double>(c) * d +
+                            static_cast<double>(e) * f);
+#endif
+}
+
+/// Whether one of three numbers is below 0 and one above. On CUDA they are compared as integers,
+/// three at once: none may be -0, which difference_of_products never is.
+PT_HD bool differ_in_sign(float a, float b, float c) {
+#ifdef __CUDA_ARCH__
+  const int i = __float_as_int(a), j = __float_as_int(b), k = __float_as_int(c);
+  return __vimin3_s32(i, j, k) < 0 && __vimax3_s32(i, j, k) > 0;
+#else
+  const float least = a < b ? (a < c ? a : c) : (b < c ? b : c);
+  const float most = a > b ? (a > c ? a : c) : (b > c ? b : c);
+  return least < 0.0f && most > 0.0f;
 #endif
 }
 

@@ -50,7 +50,7 @@ inline constexpr float hit_error_distance = 18.0f * half_ulp;
 /// By axis, for a triangle with these bounds.
 PT_HD Vec3 hit_margin(const Bounds& triangle) {
   const Vec3 extent = triangle.max - triangle.min;
-  return 4.0f * half_ulp * extent + Vec3(12.0f * half_ulp * max_abs(extent));
+  return 4.0f * half_ulp * extent + Vec3(11.0f * half_ulp * max_abs(extent));
 }
 
 /// A bound that lies `margin` below, or above, `x` in spite of rounding.
@@ -122,16 +122,14 @@ PT_HD TriangleHit intersect_triangle(const TriangleRay& ray, const Vec3& v0, con
   const float u = difference_of_products(cx, by, cy, bx);
   const float v = difference_of_products(ax, cy, ay, cx);
   const float w = difference_of_products(bx, ay, by, ax);
-  const float least = fminf(fminf(u, v), w);
-  const float most = fmaxf(fmaxf(u, v), w);
   const float determinant = add_rounded(add_rounded(u, v), w);
-  const bool miss = (least < 0.0f && most > 0.0f) || determinant == 0.0f;
+  const bool miss = differ_in_sign(u, v, w);
   const float inverse = approximate_inverse(determinant);
   const auto depth = [&ray](const Vec3& p) {
     return ray.axis == 2 ? p.z : ray.axis == 1 ? p.y : p.x;
   };
-  const float sum = fused_multiply_add(
-      u, depth(a), fused_multiply_add(v, depth(b), multiply_rounded(w, depth(c))));
+  // Without area all three are 0, and t is NaN.
+  const float sum = sum_of_products(u, depth(a), v, depth(b), w, depth(c));
   const float t = multiply_rounded(multiply_rounded(sum, inverse), ray.inverse);
   return {miss ? bits_to_float(0x7fffffffu) : t, multiply_rounded(v, inverse),
           multiply_rounded(w, inverse)};

@@ -18,9 +18,11 @@ struct alignas(16) Affine {
   /// The transpose applied to a vector: with the inverse map, this transforms normals (their
   /// length changes).
   PT_HD Vec3 transposed(const Vec3& v) const {
-    return {row[0].x * v.x + row[1].x * v.y + row[2].x * v.z,
-            row[0].y * v.x + row[1].y * v.y + row[2].y * v.z,
-            row[0].z * v.x + row[1].z * v.y + row[2].z * v.z};
+    const auto column = [&](float a, float b, float c) {  // fused alike in every kernel
+      return fused_multiply_add(a, v.x, fused_multiply_add(b, v.y, multiply_rounded(c, v.z)));
+    };
+    return {column(row[0].x, row[1].x, row[2].x), column(row[0].y, row[1].y, row[2].y),
+            column(row[0].z, row[1].z, row[2].z)};
   }
   /// A bound of the terms of point(p) for all |p| <= size, componentwise: the scale of its rounding
   /// error.

@@ -16,8 +16,11 @@ PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const Path
     if (scene.light_list.environment_probability > 0.0f) {
       const float pdf = scene.light_list.environment_probability *
                         environment_pdf(scene.environment, ray_direction);
-      radiance += environment_radiance(scene.environment, ray_direction) *
-                  power_heuristic(path.bsdf_pdf, pdf);
+      const Color environment = environment_radiance(scene.environment, ray_direction);
+      const float weight = power_heuristic(path.bsdf_pdf, pdf);
+      radiance = {fused_multiply_add(environment.x, weight, radiance.x),
+                  fused_multiply_add(environment.y, weight, radiance.y),
+                  fused_multiply_add(environment.z, weight, radiance.z)};
     }
   }
   return path.beta * radiance;
