@@ -48,8 +48,11 @@ TEST(Ties, GoToTheLowestTriangleThenTheLowestInstance) {
   const auto expect_first = [&](const TreeKind& kind) {
     const TriangleTreeData tree = kind.build({mesh}, instances);
     int hits = 0;
-    for (const RayRecord& record : rays.rays) {
-      const Hit hit = closest_hit(tree, record.ray());
+    for (std::size_t i = 0; i < rays.rays.size(); ++i) {
+      const Affine& place = instances[i % instances.size()].to_world;
+      const Ray ray = rays.rays[i].ray();
+      const Vec3 direction = normalize(place.vector(ray.direction));
+      const Hit hit = closest_hit(tree, {place.point(ray.origin), direction});
       if (hit.is_miss()) continue;
       ++hits;
       ASSERT_LT(tree.triangles.at(hit.primitive).id, different) << kind.name;
