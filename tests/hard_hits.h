@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "common/geometry/instance.h"
 #include "common/trace/ray_file.h"
 #include "triangle_rays.h"
 

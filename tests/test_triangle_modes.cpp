@@ -1,0 +1,39 @@
+// Scenes of triangles give one image in all modes, bit for bit: what a path is, and what it met,
+// must survive the wavefront's pool. With --finish-paths 0 no path is finished without it.
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+class TriangleModesOf : public testing::TestWithParam<const char*> {
+ protected:
+  static Options options(const Settings& more) {
+    const Settings small{{"device", "cpu"}, {"scene", GetParam()}, {"width", "40"},
+                         {"height", "30"},  {"spp", "3"},          {"max-depth", "6"}};
+    return with(with(Options(), small), more);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, TriangleModesOf,
+                         testing::Values("boxes", "instances:20", "statue:3K"),
+                         [](const auto& scene) {
+                           const std::string name = scene.param;
+                           return name.substr(0, name.find(':'));
+                         });
+
+TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
+  const Options serial = options({{"mode", "serial"}});
+  const Rendered expected = render_options(serial);
+  expect_plausible(expected, serial);
+  expect_all_same(options({{"mode", "megakernel"}}),
+                  variations({{"accel", {"cwbvh", "bvh2"}}, {"threads", {"2", "1"}}}, 0, 1),
+                  expected);
+  const std::vector<Choice> choices{{"accel", {"cwbvh", "bvh2"}},
+                                    {"compaction", {"atomic", "cub", "none"}},
+                                    {"pool-size", {"333", "auto", "3600"}},
+                                    {"regenerate", {"on", "off"}},
+                                    {"finish-paths", {"0", "100"}}};
+  expect_all_same(options({{"mode", "wavefront"}}), variations(choices, 2, 3), expected);
+}
+
+}  // namespace
+}  // namespace pt
