@@ -136,19 +136,8 @@ struct InstanceVisit {
   }
 };
 
-/// No fused operation but those that are written, so that all kernels see the same ray.
-PT_HD Vec3 transform_rounded(const Affine& a, const Vec3& v, float w) {
-  const auto row = [&](const Vec4& r) {
-    return fused_multiply_add(
-        r.x, v.x,
-        fused_multiply_add(r.y, v.y, fused_multiply_add(r.z, v.z, multiply_rounded(r.w, w))));
-  };
-  return {row(a.row[0]), row(a.row[1]), row(a.row[2])};
-}
-
 PT_HD Ray object_ray(const InstanceRecord& instance, const Ray& ray) {
-  return {transform_rounded(instance.to_object, ray.origin, 1.0f),
-          transform_rounded(instance.to_object, ray.direction, 0.0f)};
+  return {instance.to_object.point(ray.origin), instance.to_object.vector(ray.direction)};
 }
 
 /// `world` is `ray`, prepared.

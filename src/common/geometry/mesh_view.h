@@ -14,11 +14,13 @@ struct VertexAttributes {
 
   PT_HD Vec3 normal(std::uint32_t id, const Vec3& b) const {
     const TriangleIndices t = triangles[id];
-    return b.x * normals[t.v[0]] + b.y * normals[t.v[1]] + b.z * normals[t.v[2]];
+    return weighted_sum(b, normals[t.v[0]], normals[t.v[1]], normals[t.v[2]]);
   }
   PT_HD Vec2 uv(std::uint32_t id, const Vec3& b) const {
     const TriangleIndices t = triangles[id];
-    return b.x * uvs[t.v[0]] + b.y * uvs[t.v[1]] + b.z * uvs[t.v[2]];
+    const Vec2 p = uvs[t.v[0]], q = uvs[t.v[1]], r = uvs[t.v[2]];
+    const Vec3 uv = weighted_sum(b, Vec3(p, 0.0f), Vec3(q, 0.0f), Vec3(r, 0.0f));
+    return {uv.x, uv.y};
   }
 };
 

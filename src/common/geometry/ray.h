@@ -34,7 +34,7 @@ struct SurfacePoint {
 /// Where a ray from `point` towards `direction` begins, so that it cannot meet the surface it
 /// leaves: beyond the rounding error, on the side to which it goes (pbrt-v4, section 6.8.6).
 PT_HD Vec3 spawn_origin(const SurfacePoint& point, const Vec3& direction) {
-  const float side = glm::dot(direction, point.normal) < 0.0f ? -1.0f : 1.0f;
+  const float side = dot(direction, point.normal) < 0.0f ? -1.0f : 1.0f;
   const float offset = side * point.error_bound;
   return {fused_multiply_add(offset, point.normal.x, point.position.x),
           fused_multiply_add(offset, point.normal.y, point.position.y),

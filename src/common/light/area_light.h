@@ -10,7 +10,7 @@ namespace pt {
 
 /// Density per solid angle of sample_quad at a point of the quad `distance` away along `wi`.
 PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distance) {
-  const float cosine = -glm::dot(quad.normal, wi);
+  const float cosine = -dot(quad.normal, wi);
   return cosine > 0.0f ? distance * distance / (cosine * quad.area) : 0.0f;
 }
 
@@ -18,13 +18,13 @@ PT_HD float quad_solid_angle_pdf(const Quad& quad, const Vec3& wi, float distanc
 PT_HD LightSample sample_quad(const Quad& quad, const Vec3& from, float u0, float u1) {
   // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
   const Vec3 to_light = (quad.corner - from) + u0 * quad.edge_a + u1 * quad.edge_b;
-  const float distance2 = glm::dot(to_light, to_light);
+  const float distance2 = dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
   const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
   const Vec3 wi = inverse_distance * to_light;
   const float size = max_abs(quad.edge_a) + max_abs(quad.edge_b);
   return {wi, quad_solid_angle_pdf(quad, wi, distance),
-          to_light + light_rounding * (distance + size) * quad.normal};
+          add_scaled(to_light, light_rounding * (distance + size), quad.normal)};
 }
 
 PT_HD float sphere_area(const Sphere& sphere) { return 4.0f * pi * sphere.radius_squared; }
@@ -33,7 +33,7 @@ PT_HD float sphere_area(const Sphere& sphere) { return 4.0f * pi * sphere.radius
 /// cancellation for small ones; 0 from inside.
 PT_HD float sphere_one_minus_cos(const Sphere& sphere, const Vec3& from) {
   const Vec3 to_center = sphere.center - from;
-  const float distance2 = glm::dot(to_center, to_center);
+  const float distance2 = dot(to_center, to_center);
   if (distance2 <= sphere.radius_squared) return 0.0f;
   const float sin2 = sphere.radius_squared / distance2;
   return sin2 / (1.0f + sqrtf(1.0f - sin2));
@@ -57,12 +57,12 @@ PT_HD LightSample sample_sphere(const Sphere& sphere, const Vec3& from, float u0
   const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, cos_theta}));
   float distance = sphere_distance(sphere, {from, wi});
   if (distance <= 0.0f) {  // grazing: rounding has moved the ray past the sphere
-    distance = glm::dot(to_center, wi);
+    distance = dot(to_center, wi);
   }
-  const Vec3 normal = normalize(distance * wi - to_center);
+  const Vec3 normal = normalize(add_scaled(-to_center, distance, wi));
   const float radius = sphere.radius();
-  const float end_radius = radius + light_rounding * (distance + radius);
-  return {wi, 0.5f * inverse_pi / one_minus_cos_max, to_center + end_radius * normal};
+  const float end_radius = fused_multiply_add(light_rounding, distance + radius, radius);
+  return {wi, 0.5f * inverse_pi / one_minus_cos_max, add_scaled(to_center, end_radius, normal)};
 }
 
 PT_HD LightSample sample_primitive(const Primitives& primitives, std::uint32_t primitive,

@@ -46,13 +46,12 @@ PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& f
     return {-light.direction, -beyond_scene * light.direction, light.intensity};
   }
   const Vec3 to_light = light.position - from;
-  const float distance2 = glm::dot(to_light, to_light);
+  const float distance2 = dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
   const float inverse_distance = inverse_sqrt(distance2);
   const Vec3 wi = inverse_distance * to_light;
-  const float share = light.kind == DeltaLight::Kind::spot
-                          ? spot_share(light, -glm::dot(light.direction, wi))
-                          : 1.0f;
+  const float share =
+      light.kind == DeltaLight::Kind::spot ? spot_share(light, -dot(light.direction, wi)) : 1.0f;
   // A light on a surface shines in front of it: its position has been rounded.
   const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
   return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};

@@ -14,7 +14,7 @@ struct Sky {
 /// `direction` has unit length and points away from the scene.
 PT_HD Color sky_radiance(const Sky& sky, const Vec3& direction) {
   const float t = 0.5f * (direction.y + 1.0f);
-  return (1.0f - t) * sky.nadir + t * sky.zenith;
+  return interpolate(sky.nadir, sky.zenith, t);
 }
 
 }  // namespace pt

@@ -20,7 +20,7 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
 /// Density per solid angle of sample_triangle at a point of the triangle `distance` away along
 /// `wi`; 0 from behind. `normal` is cross(v1 - v0, v2 - v0), whose length is twice the area.
 PT_HD float triangle_solid_angle_pdf(const Vec3& normal, const Vec3& wi, float distance) {
-  const float cosine_times_area = -0.5f * glm::dot(normal, wi);
+  const float cosine_times_area = -0.5f * dot(normal, wi);
   return cosine_times_area > 0.0f ? distance * distance / cosine_times_area : 0.0f;
 }
 
@@ -36,14 +36,14 @@ PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, con
                                           float u1) {
   const TrianglePoint point = sample_triangle_point(u0, u1);
   // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
-  const Vec3 to_light = (v0 - from) + point.b1 * edge1 + point.b2 * edge2;
-  const float distance2 = glm::dot(to_light, to_light);
+  const Vec3 to_light = add_scaled(add_scaled(v0 - from, point.b1, edge1), point.b2, edge2);
+  const float distance2 = dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
   const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
   const Vec3 wi = inverse_distance * to_light;
-  const Vec3 normal = glm::cross(edge1, edge2);
-  const float inverse_length = inverse_sqrt(fmaxf(glm::dot(normal, normal), 1e-37f));
-  const Vec3 end = to_light + (error.bound(distance) * inverse_length) * normal;
+  const Vec3 normal = cross_rounded(edge1, edge2);
+  const float inverse_length = inverse_sqrt(fmaxf(dot(normal, normal), 1e-37f));
+  const Vec3 end = add_scaled(to_light, error.bound(distance) * inverse_length, normal);
   return {{wi, triangle_solid_angle_pdf(normal, wi, distance), end}, point};
 }
 

@@ -19,6 +19,6 @@ struct BsdfSample {
   float outside = 1.0f;        ///< weight times this is what Russian roulette goes by
 };
 
-PT_HD Vec3 reflect(const Vec3& wo, const Vec3& n) { return 2.0f * glm::dot(wo, n) * n - wo; }
+PT_HD Vec3 reflect(const Vec3& wo, const Vec3& n) { return 2.0f * dot(wo, n) * n - wo; }
 
 }  // namespace pt

@@ -13,7 +13,8 @@ PT_HD float fresnel_dielectric(float cos_i, float eta) {
   const float cos_t = sqrtf(1.0f - sin2_t);
   const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
   const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+  return 0.5f *
+         fused_multiply_add(parallel, parallel, multiply_rounded(perpendicular, perpendicular));
 }
 
 struct Dielectric {
@@ -23,7 +24,7 @@ struct Dielectric {
   PT_HD bool is_delta() const { return true; }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
-    const float cos_o = glm::dot(wo, n);
+    const float cos_o = dot(wo, n);
     const bool entering = cos_o > 0.0f;
     const Vec3 facing = entering ? n : -n;
     const float relative_eta = entering ? eta : 1.0f / eta;
@@ -37,7 +38,8 @@ struct Dielectric {
     const float inverse_eta = 1.0f / relative_eta;
     const float sin2_t = fmaxf(0.0f, (1.0f - cos_i * cos_i) * inverse_eta * inverse_eta);
     const float cos_t = sqrtf(fmaxf(0.0f, 1.0f - sin2_t));
-    return {normalize((inverse_eta * cos_i - cos_t) * facing - inverse_eta * wo),
+    const float across = fused_multiply_add(inverse_eta, cos_i, -cos_t);
+    return {normalize(add_scaled(multiply_rounded(Vec3(-inverse_eta), wo), across, facing)),
             tint * (inverse_eta * inverse_eta), entering ? inside_eta2 : 1.0f};
   }
 

@@ -12,7 +12,7 @@ struct Diffuse {
   PT_HD bool is_delta() const { return false; }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
-    const Vec3 facing = glm::dot(wo, n) < 0.0f ? -n : n;
+    const Vec3 facing = dot(wo, n) < 0.0f ? -n : n;
     return {sample_cosine_hemisphere(facing, u.x, u.y), albedo};
   }
 
@@ -21,8 +21,8 @@ struct Diffuse {
   }
 
   PT_HD float pdf(const Vec3& wo, const Vec3& wi, const Vec3& n) const {
-    const float cos_o = glm::dot(wo, n);
-    const float cos_i = glm::dot(wi, n);
+    const float cos_o = dot(wo, n);
+    const float cos_i = dot(wi, n);
     return cos_o * cos_i > 0.0f ? multiply_rounded(fabsf(cos_i), inverse_pi) : 0.0f;
   }
 };

@@ -9,7 +9,7 @@ struct Frame {
   Vec3 tangent, bitangent, normal;
 
   PT_HD Vec3 to_world(const Vec3& local) const {
-    return local.x * tangent + local.y * bitangent + local.z * normal;
+    return weighted_sum(local, tangent, bitangent, normal);
   }
 };
 

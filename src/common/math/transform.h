@@ -9,20 +9,21 @@ namespace pt {
 struct alignas(16) Affine {
   Vec4 row[3] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
 
-  PT_HD Vec3 point(const Vec3& p) const { return vector(p) + translation(); }
+  // Fused alike in every kernel.
+  PT_HD Vec3 point(const Vec3& p) const {
+    const auto sum = [&p](const Vec4& r) {
+      return fused_multiply_add(r.x, p.x,
+                                fused_multiply_add(r.y, p.y, fused_multiply_add(r.z, p.z, r.w)));
+    };
+    return {sum(row[0]), sum(row[1]), sum(row[2])};
+  }
   PT_HD Vec3 vector(const Vec3& v) const {
-    return {row[0].x * v.x + row[0].y * v.y + row[0].z * v.z,
-            row[1].x * v.x + row[1].y * v.y + row[1].z * v.z,
-            row[2].x * v.x + row[2].y * v.y + row[2].z * v.z};
+    return {dot(Vec3(row[0]), v), dot(Vec3(row[1]), v), dot(Vec3(row[2]), v)};
   }
   /// The transpose applied to a vector: with the inverse map, this transforms normals (their
   /// length changes).
   PT_HD Vec3 transposed(const Vec3& v) const {
-    const auto column = [&](float a, float b, float c) {  // fused alike in every kernel
-      return fused_multiply_add(a, v.x, fused_multiply_add(b, v.y, multiply_rounded(c, v.z)));
-    };
-    return {column(row[0].x, row[1].x, row[2].x), column(row[0].y, row[1].y, row[2].y),
-            column(row[0].z, row[1].z, row[2].z)};
+    return weighted_sum(v, Vec3(row[0]), Vec3(row[1]), Vec3(row[2]));
   }
   /// A bound of the terms of point(p) for all |p| <= size, componentwise: the scale of its rounding
   /// error.

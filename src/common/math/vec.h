@@ -20,9 +20,31 @@ inline constexpr float inverse_pi = 0.31830988618379f;
 inline constexpr float half_ulp = 5.9604645e-8f;     ///< 2^-24: rounding error of one operation
 inline constexpr float one_minus_ulp = 0.99999994f;  ///< the largest float below 1
 
+// Sums of products whose roundings are written out. Which product of a sum the compiler fuses
+// depends on what else it finds in the kernel, so these are what physics is made of: a schedule, or
+// a way of traversing, cannot change a bit.
+
+PT_HD float dot(const Vec3& a, const Vec3& b) {
+  return fused_multiply_add(a.x, b.x, fused_multiply_add(a.y, b.y, multiply_rounded(a.z, b.z)));
+}
+
+/// a + t b.
+PT_HD Vec3 add_scaled(const Vec3& a, float t, const Vec3& b) {
+  return {fused_multiply_add(t, b.x, a.x), fused_multiply_add(t, b.y, a.y),
+          fused_multiply_add(t, b.z, a.z)};
+}
+
+/// w.x a + w.y b + w.z c.
+PT_HD Vec3 weighted_sum(const Vec3& w, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto sum = [&w](float p, float q, float r) {
+    return fused_multiply_add(w.x, p, fused_multiply_add(w.y, q, multiply_rounded(w.z, r)));
+  };
+  return {sum(a.x, b.x, c.x), sum(a.y, b.y, c.y), sum(a.z, b.z, c.z)};
+}
+
 /// v / |v|; each component ends in a rounded product (see platform.h).
 PT_HD Vec3 normalize(const Vec3& v) {
-  const float scale = inverse_sqrt(glm::dot(v, v));
+  const float scale = inverse_sqrt(dot(v, v));
   return {multiply_rounded(v.x, scale), multiply_rounded(v.y, scale), multiply_rounded(v.z, scale)};
 }
 

@@ -44,7 +44,7 @@ PT_HD Disk sample_unit_disk(float u0, float u1) {
 PT_HD Vec3 sample_cosine_hemisphere(const Vec3& n, float u0, float u1) {
   const Vec3 sum = n + sample_unit_sphere(u0, u1);
   // The sum vanishes when the point is -n: any direction will do, once in 2^24 samples.
-  return glm::dot(sum, sum) > 1e-12f ? normalize(sum) : n;
+  return dot(sum, sum) > 1e-12f ? normalize(sum) : n;
 }
 
 }  // namespace pt

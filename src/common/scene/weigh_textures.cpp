@@ -25,7 +25,7 @@ double mean_luminance(const Texture& texture, const std::byte* texels) {
         return part;
       },
       std::plus<>());
-  return sum / (double{texture.width} * texture.height);
+  return sum / (static_cast<double>(texture.width) * static_cast<double>(texture.height));
 }
 
 void weigh_emission_textures(SceneData& scene) {

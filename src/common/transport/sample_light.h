@@ -81,7 +81,7 @@ PT_HD Vec3 world_normal(const Scene& scene, const Triangle& triangle, std::uint3
     const Affine to_world = load_wide(&scene.to_world[scene.triangles.instances[instance].number]);
     edge1 = to_world.vector(edge1), edge2 = to_world.vector(edge2);
   }
-  return glm::cross(edge1, edge2);
+  return cross_rounded(edge1, edge2);
 }
 
 /// The density with which sample_light would have found the surface that a ray hit.
@@ -102,7 +102,7 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Material& material = scene.materials[t.material];
     const float mean = scene.material_textures[material.textures].emission_mean;
     // The side is the caller's affair: in an instance that mirrors, this normal is turned.
-    const float side = glm::dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
+    const float side = dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
     return scene.light_list.probability(
                emitter_weight(material.emission, 0.5f * glm::length(normal), mean)) *
            triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);

@@ -23,7 +23,7 @@ template <class Traits>
 PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
                              const PathState& path, const Surface& surface) {
   const Color& emission = surface.material.emission;
-  if (is_black(emission) || glm::dot(ray.direction, surface.point.normal) >= 0.0f) {
+  if (is_black(emission) || dot(ray.direction, surface.point.normal) >= 0.0f) {
     return Color(0.0f);
   }
   return path.beta * emission * power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
@@ -37,7 +37,7 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
   constexpr bool shading_normals = Traits::geometry != Geometry::spheres_and_quads;
   const Vec3 origin = shading_normals ? spawn_origin(point, light.wi) : from;
   const Vec3 way = shading_normals ? light.end + (from - origin) : light.end;
-  const float distance2 = glm::dot(way, way);
+  const float distance2 = dot(way, way);
   if (!(distance2 > 0.0f)) return {};
   const float inverse = inverse_sqrt(distance2);
   return {{origin, multiply_rounded(way, Vec3(inverse))},
@@ -83,7 +83,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface);
   }
   if (path.rays >= limits.max_depth) return result;
-  if (Traits::lighting == Lighting::full && surface.material.one_sided && glm::dot(wo, n) <= 0.0f) {
+  if (Traits::lighting == Lighting::full && surface.material.one_sided && dot(wo, n) <= 0.0f) {
     return result;
   }
 

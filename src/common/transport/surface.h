@@ -58,9 +58,9 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
                                                 triangle.v0, triangle.v1, triangle.v2);
   const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
-  Vec3 position = b.x * triangle.v0 + b.y * triangle.v1 + b.z * triangle.v2;
-  Vec3 extent =
-      glm::abs(b.x * triangle.v0) + glm::abs(b.y * triangle.v1) + glm::abs(b.z * triangle.v2);
+  Vec3 position = weighted_sum(b, triangle.v0, triangle.v1, triangle.v2);
+  Vec3 extent = weighted_sum(glm::abs(b), glm::abs(triangle.v0), glm::abs(triangle.v1),
+                             glm::abs(triangle.v2));
   // The next intersection rounds relative to where the vertices lie as seen from the new origin.
   Vec3 size = glm::max(glm::max(glm::abs(triangle.v0 - position), glm::abs(triangle.v1 - position)),
                        glm::abs(triangle.v2 - position));
@@ -77,11 +77,11 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
     shading_normal = instance.to_object.transposed(shading_normal);
   }
   normal = normalize(normal);
-  Surface surface{
-      {position, normal,
-       16.0f * half_ulp * glm::dot(glm::abs(normal), extent) + 8.0f * half_ulp * max_abs(size)},
-      normalize(shading_normal),
-      load_wide(&scene.materials[triangle.material])};
+  Surface surface{{position, normal,
+                   fused_multiply_add(16.0f * half_ulp, dot(glm::abs(normal), extent),
+                                      8.0f * half_ulp * max_abs(size))},
+                  normalize(shading_normal),
+                  load_wide(&scene.materials[triangle.material])};
   if (surface.material.textures != 0) apply_textures(scene, triangle, b, surface.material);
   return surface;
 }
