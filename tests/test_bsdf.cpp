@@ -162,8 +162,8 @@ TEST(Bsdf, IsReciprocal) {
     if (!sample.is_reciprocal) return;
     for (int i = 0; i < 2000; ++i) {
       const Vec3 wi(random.direction());
-      const Color there = bsdf.evaluate(wo, wi, n) / std::abs(glm::dot(wi, n));
-      const Color back = bsdf.evaluate(wi, wo, n) / std::abs(glm::dot(wo, n));
+      const Color there = bsdf.evaluate(wo, wi, n) / std::abs(dot(wi, n));
+      const Color back = bsdf.evaluate(wi, wo, n) / std::abs(dot(wo, n));
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(there[c], back[c], 1e-5 * (there[c] + back[c]));
     }
   });
