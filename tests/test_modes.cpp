@@ -176,12 +176,12 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
 }
 
 /// Three batches of three samples; with 10, the last is shorter than the others.
-Options batch_options(const std::string& mode, const std::string& spp = "9") {
+Options batch_options(const std::string& mode, const std::string& samples = "9") {
   return with(Options(), {{"device", "cpu"},
                           {"mode", mode},
                           {"width", "512"},
                           {"height", "500"},
-                          {"spp", spp},
+                          {"spp", samples},
                           {"spheres", "3"},
                           {"max-depth", "3"}});
 }
