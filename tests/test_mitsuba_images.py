@@ -11,14 +11,7 @@ import unittest
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-try:
-    import mitsuba as mi
-    import numpy as np
-    mi.set_variant("scalar_rgb")
-except ImportError:
-    if os.environ.get("PTEXP_NEEDS_MITSUBA"):
-        raise
-    mi = None
+from mitsuba_package import mi, np
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PTEXP", str(ROOT / "build" / "dev" / "src" / "ptexp"))

@@ -15,13 +15,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-try:
-    import mitsuba as mi
-    mi.set_variant("scalar_rgb")
-except ImportError:
-    if os.environ.get("PTEXP_NEEDS_MITSUBA"):
-        raise
-    mi = None
+from mitsuba_package import mi
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("PTEXP_TESTS", str(ROOT / "build" / "dev" / "tests" / "ptexp_tests"))
