@@ -263,7 +263,6 @@ struct SortingStage {
 /// What a stage finds as its input.
 enum class StageInput {
   queue,      ///< a queue
-  queue_end,  ///< the last places of a queue
   tags,       ///< the whole pool, of which it takes the slots with its tag
   every_slot  ///< the whole pool
 };
@@ -298,16 +297,14 @@ class SendTest {
     GuardedArray<Device, std::uint32_t> calls(device_, Slots(n)), ranks(device_, Slots(n, poison));
     GuardedArray<Device, PathTag> device_tags(device_, tags), device_shadow(device_, shadow_tags);
     GuardedArray<Device, std::uint32_t> input(device_, slots);
-    const std::uint32_t skipped = input_ == StageInput::queue_end ? queue_rest : 0;
-    const auto waiting_count = static_cast<std::uint32_t>(slots.size()) - skipped;
-    const std::uint32_t length = input_ == StageInput::tags ? n : waiting_count;
-    GuardedArray<Device, std::uint32_t> place(device_, {skipped, length});
+    const std::uint32_t length =
+        input_ == StageInput::tags ? n : static_cast<std::uint32_t>(slots.size());
+    GuardedArray<Device, std::uint32_t> count(device_, {length});
 
     StageQueues q;
     const bool from_pool = input_ == StageInput::tags || input_ == StageInput::every_slot;
     q.slots = from_pool ? nullptr : input.data();
-    q.first = input_ == StageInput::queue_end ? place.data() : nullptr;
-    q.count = place.data() + 1;
+    q.count = count.data();
     const bool appends = appends_in_stages(strategy_);
     q.tags = appends ? nullptr : device_tags.data();
     q.shadow_tags = appends || !shadows ? nullptr : device_shadow.data();
@@ -326,10 +323,9 @@ class SendTest {
 
     device_.run(Stage{device_next.data(), calls.data(), ranks.data()}, q, shape);
 
-    expect_calls(slots, skipped, calls.download("calls"), ranks.download("ranks"));
+    expect_calls(slots, calls.download("calls"), ranks.download("ranks"));
     std::vector<Slots> sent(queue_count);
-    for (std::size_t k = skipped; k < slots.size(); ++k) {
-      const std::uint32_t slot = slots[k];
+    for (const std::uint32_t slot : slots) {
       tags[slot] = next[slot].tag;
       if (shadows) shadow_tags[slot] = next[slot].shadow ? PathTag::surface : PathTag::free;
       const auto to = static_cast<std::size_t>(next[slot].tag);
@@ -349,7 +345,6 @@ class SendTest {
 
  private:
   static constexpr bool shadows = Stage::outcomes.casts_shadow_rays;
-  static constexpr std::uint32_t queue_rest = 11;  ///< places that queue_end leaves out
   static constexpr std::uint32_t rests_size = 5 * queue_count;
 
   /// In an order that the stage must not rely on.
@@ -362,16 +357,14 @@ class SendTest {
     for (std::size_t i = slots.size(); i > 1; --i) {
       std::swap(slots[i - 1], slots[random.below(static_cast<std::uint32_t>(i))]);
     }
-    if (input_ == StageInput::queue_end) slots.insert(slots.begin(), queue_rest, poison);
     return slots;
   }
 
-  void expect_calls(const Slots& slots, std::uint32_t skipped, const Slots& calls,
-                    const Slots& ranks) {
+  void expect_calls(const Slots& slots, const Slots& calls, const Slots& ranks) {
     Slots expected_calls(roles_.size()), expected_ranks(roles_.size(), poison);
-    for (auto k = skipped; k < slots.size(); ++k) {
+    for (std::uint32_t k = 0; k < slots.size(); ++k) {
       expected_calls[slots[k]] = 1;
-      expected_ranks[slots[k]] = input_ == StageInput::tags ? slots[k] : k - skipped;
+      expected_ranks[slots[k]] = input_ == StageInput::tags ? slots[k] : k;
     }
     expect_equal_arrays(calls, expected_calls, "calls of the stage");
     expect_equal_arrays(ranks, expected_ranks, "places in the queue");
@@ -461,7 +454,6 @@ void for_each_input(Test&& test) {
   };
   for (const Compaction strategy : {Compaction::atomic, Compaction::cub}) {
     run(strategy, queue, "a queue");
-    run(strategy, queue_end, "the end of a queue");
   }
   run(Compaction::none, tags, "by tag");
   if (Device::numbers_slots) run(Compaction::atomic, every_slot, "every slot");

@@ -159,8 +159,7 @@ TEST_P(ModesOf, MegakernelEqualsSerial) {
   const std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
                                     {"work", {"persistent", "pixel", "sample"}},
                                     {"branching", {"divergent", "reduced"}}};
-  expect_all_same(options("megakernel"), variations(choices, 5, 1),
-                  render_options(options("serial")));
+  expect_all_same(options("megakernel"), variations(choices, 5, 1), options("serial"));
 }
 
 TEST_P(ModesOf, WavefrontEqualsSerial) {
@@ -171,8 +170,7 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
                               {"finish-paths", {"0", "1", "700", "131072"}},
                               {"branching", {"divergent", "reduced"}}};
   if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
-  expect_all_same(options("wavefront"), variations(choices, 8, 2),
-                  render_options(options("serial")));
+  expect_all_same(options("wavefront"), variations(choices, 8, 2), options("serial"));
 }
 
 /// Three batches of three samples; with 10, the last is shorter than the others.

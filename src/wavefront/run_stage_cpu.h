@@ -39,13 +39,12 @@ class RangeAppender {
 /// Runs `stage` over its queue on the calling thread's oneTBB arena, and sends every slot on.
 template <class Stage>
 void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
-  const std::uint32_t begin = queues.begin();
   // simple_partitioner: no range is longer than its grain.
   const tbb::blocked_range<std::uint32_t> all(0, *queues.count, RangeAppender::range_max);
   const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
     RangeAppender appender;
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      const std::uint32_t slot = queues.slots == nullptr ? begin + i : queues.slots[begin + i];
+      const std::uint32_t slot = queues.slots == nullptr ? i : queues.slots[i];
       const bool looks_at_tags = queues.slots == nullptr && queues.tags != nullptr;
       if (looks_at_tags && queues.tags[slot] != Stage::tag) continue;
       const Next next = stage(scene, slot, i);

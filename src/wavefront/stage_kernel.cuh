@@ -103,7 +103,6 @@ __global__ void __launch_bounds__(1024)
   __shared__ typename Appender::Shared shared;
   stamp_first_thread(clock, Stage::id);
   const std::uint32_t count = *queues.count;
-  const std::uint32_t begin = queues.begin();
   if (blockIdx.x * blockDim.x >= count) return;
   const Scene scene = storage.bind();
   Appender appender(shared);
@@ -111,9 +110,9 @@ __global__ void __launch_bounds__(1024)
   const bool looks_at_tags = queues.slots == nullptr && !appends;
   for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
     const std::uint32_t i = base + threadIdx.x;
-    std::uint32_t slot = begin + i;
+    std::uint32_t slot = i;
     bool mine = i < count;
-    if (mine && queues.slots != nullptr) slot = queues.slots[begin + i];
+    if (mine && queues.slots != nullptr) slot = queues.slots[i];
     if (mine && looks_at_tags) mine = queues.tags[slot] == Stage::tag;
     Next next{};
     if (mine) next = stage(scene, slot, i);

@@ -15,9 +15,7 @@ struct QueuedRays {
   StageQueues queues;
   std::uint32_t* next;  ///< of the queue's places: handed out so far
 
-  __device__ std::uint32_t slot(std::uint32_t number) const {
-    return queues.slots[queues.begin() + number];
-  }
+  __device__ std::uint32_t slot(std::uint32_t number) const { return queues.slots[number]; }
 
   /// See PersistentTracer. `load(slot)` gives the ray.
   template <class Load>

@@ -13,7 +13,7 @@ inline constexpr int queue_count = 5;
 struct WaveCounters {
   std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; the last one is none's
   std::uint32_t live;                      ///< paths in flight when the wave begins
-  std::uint32_t generate;                  ///< paths that it starts, in the last free slots
+  std::uint32_t generate;                  ///< paths that it starts, in the first free slots
   std::uint32_t intersect;                 ///< rays that it traces: live + generate
   std::uint32_t finish;                    ///< paths left over when the waves end
   std::uint32_t first_path;                ///< number of the first path that it starts

@@ -10,19 +10,16 @@
 
 namespace pt {
 
-/// Where a stage finds its slots, slots[*first .. *first + *count), and where they go from there;
-/// all in the device's memory.
+/// Where a stage finds its slots, the first *count of a queue, and where they go from there; all in
+/// the device's memory.
 struct StageQueues {
   const std::uint32_t* slots = nullptr;  ///< null: slots in their own order; of those that have
                                          ///< tags, the ones whose tag is the stage's
   const std::uint32_t* count = nullptr;
-  const std::uint32_t* first = nullptr;  ///< null: 0
-  PathTag* tags = nullptr;               ///< null: slots are appended to the queues instead
+  PathTag* tags = nullptr;  ///< null: slots are appended to the queues instead
   PathTag* shadow_tags = nullptr;
   std::uint32_t* next[queue_count] = {};  ///< null: nobody waits there
   std::uint32_t* waiting = nullptr;       ///< [queue_count] ends of the queues
-
-  PT_HD std::uint32_t begin() const { return first == nullptr ? 0 : *first; }
 };
 
 /// The buffers of a wavefront, allocated by the device's renderer.
@@ -45,13 +42,11 @@ struct WaveBuffers {
     return {tags, pool.slot_count, {a, b}, {queues[i], second}, pool.slot_count, waiting(id)};
   }
 
-  StageQueues stage_queues(QueueId id, const std::uint32_t* count, PathTag* tags,
-                           const std::uint32_t* first = nullptr) const {
+  StageQueues stage_queues(QueueId id, const std::uint32_t* count, PathTag* tags) const {
     StageQueues result;
     const bool looks_at_tags = queue(id) == nullptr && tags != nullptr;
     result.slots = queue(id);
     result.count = looks_at_tags ? slot_count : count;
-    result.first = looks_at_tags ? nullptr : first;
     result.tags = tags;
     result.shadow_tags = pool.shadow_tag;
     for (int i = 0; i < queue_count; ++i) result.next[i] = queues[i];
@@ -75,7 +70,7 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   execute.begin_wave();
   if (starts_paths) {
     execute.run(GeneratePaths<Traits::has_lights, Source>{context},
-                b.stage_queues(free, &counters->generate, tags, b.waiting(free)));
+                b.stage_queues(free, &counters->generate, tags));
   }
   execute.run(IntersectRays<Traits, branching>{b.pool},
               b.stage_queues(intersect, &counters->intersect, tags));
