@@ -12,47 +12,50 @@ import sys
 from pathlib import Path
 
 # Who may include whom: layer, the files in it (the first pattern that fits counts; * spans
-# folders), and the layers that it may include besides itself. Whoever stands higher may include
-# lower only, so there are no cycles.
+# folders), and the layers that it may include besides itself.
 PLAIN = ["platform"]
 MATHS = ["math", *PLAIN]
 SAMPLING = ["sampling", *MATHS]
 SHAPES = ["geometry", *SAMPLING]
 SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
-PHYSICS = ["transport", "scene", *SCENE_PARTS]
 HOST = ["options", "error"]
-FILES = ["files", "image"]
-AROUND = ["render", "film", *FILES, *PHYSICS, *HOST]
-COMMON = ["trace", "device_builders", "device", *AROUND]
+BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
+SCENE = ["loaders", "builtin", "scene", "image", *BUILDERS]
+PHYSICS = ["transport", "scene", *SCENE_PARTS]
+COMMON = ["rays", "device", "build_cuda", "cuda_memory", "render", "film", "trace_cuda", "transport", *SCENE]
+SCHEDULES = ["serial", "megakernel", "wavefront", "metropolis"]
 
 LAYERS = [
-    # Mains and schedules. A schedule never includes another one.
-    ("serial", ["serial/*"], COMMON),
-    ("megakernel", ["megakernel/*"], COMMON),
-    ("wavefront", ["wavefront/*"], COMMON),
-    ("metropolis", ["metropolis/*"], COMMON),
-    # Tracing arrays of rays: files of rays, and the kernels that wavefronts use too.
-    ("trace", ["common/trace/*"], ["device_builders", "device", *AROUND]),
-    # The few files among the physics that launch kernels: they build what the physics reads.
-    ("device_builders", ["common/accel/build_*.cu", "common/accel/build_*.cuh", "common/accel/build_*_cuda.cpp",
-                         "common/scene/*.cu", "common/scene/*_cuda.cpp"],
-     ["device", "scene", *SCENE_PARTS, *HOST]),
+    # The program: commands, the command line, reports.
+    ("app", ["app/*"], [*SCHEDULES, *COMMON]),
+    # Schedules. None includes another one.
+    *[(name, [name + "/*"], COMMON) for name in SCHEDULES],
+    # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
+    ("rays", ["common/rays/*"], ["build_cuda", "cuda_memory", "render", "trace_cuda", "transport", *SCENE]),
     # What runs a schedule on a device.
-    ("device", ["common/device/*"], AROUND),
+    ("cuda_memory", ["common/device/cuda_check.cuh", "common/device/cuda_memory*"], HOST),
+    ("device", ["common/device/*"], ["build_cuda", "cuda_memory", "render", "film", "transport", *SCENE]),
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stats.h"], []),
     ("error", ["common/error.h", "common/error_context.h", "common/build_info.h"], []),
-    # Around the physics: renderers, batches, reports; what becomes of the samples.
-    ("render", ["common/render/*"], ["film", *FILES, *PHYSICS, *HOST]),
+    # Around the physics: renderers and batches; what becomes of the samples.
+    ("render", ["common/render/*"], ["film", "image", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
-    ("scene", ["common/scene/*"], [*SCENE_PARTS, *FILES, *HOST]),
-    # Meshes and textures in files; images and their formats.
-    ("files", ["common/files/*"], ["image", "material", "texture", *SHAPES, *HOST]),
+    # Scenes in files and in code make scene data; the scene itself is data and a view of it.
+    ("loaders", ["common/scene/load_*", "common/scene/gltf/*", "common/scene/mitsuba/*",
+                 "common/scene/files/*"], ["builtin", "scene", "image", *SCENE_PARTS, *HOST]),
+    ("builtin", ["common/scene/builtin/*"], ["scene", *BUILDERS]),
+    ("scene", ["common/scene/*"], [*BUILDERS, "image"]),
     ("image", ["common/image/*"], HOST),
     ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
+    # Acceleration structures: what rays pass through, how it is built, and warps that persist.
+    ("build_cuda", ["common/accel/build_cuda/*"], ["cuda_memory", "build", *SCENE_PARTS, *HOST]),
+    ("trace_cuda", ["common/accel/trace_cuda/*"], ["accel", *SHAPES]),
+    ("embree", ["common/accel/embree/*"], ["build", "accel", *SHAPES, *HOST]),
+    ("build", ["common/accel/build/*"], ["accel", *SHAPES, *HOST]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
@@ -61,9 +64,8 @@ LAYERS = [
     ("math", ["common/math/*"], PLAIN),
     ("platform", ["common/platform.h"], []),
 ]
-SCHEDULES = ["serial", "megakernel", "wavefront", "metropolis"]
-MAIN = "main"  # the files that lie in src/ itself
-MAIN_MAY_INCLUDE = [*SCHEDULES, *COMMON]
+MAIN = "main"  # main.cpp, alone in src/
+MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]
 
 # Who may know CUDA.
 CUDA_HEADER = re.compile(
@@ -72,15 +74,15 @@ CUDA_HEADER = re.compile(
     r"vector_functions|driver_types|math_constants|sm_\d)")
 CUB_HEADER = re.compile(r"(cub|thrust)/")
 CUDA_FILES = ["*.cu", "*.cuh", "*_cuda.*"]
-CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_*.cu"]
+CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_cuda/*.cu"]
 PLATFORM = "common/platform.h"
 PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GLM needs them
 
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
-BUILD_CONDITION_FILES = ["make_renderer.cpp", "trace_command.cpp", "common/device/devices*.cpp",
-                         "common/scene/*builtin*"]
+BUILD_CONDITION_FILES = ["app/make_renderer.cpp", "app/trace_command.cpp",
+                         "common/device/devices*.cpp"]
 
 SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}
 INCLUDE = re.compile(r"\s*#\s*include\b\s*(?:\"([^\"]*)\"|<([^>]*)>)?")
@@ -96,7 +98,7 @@ def fits(path, patterns):
 
 def layer_of(path):
     """The layer of a path below src/, or None."""
-    if "/" not in path:
+    if path == "main.cpp":
         return MAIN
     return next((name for name, patterns, _ in LAYERS if fits(path, patterns)), None)
 
@@ -128,7 +130,7 @@ def own_path(source, header, path):
     for candidate in (source / header, (source / path).parent / header):
         if candidate.is_file():
             return candidate.resolve().relative_to(source).as_posix()
-    return header if header.split("/")[0] in ["common", *SCHEDULES] else None
+    return header if header.split("/")[0] in ["app", "common", *SCHEDULES] else None
 
 
 def check_include(source, path, layer, quoted, angled):

@@ -5,13 +5,13 @@
 #include <new>
 #include <stdexcept>
 
-#include "command_line.h"
+#include "app/compare_command.h"
+#include "app/options/command_line.h"
+#include "app/render_command.h"
 #include "common/build_info.h"
 #include "common/device/devices.h"
 #include "common/render/option_names.h"
-#include "common/scene/builtin_scenes.h"
-#include "compare_command.h"
-#include "render_command.h"
+#include "common/scene/builtin/builtin_scenes.h"
 
 namespace pt {
 namespace {

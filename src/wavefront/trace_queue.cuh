@@ -2,9 +2,9 @@
 // wait for the slowest of its warp.
 #pragma once
 
+#include "common/accel/trace_cuda/persistent_cwbvh.cuh"
+#include "common/accel/trace_cuda/reserve_rays.cuh"
 #include "common/device/stage_stamp.cuh"
-#include "common/trace/persistent_cwbvh.cuh"
-#include "common/trace/reserve_rays.cuh"
 #include "wavefront/wavefront.h"
 
 namespace pt {

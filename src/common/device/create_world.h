@@ -1,7 +1,7 @@
 // The paper's create_world kernel: the random spheres are made on the device, by one thread.
 #pragma once
 
-#include "common/scene/builtin_scenes.h"
+#include "common/scene/builtin/builtin_scenes.h"
 
 namespace pt {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "common/accel/check_builder.h"
+#include "common/accel/build/check_builder.h"
+#include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/device/cuda_renderer.cuh"
-#include "common/device/device_triangle_tree.cuh"
 #include "common/device/film_kernels.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"

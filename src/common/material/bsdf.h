@@ -6,7 +6,7 @@
 //   float pdf(wo, wi, n)           density of sample() per solid angle; 0 for a delta BSDF
 // and `bool is_delta()`: true when it scatters into discrete directions only. A scene without
 // lights never asks for a density, so sample() does not compute one. Adding one: a file here, its
-// name in material.h's list. tests/test_bsdf.cpp then tests it.
+// name in material.h's list. tests/material/test_bsdf.cpp then tests it.
 #pragma once
 
 #include "common/math/vec.h"

@@ -6,11 +6,11 @@
 #include <array>
 #include <cctype>
 
-#include "common/files/mesh_files.h"
-#include "common/files/texture_store.h"
+#include "common/scene/files/mesh_files.h"
+#include "common/scene/files/texture_store.h"
 #include "common/scene/frame_scene.h"
-#include "common/scene/gltf.h"
-#include "common/scene/mitsuba_xml.h"
+#include "common/scene/gltf/gltf.h"
+#include "common/scene/mitsuba/mitsuba_xml.h"
 #include "common/scene/studio.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/accel/build_bvh2.h"
+#include "common/accel/build/build_bvh2.h"
 #include "common/accel/traverse_brute.h"
 #include "common/geometry/primitive_bounds.h"
 

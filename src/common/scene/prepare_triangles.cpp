@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "common/accel/check_builder.h"
-#include "common/accel/embree_tree.h"
+#include "common/accel/build/check_builder.h"
+#include "common/accel/embree/embree_tree.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"

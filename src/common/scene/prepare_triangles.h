@@ -1,7 +1,7 @@
 // Scenes with triangles made ready for tracing.
 #pragma once
 
-#include "common/accel/build_triangle_tree.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/render/options.h"
 #include "common/scene/scene_data.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/accel/triangle_tree_data.h"
+#include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
 #include "common/light/delta_light.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/accel/tree_summary.h"
+#include "common/accel/build/tree_summary.h"
 #include "common/render/stats.h"
 #include "common/scene/scene_data.h"
 

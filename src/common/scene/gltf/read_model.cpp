@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "common/files/find_file.h"
+#include "common/scene/files/find_file.h"
 #include "common/scene/gltf/check_json.h"
 #include "common/scene/gltf/file.h"
 

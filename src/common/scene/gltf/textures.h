@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "common/files/texture_store.h"
 #include "common/math/vec.h"
+#include "common/scene/files/texture_store.h"
 #include "common/scene/gltf/file.h"
 #include "common/scene/scene_data.h"
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/files/find_file.h"
+#include "common/scene/files/find_file.h"
 #include "common/scene/mitsuba/values.h"
 #include "common/scene/studio.h"
 

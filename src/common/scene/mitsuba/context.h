@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "common/files/texture_store.h"
+#include "common/scene/files/texture_store.h"
 #include "common/scene/load_options.h"
 #include "common/scene/mitsuba/object.h"
 #include "common/scene/scene_data.h"

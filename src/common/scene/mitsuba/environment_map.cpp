@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/files/image_files.h"
+#include "common/scene/files/image_files.h"
 #include "common/scene/mitsuba/emitters.h"
 #include "common/scene/mitsuba/textures.h"
 #include "common/scene/mitsuba/transforms.h"

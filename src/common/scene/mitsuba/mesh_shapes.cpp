@@ -1,7 +1,7 @@
 // Shapes of triangles: obj, ply, serialized.
 #include <fmt/format.h>
 
-#include "common/files/mesh_files.h"
+#include "common/scene/files/mesh_files.h"
 #include "common/scene/mitsuba/place_mesh.h"
 #include "common/scene/mitsuba/shape_kinds.h"
 

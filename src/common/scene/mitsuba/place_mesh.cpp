@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/files/mesh_files.h"
+#include "common/scene/files/mesh_files.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <pugixml.hpp>
 
-#include "common/files/find_file.h"
-#include "common/files/mapped_file.h"
+#include "common/scene/files/find_file.h"
+#include "common/scene/files/mapped_file.h"
 #include "common/scene/mitsuba/element.h"
 #include "common/scene/mitsuba/variables.h"
 

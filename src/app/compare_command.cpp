@@ -1,0 +1,40 @@
+#include "app/compare_command.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "common/image/compare.h"
+#include "common/image/image_io.h"
+
+namespace pt {
+namespace {
+
+ImageDifference compare_files(const std::string& a, const Image& image_a, const std::string& b,
+                              const Image& image_b, double tolerance) {
+  try {
+    return compare_images(image_a, image_b, tolerance);
+  } catch (const Error& error) {
+    throw Error(fmt::format("cannot compare {} with {}: {}", a, b, error.what()));
+  }
+}
+
+}  // namespace
+
+int compare_command(const std::string& a, const std::string& b, double tolerance) {
+  if (!(tolerance >= 0)) {
+    throw Error(fmt::format("tolerance {} of the comparison: expected 0 or more", tolerance));
+  }
+  const Image image_a = read_image(a);
+  const Image image_b = read_image(b);
+  const ImageDifference difference = compare_files(a, image_a, b, image_b, tolerance);
+  // {} prints a double with the digits that reproduce it.
+  fmt::print("size                   {}x{}\n", image_b.width, image_b.height);
+  fmt::print("RMSE                   {}\n", difference.rmse);
+  fmt::print("relMSE                 {}\n", difference.relative_mse);
+  fmt::print("largest difference     {}\n", difference.largest);
+  fmt::print("differing pixels       {}\n", difference.differing_pixels);
+  fmt::print("pixels past tolerance  {}\n", difference.pixels_past_tolerance);
+  return difference.largest > tolerance ? 1 : 0;
+}
+
+}  // namespace pt

@@ -1,0 +1,94 @@
+#include "app/make_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/error.h"
+#include "common/render/option_names.h"
+#include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/load_scene.h"
+#include "common/scene/prepare_scene.h"
+#include "megakernel/megakernel.h"
+#include "serial/serial.h"
+#include "wavefront/wavefront.h"
+
+#ifdef PTEXP_CUDA
+#include "common/device/create_world.h"
+#endif
+
+namespace pt {
+namespace {
+
+/// What is no built-in scene and looks like a path; other names get the list of scenes.
+bool is_scene_file(const std::string& scene) {
+  const std::string name = scene.substr(0, scene.find(':'));
+  const auto& list = scene_list();
+  const bool built_in = std::any_of(list.begin(), list.end(),
+                                    [&](const SceneInfo& info) { return info.name == name; });
+  return !built_in && scene.find_first_of("./") != std::string::npos;
+}
+
+}  // namespace
+
+SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
+                     const Warn& warn) {
+  if (is_scene_file(options.scene)) {
+    return load_scene_file(options.scene, {options.definitions, options.strict, warn});
+  }
+  if (options.strict || !options.definitions.empty()) {
+    throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
+                            options.strict ? "strict" : "define", options.scene));
+  }
+  if (options.create_world == WorldBuilder::host) return build_scene(options);
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda) {
+    return build_scene(options, create_world_on(device.choice.index));
+  }
+#endif
+  throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
+  SceneData scene = load_scene(options, device, warn);
+  prepare_scene(scene, options);
+  return scene;
+}
+
+namespace {
+
+/// The paper's toggles are for the paper's scenes.
+void check_scene_options(const Options& options, const SceneData& scene) {
+  if (scene.traits.geometry == Geometry::spheres_and_quads) return;
+  constexpr const char* text = "--{} {}: is for scenes of spheres and quads alone; '{}' is none";
+  if (options.rng != RngKind::philox) {
+    throw Error(fmt::format(text, "rng", to_string(options.rng), scene.name));
+  }
+  if (options.branching != Branching::divergent) {
+    throw Error(fmt::format(text, "branching", to_string(options.branching), scene.name));
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
+                                        [[maybe_unused]] const DeviceInfo& device) {
+  check_scene_options(options, scene);
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
+    return options.mode == Mode::megakernel
+               ? make_megakernel_cuda(options, scene, device.choice.index)
+               : make_wavefront_cuda(options, scene, device.choice.index);
+  }
+#endif
+  switch (options.mode) {
+    case Mode::serial:
+      return make_serial_renderer(options, scene);
+    case Mode::megakernel:
+      return make_megakernel_cpu(options, scene);
+    default:
+      return make_wavefront_cpu(options, scene);
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,40 @@
+#include "app/measure.h"
+
+#include <fmt/format.h>
+
+namespace pt {
+namespace {
+
+std::string label(const Options& options, int index) {
+  if (index < options.warmup) return fmt::format("warm-up {} of {}", index + 1, options.warmup);
+  if (options.repeat == 1) return "rendering";
+  return fmt::format("render {} of {}", index - options.warmup + 1, options.repeat);
+}
+
+}  // namespace
+
+Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
+                    const std::function<bool()>& stop) {
+  const RenderHooks hooks{
+      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); }, stop};
+  Measurement measurement;
+  RenderRun last;
+  for (int i = 0; i < options.warmup + options.repeat; ++i) {
+    if (stop()) {
+      measurement.interrupted = true;
+      if (i > 0 && measurement.runs.empty()) measurement.runs = {last};
+      break;
+    }
+    progress.begin(label(options, i));
+    last = renderer.render(hooks);
+    if (last.samples_done < options.spp) {
+      measurement = {{last}, true};
+      break;
+    }
+    if (i >= options.warmup) measurement.runs.push_back(last);
+  }
+  progress.finish();
+  return measurement;
+}
+
+}  // namespace pt

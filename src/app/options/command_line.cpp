@@ -1,0 +1,214 @@
+#include "app/options/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "app/options/option_list.h"
+#include "app/options/shell_text.h"
+#include "common/error.h"
+
+namespace pt {
+namespace {
+
+constexpr const char* program_text =
+    "ptexp renders one image in several ways, so that the ways can be compared.\n"
+    "`ptexp --mode wavefront --spp 50` renders the paper's scene to image.exr.";
+constexpr const char* compare_text =
+    "Prints RMSE, relMSE, the largest difference and the number of differing pixels.\n"
+    "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
+constexpr const char* trace_text =
+    "Traces rays from a file, measures the rate and compares with reference hits.\n"
+    "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
+constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
+constexpr const char* footer_text =
+    "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
+    "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C; the\n"
+    "image then has the samples that were finished. `ptexp compare --help` tells more.";
+
+/// CLI11 splits the arguments and lays out the help; values are parsed by option_list, because
+/// their errors should name the option, the value and what was expected in one line.
+struct Parser {
+  CLI::App app{program_text, "ptexp"};
+  std::vector<std::pair<const OptionEntry*, CLI::Option*>> options;
+  CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *version = nullptr;
+  Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
+  Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
+  CLI::App* compare = nullptr;
+  CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr;
+
+  Parser();
+  void add_option(const OptionEntry& entry);
+};
+
+CLI::Option* add_flag(CLI::App& app, const std::string& flags, const std::string& help) {
+  // As strings: a literal is ambiguous in CLI11 2.1.
+  return app.add_flag(flags, help)->disable_flag_override();
+}
+
+CLI::Option* add_text(CLI::App& app, const std::string& flags, const std::string& help) {
+  return app
+      .add_option_function<std::vector<std::string>>(
+          flags, [](const std::vector<std::string>&) {}, help)
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void Parser::add_option(const OptionEntry& entry) {
+  const std::string flags =
+      (entry.short_flag.empty() ? "" : entry.short_flag + ",") + "--" + entry.name;
+  CLI::Option* option = entry.form == OptionForm::flag ? add_flag(app, flags, entry.help)
+                                                       : add_text(app, flags, entry.help);
+  option->group(entry.group);
+  if (entry.form == OptionForm::vector) option->expected(1, 3);
+  if (entry.form != OptionForm::flag) {
+    const std::string standard = entry.text(Options());
+    option->type_name(entry.placeholder + (standard.empty() ? "" : " [" + standard + "]"));
+  }
+  options.emplace_back(&entry, option);
+}
+
+Parser::Parser() {
+  for (const OptionEntry& entry : option_list()) add_option(entry);
+  app.set_help_flag("-h,--help", "Prints this help")->group("Information");
+  list_scenes = add_flag(app, "--list-scenes", "Names and describes the scenes");
+  list_devices = add_flag(app, "--list-devices", "Names the devices that --device can take");
+  version = add_flag(app, "--version", "Prints version, commit and build options");
+  for (CLI::Option* option : {list_scenes, list_devices, version}) option->group("Information");
+  app.allow_extras();
+
+  compare = app.add_subcommand("compare", compare_text);
+  image_a = add_text(*compare, "A", "Image, .exr, .png or .ppm");
+  image_b = add_text(*compare, "B", "Reference of the same size");
+  tolerance = add_text(*compare, "--tolerance", "Largest |A - B| of a value that is accepted");
+  tolerance->type_name("T [0]");
+  compare->allow_extras();
+  for (CLI::Option* image : {image_a, image_b})
+    image->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  app.footer(footer_text);  // last: a subcommand would inherit it
+  app.get_formatter()->column_width(34);
+}
+
+std::string only_value(CLI::Option& option, const std::string& name) {
+  const auto values = option.results();
+  if (values.size() > 1) throw Error(fmt::format("--{}: is given twice", name));
+  return values.front();
+}
+
+CompareCommand parse_compare(const Parser& parser) {
+  if (parser.image_b->count() == 0)
+    throw Error("compare: expected two images, `ptexp compare A B [--tolerance T]`");
+  CompareCommand command{parser.image_a->results()[0], parser.image_b->results()[0]};
+  if (parser.tolerance->count() == 0) return command;
+  const std::string text = only_value(*parser.tolerance, "tolerance");
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, command.tolerance);
+  if (error != std::errc() || stop != end || !(command.tolerance >= 0) ||
+      !std::isfinite(command.tolerance))
+    throw Error(fmt::format("--tolerance {}: expected a finite number of 0 or more", text));
+  return command;
+}
+
+RenderCommand parse_render(const Parser& parser) {
+  RenderCommand command;
+  for (const auto& [entry, option] : parser.options) {
+    if (option->count() == 0) continue;
+    const bool is_vector = entry->form == OptionForm::vector;
+    if (entry->form == OptionForm::list) {
+      for (const std::string& value : option->results()) entry->set(command.options, value);
+    } else {
+      entry->set(command.options, is_vector ? CLI::detail::join(option->results(), ",")
+                                            : only_value(*option, entry->name));
+    }
+    command.given.insert(entry->name);
+  }
+  check_consistent(command.options, command.given);
+  std::optional<DeviceChoice::Kind> device;
+  if (command.options.device.kind != DeviceChoice::Kind::automatic)
+    device = command.options.device.kind;
+  check_applicable(command.options, command.given, device);
+  return command;
+}
+
+/// A command other than rendering stands alone: nothing that the user wrote is ignored.
+void check_alone(const Parser& parser, const std::string& command, const CLI::Option* self) {
+  for (const CLI::Option* option : parser.app.get_options())
+    if (option != self && option->count() > 0)
+      throw Error(fmt::format("{}: has no effect together with {}", option->get_name(), command));
+}
+
+/// CLI11 takes -.5 for a short option, though not -0.5.
+std::vector<std::string> with_leading_zeros(std::vector<std::string> arguments) {
+  for (std::string& text : arguments)
+    if (text.size() > 2 && text.starts_with("-.") && std::isdigit(text[2])) text.insert(1, "0");
+  return arguments;
+}
+
+/// CLI11 leaves two empty lines between groups.
+std::string help_text(const CLI::App& app) {
+  std::string text = app.help();
+  for (std::size_t at; (at = text.find("\n\n\n")) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
+void check_extras(const Parser& parser) {
+  const auto extras = parser.app.remaining(true);
+  if (extras.empty()) return;
+  const bool is_option = extras.front().starts_with('-');
+  throw Error(fmt::format("{}: {}, see ptexp --help", extras.front(),
+                          is_option ? "no such option" : "an argument without an option"));
+}
+
+}  // namespace
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+  Parser parser;
+  std::vector<std::string> reversed = with_leading_zeros(arguments);
+  std::ranges::reverse(reversed);  // CLI11 takes them from the back
+  try {
+    parser.app.parse(std::move(reversed));
+  } catch (const CLI::CallForHelp&) {
+    return HelpCommand{help_text(parser.app)};
+  } catch (const CLI::ArgumentMismatch& error) {
+    const std::string text = error.what();
+    std::string name = text.substr(0, text.find_first_of(": "));
+    if (!name.starts_with('-')) name.insert(0, "--");
+    throw Error(name + (text.find("override") == std::string::npos ? ": expected a value"
+                                                                   : ": takes no value"));
+  } catch (const CLI::ParseError& error) {
+    throw Error(error.what());
+  }
+  check_extras(parser);
+  if (parser.compare->parsed()) {
+    check_alone(parser, "compare", nullptr);
+    return parse_compare(parser);
+  }
+  if (parser.trace.is_parsed()) {
+    check_alone(parser, "trace", nullptr);
+    TraceCommand command = parser.trace.parse();
+    command.command_line = shell_text(arguments);
+    return command;
+  }
+  if (parser.rays.is_parsed()) {
+    check_alone(parser, "rays", nullptr);
+    return parser.rays.parse();
+  }
+  const std::pair<const CLI::Option*, Command> information[] = {
+      {parser.list_scenes, ListScenesCommand{}},
+      {parser.list_devices, ListDevicesCommand{}},
+      {parser.version, VersionCommand{}}};
+  for (const auto& [option, command] : information) {
+    if (option->count() == 0) continue;
+    check_alone(parser, option->get_name(), option);
+    return command;
+  }
+  return parse_render(parser);
+}
+
+}  // namespace pt

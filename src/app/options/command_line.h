@@ -1,0 +1,36 @@
+// From the command line to what it asks for.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/options/check_options.h"
+#include "app/trace_command.h"
+#include "common/render/options.h"
+
+namespace pt {
+
+struct RenderCommand {
+  Options options;
+  GivenOptions given;  ///< for check_applicable, once the device is known
+};
+struct CompareCommand {
+  std::string a, b;
+  double tolerance = 0;
+};
+struct ListScenesCommand {};
+struct ListDevicesCommand {};
+struct VersionCommand {};
+struct HelpCommand {
+  std::string text;  ///< to be printed as it is
+};
+
+using Command = std::variant<RenderCommand, CompareCommand, TraceCommand, RaysCommand,
+                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+
+/// `arguments` without the program's name. Throws Error, one line that names the option, for
+/// everything that can be refused without a device or a scene.
+Command parse_command_line(const std::vector<std::string>& arguments);
+
+}  // namespace pt

@@ -1,0 +1,241 @@
+#include "app/options/option_list.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "app/options/option_entry.h"
+#include "app/options/option_values.h"
+
+namespace pt {
+namespace {
+
+using namespace option_entry;
+
+constexpr std::uint64_t max_int = INT32_MAX;
+// Some room below the largest int: a scene adds its own primitives to the random ones.
+constexpr std::uint64_t max_spheres = 100'000'000;
+
+/// Collects the entries of one heading of the help.
+class Group {
+ public:
+  Group(std::vector<OptionEntry>& list, std::string heading)
+      : list_(list), heading_(std::move(heading)) {}
+
+  Group& add(OptionEntry entry, std::string help, std::string short_flag = "") {
+    entry.group = heading_;
+    entry.help = std::move(help);
+    entry.short_flag = std::move(short_flag);
+    list_.push_back(std::move(entry));
+    return *this;
+  }
+
+ private:
+  std::vector<OptionEntry>& list_;
+  std::string heading_;
+};
+
+void add_image(std::vector<OptionEntry>& list) {
+  Group(list, "Image")
+      .add(integer("width", &Options::width, 1, 65535), "Width in pixels, 1 to 65,535")
+      .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
+      .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
+      .add(integer("max-depth", &Options::max_depth, 1, 65535),
+           "Most rays of a path, the camera ray included")
+      .add(integer("rr", &Options::rr_depth, 0, 65535),
+           "Russian roulette decides on paths of so many rays or more;\n0: never")
+      .add(custom(
+               "nee", OptionForm::text, "on|off",
+               [](Options& o, const std::string& s) { o.nee = parse_switch("nee", s); },
+               [](const Options& o) { return o.nee ? "on" : "off"; }),
+           "Next-event estimation: surfaces ask a light for its direct\n"
+           "contribution; off: paths find the lights by chance")
+      .add(custom(
+               "seed", OptionForm::number, "N",
+               [](Options& o, const std::string& s) {
+                 o.seed = parse_integer("seed", s, 0, UINT64_MAX);
+               },
+               [](const Options& o) { return std::to_string(o.seed); }),
+           "Of the random numbers, 64 bits; another seed, other noise")
+      .add(text("output", "FILE", &Options::output),
+           "Image to write: .exr (linear float), .png (8-bit sRGB) or\n.ppm (8-bit, gamma 2)", "-o")
+      .add(custom(
+               "exposure", OptionForm::number, "auto|STOPS",
+               [](Options& o, const std::string& s) { o.exposure = parse_exposure("exposure", s); },
+               [](const Options& o) { return exposure_text(o.exposure); }),
+           "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
+           "is a middle grey. By default 0, but auto for a .png of a file\n"
+           "in photometric units or without lights. An .exr is linear");
+}
+
+void add_scene(std::vector<OptionEntry>& list) {
+  Group(list, "Scene")
+      .add(text("scene", "NAME|FILE", &Options::scene),
+           "A scene named by --list-scenes, or a file: Mitsuba .xml,\n"
+           ".gltf, .glb, .obj, .ply. A file's size, spp, depth and\n"
+           "camera hold where no option says otherwise")
+      .add(custom(
+               "define", OptionForm::list, "NAME=VALUE",
+               [](Options& o, const std::string& s) {
+                 parse_definition("define", s, o.definitions);
+               },
+               [](const Options& o) { return definitions_text(o.definitions); }),
+           "Sets a parameter of a Mitsuba file; may be repeated", "-D")
+      .add(custom(
+               "strict", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.strict = true; },
+               [](const Options& o) { return o.strict ? "on" : "off"; }),
+           "What a file asks for and ptexp lacks is an error, not a\nwarning")
+      .add(integer("spheres", &Options::spheres, 0, max_spheres),
+           "Random spheres of the scene 'spheres', besides the ground")
+      .add(choice("create-world", &Options::create_world),
+           "Who makes a random scene: the host, or a CUDA kernel that\n"
+           "makes the same one");
+}
+
+void add_camera(std::vector<OptionEntry>& list) {
+  Group(list, "Camera (in scene units; by default the scene's own)")
+      .add(vector("look-from", &CameraOverrides::look_from), "Where the camera is; also X,Y,Z")
+      .add(vector("look-at", &CameraOverrides::look_at), "The point in the image's centre")
+      .add(vector("up", &CameraOverrides::up), "The direction that is up in the image")
+      .add(number("fov", "DEGREES", &CameraOverrides::vertical_fov_degrees,
+                  "an angle above 0 and below 180 degrees",
+                  [](float x) { return x > 0 && x < 180; }),
+           "Vertical field of view, between 0 and 180 degrees")
+      .add(number("aperture", "LENGTH", &CameraOverrides::aperture, "a length of 0 or more",
+                  [](float x) { return x >= 0; }),
+           "Diameter of the lens; 0 is a pinhole, all in focus")
+      .add(number("focus-distance", "LENGTH", &CameraOverrides::focus_distance, "a length above 0",
+                  [](float x) { return x > 0; }),
+           "From the lens to the plane in focus");
+}
+
+void add_execution(std::vector<OptionEntry>& list) {
+  Group(list, "Execution (how the image is made, not what it shows)")
+      .add(choice("mode", &Options::mode),
+           "serial: one CPU thread, one path at a time.\n"
+           "megakernel: one thread follows whole paths.\n"
+           "wavefront: one kernel per stage over a pool of paths")
+      .add(custom(
+               "device", OptionForm::text, "auto|cpu|cuda[:N]",
+               [](Options& o, const std::string& s) { o.device = parse_device("device", s); },
+               [](const Options& o) { return to_string(o.device); }),
+           "Where to render; auto: the first GPU if there is one,\n"
+           "else the CPU. See --list-devices")
+      .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
+      .add(choice("accel", &Options::accel),
+           "How a ray finds its hit: by testing every primitive, through\n"
+           "a binary BVH, a compressed 8-wide one (triangles only), or\n"
+           "Embree (CPU, triangles only); auto: what suits the scene")
+      .add(choice("builder", &Options::builder),
+           "Who builds trees over triangles: binned SAH or spatial\n"
+           "splits on the CPU, LBVH or H-PLOC on the GPU; trees over\n"
+           "instances and over spheres are always the CPU's")
+      .add(choice("work", &Options::work),
+           "megakernel: what a thread renders: a pixel, a sample of a\n"
+           "pixel, or whatever it fetches from a common counter")
+      .add(custom(
+               "block", OptionForm::text, "WxH",
+               [](Options& o, const std::string& s) { o.block = parse_block("block", s); },
+               [](const Options& o) { return block_text(o.block); }),
+           "megakernel on CUDA: threads of a block, at most 1,024")
+      .add(choice("compaction", &Options::compaction),
+           "wavefront: how the paths that wait for a stage are gathered:\n"
+           "cub: a selection in order; atomic: appended in any order;\n"
+           "none: not at all, every stage visits the whole pool")
+      .add(custom(
+               "pool-size", OptionForm::number, "N|auto",
+               [](Options& o, const std::string& s) {
+                 o.pool_size = parse_pool_size("pool-size", s);
+               },
+               [](const Options& o) {
+                 return o.pool_size == 0 ? "auto" : std::to_string(o.pool_size);
+               }),
+           "wavefront: paths in flight; K and M mean 2^10 and 2^20")
+      .add(custom(
+               "regenerate", OptionForm::text, "on|off",
+               [](Options& o, const std::string& s) {
+                 o.regenerate = parse_switch("regenerate", s);
+               },
+               [](const Options& o) { return o.regenerate ? "on" : "off"; }),
+           "wavefront: a path that ends gives its slot to a new one;\n"
+           "off: the pool runs empty before it is filled again")
+      .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
+           "wavefront: when no sample is left to start and so many paths\n"
+           "are still alive, a thread follows each to its end; 0: waves\n"
+           "to the last ray")
+      .add(choice("schedule", &Options::schedule),
+           "wavefront: the host launches every stage, or one CUDA graph\n"
+           "loops on the device; auto: graph on CUDA, host on the CPU")
+      .add(custom(
+               "stage-block", OptionForm::text, "N|STAGE=N,...",
+               [](Options& o, const std::string& s) {
+                 o.stage_block = parse_stage_blocks("stage-block", s, Options().stage_block);
+               },
+               [](const Options& o) { return stage_blocks_text(o.stage_block); }),
+           "wavefront on CUDA: threads per block, for all stages or by\n"
+           "name: generate, intersect, shade_miss, shade_surface,\n"
+           "shadow, finish, accumulate; e.g. intersect=128,shadow=64");
+}
+
+void add_toggles(std::vector<OptionEntry>& list) {
+  Group(list, "The paper's toggles (of these xorwow alone changes the image)")
+      .add(choice("scene-memory", &Options::scene_memory),
+           "CUDA: where kernels read the spheres from; constant: the\n"
+           "constant bank, refused when they do not fit")
+      .add(choice("branching", &Options::branching),
+           "reduced: a miss is shaded as a surface that reflects\n"
+           "nothing, so that hits and misses share one branch")
+      .add(choice("rng", &Options::rng),
+           "philox: stateless. xorwow: a state kept per path, set up by\n"
+           "render_init as in the paper");
+}
+
+void add_measurement(std::vector<OptionEntry>& list) {
+  Group(list, "Measurement")
+      .add(integer("repeat", &Options::repeat, 1, 1'000'000), "Measured renders of the image")
+      .add(integer("warmup", &Options::warmup, 0, 1'000'000),
+           "Renders before them that are not measured")
+      .add(text("stats", "FILE", &Options::stats_file),
+           "Writes all options, times, counts and kernels as JSON;\n"
+           "docs/statistics.md explains the fields")
+      .add(text("csv", "FILE", &Options::csv_file),
+           "Appends the same as one row, below a header if the file is\n"
+           "new; a file with other columns is refused")
+      .add(
+          custom(
+              "quiet", OptionForm::flag, "", [](Options& o, const std::string&) { o.quiet = true; },
+              [](const Options& o) { return o.quiet ? "on" : "off"; }),
+          "No progress and no table, only errors", "-q");
+}
+
+}  // namespace
+
+const std::vector<OptionEntry>& option_list() {
+  static const std::vector<OptionEntry> list = [] {
+    std::vector<OptionEntry> entries;
+    add_image(entries);
+    add_scene(entries);
+    add_camera(entries);
+    add_execution(entries);
+    add_toggles(entries);
+    add_measurement(entries);
+    return entries;
+  }();
+  return list;
+}
+
+const OptionEntry& find_option(const std::string& name) {
+  const auto& list = option_list();
+  const auto found = std::ranges::find(list, name, &OptionEntry::name);
+  if (found == list.end()) throw std::logic_error("no option is named " + name);
+  return *found;
+}
+
+std::string option_key(const OptionEntry& entry) {
+  std::string key = entry.name;
+  std::ranges::replace(key, '-', '_');
+  return key;
+}
+
+}  // namespace pt

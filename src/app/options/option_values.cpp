@@ -1,0 +1,200 @@
+#include "app/options/option_values.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "common/error.h"
+
+namespace pt {
+namespace {
+
+constexpr int max_block_threads = 1024;             // CUDA's limit on every device since 2010
+constexpr std::uint64_t max_pool_size = INT32_MAX;  // slots are numbered with 32 bits
+
+/// The whole of `text` as a T, or nothing. Unlike strtol: no blanks, no sign of an unsigned value.
+template <typename T>
+std::optional<T> whole(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+int parse_stage_threads(const std::string& name, const std::string& text) {
+  const auto threads = whole<std::uint64_t>(text);
+  if (!threads || *threads < 1 || *threads > max_block_threads)
+    refuse_value(name, text, "expected a whole number of threads from 1 to 1,024");
+  return static_cast<int>(*threads);
+}
+
+}  // namespace
+
+void refuse_value(const std::string& name, const std::string& value, const std::string& problem) {
+  throw Error(fmt::format("--{} {}: {}", name, value.empty() ? "''" : value, problem));
+}
+
+std::uint64_t parse_integer(const std::string& name, const std::string& text, std::uint64_t lowest,
+                            std::uint64_t highest) {
+  const auto value = whole<std::uint64_t>(text);
+  if (!value || *value < lowest || *value > highest)
+    refuse_value(name, text,
+                 fmt::format("expected a whole number from {} to {}", lowest, grouped(highest)));
+  return *value;
+}
+
+float parse_number(const std::string& name, const std::string& text, const char* expected,
+                   bool (*holds)(float)) {
+  const auto value = whole<float>(text);
+  if (!value || !std::isfinite(*value) || !holds(*value))
+    refuse_value(name, text, std::string("expected ") + expected);
+  return *value;
+}
+
+ExposureChoice parse_exposure(const std::string& name, const std::string& text) {
+  using Kind = ExposureChoice::Kind;
+  if (text == "auto") return {Kind::measured, 0.0f};
+  return {Kind::fixed, parse_number(name, text, "auto or a number from -100 to 100",
+                                    [](float x) { return x >= -100 && x <= 100; })};
+}
+
+std::string exposure_text(const ExposureChoice& exposure) {
+  using Kind = ExposureChoice::Kind;
+  if (exposure.kind == Kind::scene) return "";
+  return exposure.kind == Kind::measured ? "auto" : number_text(exposure.stops);
+}
+
+std::array<float, 3> parse_vector(const std::string& name, const std::string& text) {
+  const std::vector<std::string> parts = split(text, ',');
+  std::array<float, 3> vector{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto value = parts.size() == 3 ? whole<float>(parts[i]) : std::nullopt;
+    if (!value || !std::isfinite(*value))
+      refuse_value(name, text, "expected three finite numbers, X Y Z or X,Y,Z");
+    vector[i] = *value;
+  }
+  return vector;
+}
+
+bool parse_switch(const std::string& name, const std::string& text) {
+  if (text != "on" && text != "off") refuse_value(name, text, "expected on or off");
+  return text == "on";
+}
+
+DeviceChoice parse_device(const std::string& name, const std::string& text) {
+  for (const auto& [kind, kind_name] : enum_names<DeviceChoice::Kind>)
+    if (kind_name == text) return {kind, 0};
+  const auto index = text.starts_with("cuda:") ? whole<unsigned>(text.substr(5)) : std::nullopt;
+  if (!index || *index > INT32_MAX)
+    refuse_value(name, text, "expected auto, cpu, cuda or cuda:N with N from 0");
+  return {DeviceChoice::Kind::cuda, static_cast<int>(*index)};
+}
+
+BlockSize parse_block(const std::string& name, const std::string& text) {
+  const std::vector<std::string> sides = split(text, 'x');
+  const auto x = sides.size() == 2 ? whole<std::uint16_t>(sides[0]) : std::nullopt;
+  const auto y = sides.size() == 2 ? whole<std::uint16_t>(sides[1]) : std::nullopt;
+  if (!x || !y || *x < 1 || *y < 1)
+    refuse_value(name, text, "expected WIDTHxHEIGHT in threads, e.g. 16x16");
+  const std::uint64_t threads = std::uint64_t{*x} * *y;
+  if (threads > max_block_threads)
+    refuse_value(name, text,
+                 fmt::format("a block has at most {} threads, {}x{} has {}",
+                             grouped(max_block_threads), *x, *y, grouped(threads)));
+  return {*x, *y};
+}
+
+std::array<int, stage_count> parse_stage_blocks(const std::string& name, const std::string& text,
+                                                std::array<int, stage_count> blocks) {
+  if (text.find('=') == std::string::npos) {
+    blocks.fill(parse_stage_threads(name, text));
+    return blocks;
+  }
+  std::set<StageId> seen;
+  for (const std::string& part : split(text, ',')) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos)
+      refuse_value(name, text, "expected a number of threads or a list STAGE=THREADS,...");
+    const auto stage = parse_name<StageId>(name, part.substr(0, equals));
+    if (!seen.insert(stage).second)
+      refuse_value(name, text, "names " + to_string(stage) + " twice");
+    blocks[static_cast<std::size_t>(stage)] = parse_stage_threads(name, part.substr(equals + 1));
+  }
+  return blocks;
+}
+
+std::uint64_t parse_pool_size(const std::string& name, const std::string& text) {
+  if (text == "auto") return 0;
+  std::string digits = text;
+  int shift = 0;
+  if (text.ends_with('K') || text.ends_with('M')) {
+    shift = text.back() == 'K' ? 10 : 20;
+    digits.pop_back();
+  }
+  const auto value = whole<std::uint64_t>(digits);
+  if (!value || *value < 1 || *value > max_pool_size >> shift)
+    refuse_value(name, text,
+                 "expected auto or a number of paths from 1 to " + grouped(max_pool_size) +
+                     ", e.g. 512K or 2M (times 2^10, 2^20)");
+  return *value << shift;
+}
+
+std::string grouped(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (int i = static_cast<int>(text.size()) - 3; i > 0; i -= 3) text.insert(i, ",");
+  return text;
+}
+
+std::string number_text(float value) { return fmt::format("{}", value); }
+
+std::string vector_text(const std::array<float, 3>& value) {
+  return fmt::format("{},{},{}", value[0], value[1], value[2]);
+}
+
+std::string block_text(const BlockSize& block) { return fmt::format("{}x{}", block.x, block.y); }
+
+std::string stage_blocks_text(const std::array<int, stage_count>& blocks) {
+  if (std::set<int>(blocks.begin(), blocks.end()).size() == 1) return std::to_string(blocks[0]);
+  std::string text;
+  for (const auto& [stage, stage_name] : enum_names<StageId>)
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", stage_name,
+                        blocks[static_cast<std::size_t>(stage)]);
+  return text;
+}
+
+void parse_definition(const std::string& name, const std::string& text,
+                      std::map<std::string, std::string>& definitions) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos) {
+    refuse_value(name, text, "expected NAME=VALUE");
+  }
+  if (!definitions.emplace(text.substr(0, equals), text.substr(equals + 1)).second) {
+    refuse_value(name, text, "expected each name once");
+  }
+}
+
+std::string definitions_text(const std::map<std::string, std::string>& definitions) {
+  std::string text;
+  for (const auto& [name, value] : definitions) {
+    text += (text.empty() ? "" : " ") + name + '=' + value;
+  }
+  return text;
+}
+
+}  // namespace pt

@@ -1,0 +1,105 @@
+#include "app/options/option_values.h"
+#include "app/trace_command.h"
+
+namespace pt {
+
+template <>
+inline constexpr auto enum_names<TraceVariant> =
+    std::to_array<EnumName<TraceVariant>>({{TraceVariant::automatic, "auto"},
+                                           {TraceVariant::threads, "threads"},
+                                           {TraceVariant::persistent, "persistent"},
+                                           {TraceVariant::beam, "beam"}});
+template <>
+inline constexpr auto enum_names<RayKind> =
+    std::to_array<EnumName<RayKind>>({{RayKind::primary, "primary"},
+                                      {RayKind::ao, "ao"},
+                                      {RayKind::diffuse, "diffuse"},
+                                      {RayKind::bounce, "bounce:K"}});
+
+namespace {
+
+constexpr std::uint64_t most_runs = 1000000;
+
+int parse_count(const std::string& name, const std::string& text, std::uint64_t least) {
+  return static_cast<int>(parse_integer(name, text, least, most_runs));
+}
+
+AccelKind parse_accel(const std::string& text) {
+  const auto accel = parse_name<AccelKind>("accel", text);
+  if (accel == AccelKind::embree)
+    refuse_value("accel", text, "expected one of auto, brute, bvh2, cwbvh");
+  return accel;
+}
+
+int parse_size(const std::string& text) {
+  const auto size = static_cast<int>(parse_integer("size", text, 1, 8192));
+  if ((size & (size - 1)) != 0) refuse_value("size", text, "expected a power of two");
+  return size;
+}
+
+void parse_kind(const std::string& text, RaysCommand& command) {
+  const std::string prefix = "bounce:";
+  if (text.starts_with(prefix)) {
+    command.kind = RayKind::bounce;
+    command.bounces = static_cast<int>(parse_integer("kind", text.substr(prefix.size()), 0, 1000));
+  } else {
+    command.kind = parse_name<RayKind>("kind", text);
+  }
+}
+
+float parse_fov(const std::string& text) {
+  return parse_number("vfov", text, "degrees between 0 and 180",
+                      [](float x) { return x > 0.0f && x < 180.0f; });
+}
+
+}  // namespace
+
+std::vector<SubcommandOption<TraceCommand>> trace_options() {
+  using C = TraceCommand;
+  using S = const std::string&;
+  return {
+      {"mesh", "FILE|SCENE", "Triangles, TRBMESH1, or those of a scene",
+       [](C& c, S v) { c.mesh = v; }, true},
+      {"rays", "FILE", "Rays, TRBRAYS1", [](C& c, S v) { c.rays = v; }, true},
+      {"hits", "FILE", "Reference to compare with, TRBHITS1", [](C& c, S v) { c.hits = v; }},
+      {"output", "FILE", "Writes the hits, TRBHITS1", [](C& c, S v) { c.output = v; }},
+      {"accel", "KIND [auto]", "auto, brute, bvh2, cwbvh",
+       [](C& c, S v) { c.accel = parse_accel(v); }},
+      {"builder", "KIND [auto]", "auto, sah, sbvh; on CUDA lbvh, hploc",
+       [](C& c, S v) { c.builder = parse_name<TreeBuilder>("builder", v); }},
+      {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
+       [](C& c, S v) { c.device = parse_device("device", v); }},
+      {"variant", "KIND [auto]", "On CUDA: auto, threads, persistent, beam",
+       [](C& c, S v) { c.runs.variant = parse_name<TraceVariant>("variant", v); }},
+      {"repeat", "N [1]", "Measured runs",
+       [](C& c, S v) { c.runs.repeat = parse_count("repeat", v, 1); }},
+      {"warmup", "N [0]", "Runs before, not measured",
+       [](C& c, S v) { c.runs.warmup = parse_count("warmup", v, 0); }},
+      {"csv", "FILE", "Appends a row", [](C& c, S v) { c.csv = v; }},
+      {"quiet", nullptr, "Prints nothing but errors", [](C& c, S) { c.quiet = true; }},
+  };
+}
+
+std::vector<SubcommandOption<RaysCommand>> rays_options() {
+  using C = RaysCommand;
+  using S = const std::string&;
+  return {
+      {"mesh", "FILE", "Triangles, TRBMESH1; or --scene", [](C& c, S v) { c.scene = v; }},
+      {"scene", "NAME|FILE", "A scene, with its own camera", [](C& c, S v) { c.scene = v; }},
+      {"output", "FILE", "Rays, TRBRAYS1", [](C& c, S v) { c.output = v; }, true},
+      {"kind", "KIND [primary]", "primary, ao, diffuse, or bounce:K, of the scene's paths",
+       [](C& c, S v) { parse_kind(v, c); }},
+      {"size", "N [2048]", "The image is N x N pixels, a power of two",
+       [](C& c, S v) { c.size = parse_size(v); }},
+      {"look-from", "X,Y,Z", "Camera's position [a mesh: inside the bounding box]",
+       [](C& c, S v) { c.camera.look_from = parse_vector("look-from", v); }},
+      {"look-at", "X,Y,Z", "What it looks at [the other end of the box]",
+       [](C& c, S v) { c.camera.look_at = parse_vector("look-at", v); }},
+      {"up", "X,Y,Z [0,1,0]", "Which way is up",
+       [](C& c, S v) { c.camera.up = parse_vector("up", v); }},
+      {"vfov", "DEGREES [40]", "Vertical field of view",
+       [](C& c, S v) { c.camera.vertical_fov_degrees = parse_fov(v); }},
+  };
+}
+
+}  // namespace pt

@@ -1,0 +1,39 @@
+#include <fmt/format.h>
+
+#include "app/options/option_values.h"
+#include "app/trace_command.h"
+#include "app/trace_scene.h"
+#include "common/error.h"
+#include "common/image/atomic_file.h"
+#include "common/scene/frame_scene.h"
+#include "common/scene/prepare_camera.h"
+#include "common/scene/prepare_scene.h"
+
+namespace pt {
+namespace {
+
+/// Inside of the box near its +z side, looking down along it: sees something in most meshes.
+CameraParameters default_camera(const Bounds& bounds) {
+  const Vec3 size = bounds.max - bounds.min;
+  CameraParameters camera;
+  camera.look_from = bounds.center() + Vec3(0.1434f, 0.0107f, 0.4422f) * size;
+  camera.look_at = bounds.center() + Vec3(0.0045f, -0.1575f, -0.2407f) * size;
+  return camera;
+}
+
+}  // namespace
+
+int rays_command(const RaysCommand& command) {
+  if (command.scene.empty()) throw Error("rays: expected --scene NAME|FILE or --mesh FILE");
+  check_writable(command.output);
+  SceneData scene = load_traced_scene(command.scene);
+  if (command.scene.ends_with(".mesh")) scene.camera = default_camera(scene_bounds(scene));
+  override_camera(scene.camera, command.camera);
+  prepare_scene(scene, {});
+  const RaySet rays = generate_rays(command.kind, scene, command.size, command.bounces);
+  write_rays(command.output, rays);
+  fmt::print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
+  return 0;
+}
+
+}  // namespace pt

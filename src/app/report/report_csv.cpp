@@ -1,0 +1,138 @@
+#include <fmt/format.h>
+
+#include "app/options/option_list.h"
+#include "app/report/report.h"
+#include "app/report/run_summary.h"
+#include "common/build_info.h"
+#include "common/render/option_names.h"
+
+namespace pt {
+namespace {
+
+/// The stages that have columns of their own; others are summed as "other".
+std::vector<std::string> column_stages() {
+  std::vector<std::string> names;
+  for (const auto& [stage, name] : enum_names<StageId>) names.emplace_back(name);
+  names.insert(names.end(), {"compact", "megakernel", "serial", "render_init"});
+  return names;
+}
+
+std::string ms(double time_ms) { return fmt::format("{:.6f}", time_ms); }  // to a nanosecond
+
+template <typename List, typename ToText>
+std::string joined(const List& list, ToText to_text) {
+  std::string text;
+  for (const auto& item : list) text += (text.empty() ? "" : ";") + to_text(item);
+  return text;
+}
+
+void add_build(CsvRow& row) {
+  const BuildInfo& build = build_info();
+  row.emplace_back("version", build.version);
+  row.emplace_back("commit", build.commit);
+  row.emplace_back("build_type", build.build_type);
+  row.emplace_back("compiler", build.compiler);
+  row.emplace_back("cuda", build.cuda);
+  row.emplace_back("fast_math", build.fast_math ? "on" : "off");
+}
+
+void add_spread(CsvRow& row, const std::string& name, const Spread& spread) {
+  row.emplace_back(name + "_ms_median", ms(spread.median));
+  row.emplace_back(name + "_ms_min", ms(spread.min));
+  row.emplace_back(name + "_ms_max", ms(spread.max));
+}
+
+/// Empty fields where the mode has no such stage.
+void add_stage(CsvRow& row, const std::string& name, const RunSummary& summary) {
+  for (const StageSummary& stage : summary.stages) {
+    if (stage.stage != name) continue;
+    add_spread(row, name, stage.time_ms);
+    row.emplace_back(name + "_launches", std::to_string(stage.launches));
+    return;
+  }
+  for (const char* suffix : {"_ms_median", "_ms_min", "_ms_max", "_launches"})
+    row.emplace_back(name + suffix, "");
+}
+
+/// The report with every stage that has no columns renamed to one, "other".
+RenderReport with_other_stage(const RenderReport& report) {
+  const std::vector<std::string> known = column_stages();
+  RenderReport renamed = report;
+  for (RenderRun& run : renamed.runs) {
+    StageTime other{"other"};
+    std::erase_if(run.stages, [&](const StageTime& time) {
+      if (std::find(known.begin(), known.end(), time.stage) != known.end()) return false;
+      other.time_ms += time.time_ms;
+      other.launches += time.launches;
+      return true;
+    });
+    if (other.launches > 0 || other.time_ms > 0) run.stages.push_back(other);
+  }
+  return renamed;
+}
+
+void add_counts(CsvRow& row, const PathCounts& counts) {
+  row.emplace_back("paths", std::to_string(counts.paths));
+  row.emplace_back("rays", std::to_string(counts.rays));
+  row.emplace_back("shadow_rays", std::to_string(counts.shadow_rays));
+  row.emplace_back("nonfinite_samples", std::to_string(counts.nonfinite_samples));
+  row.emplace_back("live_paths", joined(counts.live_paths,
+                                        [](std::uint64_t count) { return std::to_string(count); }));
+}
+
+void add_device(CsvRow& row, const RenderReport& report) {
+  row.emplace_back("device_name", report.device_name);
+  row.emplace_back("device_kind", report.device_kind);
+  row.emplace_back("driver", report.driver);
+  row.emplace_back("used_accel", report.accel);
+  row.emplace_back("used_schedule", report.schedule);
+  row.emplace_back("used_pool_size", std::to_string(report.pool_size));
+  row.emplace_back("primitives", std::to_string(report.primitives));
+  row.emplace_back("used_exposure", report.exposure ? fmt::format("{}", *report.exposure) : "");
+}
+
+void add_scene(CsvRow& row, const SceneFacts& facts) {
+  row.emplace_back("triangles", std::to_string(facts.triangles));
+  row.emplace_back("instances", std::to_string(facts.instances));
+  row.emplace_back("lights", std::to_string(facts.lights));
+  row.emplace_back("used_builder", facts.tree.builder);
+  row.emplace_back("tree_nodes", std::to_string(facts.tree.nodes));
+  row.emplace_back("tree_references", std::to_string(facts.tree.references));
+  row.emplace_back("sah_cost", fmt::format("{:.6g}", facts.tree.sah_cost));
+  row.emplace_back("bytes_per_triangle", fmt::format("{:.6g}", facts.tree.bytes_per_triangle));
+  row.emplace_back("build_ms", ms(facts.tree.build_ms));
+}
+
+}  // namespace
+
+CsvRow report_csv_row(const Options& options, const RenderReport& report) {
+  const RunSummary summary = summarize(with_other_stage(report));
+  CsvRow row{{"schema_version", std::to_string(report_schema_version)}};
+  add_build(row);
+  for (const OptionEntry& entry : option_list())
+    row.emplace_back(option_key(entry), entry.text(options));
+  add_device(row, report);
+  add_scene(row, report.scene);
+  add_spread(row, "kernel", summary.kernel_ms);
+  for (const std::string& stage : column_stages()) add_stage(row, stage, summary);
+  add_stage(row, "other", summary);
+  row.emplace_back("waves", std::to_string(summary.waves));
+  row.emplace_back("launches", std::to_string(summary.launches));
+  row.emplace_back("mpaths_per_s", fmt::format("{:.6g}", summary.mpaths_per_s));
+  row.emplace_back("mrays_per_s", fmt::format("{:.6g}", summary.mrays_per_s));
+  add_counts(row, report.counts);
+  row.emplace_back("scene_ms", ms(report.scene_ms));
+  row.emplace_back("setup_ms", ms(report.setup_ms));
+  row.emplace_back("load_ms", ms(report.load_ms));
+  row.emplace_back("transfer_ms", ms(report.transfer_ms));
+  row.emplace_back("image_write_ms", ms(report.image_write_ms));
+  row.emplace_back("memory_bytes", std::to_string(memory_bytes(report)));
+  row.emplace_back("kernels", joined(report.kernels, [](const KernelInfo& kernel) {
+                     return fmt::format("{}:{}:{}:{}:{}:{:.4f}", kernel.name, kernel.registers,
+                                        kernel.spill_bytes, kernel.shared_bytes,
+                                        kernel.block_threads, kernel.occupancy);
+                   }));
+  return row;
+}
+
+}  // namespace pt

@@ -1,0 +1,152 @@
+#include <nlohmann/json.hpp>
+
+#include "app/options/option_list.h"
+#include "app/report/report.h"
+#include "app/report/run_summary.h"
+#include "common/build_info.h"
+
+namespace pt {
+namespace {
+
+using Json = nlohmann::ordered_json;  // fields stay in the order in which a reader wants them
+
+Json program_json() {
+  const BuildInfo& build = build_info();
+  return {{"name", "ptexp"},
+          {"version", build.version},
+          {"commit", build.commit},
+          {"build_type", build.build_type},
+          {"compiler", build.compiler},
+          {"cuda", build.cuda},
+          {"fast_math", build.fast_math}};
+}
+
+Json option_json(const OptionEntry& entry, const Options& options) {
+  const std::string text = entry.text(options);
+  if (entry.form == OptionForm::flag) return text == "on";
+  if (text.empty()) return nullptr;
+  if (entry.form != OptionForm::number) return text;
+  const Json number = Json::parse(text, nullptr, false);
+  return number.is_number() ? number : Json(text);
+}
+
+Json options_json(const Options& options) {
+  Json json;
+  for (const OptionEntry& entry : option_list())
+    json[option_key(entry)] = option_json(entry, options);
+  return json;
+}
+
+Json spread_json(const Spread& spread) {
+  return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
+}
+
+Json stages_json(const RunSummary& summary) {
+  Json json = Json::array();
+  for (const StageSummary& stage : summary.stages)
+    json.push_back({{"stage", stage.stage},
+                    {"time_ms", spread_json(stage.time_ms)},
+                    {"launches", stage.launches}});
+  return json;
+}
+
+Json runs_json(const RenderReport& report) {
+  Json json = Json::array();
+  for (const RenderRun& run : report.runs) {
+    Json stages = Json::array();
+    for (const StageTime& time : run.stages)
+      stages.push_back(
+          {{"stage", time.stage}, {"time_ms", time.time_ms}, {"launches", time.launches}});
+    json.push_back({{"kernel_ms", run.kernel_ms},
+                    {"waves", run.waves},
+                    {"samples_done", run.samples_done},
+                    {"stages", stages}});
+  }
+  return json;
+}
+
+Json kernels_json(const RenderReport& report) {
+  Json json = Json::array();
+  for (const KernelInfo& kernel : report.kernels)
+    json.push_back({{"name", kernel.name},
+                    {"registers", kernel.registers},
+                    {"spill_bytes", kernel.spill_bytes},
+                    {"shared_bytes", kernel.shared_bytes},
+                    {"block_threads", kernel.block_threads},
+                    {"occupancy", kernel.occupancy}});
+  return json;
+}
+
+Json memory_json(const RenderReport& report) {
+  Json buffers = Json::array();
+  for (const BufferSize& buffer : report.memory)
+    buffers.push_back({{"name", buffer.name}, {"size_bytes", buffer.size_bytes}});
+  return {{"total_bytes", memory_bytes(report)}, {"buffers", buffers}};
+}
+
+Json counts_json(const PathCounts& counts) {
+  return {{"paths", counts.paths},
+          {"rays", counts.rays},
+          {"shadow_rays", counts.shadow_rays},
+          {"nonfinite_samples", counts.nonfinite_samples},
+          {"live_paths", counts.live_paths}};
+}
+
+Json scene_json(const SceneFacts& facts) {
+  Json memory = Json::object();
+  for (const BufferSize& buffer : facts.memory) memory[buffer.name] = buffer.size_bytes;
+  return {{"triangles", facts.triangles},
+          {"meshes", facts.meshes},
+          {"instances", facts.instances},
+          {"spheres", facts.spheres},
+          {"quads", facts.quads},
+          {"materials", facts.materials},
+          {"textures", facts.textures},
+          {"lights", facts.lights},
+          {"memory_bytes", memory},
+          {"builder", facts.tree.builder},
+          {"tree_nodes", facts.tree.nodes},
+          {"tree_references", facts.tree.references},
+          {"tree_depth", facts.tree.depth},
+          {"sah_cost", facts.tree.sah_cost},
+          {"bytes_per_triangle", facts.tree.bytes_per_triangle},
+          {"build_ms", facts.tree.build_ms}};
+}
+
+}  // namespace
+
+std::string report_json(const Options& options, const RenderReport& report) {
+  const RunSummary summary = summarize(report);
+  Json json;
+  json["schema_version"] = report_schema_version;
+  json["program"] = program_json();
+  json["options"] = options_json(options);
+  json["device"] = {
+      {"name", report.device_name}, {"kind", report.device_kind}, {"driver", report.driver}};
+  json["used"] = {{"accel", report.accel},
+                  {"schedule", report.schedule},
+                  {"pool_size", report.pool_size},
+                  {"primitives", report.primitives},
+                  {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
+  json["scene"] = scene_json(report.scene);
+  json["complete"] = is_complete(options, report);
+  json["samples_done"] = summary.samples_done;
+  json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},
+                     {"scene", report.scene_ms},
+                     {"setup", report.setup_ms},
+                     {"load", report.load_ms},
+                     {"transfer", report.transfer_ms},
+                     {"image_write", report.image_write_ms}};
+  json["rates"] = {{"mpaths_per_s", summary.mpaths_per_s}, {"mrays_per_s", summary.mrays_per_s}};
+  json["waves"] = summary.waves;
+  json["launches"] = summary.launches;
+  json["stages"] = stages_json(summary);
+  json["counts"] = counts_json(report.counts);
+  json["memory"] = memory_json(report);
+  json["kernels"] = kernels_json(report);
+  json["runs"] = runs_json(report);
+  // A device's or file's name may hold bytes that are not UTF-8: no reason to lose the rest.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace pt

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/options/option_values.h"
+#include "app/report/report.h"
+#include "app/report/run_summary.h"
+#include "common/render/option_names.h"
+
+namespace pt {
+namespace {
+
+std::string time_columns(const Spread& time, bool repeated) {
+  const std::string median = fmt::format("{:>12.3f}", time.median);
+  return repeated ? median + fmt::format("{:>12.3f}{:>12.3f}", time.min, time.max) : median;
+}
+
+std::string stage_rows(const RenderReport& report, const RunSummary& summary) {
+  const bool repeated = report.runs.size() > 1;
+  std::string text = fmt::format(
+      "{:<16}{:>12}{}{:>9}{:>11}\n", "stage", repeated ? "median ms" : "ms",
+      repeated ? fmt::format("{:>12}{:>12}", "min ms", "max ms") : "", "share", "launches");
+  const double total = summary.kernel_ms.median;
+  for (const StageSummary& stage : summary.stages)
+    text += fmt::format(
+        "{:<16}{}{:>7.1f} %{:>11}\n", stage.stage, time_columns(stage.time_ms, repeated),
+        total > 0 ? 100 * stage.time_ms.median / total : 0, grouped(stage.launches));
+  return text + fmt::format("{:<16}{}{:>9}{:>11}\n", "kernel time",
+                            time_columns(summary.kernel_ms, repeated), "",
+                            grouped(summary.launches));
+}
+
+std::string count_rows(const PathCounts& counts, const RunSummary& summary) {
+  std::string text = fmt::format("{:<16}{:>18}{:>12.2f} Mpaths/s\n{:<16}{:>18}{:>12.2f} Mrays/s\n",
+                                 "paths", grouped(counts.paths), summary.mpaths_per_s, "rays",
+                                 grouped(counts.rays + counts.shadow_rays), summary.mrays_per_s);
+  if (counts.shadow_rays > 0)
+    text += fmt::format("{:<16}{:>18}\n", "  of them shadow", grouped(counts.shadow_rays));
+  if (summary.waves > 0) text += fmt::format("{:<16}{:>18}\n", "waves", grouped(summary.waves));
+  if (counts.nonfinite_samples > 0)
+    text += fmt::format("{:<16}{:>18}  left out of the image\n", "NaN, Inf samples",
+                        grouped(counts.nonfinite_samples));
+  return text;
+}
+
+}  // namespace
+
+bool is_complete(const Options& options, const RenderReport& report) {
+  return static_cast<int>(report.runs.size()) == options.repeat &&
+         std::ranges::all_of(report.runs,
+                             [&](const RenderRun& run) { return run.samples_done == options.spp; });
+}
+
+std::string report_table(const Options& options, const RenderReport& report) {
+  const RunSummary summary = summarize(report);
+  return fmt::format(
+             "{} of '{}', {}x{}, {} samples per pixel, on {}{}\n\n", to_string(options.mode),
+             options.scene, options.width, options.height, summary.samples_done, report.device_name,
+             report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
+         stage_rows(report, summary) + '\n' + count_rows(report.counts, summary) +
+         fmt::format(
+             "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
+             "transfer {:.1f} ms, writing the image {:.1f} ms\n",
+             report.scene_ms, report.setup_ms,
+             report.load_ms > 0 ? fmt::format("loading kernels {:.1f} ms, ", report.load_ms) : "",
+             report.transfer_ms, report.image_write_ms);
+}
+
+}  // namespace pt

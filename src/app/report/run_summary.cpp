@@ -1,0 +1,71 @@
+#include "app/report/run_summary.h"
+
+#include <algorithm>
+
+namespace pt {
+namespace {
+
+/// The times of `stage` over the repeats in which it ran.
+std::vector<double> stage_times(const std::vector<RenderRun>& runs, const std::string& stage) {
+  std::vector<double> times;
+  for (const RenderRun& run : runs)
+    for (const StageTime& time : run.stages)
+      if (time.stage == stage) times.push_back(time.time_ms);
+  return times;
+}
+
+std::vector<StageSummary> summarize_stages(const std::vector<RenderRun>& runs) {
+  std::vector<StageSummary> stages;
+  for (const RenderRun& run : runs) {
+    for (const StageTime& time : run.stages) {
+      auto found = std::ranges::find(stages, time.stage, &StageSummary::stage);
+      if (found == stages.end()) {
+        stages.push_back({time.stage, spread(stage_times(runs, time.stage)), 0});
+        found = stages.end() - 1;
+      }
+      found->launches = time.launches;
+    }
+  }
+  return stages;
+}
+
+double millions_per_s(std::uint64_t count, double time_ms) {
+  return time_ms > 0 ? static_cast<double>(count) / (1e3 * time_ms) : 0;
+}
+
+}  // namespace
+
+Spread spread(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::ranges::sort(values);
+  const std::size_t middle = values.size() / 2;
+  const double median =
+      values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return {median, values.front(), values.back()};
+}
+
+RunSummary summarize(const RenderReport& report) {
+  RunSummary summary;
+  std::vector<double> kernel_ms;
+  for (const RenderRun& run : report.runs) kernel_ms.push_back(run.kernel_ms);
+  summary.kernel_ms = spread(std::move(kernel_ms));
+  summary.stages = summarize_stages(report.runs);
+  if (!report.runs.empty()) {
+    const RenderRun& last = report.runs.back();
+    summary.waves = last.waves;
+    summary.samples_done = last.samples_done;
+    for (const StageTime& time : last.stages) summary.launches += time.launches;
+  }
+  const PathCounts& counts = report.counts;
+  summary.mpaths_per_s = millions_per_s(counts.paths, summary.kernel_ms.median);
+  summary.mrays_per_s = millions_per_s(counts.rays + counts.shadow_rays, summary.kernel_ms.median);
+  return summary;
+}
+
+std::uint64_t memory_bytes(const RenderReport& report) {
+  std::uint64_t total = 0;
+  for (const BufferSize& buffer : report.memory) total += buffer.size_bytes;
+  return total;
+}
+
+}  // namespace pt

@@ -1,0 +1,194 @@
+#include "app/trace_command.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "app/options/option_values.h"
+#include "app/report/csv_file.h"
+#include "app/report/run_summary.h"
+#include "app/trace_scene.h"
+#include "common/accel/build/build_triangle_tree.h"
+#include "common/accel/build/check_builder.h"
+#include "common/build_info.h"
+#include "common/device/devices.h"
+#include "common/error.h"
+#include "common/image/atomic_file.h"
+#include "common/rays/compare_hits.h"
+
+namespace pt {
+namespace {
+
+/// All that a run of the command has found out.
+struct TraceReport {
+  DeviceInfo device;
+  std::uint64_t triangles = 0, rays = 0;
+  RayType type = RayType::closest;
+  TreeSummary tree;
+  Spread time_ms;
+  TraceVariant variant = TraceVariant::automatic;
+  int threads = 0;
+
+  double mrays_per_s() const {
+    return time_ms.median > 0 ? static_cast<double>(rays) / time_ms.median / 1e3 : 0;
+  }
+  double bytes_per_triangle() const {
+    return static_cast<double>(tree.size_bytes) / static_cast<double>(triangles);
+  }
+};
+
+/// As the tree's builder weighs triangles.
+double sah_cost(const TraceCommand& command, const TraceReport& report) {
+  const bool is_wide = command.accel == AccelKind::cwbvh;
+  return report.tree.quality.sah_cost(
+      static_cast<double>((is_wide ? default_cwbvh_costs : default_bvh2_costs).triangle));
+}
+
+/// A tree of the device that got too deep has another builder than asked for.
+std::string builder_name(const TraceCommand& command, const TraceReport& report) {
+  return report.tree.builder.empty() ? to_string(command.builder) : report.tree.builder;
+}
+
+const char* variant_name(TraceVariant variant) {
+  constexpr const char* names[] = {"cpu", "threads", "persistent", "beam"};
+  return names[static_cast<int>(variant)];
+}
+
+/// Of the kernel module; empty where there is none.
+std::string driver_version() {
+  std::ifstream file("/sys/module/nvidia/version");
+  std::string version;
+  std::getline(file, version);
+  return version;
+}
+
+CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
+  const bool is_cuda = report.device.choice.kind == DeviceChoice::Kind::cuda;
+  const auto number = [](double x) { return fmt::format("{:.6g}", x); };
+  const BuildInfo& build = build_info();
+  return {{"version", build.version},
+          {"commit", build.commit},
+          {"build_type", build.build_type},
+          {"compiler", build.compiler},
+          {"cuda", build.cuda},
+          {"fast_math", build.fast_math ? "on" : "off"},
+          {"command", command.command_line},
+          {"device", report.device.name},
+          {"device_kind", is_cuda ? "cuda" : "cpu"},
+          {"threads", is_cuda ? "" : std::to_string(report.threads)},
+          {"driver", is_cuda ? driver_version() : ""},
+          {"mesh", command.mesh},
+          {"triangles", std::to_string(report.triangles)},
+          {"ray_file", command.rays},
+          {"type", report.type == RayType::any ? "any" : "closest"},
+          {"rays", std::to_string(report.rays)},
+          {"accel", to_string(command.accel)},
+          {"builder", builder_name(command, report)},
+          {"variant", variant_name(report.variant)},
+          {"nodes", std::to_string(report.tree.quality.nodes)},
+          {"sah_cost", number(sah_cost(command, report))},
+          {"bytes_per_triangle", number(report.bytes_per_triangle())},
+          {"build_ms", number(report.tree.build_ms)},
+          {"repeat", std::to_string(command.runs.repeat)},
+          {"warmup", std::to_string(command.runs.warmup)},
+          {"time_ms", number(report.time_ms.median)},
+          {"time_min_ms", number(report.time_ms.min)},
+          {"time_max_ms", number(report.time_ms.max)},
+          {"mrays_per_s", number(report.mrays_per_s())}};
+}
+
+void print_report(const TraceCommand& command, const TraceReport& report) {
+  const Spread& t = report.time_ms;
+  fmt::print("device     {}: {}\n", to_string(report.device.choice), report.device.name);
+  fmt::print("tree       {} by {}: {} triangles, {} nodes, {:.1f} bytes per triangle\n",
+             to_string(command.accel), builder_name(command, report), grouped(report.triangles),
+             grouped(report.tree.quality.nodes), report.bytes_per_triangle());
+  fmt::print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.tree.build_ms,
+             sah_cost(command, report));
+  fmt::print("rays       {}, {} hit, {}\n", grouped(report.rays),
+             report.type == RayType::any ? "any" : "closest", variant_name(report.variant));
+  fmt::print("time       {:.4f} ms, {:.4f} to {:.4f} in {} runs\n", t.median, t.min, t.max,
+             command.runs.repeat);
+  fmt::print("rate       {:.1f} Mrays/s\n", report.mrays_per_s());
+}
+
+int print_comparison(const TraceCommand& command, const HitComparison& c) {
+  if (!command.quiet) {
+    fmt::print("agreement  {} the same, {} ties, {} at another distance, {} missed, {} invented\n",
+               c.same, c.ties, c.other, c.missed, c.invented);
+    if (!c.first.empty()) fmt::print("first      {}\n", c.first);
+  }
+  return c.agrees() ? 0 : 1;
+}
+
+void check_command(const TraceCommand& command, const DeviceInfo& device) {
+  if (!command.output.empty()) check_writable(command.output);
+  if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
+  const bool is_cpu = device.choice.kind == DeviceChoice::Kind::cpu;
+  check_builder(command.builder, command.accel, !is_cpu);
+  if (is_cpu && command.runs.variant != TraceVariant::automatic)
+    throw Error("--variant: has no effect on the CPU");
+}
+
+HitSet read_reference(const TraceCommand& command, const RaySet& rays) {
+  HitSet hits = read_hits(command.hits);
+  if (hits.hits.size() != rays.rays.size() || hits.type != rays.type)
+    throw Error(fmt::format("{}: is not of the rays in {}", command.hits, command.rays));
+  return hits;
+}
+
+TraceResult trace(const DeviceInfo& device, const TriangleTreeData& tree, const RaySet& rays,
+                  const TraceRuns& runs) {
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda)
+    return trace_rays_cuda(tree, rays, runs, device.choice.index);
+#endif
+  (void)device;  // without CUDA there is only one
+  return trace_rays_cpu(tree, rays, runs);
+}
+
+BuiltTrace build_and_trace(const TraceCommand& command, const DeviceInfo& device,
+                           const SceneData& scene, const RaySet& rays) {
+  TreeOptions options;
+  options.accel = command.accel;
+  options.builder = command.builder;
+#ifdef PTEXP_CUDA
+  if (is_device_builder(command.builder))
+    return build_and_trace_cuda(scene.meshes, scene.instances, options, rays, command.runs,
+                                device.choice.index);
+#endif
+  const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
+  return {trace(device, tree, rays, command.runs), summarize(tree)};
+}
+
+}  // namespace
+
+int trace_command(const TraceCommand& given) {
+  TraceCommand command = given;
+  if (command.accel == AccelKind::automatic) command.accel = AccelKind::cwbvh;
+  if (command.builder == TreeBuilder::automatic) command.builder = TreeBuilder::sah;
+  const DeviceInfo device = choose_device(command.device);
+  check_command(command, device);
+  const SceneData scene = load_triangles(command.mesh);
+  const RaySet rays = read_rays(command.rays);
+  HitSet reference;
+  if (!command.hits.empty()) reference = read_reference(command, rays);
+  const auto [result, tree] = build_and_trace(command, device, scene, rays);
+  TraceReport report;
+  report.device = device;
+  report.triangles = scene.triangle_count();
+  report.rays = rays.rays.size();
+  report.type = rays.type;
+  report.tree = tree;
+  report.threads = result.threads;
+  report.time_ms = spread(result.times_ms);
+  report.variant = result.variant;
+  if (!command.quiet) print_report(command, report);
+  if (!command.output.empty()) write_hits(command.output, {rays.type, result.hits});
+  if (!command.csv.empty()) append_csv_row(command.csv, csv_row(command, report));
+  if (command.hits.empty()) return 0;
+  return print_comparison(
+      command, compare_hits(result.hits, reference.hits, position_resolution(rays.rays)));
+}
+
+}  // namespace pt

@@ -1,0 +1,37 @@
+// Builds what rays are traced against in scenes made of triangles, on the CPU.
+#pragma once
+
+#include <span>
+
+#include "common/accel/build/build_sbvh.h"
+#include "common/accel/build/tree_costs.h"
+#include "common/accel/build/triangle_tree_data.h"
+#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
+#include "common/render/options.h"
+
+namespace pt {
+
+struct TreeOptions {
+  AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
+  TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh; automatic: sah
+  SbvhOptions sbvh;
+  TreeCosts bvh2_costs = default_bvh2_costs;
+  TreeCosts cwbvh_costs = default_cwbvh_costs;
+};
+
+/// Throws Error for vertices that are not finite, indices that name no vertex, and instances of
+/// group 0 or with a singular transform.
+void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> instances);
+
+/// Triangles are numbered through the meshes in their order, those of groups included. Without
+/// instances the tree is over the meshes of group 0; with instances it is one of two levels, with a
+/// tree for each group that is used and one over the instances, the meshes of group 0 being an
+/// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
+/// slots are in the order of the triangles' numbers.
+/// Throws Error as check_geometry, and for builders that are not the CPU's.
+TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
+                                     std::span<const Instance> instances,
+                                     const TreeOptions& options);
+
+}  // namespace pt

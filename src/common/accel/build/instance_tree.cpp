@@ -1,0 +1,152 @@
+#include "common/accel/build/instance_tree.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/accel/build/append_nodes.h"
+#include "common/accel/build/build_sah.h"
+#include "common/accel/build/collapse_cwbvh.h"
+#include "common/accel/build/merge_leaves.h"
+#include "common/error.h"
+
+namespace pt {
+
+namespace {
+
+// A leaf is one instance: entering it costs much more than a box test.
+constexpr TreeCosts instance_costs = {1.0f, 10.0f, 1};
+
+/// An affine map in double precision.
+struct DoubleAffine {
+  glm::dmat3 linear;  // columns
+  glm::dvec3 translation;
+};
+
+DoubleAffine to_double(const Affine& a) {
+  DoubleAffine result;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) result.linear[j][i] = a.row[i][j];
+    result.translation[i] = a.row[i].w;
+  }
+  return result;
+}
+
+glm::dmat3 absolute(const glm::dmat3& m) {
+  return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])};
+}
+
+/// The world's box of what lies in `box` in object space. It is that of the rounded map by which
+/// traversal takes rays to object space, widened by the rounding of rays from nearby.
+Bounds world_bounds(const Bounds& box, const Affine& to_object) {
+  const DoubleAffine object = to_double(to_object);
+  const glm::dmat3 linear = glm::inverse(object.linear);
+  glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) != 0 ? box.max.x : box.min.x,
+                       (corner & 2) != 0 ? box.max.y : box.min.y,
+                       (corner & 4) != 0 ? box.max.z : box.min.z);
+    const glm::dvec3 world = linear * (p - object.translation);
+    low = glm::min(low, world), high = glm::max(high, world);
+  }
+  const glm::dvec3 size = glm::max(glm::abs(low), glm::abs(high));
+  const glm::dvec3 in_object = absolute(object.linear) * size + glm::abs(object.translation);
+  const glm::dvec3 margin = 8.0 * half_ulp * (absolute(linear) * in_object + size);
+  return {Vec3(low - margin), Vec3(high + margin)};
+}
+
+InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t number) {
+  return {to_object,        group.root,       static_cast<std::uint32_t>(number),
+          group.first_slot, group.slot_count, world_bounds(group.bounds, to_object)};
+}
+
+const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t number) {
+  const auto found = std::lower_bound(
+      groups.begin(), groups.end(), number,
+      [](const GroupTree& group, std::uint32_t wanted) { return group.group < wanted; });
+  return found == groups.end() || found->group != number ? nullptr : &*found;
+}
+
+std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
+                                            std::span<const Instance> instances) {
+  std::vector<InstanceRecord> records;
+  const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t number) {
+    if (group != nullptr) records.push_back(make_record(*group, to_object, number));
+  };
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    add(find_group(groups, instances[i].group), inverse(instances[i].to_world), i);
+  }
+  add(find_group(groups, 0), Affine(), instances.size());
+  return records;
+}
+
+/// Nodes that are numbered from 0 get the numbers from `first` on.
+template <class Node>
+std::vector<Node> numbered_from(std::uint32_t first, std::vector<Node>&& nodes) {
+  for (Node& node : nodes) move_references(node, first, 0);
+  return std::move(nodes);
+}
+
+}  // namespace
+
+void check_instances(std::span<const Instance> instances) {
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (instances[i].group == 0) {
+      throw Error(fmt::format("instance {}: of group 0, expected a group above", i));
+    }
+    const Affine to_object = inverse(instances[i].to_world);
+    for (const Vec4& row : to_object.row) {
+      const float sum = std::abs(row.x) + std::abs(row.y) + std::abs(row.z) + std::abs(row.w);
+      if (!(sum < 1e15f)) {
+        throw Error(fmt::format("instance {}: expected a transform that can be inverted", i));
+      }
+    }
+  }
+}
+
+std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances) {
+  std::vector<std::uint32_t> groups = {0};
+  for (const Instance& instance : instances) groups.push_back(instance.group);
+  std::sort(groups.begin(), groups.end());
+  groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+  return groups;
+}
+
+InstanceTree build_instance_tree(std::span<const GroupTree> groups,
+                                 std::span<const Instance> instances, AccelKind accel,
+                                 std::uint32_t first_node) {
+  std::vector<InstanceRecord> records = place_instances(groups, instances);
+  InstanceTree tree;
+  const bool wide = accel == AccelKind::cwbvh;
+  if (records.empty() || (!wide && accel != AccelKind::bvh2)) {
+    tree.instances = std::move(records);
+    return tree;
+  }
+  BinaryTree binary = build_sah(static_cast<std::uint32_t>(records.size()),
+                                [&](std::uint32_t i) { return records[i].bounds; });
+  std::vector<std::uint32_t> order;
+  if (wide) {
+    Cwbvh top = collapse_cwbvh(binary, instance_costs);
+    tree.cwbvh = numbered_from(first_node, std::move(top.nodes));
+    order = std::move(top.order);
+  } else {
+    Bvh2 top = merge_leaves(std::move(binary), instance_costs);
+    tree.bvh2 = numbered_from(first_node, std::move(top.nodes));
+    order = std::move(top.order);
+  }
+  for (const std::uint32_t i : order) tree.instances.push_back(records[i]);
+  return tree;
+}
+
+void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
+                       AccelKind accel) {
+  const bool wide = accel == AccelKind::cwbvh;
+  tree.first_top_node = static_cast<std::uint32_t>(wide ? tree.cwbvh.size() : tree.bvh2.size());
+  InstanceTree top = build_instance_tree(tree.groups, instances, accel, tree.first_top_node);
+  tree.cwbvh.insert(tree.cwbvh.end(), top.cwbvh.begin(), top.cwbvh.end());
+  tree.bvh2.insert(tree.bvh2.end(), top.bvh2.begin(), top.bvh2.end());
+  tree.instances = std::move(top.instances);
+  if (!top.cwbvh.empty() || !top.bvh2.empty()) tree.root = tree.first_top_node;
+}
+
+}  // namespace pt

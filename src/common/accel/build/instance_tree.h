@@ -1,0 +1,37 @@
+// The upper level of trees with instances.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/accel/build/triangle_tree_data.h"
+#include "common/geometry/instance.h"
+#include "common/render/options.h"
+
+namespace pt {
+
+/// Throws Error where an instance's group is 0 or its transform singular.
+void check_instances(std::span<const Instance> instances);
+
+/// Group 0 and those of the instances, ascending, each once.
+std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances);
+
+/// The upper level by itself.
+struct InstanceTree {
+  std::vector<Bvh2Node> bvh2;  ///< one of the two, or none; the root comes first
+  std::vector<CwbvhNode> cwbvh;
+  std::vector<InstanceRecord> instances;  ///< in the order of the leaves
+};
+
+/// Over the instances of `groups`, which ascend, and group 0 itself if it is among them. Its nodes
+/// are numbered from `first_node`.
+InstanceTree build_instance_tree(std::span<const GroupTree> groups,
+                                 std::span<const Instance> instances, AccelKind accel,
+                                 std::uint32_t first_node);
+
+/// Makes TriangleTreeData::instances of those whose groups are in tree.groups and of group 0 if it
+/// is there, and appends the tree over them to the nodes.
+void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
+                       AccelKind accel);
+
+}  // namespace pt

@@ -1,0 +1,13 @@
+// Turns a tree of single primitives into the binary tree that rays are traced against.
+#pragma once
+
+#include "common/accel/build/binary_tree.h"
+#include "common/accel/build/build_bvh2.h"
+
+namespace pt {
+
+/// Makes a leaf of every subtree that is cheaper as one; a leaf names a primitive once. The root is
+/// node 0 and a node even if all is one leaf, which then is its first child. Uses up `tree`.
+Bvh2 merge_leaves(BinaryTree&& tree, const TreeCosts& costs);
+
+}  // namespace pt

@@ -1,0 +1,21 @@
+// Built instead of embree_tree.cpp where CMake finds no Embree.
+#include "common/accel/embree/embree_tree.h"
+#include "common/error.h"
+
+namespace pt {
+
+struct EmbreeTree::Scenes {};
+
+std::string embree_version() { return {}; }
+
+EmbreeTree::EmbreeTree(const TriangleTreeData&) {
+  throw Error("--accel embree: ptexp was built without Embree; expected cwbvh, bvh2 or brute");
+}
+EmbreeTree::~EmbreeTree() = default;
+EmbreeTree::EmbreeTree(EmbreeTree&&) noexcept = default;
+EmbreeTree& EmbreeTree::operator=(EmbreeTree&&) noexcept = default;
+
+Hit EmbreeTree::closest_hit(const Ray&, float, float) const { return {}; }
+bool EmbreeTree::any_hit(const Ray&, float, float) const { return false; }
+
+}  // namespace pt

@@ -1,0 +1,144 @@
+#include "common/accel/trace_cuda/beam_cwbvh.cuh"
+#include "common/accel/trace_cuda/persistent_cwbvh.cuh"
+#include "common/accel/traverse_triangles_brute.h"
+#include "common/accel/traverse_triangles_bvh2.h"
+#include "common/device/cuda_check.cuh"
+#include "common/device/cuda_memory.cuh"
+#include "common/rays/ray_queue.cuh"
+#include "common/rays/trace_kernels.cuh"
+
+namespace pt {
+namespace {
+
+constexpr int block_size = 128;
+constexpr int blocks_least = 8;  // per multiprocessor: 64 registers for a thread
+constexpr std::uint32_t batch = 128;
+
+enum class Structure { brute, bvh2, cwbvh };
+
+/// Blocks per multiprocessor that the compiler makes room for. It would rather save registers, and
+/// loads a triangle's three parts one after the other then: a quarter slower for incoherent rays.
+template <Structure structure, bool instanced>
+inline constexpr int resident_least = structure == Structure::cwbvh ? (instanced ? 5 : 8)
+                                      : instanced                   ? 8
+                                                                    : 10;
+
+template <Structure structure, bool instanced, class Query>
+__global__ void __launch_bounds__(block_size, (resident_least<structure, instanced>))
+    trace_by_threads(const __grid_constant__ TriangleTree tree,
+                     const __grid_constant__ RayArrays arrays) {
+  const std::uint32_t i = blockIdx.x * block_size + threadIdx.x;
+  if (i >= arrays.count) return;
+  const RayRecord ray = load_ray(arrays.rays + i);
+  Query query(ray.t_min, ray.t_max);
+  if constexpr (structure == Structure::brute) {
+    traverse_triangles_brute<instanced>(tree, ray.ray(), query);
+  } else if constexpr (structure == Structure::bvh2) {
+    traverse_triangles_bvh2<instanced>(tree, ray.ray(), query);
+  } else {
+    traverse_cwbvh<instanced>(tree, ray.ray(), query);
+  }
+  store_result(tree, query, arrays.hits + i);
+}
+
+template <class PersistentQuery>
+__global__ void __launch_bounds__(block_size, blocks_least)
+    trace_by_persistent_warps(const __grid_constant__ TriangleTree tree,
+                              const __grid_constant__ RayArrays arrays) {
+  __shared__ PersistentMemory<block_size> memory;
+  RayQueue<batch> queue(tree, arrays);
+  trace_persistent<PersistentQuery>(tree, memory, queue);
+}
+
+/// Apart from the beam's code: what few warps need must not cost all of them registers. By value:
+/// references would keep the caller's variables in memory.
+template <class Query>
+__device__ __noinline__ Query trace_alone(const TriangleTree* tree, Ray ray, Query query) {
+  traverse_cwbvh<false>(*tree, ray, query);
+  return query;
+}
+
+template <class Query>
+__global__ void __launch_bounds__(block_size, blocks_least)
+    trace_by_beams(const __grid_constant__ TriangleTree tree,
+                   const __grid_constant__ RayArrays arrays) {
+  __shared__ BeamMemory memories[block_size / 32];
+  const std::uint32_t i = blockIdx.x * block_size + threadIdx.x;
+  const RayRecord ray = load_ray(arrays.rays + min(i, arrays.count - 1));
+  Query query(ray.t_min, ray.t_max);
+  if (!trace_beam(tree, ray.ray(), memories[threadIdx.x / 32], query))
+    query = trace_alone(&tree, ray.ray(), Query(ray.t_min, ray.t_max));
+  if (i < arrays.count) store_result(tree, query, arrays.hits + i);
+}
+
+constexpr std::uint32_t sampled_groups = 2048;
+
+__global__ void __launch_bounds__(block_size)
+    count_coherent_groups(const __grid_constant__ RayArrays arrays, std::uint32_t* count) {
+  __shared__ Beam beams[block_size / 32];
+  const std::uint32_t groups = arrays.count / 32;
+  const std::uint32_t sample = (blockIdx.x * block_size + threadIdx.x) / 32;
+  const auto group = static_cast<std::uint32_t>(std::uint64_t{sample} * groups / sampled_groups);
+  const RayRecord record = load_ray(arrays.rays + 32 * group + threadIdx.x % 32);
+  const CwbvhRay ray = make_cwbvh_ray(record.ray());
+  const bool is_coherent = make_beam(ray.origin, ray.inverse, beams[threadIdx.x / 32]);
+  if (__all_sync(0xffffffffu, is_coherent) && threadIdx.x % 32 == 0) atomicAdd(count, 1u);
+}
+
+using Kernel = void (*)(const TriangleTree, const RayArrays);
+
+template <bool instanced, class Query>
+Kernel choose_threads(const TriangleTree& tree) {
+  if (tree.cwbvh != nullptr) return trace_by_threads<Structure::cwbvh, instanced, Query>;
+  if (tree.bvh2 != nullptr) return trace_by_threads<Structure::bvh2, instanced, Query>;
+  return trace_by_threads<Structure::brute, instanced, Query>;
+}
+
+template <class Query, class PersistentQuery>
+Kernel choose_kernel(TraceVariant variant, const TriangleTree& tree) {
+  if (variant == TraceVariant::persistent) return trace_by_persistent_warps<PersistentQuery>;
+  if (variant == TraceVariant::beam) return trace_by_beams<Query>;
+  return tree.instance_count > 0 ? choose_threads<true, Query>(tree)
+                                 : choose_threads<false, Query>(tree);
+}
+
+}  // namespace
+
+int persistent_blocks(RayType type) {
+  const void* kernel =
+      type == RayType::any
+          ? reinterpret_cast<const void*>(trace_by_persistent_warps<AnyTriangle>)
+          : reinterpret_cast<const void*>(trace_by_persistent_warps<ClosestTriangleId>);
+  int device = 0, multiprocessors = 0, per_multiprocessor = 0;
+  check_cuda(cudaGetDevice(&device), "cudaGetDevice");
+  check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
+             "cudaDeviceGetAttribute");
+  check_cuda(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel, block_size, 0),
+      "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  return multiprocessors * per_multiprocessor;
+}
+
+void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,
+                  const RayArrays& rays, int blocks) {
+  if (rays.count == 0) return;
+  const Kernel kernel = type == RayType::any
+                            ? choose_kernel<AnyTriangle, AnyTriangle>(variant, tree)
+                            : choose_kernel<ClosestTriangle, ClosestTriangleId>(variant, tree);
+  const auto all = (rays.count + block_size - 1) / block_size;
+  const bool is_persistent = variant == TraceVariant::persistent;
+  kernel<<<is_persistent ? static_cast<unsigned>(blocks) : all, block_size>>>(tree, rays);
+  check_cuda(cudaGetLastError(), "launching the tracing of rays");
+}
+
+double measure_coherence(const RayArrays& rays) {
+  if (rays.count < 32) return 0.0;
+  check_cuda(cudaMemset(rays.next, 0, sizeof(std::uint32_t)), "cudaMemset");
+  count_coherent_groups<<<sampled_groups * 32 / block_size, block_size>>>(rays, rays.next);
+  std::uint32_t count = 0;
+  check_cuda(cudaMemcpy(&count, rays.next, sizeof count, cudaMemcpyDeviceToHost),
+             "measuring the coherence of rays");
+  return static_cast<double>(count) / sampled_groups;
+}
+
+}  // namespace pt

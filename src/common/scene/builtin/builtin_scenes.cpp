@@ -1,0 +1,108 @@
+#include "common/scene/builtin/builtin_scenes.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "common/scene/builtin/generate_boxes.h"
+#include "common/scene/builtin/generate_forest.h"
+#include "common/scene/builtin/generate_statue.h"
+#include "common/scene/builtin/generate_terrain.h"
+#include "common/scene/builtin/quad_scenes.h"
+#include "common/scene/prepare_scene.h"
+
+namespace pt {
+namespace {
+
+SceneData make_sphere_world(SphereWorldKind kind, std::uint32_t count,
+                            const SphereWorldCreator& create_world) {
+  SceneData scene;
+  const std::uint32_t capacity = sphere_world_capacity(kind, count);
+  scene.spheres.resize(capacity);
+  scene.materials.resize(capacity);
+  SphereWorld world{scene.spheres.data(), scene.materials.data(), capacity};
+  create_world ? create_world(world, kind, count) : create_sphere_world(world, kind, count);
+  scene.spheres.resize(world.count);
+  scene.materials.resize(world.count);
+  for (std::uint32_t i = 0; i < world.count; ++i) scene.sphere_material.push_back(i);
+  // The book's camera; its CUDA port, with which rtow is compared, sees 30 degrees.
+  const float fov = kind == SphereWorldKind::rtow ? 30.0f : 20.0f;
+  scene.camera = {{13, 2, 3}, {0, 0, 0}, {0, 1, 0}, fov, 0.1f, 10.0f};
+  scene.sky = {Color(1.0f), {0.5f, 0.7f, 1.0f}};
+  return scene;
+}
+
+template <SphereWorldKind kind>
+SceneData make_spheres(const SceneRequest& request) {
+  return make_sphere_world(kind, static_cast<std::uint32_t>(request.options.spheres),
+                           request.create_world);
+}
+
+SceneData make_terrain(const SceneRequest& request) {
+  return make_terrain_scene(parse_count(request.name, 1'000'000, terrain_least, terrain_most));
+}
+
+SceneData make_statue(const SceneRequest& request) {
+  return make_statue_scene(parse_count(request.name, 1'000'000, statue_least, statue_most));
+}
+
+SceneData make_instances(const SceneRequest& request) {
+  return make_forest_scene(parse_count(request.name, 10'000, forest_least, forest_most));
+}
+
+const SceneInfo& find_scene(const SceneName& name) {
+  std::string names;
+  for (const SceneInfo& info : scene_list()) {
+    if (info.name == name.name) return info;
+    names += (names.empty() ? "" : ", ") + info.name;
+  }
+  throw Error(fmt::format("--scene {}: no such scene; expected one of {}", name.full, names));
+}
+
+}  // namespace
+
+const std::vector<SceneInfo>& scene_list() {
+  static const std::vector<SceneInfo> list = {
+      {"spheres", "",
+       "the paper's: a ground and --spheres random diffuse and metal ones under a sky",
+       make_spheres<SphereWorldKind::spheres>},
+      {"rtow", "",
+       "the final scene of 'Ray Tracing in One Weekend': about 488 spheres, some of glass",
+       make_spheres<SphereWorldKind::rtow>},
+      {"cornell", "", "the Cornell Box: quads, one area light, two blocks",
+       [](const SceneRequest&) { return make_cornell_scene(); }},
+      {"furnace", "", "a closed box in which every pixel must be 1: the test of energy",
+       [](const SceneRequest&) { return make_furnace_scene(); }},
+      {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
+      {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",
+       make_statue},
+      {"instances", "N", "a forest of N trees, 10K unless N is given, repeating four",
+       make_instances},
+      {"boxes", "SCALE", "512 boxes in a closed room, lit by a lamp; all lengths times SCALE",
+       [](const SceneRequest& request) { return make_boxes_scene(parse_scale(request.name)); }},
+  };
+  return list;
+}
+
+SceneData build_scene(const Options& options, const SphereWorldCreator& create_world) {
+  const SceneName name = parse_scene_name(options.scene);
+  const SceneInfo& info = find_scene(name);
+  if (info.parameter.empty() && !name.parameter.empty()) {
+    throw Error(fmt::format("--scene {}: scene '{}' takes no parameter", name.full, name.name));
+  }
+  const bool has_spheres = name.name == "spheres" || name.name == "rtow";
+  if (create_world && !has_spheres) {
+    throw Error(fmt::format("--create-world device: scene '{}' has no random spheres to create",
+                            options.scene));
+  }
+  SceneData scene = info.make({name, options, create_world});
+  scene.name = options.scene;
+  return scene;
+}
+
+SceneData make_scene(const Options& options, const SphereWorldCreator& create_world) {
+  SceneData scene = build_scene(options, create_world);
+  prepare_scene(scene, options);
+  return scene;
+}
+
+}  // namespace pt

@@ -1,0 +1,113 @@
+#include "common/scene/files/obj_material.h"
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "common/error.h"
+#include "common/scene/files/find_file.h"
+#include "common/scene/files/mapped_file.h"
+
+namespace pt {
+namespace {
+
+/// Finite and within [0, largest].
+Color limited(const float (&rgb)[3], float largest) {
+  Color color;
+  for (int c = 0; c < 3; ++c) {
+    color[c] = std::isfinite(rgb[c]) ? std::clamp(rgb[c], 0.0f, largest) : 0.0f;
+  }
+  return color;
+}
+
+Color reflectance(const float (&rgb)[3]) { return limited(rgb, 1.0f); }
+
+bool is_one_of(int illum, std::initializer_list<int> models) {
+  return std::ranges::count(models, illum) > 0;
+}
+
+/// The slope of Blinn's lobe with this exponent, sqrt(2 / (Ns + 2)), is the radius of ours.
+float fuzz_of(const tinyobj::material_t& mtl) {
+  if (mtl.roughness > 0.0f) return std::min(mtl.roughness * mtl.roughness, 1.0f);
+  return std::clamp(std::sqrt(2.0f / (std::max(mtl.shininess, 0.0f) + 2.0f)), 0.0f, 1.0f);
+}
+
+Material nearest_material(const tinyobj::material_t& mtl) {
+  const Color kd = reflectance(mtl.diffuse), ks = reflectance(mtl.specular);
+  if (is_one_of(mtl.illum, {4, 6, 7, 9}) || mtl.dissolve < 0.5f) {
+    const bool plausible = mtl.ior > 1.0f && mtl.ior < 5.0f;
+    return make_dielectric(Color(1.0f), plausible ? mtl.ior : 1.5f);
+  }
+  if (mtl.metallic > 0.5f) return make_metal(kd, fuzz_of(mtl));
+  if (is_one_of(mtl.illum, {3, 5, 8}) && max_abs(ks) > max_abs(kd)) {
+    return make_metal(ks, fuzz_of(mtl));
+  }
+  return make_diffuse(kd);
+}
+
+/// `name` of a texture, beside the MTL file, with the separators of any system.
+std::filesystem::path map_path(const std::filesystem::path& mtl_path, std::string name,
+                               std::vector<std::string>& warnings) {
+  if (name.empty()) return {};
+  std::ranges::replace(name, '\\', '/');
+  const auto warn = [&](const std::string& line) { warnings.push_back(line); };
+  const std::filesystem::path found = find_file(mtl_path.parent_path(), name, warn);
+  return found.empty() ? mtl_path.parent_path() / name : found;
+}
+
+void warn_of_losses(const tinyobj::material_t& mtl, const Material& material,
+                    std::vector<std::string>& warnings) {
+  std::string lost;
+  const auto check = [&](bool present, const char* what) {
+    if (present) lost += (lost.empty() ? "" : ", ") + std::string(what);
+  };
+  const bool diffuse = material.kind == MaterialKind::diffuse;
+  check(diffuse && max_abs(reflectance(mtl.specular)) > 0.1f, "highlights (Ks)");
+  check(diffuse && mtl.dissolve < 1.0f, "partial transparency (d)");
+  check(!mtl.alpha_texname.empty(), "map_d");
+  check(!mtl.bump_texname.empty() || !mtl.normal_texname.empty(), "bumps");
+  check(!mtl.displacement_texname.empty(), "disp");
+  check(!mtl.specular_texname.empty(), "map_Ks");
+  if (!lost.empty()) warnings.push_back(fmt::format("material {}: no {}", mtl.name, lost));
+}
+
+ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path& mtl_path,
+                    std::vector<std::string>& warnings) {
+  ObjMaterial result{mtl.name, nearest_material(mtl), {}, {}};
+  warn_of_losses(mtl, result.material, warnings);
+  if (result.material.kind != MaterialKind::dielectric) {
+    result.albedo_map = map_path(mtl_path, mtl.diffuse_texname, warnings);
+  }
+  if (result.material.kind == MaterialKind::diffuse) {
+    result.emission_map = map_path(mtl_path, mtl.emissive_texname, warnings);
+    result.material.emission = limited(mtl.emission, 1e30f);
+    if (!result.emission_map.empty() && is_black(result.material.emission)) {
+      result.material.emission = Color(1.0f);  // a map alone means the map itself
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+void decode_mtl(std::string_view bytes, const std::filesystem::path& path, ObjFile& file) {
+  std::istringstream stream{std::string(bytes)};
+  std::map<std::string, int> numbers;
+  std::vector<tinyobj::material_t> materials;
+  std::string warnings, errors;
+  tinyobj::LoadMtl(&numbers, &materials, &stream, &warnings, &errors);
+  if (!errors.empty()) throw Error(errors);
+  for (const tinyobj::material_t& material : materials) {
+    if (!material.name.empty()) file.materials.push_back(convert(material, path, file.warnings));
+  }
+}
+
+void read_mtl(const std::filesystem::path& path, ObjFile& file) {
+  decode_mtl(MappedFile(path).bytes(), path, file);
+}
+
+}  // namespace pt

@@ -1,0 +1,82 @@
+#include "common/scene/files/texture_store.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace pt {
+namespace {
+
+constexpr std::size_t alignment = 16;  // of the first texel, bytes
+
+bool same(const Texture& a, const Texture& b) {
+  return a.kind == b.kind && a.format == b.format && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v &&
+         a.filter == b.filter && a.width == b.width && a.height == b.height &&
+         a.offset == b.offset && std::equal(a.u_row, a.u_row + 3, b.u_row) &&
+         std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 && a.color1 == b.color1;
+}
+
+/// The same file as linear8 and as srgb8 is two images.
+std::string key_of(const std::string& name, const Texture& look) {
+  return (look.format == TextureFormat::linear8 ? "linear " : "srgb ") + name;
+}
+
+TextureFormat integers_of(const Texture& look) {
+  return look.format == TextureFormat::linear8 ? TextureFormat::linear8 : TextureFormat::srgb8;
+}
+
+}  // namespace
+
+std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Texture& look) {
+  std::error_code ignored;  // where there is no such file, reading it says so
+  const std::filesystem::path file = std::filesystem::weakly_canonical(path, ignored);
+  const std::string key = key_of(ignored ? path.string() : file.string(), look);
+  auto found = stored_.find(key);
+  if (found == stored_.end()) {
+    const TextureImage image = read_texture_image(path, integers_of(look));
+    found = stored_.emplace(key, store(image)).first;
+  }
+  return add_stored(found->second, look);
+}
+
+std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string& name,
+                                       const Texture& look) {
+  const std::string key = key_of("memory " + name, look);
+  auto found = stored_.find(key);
+  if (found == stored_.end()) {
+    const TextureImage image = decode_texture_image(bytes, name, integers_of(look));
+    found = stored_.emplace(key, store(image)).first;
+  }
+  return add_stored(found->second, look);
+}
+
+std::uint32_t TextureStore::add_image(const TextureImage& image, const Texture& look) {
+  return add_stored(store(image), look);
+}
+
+std::uint32_t TextureStore::add_plain(const Texture& texture) {
+  const auto equal =
+      std::ranges::find_if(textures_, [&](const Texture& t) { return same(t, texture); });
+  if (equal == textures_.end()) {
+    textures_.push_back(texture);
+    return static_cast<std::uint32_t>(textures_.size() - 1);
+  }
+  return static_cast<std::uint32_t>(equal - textures_.begin());
+}
+
+TextureStore::Stored TextureStore::store(const TextureImage& image) {
+  const std::size_t offset = (texels_.size() + alignment - 1) / alignment * alignment;
+  texels_.resize(offset);
+  texels_.insert(texels_.end(), image.texels.begin(), image.texels.end());
+  return {image.format, image.width, image.height, offset};
+}
+
+std::uint32_t TextureStore::add_stored(const Stored& stored, Texture look) {
+  look.kind = TextureKind::image;
+  look.format = stored.format;
+  look.width = stored.width;
+  look.height = stored.height;
+  look.offset = stored.offset;
+  return add_plain(look);
+}
+
+}  // namespace pt

@@ -1,0 +1,424 @@
+"""Runs the real ptexp as a user does: options, images, exit codes, errors, interruption.
+
+The environment variable PTEXP names the executable (build/release/src/ptexp).
+"""
+import csv
+import json
+import math
+import os
+import re
+import resource
+import signal
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+import zlib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
+MODES = ["serial", "megakernel", "wavefront"]
+TIMEOUT_S = 300  # of one run; generous, because the sanitizers share a busy machine
+
+OPTIONS = """--mode --device --spp --width --height --max-depth --seed --scene --spheres --output
+    --exposure --look-from --look-at --up --fov --aperture --focus-distance --threads --work --block
+    --compaction --pool-size --regenerate --schedule --scene-memory --branching --rng --repeat
+    --warmup --stats --csv --quiet --list-scenes --list-devices --version --help""".split()
+
+
+def read_ppm(path):
+    """(width, height, 8-bit values) of a binary PPM."""
+    header, data = re.match(rb"(P6\s+\d+\s+\d+\s+255\s)(.*)", Path(path).read_bytes(),
+                            re.DOTALL).groups()
+    width, height = map(int, header.split()[1:3])
+    if len(data) != 3 * width * height:
+        raise ValueError(f"{path}: {len(data)} bytes for {width}x{height} pixels")
+    return width, height, data
+
+
+def read_png(path):
+    """(width, height, unfiltered size) of an 8-bit RGB PNG, with its checksums verified."""
+    data = Path(path).read_bytes()
+    if data[:8] != b"\x89PNG\r\n\x1a\n":
+        raise ValueError(f"{path} is no PNG")
+    at, header, pixels, kind = 8, None, b"", None
+    while kind != b"IEND":
+        length, kind = struct.unpack_from(">I4s", data, at)
+        body = data[at + 8:at + 8 + length]
+        if zlib.crc32(kind + body) != struct.unpack_from(">I", data, at + 8 + length)[0]:
+            raise ValueError(f"{path}: checksum of {kind}")
+        header = struct.unpack(">IIBB3x", body) if kind == b"IHDR" else header
+        pixels += body if kind == b"IDAT" else b""
+        at += 12 + length
+    if header[2:] != (8, 2):
+        raise ValueError(f"{path}: bit depth and colour type {header[2:]}")
+    return header[0], header[1], len(zlib.decompress(pixels))
+
+
+def available_memory_gib():
+    text = Path("/proc/meminfo").read_text(encoding="ascii")
+    return int(re.search(r"MemAvailable:\s*(\d+) kB", text).group(1)) / 2**20
+
+
+def processor_time_s(pid):
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="ptexp cli ")  # a space, as users have
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_ptexp(self, *arguments, **popen):
+        return subprocess.run([PTEXP, *map(str, arguments)], cwd=self.folder, capture_output=True,
+                              stdin=subprocess.DEVNULL, text=True, check=False, timeout=TIMEOUT_S,
+                              **popen)
+
+    def run_ok(self, *arguments):
+        run = self.run_ptexp(*arguments)
+        self.assertEqual(run.returncode, 0, f"{arguments}\n{run.stdout}{run.stderr}")
+        return run
+
+    def render(self, *arguments, **popen):
+        """A small picture on the CPU; later arguments win over these."""
+        small = {"--device": "cpu", "--width": "24", "--height": "12", "--spp": "4"}
+        for name in arguments:
+            small.pop(name, None)
+        return self.run_ptexp(*[part for pair in small.items() for part in pair], *arguments,
+                              **popen)
+
+    def render_ok(self, *arguments):
+        run = self.render(*arguments)
+        self.assertEqual(run.returncode, 0, f"{arguments}\n{run.stdout}{run.stderr}")
+        return run
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def assert_refused(self, run, *words):
+        """Exit code 2, and one line on stderr that contains `words`."""
+        shown = f"{run.args[1:]}\n{run.stdout}{run.stderr}"
+        self.assertEqual(run.returncode, 2, shown)
+        self.assertEqual(len(run.stderr.splitlines()), 1, shown)
+        for word in words:
+            self.assertIn(str(word).lower(), run.stderr.lower(), shown)
+
+
+class Information(CommandLine):
+    def test_help_names_every_option(self):
+        run = self.run_ok("--help")
+        self.assertEqual(run.stderr, "")
+        for option in OPTIONS:
+            self.assertRegex(run.stdout, rf"(?m)(^|[\s,]){option}\b")
+        self.assertIn("compare", run.stdout)
+        self.assertEqual(self.run_ok("compare", "--help").stderr, "")
+
+    def test_version_tells_commit_and_build(self):
+        text = self.run_ok("--version").stdout
+        self.assertRegex(text, r"ptexp \d+\.\d+\.\d+")
+        self.assertRegex(text, r"(?i)commit\s*:?\s*\S+|[0-9a-f]{7,}|unknown")
+        self.assertRegex(text, r"(?i)cuda")
+
+    def test_scenes_are_listed_and_can_be_rendered(self):
+        text = self.run_ok("--list-scenes").stdout
+        for scene in ["spheres", "rtow", "cornell", "furnace"]:
+            self.assertRegex(text, rf"(?m)^\s*{scene}\b")
+            self.render_ok("--scene", scene, "--output", f"{scene}.ppm")
+            self.assertEqual(read_ppm(self.folder / f"{scene}.ppm")[:2], (24, 12))
+
+    def test_devices_are_listed(self):
+        self.assertRegex(self.run_ok("--list-devices").stdout, r"(?m)^\s*cpu\b")
+
+    def test_information_writes_no_file(self):
+        for option in ["--help", "--version", "--list-scenes", "--list-devices"]:
+            self.run_ok(option)
+        self.assertEqual(self.files(), [])
+
+
+class Images(CommandLine):
+    def test_the_papers_command_writes_an_image(self):
+        run = self.run_ok("--mode", "wavefront", "--spp", "50", "--device", "cpu", "--width", "60",
+                          "--height", "30")
+        self.assertEqual(self.files(), ["image.exr"])
+        self.assertRegex(run.stdout, r"(?i)paths")
+        self.assertNotRegex(run.stdout + run.stderr, "[\r\x1b]", "piped output is plain lines")
+
+    def test_the_automatic_device_is_named(self):
+        run = self.run_ok("--device", "auto", "--width", "24", "--height", "12", "--spp", "4")
+        self.assertRegex(run.stdout + run.stderr, r"CPU|NVIDIA|Tesla|GeForce")
+
+    def test_the_ending_chooses_the_format(self):
+        for ending in ["ppm", "png", "exr"]:
+            self.render_ok("--output", f"image.{ending}")
+        self.assertEqual(self.files(), ["image.exr", "image.png", "image.ppm"])
+        width, height, values = read_ppm(self.folder / "image.ppm")
+        self.assertEqual((width, height), (24, 12))
+        self.assertGreater(len(set(values)), 20, "a picture has more than a few shades")
+        self.assertEqual(read_png(self.folder / "image.png"), (24, 12, 12 * (1 + 3 * 24)))
+        self.assertEqual((self.folder / "image.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
+
+    def test_an_image_goes_to_another_folder(self):
+        (self.folder / "a b").mkdir()
+        self.render_ok("--output", self.folder / "a b" / "c.d.png")
+        self.assertEqual(read_png(self.folder / "a b" / "c.d.png")[:2], (24, 12))
+
+    def test_an_image_is_replaced(self):
+        (self.folder / "image.ppm").write_bytes(b"old")
+        self.render_ok("--output", "image.ppm")
+        self.assertEqual(read_ppm(self.folder / "image.ppm")[:2], (24, 12))
+        self.assertEqual(self.files(), ["image.ppm"])
+
+    def test_the_smallest_image(self):
+        for mode in MODES:
+            self.render_ok("--mode", mode, "--width", "1", "--height", "1", "--spp", "1",
+                           "--max-depth", "1", "--spheres", "0", "--output", f"{mode}.ppm")
+            self.assertEqual(read_ppm(self.folder / f"{mode}.ppm")[:2], (1, 1))
+
+    def test_exposure_brightens(self):
+        means = []
+        for stops in ["-2", "0", "2"]:
+            self.render_ok("--exposure", stops, "--output", "image.ppm")
+            values = read_ppm(self.folder / "image.ppm")[2]
+            means.append(sum(values) / len(values))
+        self.assertEqual(means, sorted(set(means)))
+
+    def test_quiet_says_nothing(self):
+        run = self.render_ok("--quiet", "--output", "image.ppm")
+        self.assertEqual(run.stdout + run.stderr, "")
+
+
+class Compare(CommandLine):
+    def compare(self, *arguments):
+        return self.run_ptexp("compare", *arguments)
+
+    def test_all_modes_give_the_same_image(self):
+        for scene in ["spheres", "cornell"]:
+            for mode in MODES:
+                self.render_ok("--mode", mode, "--scene", scene, "--output", f"{mode}.exr")
+            for mode in MODES[1:]:
+                run = self.compare("serial.exr", f"{mode}.exr")
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+                self.assertRegex(run.stdout, r"(?im)^differing pixels\D*0$")
+
+    def test_threads_and_queues_do_not_change_the_image(self):
+        self.render_ok("--output", "a.exr")
+        for i, options in enumerate([["--threads", 1], ["--threads", 3], ["--pool-size", 7],
+                                     ["--compaction", "none"], ["--regenerate", "off"],
+                                     ["--branching", "reduced"]]):
+            self.render_ok(*options, "--output", f"{i}.exr")
+            self.assertEqual(self.compare("a.exr", f"{i}.exr").returncode, 0, options)
+
+    def test_differing_images(self):
+        self.render_ok("--seed", "1", "--output", "a.exr")
+        self.render_ok("--seed", "2", "--output", "b.exr")
+        run = self.compare("a.exr", "b.exr")
+        self.assertEqual(run.returncode, 1, run.stdout + run.stderr)
+        for word in ["RMSE", "relMSE", "largest", "differing"]:
+            self.assertIn(word, run.stdout)
+        rmse = float(re.search(r"(?m)^RMSE\s+(\S+)$", run.stdout).group(1))
+        self.assertTrue(0 < rmse < math.inf)
+        self.assertEqual(self.compare("a.exr", "b.exr", "--tolerance", "1000").returncode, 0)
+        self.assertEqual(self.compare("a.exr", "b.exr", "--tolerance", "1e-9").returncode, 1)
+
+    def test_formats_can_be_compared(self):
+        for ending in ["png", "ppm"]:
+            self.render_ok("--output", f"a.{ending}")
+            self.assertEqual(self.compare(f"a.{ending}", f"a.{ending}").returncode, 0)
+
+    def test_bad_input(self):
+        self.render_ok("--output", "a.ppm")
+        self.render_ok("--width", "25", "--output", "wide.ppm")
+        (self.folder / "text.exr").write_text("no image", encoding="ascii")
+        (self.folder / "empty.png").write_bytes(b"")
+        whole = (self.folder / "a.ppm").read_bytes()
+        (self.folder / "short.ppm").write_bytes(whole[:-1])
+        before = self.files()
+        self.assert_refused(self.compare("a.ppm", "missing.ppm"), "missing.ppm")
+        self.assert_refused(self.compare("a.ppm", "wide.ppm"), "24x12", "25x12")
+        self.assert_refused(self.compare("a.ppm", "text.exr"), "text.exr")
+        self.assert_refused(self.compare("empty.png", "a.ppm"), "empty.png")
+        self.assert_refused(self.compare("a.ppm", "short.ppm"), "short.ppm")
+        self.assert_refused(self.compare("a.ppm"))
+        self.assert_refused(self.compare("a.ppm", "a.ppm", "a.ppm"))
+        self.assert_refused(self.compare("a.ppm", "a.ppm", "--tolerance", "-1"), "tolerance")
+        self.assert_refused(self.compare("a.ppm", "a.ppm", "--tolerance", "nan"), "tolerance")
+        self.assertEqual(self.files(), before)
+
+
+class Statistics(CommandLine):
+    def test_csv_has_one_header(self):
+        for mode in MODES:
+            self.render_ok("--mode", mode, "--csv", "runs.csv")
+        with open(self.folder / "runs.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file, strict=True))
+        self.assertEqual(len(rows), 1 + len(MODES))
+        self.assertEqual({len(row) for row in rows}, {len(rows[0])})
+        self.assertEqual(len(set(rows[0])), len(rows[0]), "column names are unique")
+        self.assertTrue(any("schema" in name for name in rows[0]), rows[0])
+        self.assertEqual([row[rows[0].index("mode")] for row in rows[1:]], MODES)
+
+    def test_a_foreign_csv_is_left_alone(self):
+        (self.folder / "runs.csv").write_text("a,b\n1,2\n", encoding="ascii")
+        self.assert_refused(self.render("--csv", "runs.csv", "--output", "image.ppm"), "runs.csv")
+        self.assertEqual((self.folder / "runs.csv").read_text(encoding="ascii"), "a,b\n1,2\n")
+
+    def test_json_is_complete(self):
+        self.render_ok("--stats", "run.json", "--repeat", "3", "--warmup", "1")
+        text = (self.folder / "run.json").read_text(encoding="utf-8")
+        self.assertIsInstance(json.loads(text), dict)
+        for word in ["schema", "wavefront", "Philox|philox", "rays", "median", "generate"]:
+            self.assertRegex(text, word)
+
+    def test_modes_trace_the_same_rays(self):
+        counts = set()
+        for mode in MODES:
+            self.render_ok("--mode", mode, "--csv", "runs.csv")
+        with open(self.folder / "runs.csv", newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                counts.add((row["paths"], row["rays"]))
+        self.assertEqual(len(counts), 1, counts)
+        self.assertEqual(int(counts.pop()[0]), 24 * 12 * 4)
+
+
+class BadInput(CommandLine):
+    """Everything here is refused before any work, with one line and without a trace."""
+
+    def assert_bad(self, *arguments, words=()):
+        with self.subTest(arguments=arguments):
+            before = self.files()
+            self.assert_refused(self.render(*arguments), *words)
+            self.assertEqual(self.files(), before)
+
+    def test_unknown_names(self):
+        self.assert_bad("--frobnicate", words=["--frobnicate"])
+        self.assert_bad("--frobnicate", "3", words=["frobnicate"])
+        self.assert_bad("stray.exr", words=["stray.exr"])
+        for option in ["--mode", "--scene", "--device", "--work", "--compaction", "--schedule",
+                       "--regenerate", "--scene-memory", "--branching", "--rng"]:
+            self.assert_bad(option, "nonsense", words=[option, "nonsense"])
+            self.assert_bad(option, "", words=[option])
+
+    def test_a_missing_value(self):
+        self.assert_bad("--spp")
+        self.assert_bad("--mode")
+
+    def test_a_missing_gpu(self):
+        self.assert_bad("--device", "cuda:99", words=["cuda"])
+        self.assert_bad("--device", "cuda:-1", words=["cuda"])
+
+    def test_sizes(self):
+        for option in ["--width", "--height", "--spp", "--max-depth", "--repeat"]:
+            for value in ["0", "-1", "99999999999999999999", "ten", "1.5", "1e3x", " 4", ""]:
+                self.assert_bad(option, value, words=[option])
+        for option in ["--width", "--height", "--max-depth"]:
+            self.assert_bad(option, "65536", words=[option, "65,535"])
+        for option in ["--spheres", "--threads", "--warmup", "--seed"]:
+            self.assert_bad(option, "-1", words=[option])
+        for value in ["0", "-1", "x", "99999999999999999999"]:
+            self.assert_bad("--pool-size", value, words=["--pool-size"])
+
+    def test_camera(self):
+        for option, values in {"--fov": ["0", "180", "-10", "nan", "x"],
+                               "--aperture": ["-1", "nan", "inf"],
+                               "--focus-distance": ["0", "-1", "nan", "inf"],
+                               "--exposure": ["nan", "inf", "x"],
+                               "--look-from": ["1,2", "1,2,3,4", "nan,0,0", "x"]}.items():
+            for value in values:
+                self.assert_bad(option, value, words=[option])
+        self.assert_bad("--look-from", "1,1,1", "--look-at", "1,1,1", words=["look"])
+        self.assert_bad("--look-from", "0,0,0", "--look-at", "0,1,0", "--up", "0,2,0",
+                        words=["up"])
+
+    def test_blocks(self):
+        for mode in MODES:
+            self.assert_bad("--mode", mode, "--block", "64x64", words=["64x64", "1,024"])
+        self.assert_bad("--block", "33x32", words=["1,024"])
+        for value in ["0x4", "4x0", "4", "4x", "x4", "4x4x4", "-4x4", "4X4", "9999999999x1"]:
+            self.assert_bad("--block", value, words=["--block"])
+
+    def test_outputs(self):
+        (self.folder / "folder.png").mkdir()
+        self.assert_bad("--output", "missing/image.exr", words=["missing/image.exr"])
+        self.assert_bad("--output", "folder.png", words=["folder.png"])
+        self.assert_bad("--output", "image.jpg", words=["image.jpg", ".exr", ".png", ".ppm"])
+        self.assert_bad("--output", "image", words=["image"])
+        self.assert_bad("--output", "")
+        self.assert_bad("--csv", "missing/runs.csv", words=["missing/runs.csv"])
+        self.assert_bad("--stats", "missing/run.json", words=["missing/run.json"])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_folder_without_permission(self):
+        (self.folder / "closed").mkdir(mode=0o500)
+        self.assert_bad("--output", "closed/image.exr", words=["closed/image.exr"])
+
+    def test_an_existing_image_survives_a_failed_run(self):
+        (self.folder / "image.png").write_bytes(b"precious")
+        self.assert_bad("--output", "image.png", "--block", "64x64")
+        self.assert_bad("--output", "image.png", "--csv", "missing/runs.csv")
+        self.assertEqual((self.folder / "image.png").read_bytes(), b"precious")
+
+    def test_a_full_disk(self):
+        def limit_file_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+        for name in ["image.ppm", "image.png", "image.exr"]:
+            (self.folder / name).write_bytes(b"precious")
+        for name in self.files():
+            with self.subTest(name=name):
+                # Python ignores SIGXFSZ and restore_signals=False hands that on, so that a write
+                # fails as it does on a full disk.
+                run = self.render("--output", name, preexec_fn=limit_file_size,
+                                  restore_signals=False)
+                self.assert_refused(run, name)
+                self.assertEqual(self.files(), ["image.exr", "image.png", "image.ppm"])
+                self.assertEqual((self.folder / name).read_bytes(), b"precious")
+
+    @unittest.skipIf(available_memory_gib() > 40, "this machine could hold the image")
+    def test_too_much_memory(self):
+        for mode in MODES:
+            with self.subTest(mode=mode):
+                run = self.render("--mode", mode, "--width", "65535", "--height", "65535")
+                self.assert_refused(run, "memory")
+                self.assertRegex(run.stderr, r"\d[\d.,]* ?[MGT]i?B", "says how much is needed")
+                self.assertEqual(self.files(), [])
+
+
+class Interruption(CommandLine):
+    def test_sigint_keeps_the_samples_so_far(self):
+        for mode in MODES:
+            with self.subTest(mode=mode):
+                output = self.folder / f"{mode}.ppm"
+                with subprocess.Popen(
+                        [PTEXP, "--device", "cpu", "--mode", mode, "--width", "200", "--height",
+                         "100", "--spp", "1000000", "--output", output], cwd=self.folder,
+                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                        text=True) as process:
+                    try:
+                        self.interrupt_at_work(process)
+                        out, err = process.communicate(timeout=TIMEOUT_S)
+                    finally:
+                        process.kill()
+                self.assertEqual(process.returncode, 130, out + err)
+                self.assertRegex(err, r"(?i)interrupt")
+                self.assertRegex(err, r"\d[\d,]* (of|samples)")
+                width, height, values = read_ppm(output)
+                self.assertEqual((width, height), (200, 100))
+                self.assertGreater(len(set(values)), 20, "the samples are in the image")
+                self.assertIn(f"{mode}.ppm", self.files())
+                self.assertEqual([name for name in self.files() if not name.endswith(".ppm")], [])
+
+    def interrupt_at_work(self, process):
+        """Sends SIGINT once the process has computed for long enough to be rendering."""
+        give_up = time.monotonic() + TIMEOUT_S
+        while process.poll() is None and processor_time_s(process.pid) < 1.5:
+            self.assertLess(time.monotonic(), give_up)
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,447 @@
+// Parsing: every option, every default, everything that is refused and what is said about it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "app/options/command_line.h"
+#include "app/options/option_list.h"
+#include "common/render/option_names.h"
+#include "temp_folder.h"
+
+namespace pt {
+namespace {
+
+/// Split at blanks; '' stands for an empty argument.
+Command parse(const std::string& line) {
+  std::istringstream words(line);
+  std::vector<std::string> arguments;
+  for (std::string word; words >> word;) arguments.push_back(word == "''" ? "" : word);
+  return parse_command_line(arguments);
+}
+
+RenderCommand parse_render(const std::string& line) { return std::get<RenderCommand>(parse(line)); }
+
+Options parse_options(const std::string& line) { return parse_render(line).options; }
+
+/// A value of each option that is not its default, and a mode in which it applies.
+const std::map<std::string, std::string>& other_values() {
+  static const std::map<std::string, std::string> values{
+      {"width", "65535"},
+      {"height", "1"},
+      {"spp", "2147483647"},
+      {"max-depth", "65535"},
+      {"rr", "5"},
+      {"nee", "off"},
+      {"seed", "18446744073709551615"},
+      {"output", "a b.png"},
+      {"exposure", "-1.5"},
+      {"scene", "rtow"},
+      {"define", "a=1"},
+      {"strict", "on"},
+      {"spheres", "0"},
+      {"create-world", "device"},
+      {"look-from", "13,-2,0.1"},
+      {"look-at", "0,1e-05,-3e+20"},
+      {"up", "0,0,1"},
+      {"fov", "20.5"},
+      {"aperture", "0"},
+      {"focus-distance", "10"},
+      {"mode", "megakernel"},
+      {"device", "cuda:3"},
+      {"threads", "7"},
+      {"accel", "bvh2"},
+      {"builder", "sbvh"},
+      {"work", "sample"},
+      {"block", "32x4"},
+      {"compaction", "cub"},
+      {"pool-size", "1048576"},
+      {"finish-paths", "1000"},
+      {"regenerate", "off"},
+      {"schedule", "graph"},
+      {"stage-block",
+       "generate=256,intersect=128,shade_miss=256,shade_surface=64,shadow=1024,finish=256,"
+       "accumulate=1"},
+      {"scene-memory", "constant"},
+      {"branching", "reduced"},
+      {"rng", "xorwow"},
+      {"repeat", "10"},
+      {"warmup", "3"},
+      {"stats", "run.json"},
+      {"csv", "runs.csv"},
+      {"quiet", "on"}};
+  return values;
+}
+
+std::vector<std::string> arguments_for(const OptionEntry& entry, const std::string& value) {
+  std::vector<std::string> arguments{"--" + entry.name};
+  if (entry.form != OptionForm::flag) arguments.push_back(value);
+  if (entry.name == "exposure") arguments.insert(arguments.end(), {"--output", "image.png"});
+  if (entry.name == "work" || entry.name == "block")
+    arguments.insert(arguments.end(), {"--mode", "megakernel"});
+  return arguments;
+}
+
+TEST(CommandLine, DefaultsAreThoseOfOptions) {
+  const RenderCommand command = parse_render("");
+  for (const OptionEntry& entry : option_list())
+    EXPECT_EQ(entry.text(command.options), entry.text(Options())) << entry.name;
+  EXPECT_TRUE(command.given.empty());
+  const Options& options = command.options;
+  EXPECT_EQ(options.mode, Mode::wavefront);
+  EXPECT_EQ(options.width, 600);
+  EXPECT_EQ(options.height, 300);
+  EXPECT_EQ(options.spp, 50);
+  EXPECT_EQ(options.output, "image.exr");
+  EXPECT_FALSE(options.camera.look_from);
+}
+
+TEST(CommandLine, EveryOptionIsParsedAndWrittenBack) {
+  for (const OptionEntry& entry : option_list()) {
+    ASSERT_TRUE(other_values().contains(entry.name)) << entry.name << " has no test value";
+    const std::string value = other_values().at(entry.name);
+    EXPECT_NE(entry.text(Options()), value) << entry.name;
+    const auto command = std::get<RenderCommand>(parse_command_line(arguments_for(entry, value)));
+    EXPECT_EQ(entry.text(command.options), value) << entry.name;
+    EXPECT_TRUE(command.given.contains(entry.name));
+  }
+}
+
+TEST(CommandLine, AnOptionSetsNoOtherField) {
+  for (const OptionEntry& set : option_list()) {
+    Options options;
+    set.set(options, other_values().at(set.name));
+    for (const OptionEntry& entry : option_list())
+      if (entry.name != set.name) {
+        EXPECT_EQ(entry.text(options), entry.text(Options())) << set.name << " on " << entry.name;
+      }
+  }
+}
+
+TEST(CommandLine, FieldsGetTheValues) {
+  Options o = parse_options("--mode megakernel --work pixel --block 8x4 --device cuda:2 --spp 7");
+  EXPECT_EQ(o.mode, Mode::megakernel);
+  EXPECT_EQ(o.work, Work::pixel);
+  EXPECT_EQ(o.block.x, 8);
+  EXPECT_EQ(o.block.y, 4);
+  EXPECT_EQ(o.device.kind, DeviceChoice::Kind::cuda);
+  EXPECT_EQ(o.device.index, 2);
+  EXPECT_EQ(o.spp, 7);
+  o = parse_options("--compaction none --regenerate off --rng xorwow --branching reduced -q");
+  EXPECT_EQ(o.compaction, Compaction::none);
+  EXPECT_FALSE(o.regenerate);
+  EXPECT_EQ(o.rng, RngKind::xorwow);
+  EXPECT_EQ(o.branching, Branching::reduced);
+  EXPECT_TRUE(o.quiet);
+  o = parse_options("-o x.ppm --exposure .5 --seed 0 --accel brute --aperture 0.25 --fov 179.5");
+  EXPECT_EQ(o.output, "x.ppm");
+  EXPECT_EQ(o.exposure.stops, 0.5f);
+  EXPECT_EQ(o.exposure.kind, ExposureChoice::Kind::fixed);
+  EXPECT_EQ(parse_options("-o x.png --exposure auto").exposure.kind,
+            ExposureChoice::Kind::measured);
+  EXPECT_EQ(o.seed, 0u);
+  EXPECT_EQ(o.accel, AccelKind::brute);
+  EXPECT_EQ(o.camera.aperture, 0.25f);
+  EXPECT_EQ(o.camera.vertical_fov_degrees, 179.5f);
+  EXPECT_EQ(parse_options("--device cuda").device.index, 0);
+  EXPECT_EQ(parse_options("--spp=9").spp, 9);
+}
+
+TEST(CommandLine, VectorsComeInThreeSpellings) {
+  const std::array<float, 3> expected{-1.0f, -0.5f, 300.0f};
+  for (const char* line : {"--look-from -1 -.5 3e2 --spp 2", "--look-from -1,-.5,3e2 --spp 2",
+                           "--spp 2 --look-from=-1,-.5,3e2"}) {
+    const Options options = parse_options(line);
+    EXPECT_EQ(options.camera.look_from, expected) << line;
+    EXPECT_EQ(options.spp, 2) << line;
+  }
+}
+
+TEST(CommandLine, PoolSizeTakesBinarySuffixes) {
+  EXPECT_EQ(parse_options("--pool-size auto").pool_size, 0u);
+  EXPECT_EQ(parse_options("--pool-size 1000").pool_size, 1000u);
+  EXPECT_EQ(parse_options("--pool-size 512K").pool_size, 524288u);
+  EXPECT_EQ(parse_options("--pool-size 2M").pool_size, 2097152u);
+  EXPECT_EQ(parse_options("--pool-size 2147483647").pool_size, 2147483647u);
+}
+
+TEST(CommandLine, StageBlocksForAllOrByName) {
+  const auto all = parse_options("--stage-block 96").stage_block;
+  EXPECT_TRUE(std::ranges::all_of(all, [](int threads) { return threads == 96; }));
+  const auto some = parse_options("--stage-block intersect=128,shade_surface=64").stage_block;
+  EXPECT_EQ(some, (std::array<int, stage_count>{256, 128, 256, 64, 256, 256, 256}));
+}
+
+TEST(CommandLine, OtherCommands) {
+  EXPECT_TRUE(std::holds_alternative<ListScenesCommand>(parse("--list-scenes")));
+  EXPECT_TRUE(std::holds_alternative<ListDevicesCommand>(parse("--list-devices")));
+  EXPECT_TRUE(std::holds_alternative<VersionCommand>(parse("--version")));
+  auto compare = std::get<CompareCommand>(parse("compare a.exr b.png"));
+  EXPECT_EQ(compare.a, "a.exr");
+  EXPECT_EQ(compare.b, "b.png");
+  EXPECT_EQ(compare.tolerance, 0);
+  compare = std::get<CompareCommand>(parse("compare --tolerance 1e-3 a.exr b.png"));
+  EXPECT_EQ(compare.tolerance, 1e-3);
+  EXPECT_EQ(std::get<CompareCommand>(parse("compare a b --tolerance 0.1")).tolerance, 0.1);
+}
+
+TEST(CommandLine, HelpNamesEveryOptionAndDefault) {
+  const std::string help = std::get<HelpCommand>(parse("--help")).text;
+  for (const OptionEntry& entry : option_list()) {
+    EXPECT_NE(help.find("--" + entry.name + ' '), std::string::npos) << entry.name;
+    EXPECT_FALSE(entry.help.empty()) << entry.name;
+    const std::string standard = entry.text(Options());
+    if (entry.form != OptionForm::flag && !standard.empty()) {
+      EXPECT_NE(help.find(entry.placeholder + " [" + standard + "]"), std::string::npos)
+          << entry.name;
+    }
+  }
+  std::size_t at = 0;
+  for (const char* group : {"\nImage:", "\nScene:", "\nCamera", "\nExecution",
+                            "\nThe paper's toggles", "\nMeasurement:", "\nInformation:"}) {
+    at = help.find(group, at);
+    EXPECT_NE(at, std::string::npos) << group << " is missing or out of order";
+  }
+  for (const char* option : {"--list-scenes", "--list-devices", "--version", "--help"})
+    EXPECT_NE(help.find(option), std::string::npos);
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 115u) << line;
+  EXPECT_NE(std::get<HelpCommand>(parse("compare --help")).text.find("--tolerance"),
+            std::string::npos);
+}
+
+template <typename E>
+void expect_round_trip(const char* option) {
+  std::set<std::string> names;
+  for (const auto& [value, name] : enum_names<E>) {
+    EXPECT_EQ(to_string(value), name);
+    EXPECT_TRUE(names.insert(std::string(name)).second) << name;
+    Options options;
+    find_option(option).set(options, std::string(name));
+    EXPECT_EQ(find_option(option).text(options), name);
+  }
+  expect_error(
+      [&] {
+        parse_command_line({std::string("--") + option, "nonsense"});
+      },
+      std::string("--") + option + " nonsense: expected one of " + joined_names<E>(", "));
+}
+
+TEST(OptionNames, RoundTrip) {
+  expect_round_trip<Mode>("mode");
+  expect_round_trip<Work>("work");
+  expect_round_trip<Compaction>("compaction");
+  expect_round_trip<Schedule>("schedule");
+  expect_round_trip<SceneMemory>("scene-memory");
+  expect_round_trip<Branching>("branching");
+  expect_round_trip<RngKind>("rng");
+  expect_round_trip<AccelKind>("accel");
+  expect_round_trip<WorldBuilder>("create-world");
+  EXPECT_EQ(to_string(StageId::shade_surface), "shade_surface");
+  EXPECT_EQ(to_string(DeviceChoice{DeviceChoice::Kind::automatic, 0}), "auto");
+  EXPECT_EQ(to_string(DeviceChoice{DeviceChoice::Kind::cuda, 1}), "cuda:1");
+}
+
+struct Refusal {
+  std::string line;
+  std::string message;  ///< a part of it
+};
+
+void expect_refused(const std::vector<Refusal>& refusals) {
+  for (const auto& [line, message] : refusals) {
+    SCOPED_TRACE("ptexp " + line);
+    expect_error([&line = line] { parse(line); }, message);
+  }
+}
+
+TEST(Refused, WholeNumbers) {
+  for (const char* option : {"width", "height", "max-depth"})
+    for (const char* value : {"0", "65536", "-1", "1.5", "ten", "1e3", "+4", "0x10", "''"})
+      expect_refused({{std::string("--") + option + " " + value,
+                       std::string("--") + option + " " + value +
+                           ": expected a whole number from 1 to 65,535"}});
+  expect_refused({
+      {"--spp 0", "--spp 0: expected a whole number from 1 to 2,147,483,647"},
+      {"--spp 2147483648", "--spp 2147483648: expected a whole number from 1"},
+      {"--seed 18446744073709551616", "from 0 to 18,446,744,073,709,551,615"},
+      {"--seed -1", "--seed -1: expected a whole number"},
+      {"--spheres -1", "--spheres -1: expected a whole number from 0"},
+      {"--spheres 100000001", "from 0 to 100,000,000"},
+      {"--threads -1 --device cpu", "--threads -1: expected a whole number from 0"},
+      {"--threads 65536 --device cpu", "from 0 to 65,535"},
+      {"--repeat 0", "--repeat 0: expected a whole number from 1 to 1,000,000"},
+      {"--warmup -1", "--warmup -1: expected a whole number from 0"},
+  });
+  expect_error([] { parse_command_line({"--spp", " 4"}); }, "--spp  4: expected a whole");
+}
+
+TEST(Refused, NumbersAndVectors) {
+  for (const char* value : {"nan", "inf", "-inf", "x", "1e50", "''", "1,5"})
+    expect_refused({{std::string("--exposure ") + value + " -o a.png", "--exposure"},
+                    {std::string("--fov ") + value, "an angle above 0 and below 180 degrees"},
+                    {std::string("--aperture ") + value, "a length of 0 or more"},
+                    {std::string("--focus-distance ") + value, "a length above 0"}});
+  expect_refused({
+      {"--exposure 101 -o a.png", "--exposure 101: expected auto or a number from -100 to 100"},
+      {"--fov 0", "--fov 0: expected an angle"},
+      {"--fov 180", "--fov 180: expected an angle"},
+      {"--aperture -0.1", "--aperture -0.1: expected a length of 0 or more"},
+      {"--focus-distance 0", "--focus-distance 0: expected a length above 0"},
+      {"--look-from 1 2", "--look-from 1,2: expected three finite numbers, X Y Z or X,Y,Z"},
+      {"--look-from 1,2,3,4", "--look-from 1,2,3,4: expected three finite numbers"},
+      {"--look-at 1,nan,3", "--look-at 1,nan,3: expected three finite numbers"},
+      {"--look-at 1,,3", "--look-at 1,,3: expected three finite numbers"},
+      {"--up 0 0 0", "--up 0,0,0: expected a direction, not zero"},
+      {"--look-from 1 2 3 --look-at 1,2,3", "--look-at 1,2,3: expected a point other than"},
+      {"--look-from 0 0 0 --look-at 0 1 0 --up 0 -2 0", "--up 0,-2,0: expected a direction other"},
+  });
+}
+
+TEST(Refused, NamesAndForms) {
+  expect_refused({
+      {"--device gpu", "--device gpu: expected auto, cpu, cuda or cuda:N with N from 0"},
+      {"--device cuda:", "--device cuda:: expected auto"},
+      {"--device cuda:-1", "--device cuda:-1: expected auto"},
+      {"--device cuda:1x", "--device cuda:1x: expected auto"},
+      {"--mode ''", "--mode '': expected one of serial"},
+      {"--scene ''", "--scene '': expected a name"},
+      {"--output ''", "--output"},
+      {"--stats --quiet", "--stats --quiet: expected a name"},
+      {"--regenerate yes", "--regenerate yes: expected on or off"},
+      {"--pool-size 0",
+       "--pool-size 0: expected auto or a number of paths from 1 to 2,147,483,647"},
+      {"--pool-size 0K", "--pool-size 0K: expected auto"},
+      {"--pool-size 2048M", "--pool-size 2048M: expected auto"},
+      {"--pool-size K", "--pool-size K: expected auto"},
+      {"--pool-size 1G", "--pool-size 1G: expected auto"},
+      {"--pool-size 18014398509481985K", "--pool-size 18014398509481985K: expected auto"},
+  });
+}
+
+TEST(Refused, Blocks) {
+  expect_refused({
+      {"--block 64x64", "--block 64x64: a block has at most 1,024 threads, 64x64 has 4,096"},
+      {"--mode serial --block 64x64", "a block has at most 1,024 threads, 64x64 has 4,096"},
+      {"--mode megakernel --block 33x32", "at most 1,024 threads, 33x32 has 1,056"},
+      {"--block 65535x65535", "65535x65535 has 4,294,836,225"},
+      {"--stage-block 0", "--stage-block 0: expected a whole number of threads from 1 to 1,024"},
+      {"--stage-block 1025", "--stage-block 1025: expected a whole number of threads"},
+      {"--stage-block intersect=0", "--stage-block 0: expected a whole number of threads"},
+      {"--stage-block trace=64", "--stage-block trace: expected one of generate, intersect"},
+      {"--stage-block shadow=64,64", "--stage-block shadow=64,64: expected a number"},
+      {"--stage-block shadow=64,shadow=32", "names shadow twice"},
+  });
+  for (const char* value : {"0x4", "4x0", "4", "4x", "x4", "4x4x4", "-4x4", "4X4", "65536x1", "''"})
+    expect_refused({{std::string("--block ") + value,
+                     "--block " + std::string(value) + ": expected WIDTHxHEIGHT in threads"}});
+}
+
+TEST(Refused, WhatIsNoOption) {
+  expect_refused({
+      {"--frobnicate", "--frobnicate: no such option, see ptexp --help"},
+      {"--frobnicate 3", "--frobnicate: no such option"},
+      {"--spp=3 -x", "-x: no such option"},
+      {"--wid 3", "--wid: no such option"},
+      {"image.exr", "image.exr: an argument without an option"},
+      {"--spp", "--spp: expected a value"},
+      {"--look-at", "--look-at: expected a value"},
+      {"--spp 3 4", "4: an argument without an option"},
+      {"--spp 3 --spp 4", "--spp: is given twice"},
+      {"-q --quiet", "--quiet: is given twice"},
+      {"--quiet=off", "--quiet: takes no value"},
+      {"--tolerance 3", "--tolerance: no such option"},
+  });
+}
+
+TEST(Refused, CompareAndInformation) {
+  expect_refused({
+      {"compare", "compare: expected two images"},
+      {"compare a.exr", "compare: expected two images"},
+      {"compare a b c", "c: an argument without an option"},
+      {"compare a b --tolerance", "--tolerance: expected a value"},
+      {"compare a b --tolerance -1", "--tolerance -1: expected a finite number of 0 or more"},
+      {"compare a b --tolerance nan", "--tolerance nan: expected a finite number"},
+      {"compare a b --tolerance inf", "--tolerance inf: expected a finite number"},
+      {"compare a b --tolerance 1 --tolerance 2", "--tolerance: is given twice"},
+      {"compare a b --spp 3", "--spp: no such option"},
+      {"--spp 3 compare a b", "--spp: has no effect together with compare"},
+      {"--list-scenes --spp 3", "--spp: has no effect together with --list-scenes"},
+      {"--version --list-devices", "has no effect together with"},
+  });
+}
+
+TEST(Refused, Contradictions) {
+  expect_refused({
+      {"--scene cornell --spheres 3", "--spheres 3: has no effect on the scene 'cornell'"},
+      {"--exposure 1", "--exposure 1: applies to .png and .ppm; image.exr holds linear radiance"},
+      {"--stats a --csv ./a", "--csv ./a: is the file of --stats too"},
+      {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
+  });
+}
+
+TEST(Refused, WithoutEffectInTheMode) {
+  expect_refused({
+      {"--work pixel",
+       "--work pixel: has no effect with --mode wavefront; it applies to megakernel"},
+      {"--block 8x8", "--block 8x8: has no effect with --mode wavefront"},
+      {"--mode serial --threads 2", "--threads 2: has no effect with --mode serial"},
+      {"--mode serial --device cuda:1", "--device cuda:1: has no effect with --mode serial"},
+      {"--mode serial --scene-memory shared", "--scene-memory shared: has no effect"},
+      {"--mode serial --branching reduced", "--branching reduced: has no effect"},
+      {"--mode serial --create-world device", "--create-world device: has no effect"},
+  });
+  for (const char* mode : {"serial", "megakernel"})
+    for (const char* option :
+         {"compaction none", "pool-size auto", "regenerate on", "schedule host", "stage-block 128"})
+      expect_refused({{std::string("--mode ") + mode + " --" + option,
+                       std::string("--") + option + ": has no effect with --mode " + mode}});
+}
+
+TEST(Refused, WithoutEffectOnTheDevice) {
+  expect_refused({
+      {"--device cpu --schedule graph",
+       "--schedule graph: has no effect on the device cpu; it applies to cuda"},
+      {"--device cpu --stage-block 64", "--stage-block 64: has no effect on the device cpu"},
+      {"--device cpu --mode megakernel --block 8x8", "--block 8x8: has no effect on the device"},
+      {"--device cpu --scene-memory constant", "--scene-memory constant: has no effect"},
+      {"--device cpu --scene-memory shared", "--scene-memory shared: has no effect"},
+      {"--device cpu --create-world device", "--create-world device: has no effect"},
+      {"--device cuda --threads 3", "--threads 3: has no effect on the device cuda"},
+  });
+}
+
+TEST(Applicable, TheDeviceIsCheckedWhenItIsKnown) {
+  using Kind = DeviceChoice::Kind;
+  const RenderCommand graph = parse_render("--schedule graph");
+  EXPECT_NO_THROW(check_applicable(graph.options, graph.given, std::nullopt));
+  EXPECT_NO_THROW(check_applicable(graph.options, graph.given, Kind::cuda));
+  expect_error([&] { check_applicable(graph.options, graph.given, Kind::cpu); },
+               "--schedule graph: has no effect on the device cpu");
+  const RenderCommand threads = parse_render("--threads 2");
+  EXPECT_NO_THROW(check_applicable(threads.options, threads.given, Kind::cpu));
+  EXPECT_THROW(check_applicable(threads.options, threads.given, Kind::cuda), Error);
+}
+
+TEST(Applicable, DefaultsAreNeverRefused) {
+  using Kind = DeviceChoice::Kind;
+  for (const auto& [mode, name] : enum_names<Mode>) {
+    Options options;
+    options.mode = mode;
+    EXPECT_NO_THROW(check_applicable(options, {}, Kind::cpu)) << name;
+    EXPECT_NO_THROW(check_applicable(options, {}, Kind::cuda)) << name;
+  }
+}
+
+TEST(Applicable, ValuesThatMeanTheSameOnTheCpuAreAccepted) {
+  for (const char* line :
+       {"--device cpu --scene-memory global", "--device cpu --schedule host",
+        "--device cpu --schedule auto", "--device cpu --compaction none --pool-size 7",
+        "--device cpu --create-world host", "--device cpu --rng xorwow --branching reduced",
+        "--device cpu --mode megakernel --work sample", "--device cpu --mode serial --accel bvh2"})
+    EXPECT_NO_THROW(parse(line)) << line;
+}
+
+}  // namespace
+}  // namespace pt

@@ -1,0 +1,318 @@
+// What a run reports: medians, JSON, CSV rows and the file they go to, the table, the metadata.
+#include <gtest/gtest.h>
+
+#include <latch>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "app/options/option_list.h"
+#include "app/report/csv_file.h"
+#include "app/report/report.h"
+#include "app/report/run_summary.h"
+#include "common/build_info.h"
+#include "temp_folder.h"
+
+namespace pt {
+namespace {
+
+RenderRun make_run(double kernel_ms, double intersect_ms) {
+  return {kernel_ms,
+          {{"generate", 0.5, 2}, {"intersect", intersect_ms, 40}, {"denoise", 0.25, 1}},
+          20,
+          50};
+}
+
+/// Three repeats with kernel times 4, 2 and 3 ms.
+RenderReport make_report() {
+  RenderReport report;
+  report.device_name = "CPU, 8 threads";
+  report.device_kind = "cpu";
+  report.accel = "bvh2";
+  report.schedule = "host";
+  report.pool_size = 1024;
+  report.primitives = 51;
+  report.scene_ms = 1.5;
+  report.setup_ms = 2.5;
+  report.load_ms = 6.5;
+  report.transfer_ms = 3.5;
+  report.image_write_ms = 4.5;
+  report.counts = {9'000'000, 18'000'000, 3'000'000, 7, {9'000'000, 8'000'000, 1'000'000}};
+  report.runs = {make_run(4, 1.5), make_run(2, 0.5), make_run(3, 2.5)};
+  report.memory = {{"film", 1000}, {"pool", 24}};
+  report.kernels = {{"intersect", 61, 16, 128, 256, 0.75}, {"shadow", 40, 0, 0, 128, 1}};
+  return report;
+}
+
+Options make_options() {
+  Options options;
+  options.repeat = 3;
+  options.camera.look_from = {13, 2, 3};
+  options.camera.vertical_fov_degrees = 20.5f;
+  options.csv_file = "a \"b\", c.csv";
+  return options;
+}
+
+std::map<std::string, std::string> as_map(const CsvRow& row) { return {row.begin(), row.end()}; }
+
+TEST(Spread, MedianMinAndMax) {
+  EXPECT_EQ(spread({}).median, 0);
+  EXPECT_EQ(spread({5}).median, 5);
+  EXPECT_EQ(spread({3, 1}).median, 2);
+  const Spread odd = spread({9, 1, 4});
+  EXPECT_EQ(odd.median, 4);
+  EXPECT_EQ(odd.min, 1);
+  EXPECT_EQ(odd.max, 9);
+  EXPECT_EQ(spread({4, 1, 100, 2}).median, 3);
+}
+
+TEST(RunSummary, ByHand) {
+  const RunSummary summary = summarize(make_report());
+  EXPECT_EQ(summary.kernel_ms.median, 3);
+  EXPECT_EQ(summary.kernel_ms.min, 2);
+  EXPECT_EQ(summary.kernel_ms.max, 4);
+  ASSERT_EQ(summary.stages.size(), 3u);
+  EXPECT_EQ(summary.stages[1].stage, "intersect");
+  EXPECT_EQ(summary.stages[1].time_ms.median, 1.5);
+  EXPECT_EQ(summary.stages[1].time_ms.min, 0.5);
+  EXPECT_EQ(summary.stages[1].time_ms.max, 2.5);
+  EXPECT_EQ(summary.stages[1].launches, 40u);
+  EXPECT_EQ(summary.launches, 43u);
+  EXPECT_EQ(summary.waves, 20u);
+  EXPECT_EQ(summary.samples_done, 50);
+  EXPECT_DOUBLE_EQ(summary.mpaths_per_s, 3000);  // 9 M in 3 ms
+  EXPECT_DOUBLE_EQ(summary.mrays_per_s, 7000);   // 18 M + 3 M in 3 ms
+  EXPECT_EQ(memory_bytes(make_report()), 1024u);
+}
+
+TEST(RunSummary, NothingMeasuredIsNotADivisionByZero) {
+  RenderReport report;
+  EXPECT_EQ(summarize(report).mpaths_per_s, 0);
+  report.runs = {RenderRun{}};
+  report.counts.paths = 1;
+  EXPECT_EQ(summarize(report).mpaths_per_s, 0);
+  EXPECT_FALSE(report_table(Options(), report).empty());
+}
+
+TEST(RunSummary, AStageThatSomeRepeatsLackCountsWhereItRan) {
+  RenderReport report = make_report();
+  report.runs[0].stages.erase(report.runs[0].stages.begin());
+  const RunSummary summary = summarize(report);
+  ASSERT_EQ(summary.stages.size(), 3u);
+  EXPECT_EQ(summary.stages.back().stage, "generate");
+  EXPECT_EQ(summary.stages.back().time_ms.median, 0.5);
+}
+
+TEST(Report, CompleteMeansEveryRepeatAndSample) {
+  const Options options = make_options();
+  RenderReport report = make_report();
+  EXPECT_TRUE(is_complete(options, report));
+  report.runs[1].samples_done = 49;
+  EXPECT_FALSE(is_complete(options, report));
+  report = make_report();
+  report.runs.pop_back();
+  EXPECT_FALSE(is_complete(options, report));
+}
+
+TEST(ReportJson, HasEverything) {
+  const auto json = nlohmann::json::parse(report_json(make_options(), make_report()));
+  EXPECT_EQ(json["schema_version"], report_schema_version);
+  EXPECT_EQ(json["program"]["commit"], build_info().commit);
+  EXPECT_EQ(json["program"]["fast_math"], build_info().fast_math);
+  EXPECT_EQ(json["device"]["name"], "CPU, 8 threads");
+  EXPECT_EQ(json["used"]["accel"], "bvh2");
+  EXPECT_EQ(json["used"]["schedule"], "host");
+  EXPECT_EQ(json["used"]["pool_size"], 1024);
+  EXPECT_EQ(json["used"]["primitives"], 51);
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["samples_done"], 50);
+  EXPECT_EQ(json["time_ms"]["kernel"], (nlohmann::json{{"median", 3}, {"min", 2}, {"max", 4}}));
+  EXPECT_EQ(json["time_ms"]["scene"], 1.5);
+  EXPECT_EQ(json["time_ms"]["setup"], 2.5);
+  EXPECT_EQ(json["time_ms"]["transfer"], 3.5);
+  EXPECT_EQ(json["time_ms"]["image_write"], 4.5);
+  EXPECT_EQ(json["rates"]["mpaths_per_s"], 3000);
+  EXPECT_EQ(json["rates"]["mrays_per_s"], 7000);
+  EXPECT_EQ(json["waves"], 20);
+  EXPECT_EQ(json["launches"], 43);
+  EXPECT_EQ(json["stages"][1]["stage"], "intersect");
+  EXPECT_EQ(json["stages"][1]["time_ms"]["max"], 2.5);
+  EXPECT_EQ(json["stages"][1]["launches"], 40);
+  EXPECT_EQ(json["counts"]["paths"], 9'000'000);
+  EXPECT_EQ(json["counts"]["rays"], 18'000'000);
+  EXPECT_EQ(json["counts"]["shadow_rays"], 3'000'000);
+  EXPECT_EQ(json["counts"]["nonfinite_samples"], 7);
+  EXPECT_EQ(json["counts"]["live_paths"], (std::vector<int>{9'000'000, 8'000'000, 1'000'000}));
+  EXPECT_EQ(json["memory"]["total_bytes"], 1024);
+  EXPECT_EQ(json["memory"]["buffers"][1]["name"], "pool");
+  EXPECT_EQ(json["kernels"][0]["registers"], 61);
+  EXPECT_EQ(json["kernels"][0]["spill_bytes"], 16);
+  EXPECT_EQ(json["kernels"][0]["shared_bytes"], 128);
+  EXPECT_EQ(json["kernels"][0]["block_threads"], 256);
+  EXPECT_EQ(json["kernels"][0]["occupancy"], 0.75);
+  ASSERT_EQ(json["runs"].size(), 3u);
+  EXPECT_EQ(json["runs"][0]["kernel_ms"], 4);
+  EXPECT_EQ(json["runs"][0]["stages"][1]["time_ms"], 1.5);
+}
+
+TEST(ReportJson, HasEveryOptionWithItsType) {
+  const auto json = nlohmann::json::parse(report_json(make_options(), make_report()));
+  const auto& options = json["options"];
+  EXPECT_EQ(options.size(), option_list().size());
+  for (const OptionEntry& entry : option_list())
+    EXPECT_TRUE(options.contains(option_key(entry))) << entry.name;
+  EXPECT_EQ(options["width"], 600);
+  EXPECT_EQ(options["max_depth"], 50);
+  EXPECT_EQ(options["mode"], "wavefront");
+  EXPECT_EQ(options["quiet"], false);
+  EXPECT_EQ(options["pool_size"], "auto");
+  EXPECT_EQ(options["look_from"], "13,2,3");
+  EXPECT_EQ(options["fov"], 20.5);
+  EXPECT_TRUE(options["aperture"].is_null());
+  EXPECT_TRUE(options["stats"].is_null());
+  Options large;
+  large.seed = UINT64_MAX;
+  large.pool_size = 7;
+  const auto others = nlohmann::json::parse(report_json(large, {}))["options"];
+  EXPECT_EQ(others["seed"], UINT64_MAX);
+  EXPECT_EQ(others["pool_size"], 7);
+}
+
+TEST(ReportJson, SurvivesNamesThatAreNoUtf8) {
+  Options options;
+  options.output = "caf\xe9.exr";
+  EXPECT_NO_THROW(nlohmann::json::parse(report_json(options, make_report())));
+}
+
+TEST(ReportCsv, Row) {
+  const CsvRow row = report_csv_row(make_options(), make_report());
+  EXPECT_EQ(row.front().first, "schema_version");
+  auto fields = as_map(row);
+  EXPECT_EQ(fields.size(), row.size()) << "a column name occurs twice";
+  EXPECT_EQ(fields["schema_version"], std::to_string(report_schema_version));
+  EXPECT_EQ(fields["commit"], build_info().commit);
+  for (const OptionEntry& entry : option_list())
+    EXPECT_EQ(fields.at(option_key(entry)), entry.text(make_options())) << entry.name;
+  EXPECT_EQ(fields["device_name"], "CPU, 8 threads");
+  EXPECT_EQ(fields["used_pool_size"], "1024");
+  EXPECT_EQ(fields["kernel_ms_median"], "3.000000");
+  EXPECT_EQ(fields["kernel_ms_min"], "2.000000");
+  EXPECT_EQ(fields["kernel_ms_max"], "4.000000");
+  EXPECT_EQ(fields["intersect_ms_median"], "1.500000");
+  EXPECT_EQ(fields["intersect_launches"], "40");
+  EXPECT_EQ(fields["shadow_ms_median"], "");
+  EXPECT_EQ(fields["compact_launches"], "");
+  EXPECT_EQ(fields["other_ms_median"], "0.250000") << "stages without a column are not lost";
+  EXPECT_EQ(fields["waves"], "20");
+  EXPECT_EQ(fields["launches"], "43");
+  EXPECT_EQ(fields["mpaths_per_s"], "3000");
+  EXPECT_EQ(fields["mrays_per_s"], "7000");
+  EXPECT_EQ(fields["paths"], "9000000");
+  EXPECT_EQ(fields["live_paths"], "9000000;8000000;1000000");
+  EXPECT_EQ(fields["memory_bytes"], "1024");
+  EXPECT_EQ(fields["setup_ms"], "2.500000");
+  EXPECT_EQ(fields["load_ms"], "6.500000");
+  EXPECT_EQ(fields["kernels"], "intersect:61:16:128:256:0.7500;shadow:40:0:0:128:1.0000");
+}
+
+TEST(ReportCsv, ColumnsDoNotDependOnTheRun) {
+  const CsvRow full = report_csv_row(make_options(), make_report());
+  const CsvRow empty = report_csv_row(Options(), RenderReport());
+  ASSERT_EQ(full.size(), empty.size());
+  for (std::size_t i = 0; i < full.size(); ++i) EXPECT_EQ(full[i].first, empty[i].first);
+}
+
+TEST(CsvFile, HeaderOnceAndQuoting) {
+  const TempFolder folder;
+  const std::string path = folder.file("runs.csv");
+  append_csv_row(path, {{"a", "1"}, {"b", "x, \"y\"\nz"}});
+  append_csv_row(path, {{"a", ""}, {"b", "2"}});
+  EXPECT_EQ(read_text(path), "a,b\n1,\"x, \"\"y\"\"\nz\"\n,2\n");
+}
+
+TEST(CsvFile, AnEmptyFileGetsTheHeader) {
+  const TempFolder folder;
+  write_text(folder.file("runs.csv"), "");
+  append_csv_row(folder.file("runs.csv"), {{"a", "1"}});
+  EXPECT_EQ(read_text(folder.file("runs.csv")), "a\n1\n");
+}
+
+TEST(CsvFile, OtherColumnsAreRefusedAndUntouched) {
+  const TempFolder folder;
+  const std::string path = folder.file("runs.csv");
+  for (const char* text : {"a,c\n1,2\n", "a\n", "a,b,c\n", "a,b", "\n", "1,2\n"}) {
+    write_text(path, text);
+    const CsvRow row{{"a", "1"}, {"b", "2"}};
+    expect_error([&] { check_csv(path, row); }, path + ": has other columns");
+    expect_error([&] { append_csv_row(path, row); }, path + ": has other columns");
+    EXPECT_EQ(read_text(path), text);
+  }
+}
+
+TEST(CsvFile, ARowLeftOpenIsEnded) {
+  const TempFolder folder;
+  write_text(folder.file("runs.csv"), "a,b\n1,2");
+  append_csv_row(folder.file("runs.csv"), {{"a", "3"}, {"b", "4"}});
+  EXPECT_EQ(read_text(folder.file("runs.csv")), "a,b\n1,2\n3,4\n");
+}
+
+TEST(CsvFile, CheckCreatesAndChangesNothing) {
+  const TempFolder folder;
+  const CsvRow row{{"a", "1"}};
+  EXPECT_NO_THROW(check_csv(folder.file("new.csv"), row));
+  EXPECT_TRUE(folder.entries().empty());
+  write_text(folder.file("old.csv"), "a\n7\n");
+  EXPECT_NO_THROW(check_csv(folder.file("old.csv"), row));
+  EXPECT_EQ(read_text(folder.file("old.csv")), "a\n7\n");
+  expect_error([&] { check_csv(folder.file("none/x.csv"), row); }, "none/x.csv: cannot be created");
+  expect_error([&] { check_csv(folder.file(""), row); }, "cannot be appended to");
+  expect_error([&] { append_csv_row(folder.file("none/x.csv"), row); }, "cannot be appended to");
+}
+
+TEST(CsvFile, ParallelRunsNeitherInterleaveNorRepeatTheHeader) {
+  const TempFolder folder;
+  const std::string value(5000, 'x');
+  for (int round = 0; round < 100; ++round) {  // many new files: the first rows race
+    const std::string path = folder.file(std::to_string(round));
+    std::latch start(4);
+    std::vector<std::jthread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&] {
+        start.arrive_and_wait();
+        for (int i = 0; i < 3; ++i) append_csv_row(path, {{"a", value}, {"b", "1"}});
+      });
+    }
+    threads.clear();  // joins them
+    std::string expected = "a,b\n";
+    for (int i = 0; i < 12; ++i) expected += value + ",1\n";
+    ASSERT_TRUE(read_text(path) == expected) << "in round " << round;
+  }
+}
+
+TEST(ReportTable, NamesWhatWasMeasured) {
+  const std::string table = report_table(make_options(), make_report());
+  for (const char* part :
+       {"wavefront of 'spheres', 600x300, 50 samples per pixel, on CPU, 8 threads, 3 repeats",
+        "intersect              1.500       0.500       2.500   50.0 %         40", "kernel time",
+        "9,000,000     3000.00 Mpaths/s", "21,000,000     7000.00 Mrays/s", "scene 1.5 ms",
+        "set-up 2.5 ms", "transfer 3.5 ms", "image 4.5 ms", "waves", "left out of the image"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
+  EXPECT_EQ(table.back(), '\n');
+}
+
+TEST(ReportMetadata, HasOptionsDeviceBuildAndTimes) {
+  auto metadata = report_metadata(make_options(), make_report());
+  EXPECT_EQ(metadata["ptexp.commit"], build_info().commit);
+  EXPECT_EQ(metadata["ptexp.device"], "CPU, 8 threads");
+  EXPECT_EQ(metadata["ptexp.kernel_ms"], "3.000000");
+  EXPECT_EQ(metadata["ptexp.samples_done"], "50");
+  EXPECT_EQ(metadata["ptexp.option.seed"], "1");
+  EXPECT_EQ(metadata["ptexp.option.look_from"], "13,2,3");
+  EXPECT_FALSE(metadata.contains("ptexp.option.look_at"));
+  for (const auto& [name, value] : metadata) {
+    EXPECT_LE(name.size(), 79u) << "the longest keyword of a PNG";
+    EXPECT_FALSE(value.empty()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace pt

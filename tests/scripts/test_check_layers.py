@@ -1,0 +1,174 @@
+"""Tests scripts/check_layers.py with small source trees in which one breach is planted."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPT = Path(__file__).resolve().parents[2] / "scripts" / "check_layers.py"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(SCRIPT.parent))
+import check_layers  # noqa: E402
+
+SOUND = {
+    "main.cpp": '#include "wavefront/wavefront.h"\n#include "app/make_renderer.h"\n',
+    "app/make_renderer.h": '#include "common/render/renderer.h"\n',
+    "app/make_renderer.cpp": "#ifdef PTEXP_CUDA\n#endif\n",
+    "serial/serial.cpp": '#include "common/transport/shade.h"\n',
+    "megakernel/trace_path.h": '#include "common/transport/shade.h"\n',
+    "wavefront/wavefront.h": '#include "common/transport/shade.h"\n',
+    "wavefront/compaction_cuda.cu": '#include <cub/cub.cuh>\n'
+                                    '#include "common/device/launch.cuh"\n',
+    "common/platform.h": "#ifdef __CUDACC__\n#include <cuda.h>\n#include <cuda_runtime.h>\n#endif\n",
+    "common/error.h": "#include <string>\n",
+    "common/math/vec.h": '#include <glm/glm.hpp>\n#include "common/platform.h"\n',
+    "common/sampling/rng.h": '#include "common/math/vec.h"\n',
+    "common/material/bsdf.h": '#include "common/sampling/rng.h"\n',
+    "common/scene/scene.h": '#include "common/material/bsdf.h"\n',
+    "common/transport/shade.h": '#include "common/scene/scene.h"\n',
+    "common/accel/build_cuda/bvh.cu": '#include <cub/cub.cuh>\n'
+                                      '#include "common/device/cuda_check.cuh"\n',
+    "common/device/cuda_check.cuh": "#include <cuda_runtime.h>\n",
+    "common/device/launch.cuh": "#include <cuda_runtime.h>\n",
+    "common/device/devices.cpp": "#if defined(PTEXP_CUDA)\n#endif\n",
+    "common/render/options.h": "#include <array>\n",
+    "common/render/renderer.h": '#include "common/render/options.h"\n',
+}
+
+
+class CheckLayers(unittest.TestCase):
+    def check(self, changed):
+        """Runs the checker on the sound tree with `changed` files; returns (status, output)."""
+        with tempfile.TemporaryDirectory() as folder:
+            source = Path(folder, "src")
+            for path, text in {**SOUND, **changed}.items():
+                file = source / path
+                file.parent.mkdir(parents=True, exist_ok=True)
+                file.write_text(text, encoding="utf-8")
+            run = subprocess.run([sys.executable, SCRIPT, source], capture_output=True, text=True,
+                                 check=False, timeout=60)
+        self.assertEqual(run.stderr, "")
+        return run.returncode, run.stdout
+
+    def assert_sound(self, changed):
+        status, output = self.check(changed)
+        self.assertEqual((status, output.count("\n")), (0, 1), output)
+
+    def assert_breach(self, path, text, line, *words):
+        """One breach, in `line` of `path`, whose text contains `words`."""
+        status, output = self.check({path: text})
+        self.assertEqual(status, 1, output)
+        breaches = output.splitlines()[:-1]
+        self.assertEqual(len(breaches), 1, output)
+        self.assertTrue(breaches[0].startswith(f"src/{path}:{line}: "), output)
+        for word in words:
+            self.assertIn(word, breaches[0])
+
+    def test_a_sound_tree_passes(self):
+        self.assert_sound({})
+
+    def test_the_table_has_no_cycle(self):
+        reached = {name: set(may) for name, _, may in check_layers.LAYERS}
+        for middle in reached:
+            for below in reached.values():
+                if middle in below:
+                    below |= reached[middle]
+        for name, below in reached.items():
+            self.assertNotIn(name, below)
+
+    def test_the_table_keeps_physics_from_devices_and_schedules_apart(self):
+        for name in check_layers.PHYSICS + check_layers.SCHEDULES:
+            may = set(check_layers.allowed(name))
+            self.assertFalse(may & set(check_layers.SCHEDULES), name)
+            if name in check_layers.PHYSICS:
+                self.assertFalse(may & {"device", "render", "film", "build_cuda", "trace_cuda"}, name)
+
+    def test_schedules_do_not_include_each_other(self):
+        for a in check_layers.SCHEDULES:
+            for b in check_layers.SCHEDULES:
+                if a != b:
+                    self.assert_breach(f"{a}/own.h", f'\n#include "{b}/other.h"\n', 2,
+                                       f"{a} does not include {b}")
+
+    def test_common_includes_no_schedule_and_no_app(self):
+        self.assert_breach("common/render/renderer.h", '#include "wavefront/wavefront.h"\n', 1,
+                           "render does not include wavefront")
+        self.assert_breach("common/film/film.h", '#include "app/make_renderer.h"\n', 1,
+                           "film does not include app")
+        self.assert_breach("serial/serial.cpp", '#include "app/make_renderer.h"\n', 1,
+                           "serial does not include app")
+
+    def test_lower_physics_does_not_include_higher(self):
+        for lower, higher in [("math", "sampling"), ("sampling", "geometry"),
+                              ("geometry", "material"), ("material", "light"),
+                              ("accel", "scene"), ("scene", "transport"), ("light", "scene")]:
+            self.assert_breach(f"common/{lower}/x.h", f'#include "common/{higher}/y.h"\n', 1,
+                               f"{lower} does not include {higher}")
+
+    def test_physics_includes_no_device(self):
+        for layer in set(check_layers.PHYSICS) - {"platform"}:
+            self.assert_breach(f"common/{layer}/x.h", '#include "common/device/devices.h"\n', 1,
+                               f"{layer} does not include device")
+
+    def test_only_cuda_files_include_cuda(self):
+        for header in ["cuda.h", "cuda_runtime.h", "curand_kernel.h", "nvtx3/nvToolsExt.h",
+                       "cooperative_groups.h", "cuda/std/atomic"]:
+            self.assert_breach("common/device/x.cpp", f"#include <{header}>\n", 1, "CUDA")
+            self.assert_sound({"common/device/x_cuda.cpp": f"#include <{header}>\n"})
+        self.assert_breach("wavefront/x.h", '#include "common/device/launch.cuh"\n', 1, ".cuh")
+        self.assert_breach("common/platform.h", "#include <curand_kernel.h>\n", 1, "cuda.h")
+
+    def test_few_files_include_cub(self):
+        self.assert_breach("wavefront/wavefront_cuda.cu", "#include <cub/cub.cuh>\n", 1, "CUB")
+        self.assert_breach("common/device/x.cuh", "#include <thrust/sort.h>\n", 1, "CUB")
+
+    def test_one_file_asks_for_the_compiler(self):
+        for condition in ["#ifdef __CUDACC__", "#ifndef __CUDA_ARCH__", "#if defined(__NVCC__)",
+                          "#  if 1 && \\\n  defined(__CUDACC__)"]:
+            self.assert_breach("common/math/x.h", f"\n{condition}\n#endif\n", 2, "platform.h")
+        self.assert_breach("common/math/x.h", "#if 0\n#elif defined(__CUDA_ARCH__)\n#endif\n", 2,
+                           "platform.h")
+
+    def test_few_files_ask_for_the_build(self):
+        self.assert_breach("wavefront/x.cpp", "#ifdef PTEXP_CUDA\n#endif\n", 1,
+                           "make_renderer.cpp", "built in")
+        self.assert_sound({"common/device/devices_all.cpp": "#ifdef PTEXP_CUDA\n#endif\n"})
+
+    def test_includes_are_written_the_same_way(self):
+        self.assert_breach("common/math/x.h", '#include "vec.h"\n', 1, '"common/math/vec.h"')
+        self.assert_breach("common/sampling/x.h", '#include "../math/vec.h"\n', 1,
+                           '"common/math/vec.h"')
+        self.assert_breach("common/math/x.h", "#include <common/math/vec.h>\n", 1, "quotes")
+        self.assert_breach("common/math/x.h", '#include "glm/glm.hpp"\n', 1, "<>")
+        self.assert_breach("common/math/x.h", "#include HEADER\n", 1, "macro")
+        self.assert_breach("main.cpp", '#include "app/make_renderer.cpp"\n', 1, "compiled by itself")
+
+    def test_a_relative_path_does_not_hide_a_layer(self):
+        status, output = self.check({"common/math/x.h": '#include "../scene/scene.h"\n'})
+        self.assertEqual(status, 1)
+        self.assertIn("math does not include scene", output)
+
+    def test_an_unknown_folder_is_a_breach(self):
+        self.assert_breach("common/helpers/x.h", "\n", 1, "lies in no layer")
+        self.assert_breach("helper.cpp", "\n", 1, "lies in no layer")
+
+    def test_comments_and_strings_are_not_code(self):
+        self.assert_sound({"common/math/x.h": (
+            "/*\n#include \"wavefront/wavefront.h\"\n*/\n"
+            "// #include <cuda.h> \\\n#include <cuda.h>\n"
+            "auto a = R\"(\n#include <cuda.h>\n)\";\n"
+            "auto b = \"/*\";\nauto c = '\"';\n")})
+        self.assert_breach("common/math/x.h", "/* a\nb */ #include <cuda.h> // why\n", 2, "CUDA")
+        self.assert_breach("common/math/x.h", 'auto s = "/*";\n#include <cuda.h>\n', 2, "CUDA")
+        self.assert_breach("common/math/x.h", "# include /* x */ <cuda.h>\n", 1, "CUDA")
+
+    def test_an_empty_folder_is_an_error(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([sys.executable, SCRIPT, folder], capture_output=True, text=True,
+                                 check=False, timeout=60)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("no C++ or CUDA files", run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,207 @@
+"""Runs the experiments' harness with small images on the CPU: tables, refusals, failures, plots.
+
+The environment variable PTEXP names the executable (build/release/src/ptexp).
+"""
+import contextlib
+import csv
+import importlib
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
+TIMEOUT_S = 600  # generous, because the sanitizers share a busy machine
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "experiments"))
+import harness  # noqa: E402
+from harness import Configuration, Experiment, Plot  # noqa: E402
+
+SCRIPTS = sorted(path.stem for path in (ROOT / "experiments").glob("*.py")
+                 if "harness.main(" in path.read_text(encoding="utf-8"))
+NEED_GPU = ["block_size"]
+
+IMAGE = "--width 24 --height 12 --spp 2"
+
+
+def tiny_configurations(_arguments, _device):
+    return [Configuration("small", f"--mode serial {IMAGE}", {"series": "a", "panel": "", "x": 1}),
+            Configuration("64x64", f"--mode megakernel --block 64x64 {IMAGE}",
+                          {"series": "a", "panel": "", "x": 2}),
+            Configuration("larger", f"--mode wavefront {IMAGE} --seed 7",
+                          {"series": "a", "panel": "", "x": 3}, repeat=1)]
+
+
+TINY = Experiment("tiny", "Tiny: does the harness work?", tiny_configurations,
+                  Plot("lines", "Tiny", "x"))
+
+# Stands for a ptexp that dies while it renders.
+CRASHING = """#!/bin/sh
+case "$1" in
+  --list-devices) echo 'cpu        CPU (2 threads)' ;;
+  --version) echo 'ptexp 0' ;;
+  *) kill -SEGV $$ ;;
+esac
+"""
+
+
+class Experiments(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="ptexp experiments ")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_tiny(self, *arguments, experiment=TINY):
+        """(exit code, text printed, text of errors)"""
+        command = ["--ptexp", str(PTEXP), "--device", "cpu", "--output", str(self.folder / "out"),
+                   "--repeat", "3", "--warmup", "1", *arguments]
+        output, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            status = harness.main(experiment, command)
+        return status, output.getvalue(), errors.getvalue()
+
+    def result(self, ending="csv", name="tiny"):
+        found, = self.folder.glob(f"out/*/{name}.{ending}")
+        return found
+
+    def rows(self, name="tiny"):
+        with open(self.result("csv", name), newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def files(self):
+        return {path.name: path.read_bytes() for path in self.folder.glob("out/*/*")}
+
+    def test_a_table(self):
+        status, output, errors = self.run_tiny()
+        self.assertEqual((status, errors), (0, ""), output)
+        rows = self.rows()
+        self.assertEqual([row["name"] for row in rows], ["small", "64x64", "larger"])
+        self.assertEqual([row["status"] for row in rows], ["measured", "refused", "measured"])
+        for row in (rows[0], rows[2]):
+            low, median, high = (float(row[f"kernel_ms_{part}"])
+                                 for part in ("min", "median", "max"))
+            self.assertTrue(0 < low <= median <= high)
+            self.assertEqual((row["width"], row["paths"]), ("24", str(24 * 12 * 2)))
+        self.assertEqual([row["repeat"] for row in rows], ["3", "", "1"])
+        self.assertIn("1,024", rows[1]["message"])
+        self.assertEqual((rows[1]["kernel_ms_median"], rows[1]["x"]), ("", "2"))
+        self.assertIn("refused", output)
+
+    def test_the_origin_of_a_table(self):
+        self.run_tiny()
+        facts = json.loads(self.result("json").read_text(encoding="utf-8"))
+        self.assertEqual(facts["device"]["choice"], "cpu")
+        self.assertIn("--block 64x64", facts["configurations"]["64x64"])
+        for key in ("command", "date", "program", "host"):
+            self.assertTrue(facts[key], key)
+
+    def test_nothing_else_is_left(self):
+        self.run_tiny()
+        self.assertLessEqual(set(self.files()), {"tiny.csv", "tiny.json", "tiny.png"})
+
+    def test_a_label_keeps_the_other_table(self):
+        self.run_tiny()
+        before = self.result().read_bytes()
+        status, _, _ = self.run_tiny("--label", "fast-math")
+        self.assertEqual((status, self.result().read_bytes()), (0, before))
+        self.assertEqual(len(self.rows("tiny-fast-math")), 3)
+
+    def test_a_failed_run_leaves_the_result_intact(self):
+        self.run_tiny()
+        before = self.files()
+        crashing = self.folder / "crashing"
+        crashing.write_text(CRASHING, encoding="utf-8")
+        crashing.chmod(0o755)
+        status, _, errors = self.run_tiny("--ptexp", str(crashing))
+        self.assertEqual((status, len(errors.splitlines())), (2, 1), errors)
+        self.assertIn("no result was written", errors)
+        self.assertEqual(self.files(), before)
+
+    def test_nothing_but_refusals_is_an_error(self):
+        refused = Experiment("tiny", "?", lambda *_: tiny_configurations(*_)[1:2], TINY.plot)
+        status, _, errors = self.run_tiny(experiment=refused)
+        self.assertEqual(status, 2)
+        self.assertIn("64x64", errors)
+        self.assertEqual(self.files(), {})
+
+    def test_a_missing_program_or_device(self):
+        for arguments in (["--ptexp", str(self.folder / "none")], ["--device", "cuda:99"]):
+            status, _, errors = self.run_tiny(*arguments)
+            self.assertEqual((status, len(errors.splitlines())), (2, 1), errors)
+            self.assertIn(arguments[1], errors)
+
+    def test_a_failed_write_leaves_the_file(self):
+        path = self.folder / "table.csv"
+        harness.write_atomically(path, "old")
+        with self.assertRaises(TypeError):
+            harness.write_atomically(path, b"not text")
+        self.assertEqual(path.read_text(encoding="utf-8"), "old")
+        self.assertEqual([path], list(self.folder.iterdir()))
+
+    def test_the_plot(self):
+        try:
+            importlib.import_module("matplotlib")
+        except ImportError:
+            _, output, _ = self.run_tiny()
+            self.assertIn("no plot", output)
+            self.skipTest("matplotlib is not installed")
+        self.run_tiny()
+        self.assertEqual(self.result("png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_the_experiments_run(self):
+        for script in SCRIPTS:
+            with self.subTest(script=script):
+                self.check_script(script)
+
+    def check_script(self, script):
+        run = subprocess.run(
+            [sys.executable, ROOT / "experiments" / f"{script}.py", "--quick", "--device", "cpu",
+             "--repeat", "2", "--warmup", "0", "--ptexp", PTEXP, "--output", self.folder / "out"],
+            capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
+        if script in NEED_GPU:
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertIn("refused every configuration", run.stderr)
+            return
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        rows = self.rows(f"{script}-quick")
+        self.assertTrue(all(row["experiment"] == script for row in rows))
+        self.assertGreater(sum(row["status"] == "measured" for row in rows), len(rows) / 2)
+
+    def test_every_experiment_has_its_files(self):
+        self.assertLessEqual({"block_size", "image_size", "speed_targets", "toggles"}, set(SCRIPTS))
+        readme = (ROOT / "experiments" / "README.md").read_text(encoding="utf-8")
+        for script in SCRIPTS:
+            self.assertIn(f"`{script}.py`", readme)
+            self.assertTrue(os.access(ROOT / "experiments" / f"{script}.py", os.X_OK), script)
+
+
+class SpeedTargets(unittest.TestCase):
+    def test_verdicts(self):
+        targets = importlib.import_module("speed_targets")
+
+        def row(mode, spp, kernel_ms, waves=0):
+            made = targets.configuration(mode, "spheres", 600, 300, spp, 50, False).labels
+            return {**made, "mode": mode, "scene": "spheres", "width": "600", "height": "300",
+                    "spp": str(spp), "max_depth": "50", "kernel_ms_median": str(kernel_ms),
+                    "mpaths_per_s": "9000", "waves": str(waves), "used_pool_size": "1000",
+                    "rays": "100000"}
+        rows = [row("megakernel", 25, 0.6), row("megakernel", 50, 1.1), row("megakernel", 100, 2.5),
+                row("wavefront", 50, 2.1, 160), row("wavefront", 100, 4.2, 161)]
+        targets.finish(rows, type("Arguments", (), {"quick": False}))
+        self.assertEqual([row["verdict"] for row in rows], ["", "pass", "", "MISS", ""])
+        self.assertEqual([row["growth_verdict"] for row in rows], ["", "pass", "MISS", "", "pass"])
+        self.assertEqual([row["waves_verdict"] for row in rows], ["", "", "", "pass", "MISS"])
+
+    def test_rates_are_drawn_as_times(self):
+        targets = importlib.import_module("speed_targets")
+        self.assertEqual(targets.target_ms(">= 9 Gpaths/s", 288_000_000), "32")
+        self.assertEqual(targets.target_ms("<= 1.2 ms", 9_000_000), "1.2")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,44 @@
+// For tests of the loader of Mitsuba's XML: scenes as strings, warnings as a list.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/scene/mitsuba/mitsuba_xml.h"
+#include "temp_folder.h"
+
+namespace pt {
+
+struct LoadedScene {
+  SceneData scene;
+  std::vector<std::string> warnings;
+
+  /// How many warnings contain `part`.
+  int count(const std::string& part) const {
+    int n = 0;
+    for (const std::string& warning : warnings) n += warning.find(part) != std::string::npos;
+    return n;
+  }
+};
+
+inline LoadedScene load_with_warnings(const std::string& path, LoadOptions options = {}) {
+  LoadedScene loaded;
+  options.warn = [&](const std::string& message) { loaded.warnings.push_back(message); };
+  loaded.scene = load_mitsuba_xml(path, options);
+  return loaded;
+}
+
+/// The scene with this XML inside of <scene version="...">.
+inline LoadedScene load_xml(const std::string& inside, const std::string& version = "3.0.0",
+                            const LoadOptions& options = {}) {
+  const TempFolder folder;
+  const std::string path = folder.file("scene.xml");
+  write_text(path, "<scene version=\"" + version + "\">\n" + inside + "\n</scene>\n");
+  return load_with_warnings(path, options);
+}
+
+inline void expect_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
+}
+
+}  // namespace pt
