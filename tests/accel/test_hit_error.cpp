@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "common/accel/build/encode_cwbvh.h"
 #include "common/rays/trace_rays.h"
 #include "hard_hits.h"
 #include "tree_kinds.h"
@@ -53,41 +52,6 @@ TEST(HitError, IsWithinItsBound) {
   }
   EXPECT_GT(hits, 50000u);
   EXPECT_GT(worst, 0.1) << "the bound says nothing if it is this far from what happens";
-}
-
-/// Where a hit's box is, all of its boxes are: whichever contain the triangle's own.
-TEST(HitError, NoBoxAroundATriangleHidesIt) {
-  TestRandom random(81);
-  std::uint64_t hits = 0;
-  for (const MeshKind& kind : hard_mesh_kinds) {
-    const Mesh mesh = kind.make(300);
-    const TriangleTreeData brute = brute_kind.build({mesh});
-    for (const RayRecord& record : hard_rays(mesh, 90).rays) {
-      const Ray ray = record.ray();
-      const TriangleRay prepared = make_triangle_ray(ray.origin, ray.direction);
-      const SlabTestRay slabs = make_slab_test_ray(ray);
-      const CwbvhRay wide = make_cwbvh_ray(ray);
-      for (const Triangle& t : brute.triangles) {
-        const TriangleHit hit = intersect_triangle(prepared, t.v0, t.v1, t.v2);
-        if (!(hit.t > 0 && hit.t < infinite_distance)) continue;
-        ++hits;
-        const Bounds own = hit_bounds(t.v0, t.v1, t.v2);
-        Bounds other = own;  // of a sibling: it decides where the grid lies
-        other.grow(ray.origin + (2.0f * random.unit() * hit.t) * ray.direction);
-        // What is behind the hit is pruned at once.
-        ASSERT_TRUE(intersect_box(slabs, own.min, own.max, 0.0f, hit.t).is_hit()) << kind.name;
-        CwbvhChildren children;
-        children.count = 2;
-        children.bounds[0] = own, children.bounds[1] = other;
-        children.triangles[0] = children.triangles[1] = 1;
-        const CwbvhSlots slots = assign_cwbvh_slots(children);
-        const CwbvhNode node = encode_cwbvh_node(children, slots, 0, 0);
-        const std::uint32_t met = intersect_cwbvh_node(node, wide, 0.0f, hit.t);
-        ASSERT_EQ(met, node.used_mask()) << kind.name << " t " << hit.t;
-      }
-    }
-  }
-  EXPECT_GT(hits, 40000u);
 }
 
 /// Rays of a kind for a mesh of so many triangles; many more if PTEXP_LARGE_TESTS is set.

@@ -10,9 +10,8 @@ Affine without_translation(Affine map) {
   return map;
 }
 
-/// The distance along a ray is a mean of depths whose weights a sliver's small area makes
-/// uncertain: its longest edge over its height, but no more than this, which traversal ensures
-/// otherwise.
+/// On slivers Embree's distances are uncertain by the longest edge over the height, but no more
+/// than this. (Our own test's are not: see hit_error_distance.)
 constexpr float aspect_max = 1024.0f;
 
 }  // namespace
