@@ -62,7 +62,7 @@ LAYERS = [
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
-    ("platform", ["common/platform.h"], []),
+    ("platform", ["common/platform.h", "common/type_list.h"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
 MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]

@@ -14,7 +14,7 @@ SceneData load_traced_scene(const std::string& name) {
   SceneData scene;
   if (name.ends_with(".mesh")) {
     scene.meshes.push_back(read_trace_mesh(name));
-    scene.add_material({});
+    scene.add_material(MaterialDescription());
   } else {
     Options options;
     options.scene = name;

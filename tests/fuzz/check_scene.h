@@ -21,13 +21,12 @@ inline void check_scene(const SceneData& scene) {
     check_mesh(mesh);
     check_that(mesh.material < scene.materials.size());
   }
-  for (const Material& material : scene.materials) {
-    check_that(material.textures < scene.material_textures.size());
-  }
-  for (const MaterialTextures& textures : scene.material_textures) {
-    for (const std::uint32_t texture : {textures.albedo, textures.emission}) {
+  for (const MaterialDescription& material : scene.materials) {
+    const auto check_texture = [&](std::uint32_t texture) {
       check_that(texture == no_texture || texture < scene.textures.size());
-    }
+    };
+    for (const Parameter& parameter : material.parameters) check_texture(parameter.texture);
+    check_texture(material.emission.texture);
   }
   for (const Texture& texture : scene.textures) {
     if (texture.kind != TextureKind::image) continue;

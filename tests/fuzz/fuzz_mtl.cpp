@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       pt::decode_mtl(pt::as_bytes(data, size), "folder/a.mtl", file);
     });
     for (const pt::ObjMaterial& material : file.materials) {
-      const pt::Color& albedo = material.material.albedo;
+      const pt::Color& albedo = material.material.color(0);
       for (int c = 0; c < 3; ++c) {
         if (!(albedo[c] >= 0.0f && albedo[c] <= 1.0f)) std::abort();
       }

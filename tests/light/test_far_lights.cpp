@@ -111,7 +111,7 @@ TEST(FarLights, NoLampShadowsItselfAndDensitiesAgree) {
           const SurfacePoint point = alone.receiver(random);
           const Vec3 from = spawn_origin(point, {0, 1, 0});
           const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-          const IncidentLight light = sample_light(scene, from, u);
+          const IncidentLight light = sample_light<FullTraits>(scene, from, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
           ++asked;
           const ShadowRay shadow = spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f));
@@ -146,7 +146,7 @@ TEST(FarLights, WhatLiesJustBelowALampBlocksIt) {
           const SurfacePoint point = alone.receiver(random);
           const Vec3 from = spawn_origin(point, {0, 1, 0});
           const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-          const IncidentLight light = sample_light(scene, from, u);
+          const IncidentLight light = sample_light<FullTraits>(scene, from, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
           free += !intersect_shadow<FullTraits>(
               scene, spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f)));

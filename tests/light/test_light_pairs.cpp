@@ -165,10 +165,8 @@ void add_stripes(SceneData& scene, std::uint32_t material) {
   other.color0 = other.color1 = Color(0.5f);
   scene.textures.push_back(other);
   scene.textures.push_back(stripes);
-  const auto number = static_cast<std::uint32_t>(scene.textures.size()) - 1;
-  scene.material_textures.push_back({no_texture, number});
-  scene.materials[material].textures =
-      static_cast<std::uint16_t>(scene.material_textures.size() - 1);
+  scene.materials[material].emission.texture =
+      static_cast<std::uint32_t>(scene.textures.size()) - 1;
 }
 
 /// The texture's coordinate u at the corners: 0, 1 and 0.

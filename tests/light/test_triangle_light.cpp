@@ -143,7 +143,7 @@ TEST(TriangleLight, IsDarkFromBehindFromItsPlaneAndWithoutArea) {
 
 DeltaLight spot(SpotFalloff falloff, double inner_degrees, double outer_degrees) {
   DeltaLight light;
-  light.kind = DeltaLight::Kind::spot;
+  light.kind = LightKind::spot;
   light.intensity = Color(2.0f);
   light.cos_inner = static_cast<float>(std::cos(inner_degrees * pi_double / 180));
   light.cos_outer = static_cast<float>(std::cos(outer_degrees * pi_double / 180));
@@ -165,7 +165,7 @@ TEST(DeltaLight, APointFollowsTheInverseSquare) {
 
 TEST(DeltaLight, ADirectionalOneIsTheSameEverywhere) {
   DeltaLight light;
-  light.kind = DeltaLight::Kind::directional;
+  light.kind = LightKind::directional;
   light.direction = {0.6f, -0.8f, 0};
   light.intensity = {3, 2, 1};
   for (const Vec3& from : {Vec3(0.0f), Vec3(1e6f, -5, 2)}) {
@@ -229,7 +229,7 @@ TEST(DeltaLight, PowerIsTheIntegralOfTheIntensity) {
                 5 * estimate.sigma() + 1e-5 * estimate.mean());
   }
   DeltaLight sun;
-  sun.kind = DeltaLight::Kind::directional;
+  sun.kind = LightKind::directional;
   EXPECT_NEAR(delta_light_power(sun, 3).x, 9 * pi_double, 1e-5);
 }
 

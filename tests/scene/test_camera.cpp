@@ -147,7 +147,7 @@ TEST(Camera, TheLensIsUniform) {
 /// A scene of one sphere, prepared with camera overrides.
 SceneData prepare(const CameraOverrides& overrides) {
   SceneData scene;
-  scene.add_sphere({0, 0, 0}, 1, scene.add_material({}));
+  scene.add_sphere({0, 0, 0}, 1, scene.add_material(MaterialDescription()));
   scene.camera = {{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 40, 0.5f, 7};
   Options options;
   options.camera = overrides;

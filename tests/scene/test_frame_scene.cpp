@@ -56,7 +56,7 @@ TEST(FrameScene, FillsImagesOfAnyShape) {
 
 TEST(FrameScene, ABallTouchesTheSameFrame) {
   SceneData scene;
-  scene.add_sphere({5, 6, 7}, 2, scene.add_material({}));
+  scene.add_sphere({5, 6, 7}, 2, scene.add_material(MaterialDescription()));
   std::vector<Vec3> surface;
   for (int i = 0; i <= 400; ++i) {
     for (int j = 0; j < 400; ++j) {

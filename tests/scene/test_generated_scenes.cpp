@@ -160,8 +160,8 @@ TEST(GeneratedScenes, HaveWhatTheirDataRefersTo) {
       ASSERT_TRUE(instance.group >= 1 && instance.group <= groups);
       ASSERT_GT(instance.to_world.determinant(), 0.0f);
     }
-    for (const Material& m : scene.materials) {
-      for (int c = 0; c < 3; ++c) EXPECT_TRUE(m.albedo[c] >= 0 && m.albedo[c] < 1);
+    for (const MaterialDescription& m : scene.materials) {
+      for (int c = 0; c < 3; ++c) EXPECT_TRUE(m.color(0)[c] >= 0 && m.color(0)[c] < 1);
     }
   }
 }
@@ -305,7 +305,7 @@ TEST(Statue, IsLitByALampThatFacesItAndSeenByTheCamera) {
   const SceneData scene = make_statue_scene(2'000);
   const Mesh& lamp = scene.meshes.back();
   ASSERT_EQ(lamp.triangles.size(), 2u);
-  EXPECT_FALSE(is_black(scene.materials[lamp.material].emission));
+  EXPECT_FALSE(is_black(scene.materials[lamp.material].emission.radiance));
   for (const TriangleIndices& t : lamp.triangles) {
     const Vec3d to_knot = glm::normalize(-corners(lamp, t)[0]);
     EXPECT_GT(glm::dot(glm::normalize(normal(lamp, t)), to_knot), 0.7);
@@ -369,7 +369,7 @@ TEST(Boxes, AreInARoomWithoutGapsAtAnyScale) {
 TEST(Boxes, TheLampShinesDown) {
   const SceneData scene = make_boxes_scene(1);
   const Mesh& lamp = scene.meshes.back();
-  EXPECT_FALSE(is_black(scene.materials[lamp.material].emission));
+  EXPECT_FALSE(is_black(scene.materials[lamp.material].emission.radiance));
   for (const TriangleIndices& t : lamp.triangles) EXPECT_LT(normal(lamp, t).y, 0);
 }
 

@@ -30,9 +30,9 @@ TEST(LoadScene, PlyIsGreyInAStudio) {
   EXPECT_EQ(file.scene.name, "quad.PLY");
   ASSERT_EQ(file.scene.meshes.size(), 1u);
   EXPECT_EQ(file.scene.meshes[0].triangles.size(), 2u);
-  const Material& material = file.scene.materials.at(file.scene.meshes[0].material);
-  EXPECT_EQ(material.kind, MaterialKind::diffuse);
-  EXPECT_EQ(material.albedo, Color(0.5f));
+  const MaterialDescription& material = file.scene.materials.at(file.scene.meshes[0].material);
+  EXPECT_EQ(material.kind, kind_of<Diffuse>);
+  EXPECT_EQ(material.color(0), Color(0.5f));
   EXPECT_GT(file.scene.environment.width, 0);
   expect_near(file.scene.camera.look_at, {1, 2, 0});
   EXPECT_GT(file.scene.camera.look_from.z, 2.0f);
@@ -46,7 +46,7 @@ TEST(LoadScene, ObjHasTheMaterialsOfItsMtl) {
              "mtllib red.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
   const LoadedFile file(folder.file("one.obj"));
   ASSERT_EQ(file.scene.meshes.size(), 1u);
-  expect_near(file.scene.materials.at(file.scene.meshes[0].material).albedo, {0.9f, 0.1f, 0.2f});
+  expect_near(file.scene.materials.at(file.scene.meshes[0].material).color(0), {0.9f, 0.1f, 0.2f});
   EXPECT_GT(file.scene.environment.width, 0);
 }
 
@@ -56,7 +56,8 @@ TEST(LoadScene, ObjThatEmitsNeedsNoSky) {
   write_text(folder.file("lamp.obj"),
              "mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl lamp\nf 1 2 3\n");
   const LoadedFile file(folder.file("lamp.obj"));
-  expect_near(file.scene.materials.at(file.scene.meshes.at(0).material).emission, {3, 2, 1});
+  expect_near(file.scene.materials.at(file.scene.meshes.at(0).material).emission.radiance,
+              {3, 2, 1});
   EXPECT_TRUE(is_black(file.scene.sky.zenith));
   EXPECT_EQ(file.scene.environment.width, 0);
 }

@@ -69,7 +69,7 @@ TEST(LoaderDetails, ATextureScaleKeepsWhatItScales) {
                               "</texture></bsdf></shape>",
                               "0.6.0")
                               .scene;
-  const Color albedo = scene.materials.at(0).albedo;
+  const Color albedo = scene.materials.at(0).color(0);
   EXPECT_FLOAT_EQ(albedo.x, 0.4f);
   EXPECT_FLOAT_EQ(albedo.y, 0.2f);
   EXPECT_FLOAT_EQ(albedo.z, 0.1f);
@@ -83,7 +83,7 @@ TEST(LoaderDetails, ABlackBodysScaleMultiplies) {
                    scale + "/></emitter></shape>",
                "0.6.0")
         .scene.materials.at(0)
-        .emission;
+        .emission.radiance;
   };
   const Color one = radiance(""), three = radiance(" scale=\"3\"");
   EXPECT_GT(one.x, 0.0f);

@@ -67,7 +67,7 @@ TEST(Scenes, ASpheresLookDoesNotDependOnTheOthers) {
   const SceneData a = make_scene(few), b = make_scene(many);
   for (std::size_t i = 0; i <= 10; ++i) {
     EXPECT_EQ(a.spheres[i].radius_squared, b.spheres[i].radius_squared);
-    EXPECT_EQ(a.materials[a.material_of[i]].albedo, b.materials[b.material_of[i]].albedo);
+    EXPECT_EQ(a.materials[a.material_of[i]].color(0), b.materials[b.material_of[i]].color(0));
   }
 }
 
@@ -89,13 +89,13 @@ TEST(Scenes, ValuesArePhysical) {
       EXPECT_NEAR(glm::dot(q.dual_b, q.edge_a), 0, 1e-5);
       EXPECT_NEAR(glm::dot(q.dual_b, q.edge_b), 1, 1e-5);
     }
-    for (const Material& m : scene.materials) {
-      EXPECT_TRUE(finite(m.albedo) && finite(m.emission) && std::isfinite(m.parameter));
+    for (const MaterialDescription& m : scene.materials) {
+      EXPECT_TRUE(finite(m.color(0)) && finite(m.emission.radiance) && std::isfinite(m.scalar(1)));
       for (int c = 0; c < 3; ++c) {
-        EXPECT_TRUE(m.albedo[c] >= 0 && m.albedo[c] <= 1 && m.emission[c] >= 0);
+        EXPECT_TRUE(m.color(0)[c] >= 0 && m.color(0)[c] <= 1 && m.emission.radiance[c] >= 0);
       }
-      EXPECT_TRUE(m.kind != MaterialKind::metal || (m.parameter >= 0 && m.parameter <= 1));
-      EXPECT_TRUE(m.kind != MaterialKind::dielectric || m.parameter > 0);
+      EXPECT_TRUE(m.kind != kind_of<Metal> || (m.scalar(1) >= 0 && m.scalar(1) <= 1));
+      EXPECT_TRUE(m.kind != kind_of<Dielectric> || m.scalar(1) > 0);
     }
   }
 }
@@ -133,10 +133,10 @@ std::array<float, 7> fingerprint(const SceneData& scene, std::size_t i) {
 using Primitive = std::pair<std::array<float, 7>, std::array<float, 8>>;
 
 Primitive describe(const SceneData& scene, std::size_t i) {
-  const Material& m = scene.materials[scene.material_of[i]];
+  const MaterialDescription& m = scene.materials[scene.material_of[i]];
   return {fingerprint(scene, i),
-          {m.albedo.x, m.albedo.y, m.albedo.z, m.parameter, m.emission.x, m.emission.y,
-           m.emission.z, static_cast<float>(m.kind)}};
+          {m.color(0).x, m.color(0).y, m.color(0).z, m.scalar(1), m.emission.radiance.x,
+           m.emission.radiance.y, m.emission.radiance.z, static_cast<float>(m.kind)}};
 }
 
 std::vector<Primitive> describe_all(const SceneData& scene) {
@@ -170,7 +170,8 @@ TEST(Scenes, LightsAreThePrimitivesThatEmit) {
       std::vector<std::uint32_t> lights = scene.lights, emitting;
       std::sort(lights.begin(), lights.end());
       for (std::uint32_t i = 0; i < scene.primitive_count(); ++i) {
-        if (!is_black(scene.materials[scene.material_of[i]].emission)) emitting.push_back(i);
+        if (!is_black(scene.materials[scene.material_of[i]].emission.radiance))
+          emitting.push_back(i);
       }
       EXPECT_EQ(lights, emitting) << name;
     }

@@ -70,7 +70,7 @@ inline void add_lamp(SceneData& scene, Lamp lamp, const RoomPlace& place, std::u
       scene.delta_lights.push_back(delta);
       break;
     case Lamp::spot:
-      delta.kind = DeltaLight::Kind::spot;
+      delta.kind = LightKind::spot;
       delta.direction = {0, -1, 0};
       delta.cos_inner = 0.9f, delta.cos_outer = 0.3f;
       scene.delta_lights.push_back(delta);

@@ -93,7 +93,7 @@ inline const SceneKind scene_kinds[] = {
 inline SceneData make_random_scene(const SceneKind& kind, int count) {
   SceneData scene;
   scene.name = kind.name;
-  scene.add_material({});
+  scene.add_material(MaterialDescription());
   TestRandom random(static_cast<std::uint64_t>(count));
   kind.fill(scene, random, count);
   scene.camera.look_from = {12, 12, 12};

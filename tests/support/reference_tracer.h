@@ -29,7 +29,7 @@ class ReferenceTracer {
   struct Found {
     double t = 1e30;
     Vec3d normal{0};
-    const Material* material = nullptr;
+    const MaterialDescription* material = nullptr;
   };
 
   void intersect_sphere(std::size_t i, const Vec3d& o, const Vec3d& d, Found& found) const {
@@ -58,7 +58,7 @@ class ReferenceTracer {
     }
   }
 
-  const Material* material(std::size_t primitive) const {
+  const MaterialDescription* material(std::size_t primitive) const {
     return &scene_.materials[scene_.material_of[primitive]];
   }
 
@@ -80,20 +80,20 @@ class ReferenceTracer {
         return radiance +
                beta * ((1 - height) * Vec3d(scene_.sky.nadir) + height * Vec3d(scene_.sky.zenith));
       }
-      const Material& m = *found.material;
+      const MaterialDescription& m = *found.material;
       const double cosine = -glm::dot(d, found.normal);
-      if (cosine > 0) radiance += beta * Vec3d(m.emission);
+      if (cosine > 0) radiance += beta * Vec3d(m.emission.radiance);
       if (ray == max_depth_) return radiance;
       const Vec3d n = cosine > 0 ? found.normal : -found.normal;
       Vec3d next;
-      if (m.kind == MaterialKind::metal) {
+      if (m.kind == kind_of<Metal>) {
         next =
-            d - 2 * glm::dot(d, n) * n + static_cast<double>(m.parameter) * point_in_ball(random);
+            d - 2 * glm::dot(d, n) * n + static_cast<double>(m.scalar(1)) * point_in_ball(random);
         if (glm::dot(next, n) <= 0) return radiance;
       } else {
         next = n + random.direction();
       }
-      beta *= Vec3d(m.albedo);
+      beta *= Vec3d(m.color(0));
       o += found.t * d;
       d = glm::normalize(next);
     }

@@ -12,7 +12,7 @@ inline SceneData terrain_scene(std::vector<Mesh> meshes, std::vector<Instance> i
   scene.name = "terrain";
   scene.meshes = std::move(meshes);
   scene.instances = std::move(instances);
-  scene.add_material({});
+  scene.add_material(MaterialDescription());
   scene.camera.look_from = {-490, 175, 490};
   scene.camera.look_at = {0, 10, 0};
   prepare_scene(scene, {});

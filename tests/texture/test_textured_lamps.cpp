@@ -26,11 +26,8 @@ std::uint32_t add_image(SceneData& scene, std::uint32_t width, const std::vector
 
 /// A lamp whose emission is `glow` times a texture.
 std::uint32_t add_glow(SceneData& scene, const Color& glow, std::uint32_t texture) {
-  Material material = make_diffuse(Color(0.0f), glow);
-  material.textures = static_cast<std::uint16_t>(scene.material_textures.size());
-  MaterialTextures textures;
-  textures.emission = texture;
-  scene.material_textures.push_back(textures);
+  MaterialDescription material = make_diffuse(Color(0.0f), glow);
+  material.emission.texture = texture;
   return scene.add_material(material);
 }
 

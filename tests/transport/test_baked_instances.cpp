@@ -52,16 +52,13 @@ Mesh baked(Mesh mesh, const Affine& to_world) {
   return mesh;
 }
 
-std::uint32_t add_texture(SceneData& scene, bool emission) {
+std::uint32_t add_texture(SceneData& scene) {
   Texture checker;
   checker.kind = TextureKind::checkerboard;
   checker.color0 = {1, 0.2f, 0.6f}, checker.color1 = {0.1f, 0.9f, 0.3f};
   checker.u_row[0] = 1.7f, checker.u_row[1] = 0.3f, checker.v_row[1] = 2.2f;
   scene.textures.push_back(checker);
-  const auto number = static_cast<std::uint32_t>(scene.textures.size()) - 1;
-  scene.material_textures.push_back(emission ? MaterialTextures{no_texture, number}
-                                             : MaterialTextures{number, no_texture});
-  return static_cast<std::uint32_t>(scene.material_textures.size()) - 1;
+  return static_cast<std::uint32_t>(scene.textures.size()) - 1;
 }
 
 /// Everything placed by `to_world`: a smooth body, a textured wedge and a textured lamp.
@@ -73,14 +70,12 @@ SceneData placed_scene(bool instances, const Affine (&to_world)[3], MaterialKind
   floor.triangles = {{{0, 1, 2}}, {{0, 2, 3}}};
   floor.material = scene.add_material(make_diffuse({0.7f, 0.6f, 0.4f}));
   Mesh meshes[3] = {
-      smooth_body(scene.add_material(body == MaterialKind::metal ? make_metal(Color(0.9f), 0.2f)
-                                                                 : make_diffuse(Color(0.8f)))),
+      smooth_body(scene.add_material(body == kind_of<Metal> ? make_metal(Color(0.9f), 0.2f)
+                                                            : make_diffuse(Color(0.8f)))),
       wedge(scene.add_material(make_diffuse(Color(0.9f)))),
       striped_lamp(scene.add_material(make_diffuse(Color(0.0f), {9, 8, 7})))};
-  scene.materials[meshes[1].material].textures =
-      static_cast<std::uint16_t>(add_texture(scene, false));
-  scene.materials[meshes[2].material].textures =
-      static_cast<std::uint16_t>(add_texture(scene, true));
+  scene.materials[meshes[1].material].parameters[0].texture = add_texture(scene);
+  scene.materials[meshes[2].material].emission.texture = add_texture(scene);
   for (std::uint32_t i = 0; i < 3; ++i) {
     if (instances) {
       meshes[i].group = i + 1;
@@ -132,7 +127,7 @@ const Placement placements[] = {
 TEST(BakedInstances, AreEqualPixelByPixel) {
   for (const Placement& p : placements) {
     const Affine to_world[3] = {p.body, p.wedge, p.lamp};
-    for (const MaterialKind body : {MaterialKind::diffuse, MaterialKind::metal}) {
+    for (const MaterialKind body : {kind_of<Diffuse>, kind_of<Metal>}) {
       for (const bool nee : {true, false}) {
         SCOPED_TRACE(testing::Message() << p.name << ", nee " << nee);
         Options options = image_options(48, 36, 8, 4);
@@ -151,7 +146,7 @@ TEST(BakedInstances, AGroupPlacedTwiceShinesTwice) {
   for (SceneData* scene : {&placed, &world}) {
     const bool instances = scene == &placed;
     *scene = placed_scene(false, {placements[1].body, placements[1].wedge, placements[1].lamp},
-                          MaterialKind::diffuse);
+                          kind_of<Diffuse>);
     const std::uint32_t material = scene->meshes[2].material;
     scene->meshes.erase(scene->meshes.begin() + 2);
     Mesh lamp = striped_lamp(material);
@@ -226,8 +221,7 @@ TEST(DefaultCoordinates, OfATextureAreBarycentric) {
     stripes.color0 = Color(0.25f), stripes.color1 = Color(0.75f);
     stripes.v_row[1] = 0;
     scene.textures.push_back(stripes);
-    scene.material_textures.push_back({0, no_texture});
-    scene.materials[0].textures = 1;
+    scene.materials[0].parameters[0].texture = 0;
     const Vec3 at = b.x * mesh.positions[0] + b.y * mesh.positions[1] + b.z * mesh.positions[2];
     scene.camera = {at + Vec3(0, 2, 0), at, {0, 0, 1}, 0.001f, 0.0f, 2.0f};
     scene.meshes.push_back(mesh);

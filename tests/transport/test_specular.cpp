@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/material/material.h"
+#include "common/math/frame.h"
 #include "statistics.h"
 
 namespace pt {
@@ -9,15 +10,22 @@ namespace {
 
 using Vec3d = glm::dvec3;
 
-Vec4 random_numbers(TestRandom& random) {
-  return {random.unit(), random.unit(), random.unit(), random.unit()};
+Vec3 random_numbers(TestRandom& random) { return {random.unit(), random.unit(), random.unit()}; }
+
+/// As a surface with this normal has it: in a frame around it, and back.
+template <class Bsdf>
+BsdfSample sample_around(const Vec3d& n, const Bsdf& bsdf, const Vec3d& wo, const Vec3& u) {
+  const Frame frame = make_frame(Vec3(n));
+  BsdfSample s = bsdf.sample(frame.to_local(Vec3(wo)), u);
+  s.wi = frame.to_world(s.wi);
+  return s;
 }
 
 TEST(Mirror, AngleOfReflectionIsAngleOfIncidence) {
   TestRandom random;
   for (int i = 0; i < 10'000; ++i) {
     const Vec3d n = random.direction(), wo = random.direction();
-    const BsdfSample s = Metal{Color(0.7f), 0}.sample(Vec3(wo), Vec3(n), random_numbers(random));
+    const BsdfSample s = sample_around(n, Metal{Color(0.7f), 0}, wo, random_numbers(random));
     ASSERT_LE(glm::length(Vec3d(s.wi) - (2 * glm::dot(wo, n) * n - wo)), 1e-6);
   }
 }
@@ -60,9 +68,9 @@ TEST(Dielectric, ReflectsWithFresnelsProbabilityElseRefractsBySnell) {
     const Vec3d n = random.direction(), wo = random.direction();
     const double cos_o = glm::dot(wo, n), relative = cos_o > 0 ? eta : 1.0 / eta;
     const double f = fresnel(std::abs(cos_o), relative);
-    const Vec4 u = random_numbers(random);
+    const Vec3 u = random_numbers(random);
     if (std::abs(u.x - f) < 1e-4) continue;
-    const BsdfSample s = Dielectric{Color(0.5f), eta}.sample(Vec3(wo), Vec3(n), u);
+    const BsdfSample s = sample_around(n, Dielectric{Color(0.5f), eta}, wo, u);
     const Vec3d wi(s.wi);
     // Radiance over the square of the index of refraction is what passes.
     const double passes = u.x < f ? 1 : 1 / (relative * relative);

@@ -25,7 +25,8 @@ void expect_all(const Image& image, const Color& expected, double tolerance) {
 }
 
 /// A unit sphere at the origin that fills the view from (3, 4, 12), under a constant sky.
-SceneData lone_sphere(const Material& material, const Sky& sky = {Color(1.0f), Color(1.0f)}) {
+SceneData lone_sphere(const MaterialDescription& material,
+                      const Sky& sky = {Color(1.0f), Color(1.0f)}) {
   SceneData scene;
   scene.add_sphere({0, 0, 0}, 1, scene.add_material(material));
   scene.sky = sky;
@@ -37,7 +38,7 @@ SceneData lone_sphere(const Material& material, const Sky& sky = {Color(1.0f), C
 TEST(LoneSphere, ReflectsItsAlbedoOfAConstantSky) {
   const Color rho(0.2f, 0.5f, 0.9f);
   const Options options = image_options(16, 8, 16);
-  for (const Material& material : {make_diffuse(rho), make_metal(rho, 0)}) {
+  for (const MaterialDescription& material : {make_diffuse(rho), make_metal(rho, 0)}) {
     expect_all(render(lone_sphere(material), options).image, rho, 1e-6);
   }
   expect_all(render(lone_sphere(make_dielectric(Color(1.0f), 1.5f)), options).image, Color(1.0f),
@@ -99,7 +100,7 @@ TEST(DirectLight, FollowsTheFormFactors) {
       EXPECT_GT(r.counts.shadow_rays, r.counts.paths * 9 / 10);
       for (int c = 0; c < 3; ++c) {
         const double expected =
-            scene->materials[0].albedo[c] * scene->materials[1].emission[c] * factor;
+            scene->materials[0].color(0)[c] * scene->materials[1].emission.radiance[c] * factor;
         const MeanEstimate e = channel(r.image, c);
         EXPECT_NEAR(e.mean(), expected, 5 * e.sigma() + 1e-4 * expected);
         EXPECT_LT(e.sigma(), 5e-3 * expected) << "too noisy to tell";
@@ -161,7 +162,8 @@ TEST(Energy, IsNeverCreated) {
       SceneData scene = make_scene(options);
       if (white) {
         scene.sky = {Color(1.0f), Color(1.0f)};
-        for (Material& m : scene.materials) m.albedo = Color(1.0f);
+        for (MaterialDescription& m : scene.materials) m.parameters[0].value = Color(1.0f);
+        prepare_scene(scene, options);
       }
       for (const float value : render(scene, options).image.rgb) {
         ASSERT_GE(value, 0.0f);

@@ -119,7 +119,7 @@ TEST(TriangleScenes, PointLightFollowsTheInverseSquare) {
 TEST(TriangleScenes, DirectionalLightGivesItsIrradiance) {
   SceneData scene = floor_scene(0.8f);
   scene.delta_lights.push_back({});
-  scene.delta_lights[0].kind = DeltaLight::Kind::directional;
+  scene.delta_lights[0].kind = LightKind::directional;
   scene.delta_lights[0].direction = glm::normalize(Vec3(1, -1, 0));
   scene.delta_lights[0].intensity = Color(2.0f);
   const Image image = render_scene(scene, image_options(5, 5, 4, 2));
@@ -199,8 +199,7 @@ TEST(TriangleScenes, TexturesColourTheFloor) {
   checker.color0 = Color(0.8f), checker.color1 = Color(0.2f);
   checker.u_row[0] = checker.v_row[1] = 10.0f;
   scene.textures.push_back(checker);
-  scene.material_textures.push_back({0, no_texture});
-  scene.materials[0].textures = 1;
+  scene.materials[0].parameters[0].texture = 0;
   scene.sky = {Color(1.0f), Color(1.0f)};
   const Image image = render_scene(scene, image_options(40, 40, 64, 3));
   int dark = 0, bright = 0;
@@ -230,7 +229,8 @@ TEST(TriangleScenes, NoLightLeaksAtAnyScale) {
       options.scene = name;
       options.accel = accel;
       SceneData scene = build_scene(options);
-      for (Material& material : scene.materials) material.emission = Color(0.0f);
+      for (MaterialDescription& material : scene.materials)
+        material.emission.radiance = Color(0.0f);
       scene.sky = {Color(1.0f), Color(1.0f)};
       EXPECT_EQ(mean_of(render_scene(scene, options)), 0.0) << name;
     }

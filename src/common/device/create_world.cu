@@ -17,7 +17,7 @@ SphereWorldCreator create_world_on(int device) {
     CudaMemory memory;
     const std::uint32_t capacity = world.capacity;
     SphereWorld on_device{memory.allocate<Sphere>("spheres", capacity),
-                          memory.allocate<Material>("materials", capacity), capacity};
+                          memory.allocate<MaterialDescription>("materials", capacity), capacity};
     SphereWorld* pointer = memory.upload("world", std::vector<SphereWorld>{on_device});
     create_world<<<1, 1>>>(pointer, kind, count);
     check_cuda(cudaGetLastError(), "create_world");
@@ -27,7 +27,7 @@ SphereWorldCreator create_world_on(int device) {
     download(&on_device, pointer, sizeof on_device);
     world.count = on_device.count;
     download(world.spheres, on_device.spheres, world.count * sizeof(Sphere));
-    download(world.materials, on_device.materials, world.count * sizeof(Material));
+    download(world.materials, on_device.materials, world.count * sizeof(MaterialDescription));
   };
 }
 

@@ -115,9 +115,12 @@ void CudaRenderer::upload(const SceneData& scene) {
   scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
   scene_.primitives.scan = memory_.upload("scene", scene.scan_spheres);
   scene_.primitives.quads = memory_.upload("scene", scene.quads);
-  scene_.materials = memory_.upload("scene", scene.materials);
+  scene_.materials = memory_.upload("scene", scene.material_records);
+  scene_.parameters = memory_.upload("scene", scene.parameters);
+  scene_.emissions = memory_.upload("scene", scene.emissions);
   scene_.material_of = memory_.upload("scene", scene.material_of);
   scene_.lights = memory_.upload("scene", scene.lights);
+  scene_.light_emission = memory_.upload("scene", scene.light_emission);
   scene_.bvh_nodes = memory_.upload("acceleration structure", scene.bvh_nodes);
   if (traits_.geometry != Geometry::spheres_and_quads) upload_triangles(scene);
 }
@@ -143,11 +146,13 @@ void CudaRenderer::upload_triangles(const SceneData& scene) {
   scene_.attributes = {memory_.upload("vertex attributes", scene.attributes.triangles),
                        memory_.upload("vertex attributes", scene.attributes.normals),
                        memory_.upload("vertex attributes", scene.attributes.uvs)};
-  scene_.light_list.lights = memory_.upload("lights", scene.light_list.lights);
-  scene_.light_list.selection = memory_.upload("lights", scene.light_list.selection);
+  scene_.light_selector.lights = memory_.upload("lights", scene.light_list.lights);
+  scene_.light_selector.table = memory_.upload("lights", scene.light_list.selection);
+  scene_.light_map = {memory_.upload("lights", scene.light_list.first),
+                      memory_.upload("lights", scene.light_list.rank),
+                      memory_.upload("lights", scene.light_list.spheres)};
   scene_.environment.texels = memory_.upload("environment", scene.environment_map.texels);
   scene_.environment.alias = memory_.upload("environment", scene.environment_map.alias);
-  scene_.material_textures = memory_.upload("scene", scene.material_textures);
   scene_.textures = memory_.upload("textures", scene.textures);
   scene_.texels = memory_.upload("textures", scene.texels);
 }

@@ -12,8 +12,16 @@ enum class SpotFalloff : std::uint32_t {
   square_cosine,  ///< glTF's KHR_lights_punctual: square of linear in the cosine
 };
 
+/// Every kind of light but the environment; the delta lights come last. A turned triangle has its
+/// last two vertices exchanged: it belongs to an instance that mirrors, and mirroring would turn
+/// the side that shines away.
+enum class LightKind : std::uint8_t { triangle, turned_triangle, sphere, point, spot, directional };
+
+PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::turned_triangle; }
+PT_HD bool is_delta(LightKind kind) { return kind >= LightKind::point; }
+
 struct DeltaLight {
-  enum class Kind : std::uint32_t { point, spot, directional } kind = Kind::point;
+  LightKind kind = LightKind::point;
   Vec3 position{0.0f};       ///< point, spot: world space
   Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
   Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
@@ -42,7 +50,7 @@ struct DeltaLightSample {
 
 /// There is nothing to choose. Black at the light's own position.
 PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
-  if (light.kind == DeltaLight::Kind::directional) {
+  if (light.kind == LightKind::directional) {
     return {-light.direction, -beyond_scene * light.direction, light.intensity};
   }
   const Vec3 to_light = light.position - from;
@@ -51,7 +59,7 @@ PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& f
   const float inverse_distance = inverse_sqrt(distance2);
   const Vec3 wi = inverse_distance * to_light;
   const float share =
-      light.kind == DeltaLight::Kind::spot ? spot_share(light, -dot(light.direction, wi)) : 1.0f;
+      light.kind == LightKind::spot ? spot_share(light, -dot(light.direction, wi)) : 1.0f;
   // A light on a surface shines in front of it: its position has been rounded.
   const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
   return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
@@ -62,9 +70,9 @@ PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& f
 /// cosines.
 PT_HD Color delta_light_power(const DeltaLight& light, float scene_radius) {
   switch (light.kind) {
-    case DeltaLight::Kind::point:
+    case LightKind::point:
       return 4.0f * pi * light.intensity;
-    case DeltaLight::Kind::spot:
+    case LightKind::spot:
       return 2.0f * pi * (1.0f - 0.5f * (light.cos_inner + light.cos_outer)) * light.intensity;
     default:
       return pi * scene_radius * scene_radius * light.intensity;

@@ -1,24 +1,47 @@
-// The contract of a BSDF. Directions point away from the surface; `n` is the outward unit normal.
+// The contract of a BSDF. It works in the local shading frame: z is the normal, x the tangent;
+// directions have unit length and point away from the surface.
 //
-// A BSDF is a small value with three functions:
-//   BsdfSample sample(wo, n, u)    chooses wi; u uniform in [0, 1)^4
-//   Color evaluate(wo, wi, n)      f(wo, wi) |cos wi|; black for a delta BSDF
-//   float pdf(wo, wi, n)           density of sample() per solid angle; 0 for a delta BSDF
-// and `bool is_delta()`: true when it scatters into discrete directions only. A scene without
-// lights never asks for a density, so sample() does not compute one. Adding one: a file here, its
-// name in material.h's list. tests/material/test_bsdf.cpp then tests it.
+// A BSDF is a small value:
+//   static constexpr const char* name      what it is called in messages and statistics
+//   static constexpr int parameter_count   of its material's parameters, below parameters_max
+//   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
+//   bool is_delta()                        whether it scatters into discrete directions only
+//   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
+//   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once
+//
+// Adding one: a file here, its name in material.h's list, and a line in tests/support/bsdf_cases.h
+// with parameters for the tests, which iterate the list.
 #pragma once
 
 #include "common/math/vec.h"
 
 namespace pt {
 
-struct BsdfSample {
-  Vec3 wi = Vec3(0.0f);
-  Color weight = Color(0.0f);  ///< f |cos| / pdf; black: the path is absorbed
-  float outside = 1.0f;        ///< weight times this is what Russian roulette goes by
+/// What a sampled direction belongs to: a side and a kind.
+struct Lobe {
+  static constexpr std::uint8_t reflection = 1, transmission = 2;
+  static constexpr std::uint8_t diffuse = 4, glossy = 8, delta = 16;
 };
 
-PT_HD Vec3 reflect(const Vec3& wo, const Vec3& n) { return 2.0f * dot(wo, n) * n - wo; }
+struct BsdfSample {
+  Vec3 wi = Vec3(0.0f);        ///< local; need not have unit length but for rounding
+  Color weight = Color(0.0f);  ///< f |cos| / pdf; black: the path is absorbed
+  float pdf = 0.0f;            ///< per solid angle; meaningless for a delta lobe
+  std::uint8_t lobe = 0;       ///< of Lobe, one side and one kind
+  float eta = 1.0f;            ///< index of refraction beyond over before; 1 for reflection
+  float outside = 1.0f;        ///< weight times this is what Russian roulette goes by
+
+  PT_HD bool is_delta() const { return (lobe & Lobe::delta) != 0; }
+};
+
+struct BsdfValue {
+  Color f = Color(0.0f);  ///< f |cos wi|; black for a delta BSDF
+  float pdf = 0.0f;       ///< per solid angle; 0 for a delta BSDF
+};
+
+PT_HD bool same_side(const Vec3& wo, const Vec3& wi) { return wo.z * wi.z > 0.0f; }
+
+/// Of `wo` about the normal.
+PT_HD Vec3 mirrored(const Vec3& wo) { return {-wo.x, -wo.y, wo.z}; }
 
 }  // namespace pt

@@ -7,23 +7,29 @@
 namespace pt {
 
 struct Diffuse {
+  static constexpr const char* name = "diffuse";
+  static constexpr int parameter_count = 1;
+
   Color albedo;
+
+  template <class Parameters>
+  PT_HD static Diffuse make(const Parameters& p) {
+    return {p.color(0)};
+  }
 
   PT_HD bool is_delta() const { return false; }
 
-  PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
-    const Vec3 facing = dot(wo, n) < 0.0f ? -n : n;
-    return {sample_cosine_hemisphere(facing, u.x, u.y), albedo};
+  PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
+    Vec3 wi = sample_cosine_hemisphere(u.x, u.y);
+    const float pdf = cosine_hemisphere_pdf(wi.z);
+    if (wo.z < 0.0f) wi.z = -wi.z;
+    return {wi, albedo, pdf, Lobe::reflection | Lobe::diffuse};
   }
 
-  PT_HD Color evaluate(const Vec3& wo, const Vec3& wi, const Vec3& n) const {
-    return albedo * pdf(wo, wi, n);
-  }
-
-  PT_HD float pdf(const Vec3& wo, const Vec3& wi, const Vec3& n) const {
-    const float cos_o = dot(wo, n);
-    const float cos_i = dot(wi, n);
-    return cos_o * cos_i > 0.0f ? multiply_rounded(fabsf(cos_i), inverse_pi) : 0.0f;
+  PT_HD BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const {
+    if (!same_side(wo, wi)) return {};
+    const float pdf = cosine_hemisphere_pdf(fabsf(wi.z));
+    return {albedo * pdf, pdf};
   }
 };
 

@@ -9,27 +9,32 @@
 namespace pt {
 
 struct Metal {
+  static constexpr const char* name = "metal";
+  static constexpr int parameter_count = 2;
+
   Color albedo;
   float fuzz;  ///< in [0, 1]; 0: a perfect mirror
 
+  template <class Parameters>
+  PT_HD static Metal make(const Parameters& p) {
+    return {p.color(0), p.scalar(1)};
+  }
+
   PT_HD bool is_delta() const { return fuzz == 0.0f; }
 
-  PT_HD BsdfSample sample(const Vec3& wo, const Vec3& n, const Vec4& u) const {
-    const float cos_o = dot(wo, n);
-    const Vec3 mirror = reflect(wo, n);
-    if (is_delta()) return {normalize(mirror), albedo};
-    const Vec3 sum = mirror + fuzz * sample_unit_ball(u.x, u.y, u.z);
-    if (dot(sum, n) * cos_o <= 0.0f) return {};
-    return {normalize(sum), albedo};
+  PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
+    const Vec3 mirror = mirrored(wo);
+    if (is_delta()) return {mirror, albedo, 0.0f, Lobe::reflection | Lobe::delta};
+    const Vec3 sum = add_scaled(mirror, fuzz, sample_unit_ball(u.x, u.y, u.z));
+    if (!same_side(sum, wo)) return {};
+    const Vec3 wi = normalize(sum);
+    return {wi, albedo, ball_pdf(mirror, wi), Lobe::reflection | Lobe::glossy};
   }
 
-  PT_HD Color evaluate(const Vec3& wo, const Vec3& wi, const Vec3& n) const {
-    return albedo * pdf(wo, wi, n);
-  }
-
-  PT_HD float pdf(const Vec3& wo, const Vec3& wi, const Vec3& n) const {
-    if (is_delta() || dot(wo, n) * dot(wi, n) <= 0.0f) return 0.0f;
-    return ball_pdf(reflect(wo, n), wi);
+  PT_HD BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const {
+    if (is_delta() || !same_side(wo, wi)) return {};
+    const float pdf = ball_pdf(mirrored(wo), wi);
+    return {albedo * pdf, pdf};
   }
 
  private:
@@ -37,8 +42,8 @@ struct Metal {
   /// the chord [t0, t1], divided by the volume 4/3 pi fuzz^3.
   PT_HD float ball_pdf(const Vec3& mirror, const Vec3& wi) const {
     const float b = dot(mirror, wi);
-    const Vec3 off = mirror - b * wi;
-    const float discriminant = fuzz * fuzz - dot(off, off);
+    const Vec3 off = add_scaled(mirror, -b, wi);
+    const float discriminant = fused_multiply_add(fuzz, fuzz, -dot(off, off));
     if (discriminant <= 0.0f) return 0.0f;
     const float half_chord = sqrtf(discriminant);
     const float t0 = fmaxf(b - half_chord, 0.0f);

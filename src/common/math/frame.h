@@ -11,6 +11,9 @@ struct Frame {
   PT_HD Vec3 to_world(const Vec3& local) const {
     return weighted_sum(local, tangent, bitangent, normal);
   }
+  PT_HD Vec3 to_local(const Vec3& world) const {
+    return {dot(world, tangent), dot(world, bitangent), dot(world, normal)};
+  }
 };
 
 /// Branch-free and continuous but for the z = 0 crossing; `n` has unit length.
@@ -18,8 +21,10 @@ struct Frame {
 PT_HD Frame make_frame(const Vec3& n) {
   const float sign = copysignf(1.0f, n.z);
   const float a = -1.0f / (sign + n.z);
-  const float b = n.x * n.y * a;
-  return {{1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+  const float b = multiply_rounded(n.x * n.y, a);
+  return {{fused_multiply_add(sign * n.x * n.x, a, 1.0f), sign * b, -sign * n.x},
+          {b, fused_multiply_add(n.y * n.y, a, sign), -n.y},
+          n};
 }
 
 }  // namespace pt

@@ -3,9 +3,8 @@
 
 #include "common/rays/generate_rays.h"
 #include "common/rays/ray_sets.h"
-#include "common/sampling/random.h"
+#include "common/transport/follow_path.h"
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/shade_surface.h"
 
 namespace pt {
 
@@ -69,8 +68,7 @@ class RayPaths {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;
       if (hit.is_miss()) return no_ray;
-      const Scattering next = shade_surface<Traits>(
-          scene_, ray, hit, path, limits, random.draw(scatter_block(path.rays)), Vec4(0.0f));
+      const Scattering next = scatter_path<Traits>(scene_, ray, hit, path, limits, random);
       if (!next.alive) return no_ray;
       ray = next.ray;
     }

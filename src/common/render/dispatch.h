@@ -7,17 +7,9 @@
 #include "common/render/options.h"
 #include "common/sampling/random.h"
 #include "common/scene/scene.h"
+#include "common/type_list.h"
 
 namespace pt {
-
-template <auto value>
-using Constant = std::integral_constant<decltype(value), value>;
-
-template <class... T>
-struct TypeList {};
-
-template <class... A, class... B>
-TypeList<A..., B...> concatenate(TypeList<A...>, TypeList<B...>);
 
 // The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
 // whatever a file can hold shares the rest.

@@ -39,6 +39,15 @@ PT_HD Disk sample_unit_disk(float u0, float u1) {
   return {r * phi.cos, r * phi.sin};
 }
 
+/// Cosine-distributed about the z axis; density cosine_hemisphere_pdf(z). z is not 0 (Malley;
+/// pbrt-v4, section A.5.3).
+PT_HD Vec3 sample_cosine_hemisphere(float u0, float u1) {
+  const Disk disk = sample_unit_disk(u0, u1);
+  return {disk.x, disk.y, fast_sqrt(1.0f - u0)};
+}
+
+PT_HD float cosine_hemisphere_pdf(float cosine) { return multiply_rounded(cosine, inverse_pi); }
+
 /// Cosine-distributed around the unit vector `n`; density cos(theta) / pi. The sum of the normal
 /// and a uniform point on the sphere has exactly this direction, and needs no frame.
 PT_HD Vec3 sample_cosine_hemisphere(const Vec3& n, float u0, float u1) {

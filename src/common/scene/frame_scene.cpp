@@ -104,7 +104,7 @@ CameraParameters frame_scene(const SceneData& scene) {
 
 bool has_light(const SceneData& scene) {
   const auto emits = [&](std::uint32_t material) {
-    return !is_black(scene.materials[material].emission);
+    return !is_black(scene.materials[material].emission.radiance);
   };
   return !is_black(scene.sky.nadir) || !is_black(scene.sky.zenith) || scene.environment.width > 0 ||
          !scene.delta_lights.empty() ||

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <numeric>
+
 #include "common/error.h"
 #include "common/light/area_light.h"
 #include "common/light/triangle_light.h"
@@ -19,41 +22,66 @@ class Lister {
   }
 
   LightListData list() {
-    std::uint32_t first_triangle = 0;
-    for (const Mesh& mesh : scene_.meshes) {
-      if (!is_black(scene_.materials[mesh.material].emission)) add_mesh(mesh, first_triangle);
-      first_triangle += static_cast<std::uint32_t>(mesh.triangles.size());
-    }
+    list_lamps();
+    for (const Instance& instance : scene_.instances) add_group(instance.group, &instance.to_world);
+    add_group(0, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) add_delta(light);
-    LightListData data;
     std::vector<float> weights;
-    for (const Light& light : lights_) {
+    double total = 0;
+    for (const Light& light : data_.lights) {
       weights.push_back(light.weight);
-      total_weight_ += light.weight;
+      total += light.weight;
     }
-    if (!weights.empty()) data.selection = build_alias_table(weights);
-    data.lights = std::move(lights_);
-    data.total_weight = total_weight_ > 0 ? static_cast<float>(total_weight_) : 1.0f;  // a divisor
+    data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
+    if (total > 0) {
+      data_.selection = build_alias_table(weights);
+    } else {
+      data_.lights.clear();
+    }
     if (scene_.environment.width > 0) {
-      data.environment_probability = data.lights.empty() ? 1.0f : 0.5f;
+      data_.environment_probability = data_.lights.empty() ? 1.0f : 0.5f;
     }
-    return data;
+    return std::move(data_);
   }
 
  private:
-  void add_mesh(const Mesh& mesh, std::uint32_t first_triangle) {
-    if (mesh.group == 0) return add_placed(mesh, first_triangle, nullptr);
-    for (const Instance& instance : scene_.instances) {
-      if (instance.group == mesh.group) add_placed(mesh, first_triangle, &instance.to_world);
+  bool shines(const Mesh& mesh) const {
+    return !is_black(scene_.materials[mesh.material].emission.radiance);
+  }
+
+  /// A mesh that shines.
+  struct Lamp {
+    const Mesh* mesh;
+    std::uint32_t first_triangle;  ///< counted through all meshes
+  };
+
+  /// Triangles that shine are numbered through the meshes of a group.
+  void list_lamps() {
+    std::map<std::uint32_t, std::uint32_t> ranks;  // by group
+    std::uint32_t first_triangle = 0;
+    for (const Mesh& mesh : scene_.meshes) {
+      const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+      if (shines(mesh)) {
+        lamps_[mesh.group].push_back({&mesh, first_triangle});
+        data_.rank.resize(first_triangle + count);
+        std::uint32_t& next = ranks[mesh.group];
+        std::iota(data_.rank.end() - count, data_.rank.end(), next);
+        next += count;
+      }
+      first_triangle += count;
     }
   }
 
+  void add_group(std::uint32_t group, const Affine* to_world) {
+    data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    for (const Lamp& lamp : lamps_[group]) add_placed(*lamp.mesh, lamp.first_triangle, to_world);
+  }
+
   void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world) {
-    const Material& material = scene_.materials[mesh.material];
-    const MaterialTextures& textures = scene_.material_textures[material.textures];
+    const Emission& emission = scene_.materials[mesh.material].emission;
     const PlacementErrors errors(to_world);
-    if (lights_.size() + mesh.triangles.size() > lights_max) {
+    if (data_.lights.size() + mesh.triangles.size() > lights_max) {
       throw Error(fmt::format("scene '{}' has more than {} triangles that emit light", scene_.name,
                               lights_max));
     }
@@ -72,28 +100,29 @@ class Lister {
       light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
       const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
-      light.weight = emitter_weight(material.emission, 0.5f * glm::length(glm::cross(edge1, edge2)),
-                                    textures.emission_mean);
+      light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
+                                    emission.texture_mean);
       light.triangle =
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
-      light.radiance = material.emission;
-      light.emission_texture = textures.emission;
-      add(light);
+      light.radiance = emission.radiance;
+      light.emission_texture = emission.texture;
+      data_.lights.push_back(light);
     }
   }
 
   void add_sphere(std::size_t i) {
-    const Material& material = scene_.materials[scene_.sphere_material[i]];
-    if (is_black(material.emission)) return;
+    data_.spheres.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    const Color& radiance = scene_.materials[scene_.sphere_material[i]].emission.radiance;
+    if (is_black(radiance)) return;
     const Sphere& sphere = scene_.spheres[i];
     Light light{};
     light.kind = LightKind::sphere;
     light.a = sphere.center;
     light.c.x = sphere.radius_squared;
-    light.weight = emitter_weight(material.emission, sphere_area(sphere));
-    light.radiance = material.emission;
+    light.weight = emitter_weight(radiance, sphere_area(sphere));
+    light.radiance = radiance;
     light.triangle = light.emission_texture = no_texture;
-    add(light);
+    data_.lights.push_back(light);
   }
 
   void add_delta(const DeltaLight& delta) {
@@ -104,20 +133,15 @@ class Lister {
                bits_to_float(static_cast<std::uint32_t>(delta.falloff))};
     light.radiance = delta.intensity;
     light.triangle = light.emission_texture = no_texture;
-    light.kind = static_cast<LightKind>(static_cast<std::uint32_t>(LightKind::point) +
-                                        static_cast<std::uint32_t>(delta.kind));
+    light.kind = delta.kind;
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
-    add(light);
-  }
-
-  void add(const Light& light) {
-    if (light.weight > 0.0f) lights_.push_back(light);
+    data_.lights.push_back(light);
   }
 
   const SceneData& scene_;
   float radius_;
-  std::vector<Light> lights_;
-  double total_weight_ = 0;
+  std::map<std::uint32_t, std::vector<Lamp>> lamps_;  ///< by group
+  LightListData data_;
 };
 
 }  // namespace

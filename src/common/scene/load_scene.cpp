@@ -47,14 +47,8 @@ void add_obj_material(ObjMaterial source, TextureStore& textures, SceneData& sce
   const auto add = [&](const std::filesystem::path& map) {
     return map.empty() ? no_texture : textures.add_file(map);
   };
-  const MaterialTextures maps{add(source.albedo_map), add(source.emission_map)};
-  if (maps.albedo != no_texture || maps.emission != no_texture) {
-    if (scene.material_textures.size() > 0xffff) {
-      throw Error(fmt::format("material '{}': too many with textures, at most 65535", source.name));
-    }
-    source.material.textures = static_cast<std::uint16_t>(scene.material_textures.size());
-    scene.material_textures.push_back(maps);
-  }
+  source.material.parameters[0].texture = add(source.albedo_map);
+  source.material.emission.texture = add(source.emission_map);
   scene.add_material(source.material);
 }
 

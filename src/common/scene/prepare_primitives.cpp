@@ -50,9 +50,12 @@ void build_structure(SceneData& scene, const Bounds& others) {
 }
 
 void list_emitters(SceneData& scene) {
-  scene.lights.clear();
+  scene.lights.clear(), scene.light_emission.clear();
   for (std::uint32_t i = 0; i < scene.material_of.size(); ++i) {
-    if (!is_black(scene.materials[scene.material_of[i]].emission)) scene.lights.push_back(i);
+    const std::uint32_t emission = scene.material_records[scene.material_of[i]].emission;
+    if (emission == no_emission) continue;
+    scene.lights.push_back(i);
+    scene.light_emission.push_back(emission);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_camera.h"
+#include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
 
@@ -45,6 +46,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
+  prepare_materials(scene);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
   if (has_primitives_only(scene)) {
@@ -65,9 +67,12 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.primitives.scan_count = static_cast<std::uint32_t>(scene.scan_spheres.size());
   view.primitives.scan_center = scene.scan_center;
   view.bvh_nodes = scene.bvh_nodes.data();
-  view.materials = scene.materials.data();
+  view.materials = scene.material_records.data();
+  view.parameters = scene.parameters.data();
+  view.emissions = scene.emissions.data();
   view.material_of = scene.material_of.data();
   view.lights = scene.lights.data();
+  view.light_emission = scene.light_emission.data();
   view.light_count = static_cast<std::uint32_t>(scene.lights.size());
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
@@ -75,11 +80,11 @@ Scene host_view(const SceneData& scene, int width, int height) {
                      scene.attributes.uvs.data()};
   view.to_world = scene.to_world.data();
   const LightListData& list = scene.light_list;
-  view.light_list = {list.lights.data(), list.selection.data(),
-                     static_cast<std::uint32_t>(list.lights.size()), list.total_weight,
-                     list.environment_probability};
+  view.light_selector = {list.lights.data(), list.selection.data(),
+                         static_cast<std::uint32_t>(list.lights.size()), list.total_weight,
+                         list.environment_probability};
+  view.light_map = {list.first.data(), list.rank.data(), list.spheres.data()};
   view.environment = scene.environment_map.view();
-  view.material_textures = scene.material_textures.data();
   view.textures = scene.textures.data();
   view.texels = scene.texels.data();
   return view;

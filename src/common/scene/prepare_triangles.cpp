@@ -8,7 +8,6 @@
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
 #include "common/scene/prepare_primitives.h"
-#include "common/scene/weigh_textures.h"
 
 namespace pt {
 namespace {
@@ -101,7 +100,6 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   }
   scene.attributes = join_attributes(scene.meshes);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
-  weigh_emission_textures(scene);
   scene.light_list = list_lights(scene, bounds);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,

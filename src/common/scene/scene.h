@@ -5,7 +5,9 @@
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
-#include "common/light/light_list.h"
+#include "common/light/emission.h"
+#include "common/light/environment.h"
+#include "common/light/light_selector.h"
 #include "common/light/sky.h"
 #include "common/material/material.h"
 #include "common/scene/camera.h"
@@ -18,21 +20,28 @@ struct Scene {
   Primitives primitives;
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;
-  const std::uint32_t* material_of = nullptr;  ///< [primitive]
-  const std::uint32_t* lights = nullptr;       ///< primitives that emit
+  const Parameter* parameters = nullptr;          ///< of all materials but their first ones
+  const Emission* emissions = nullptr;            ///< of those that shine
+  const std::uint32_t* material_of = nullptr;     ///< [primitive]
+  const std::uint32_t* lights = nullptr;          ///< primitives that emit (Lighting::emitters)
+  const std::uint32_t* light_emission = nullptr;  ///< what they do
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
   VertexAttributes attributes;
   const Affine* to_world = nullptr;  ///< [InstanceRecord::number]
-  LightList light_list;              ///< Lighting::full
+  LightSelector light_selector;      ///< Lighting::full
+  LightMap light_map;                ///< Lighting::full
   Environment environment;           ///< Lighting::full
-  const MaterialTextures* material_textures = nullptr;
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
 
   PT_HD Material material(std::uint32_t primitive) const {
     return load_wide(&materials[material_of[primitive]]);
+  }
+  /// `material` shines.
+  PT_HD Emission emission(const Material& material) const {
+    return load_wide(&emissions[material.emission]);
   }
 };
 

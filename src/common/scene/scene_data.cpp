@@ -2,7 +2,7 @@
 
 namespace pt {
 
-std::uint32_t SceneData::add_material(const Material& material) {
+std::uint32_t SceneData::add_material(const MaterialDescription& material) {
   materials.push_back(material);
   return static_cast<std::uint32_t>(materials.size() - 1);
 }

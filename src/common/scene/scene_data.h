@@ -12,6 +12,7 @@
 #include "common/geometry/mesh.h"
 #include "common/light/delta_light.h"
 #include "common/math/transform.h"
+#include "common/scene/material_description.h"
 #include "common/scene/scene.h"
 
 namespace pt {
@@ -39,10 +40,11 @@ struct MeshAttributes {
   std::vector<Vec2> uvs;
 };
 
-/// The memory behind a LightList.
+/// The memory behind a LightSelector and a LightMap.
 struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
+  std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
   float total_weight = 0.0f;
   float environment_probability = 0.0f;
 };
@@ -58,17 +60,20 @@ struct SceneData {
   std::vector<Quad> quads;
   std::vector<Mesh> meshes;         ///< those of group 0 in world space
   std::vector<Instance> instances;  ///< of the other groups
-  std::vector<Material> materials;
-  std::vector<MaterialTextures> material_textures = std::vector<MaterialTextures>(1);  ///< 0: none
+  std::vector<MaterialDescription> materials;
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   // Made from the above by prepare_scene():
   SceneTraits traits;
-  std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
-  std::vector<std::uint32_t> material_of;  ///< by primitive
-  std::vector<std::uint32_t> lights;       ///< primitives that emit
-  std::vector<Sphere> scan_spheres;        ///< Primitives::scan
+  std::vector<Material> material_records;  ///< by material
+  std::vector<Parameter> parameters;
+  std::vector<Emission> emissions;
+  std::vector<Bvh2Node> bvh_nodes;            ///< over spheres and quads; empty: they are scanned
+  std::vector<std::uint32_t> material_of;     ///< by primitive
+  std::vector<std::uint32_t> lights;          ///< primitives that emit
+  std::vector<std::uint32_t> light_emission;  ///< by light
+  std::vector<Sphere> scan_spheres;           ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
   // In scenes with triangles:
   TriangleTreeData tree;                     ///< empty where --builder leaves it to the device
@@ -81,7 +86,7 @@ struct SceneData {
   std::size_t primitive_count() const { return spheres.size() + quads.size(); }
   std::uint64_t triangle_count() const;
 
-  std::uint32_t add_material(const Material& material);
+  std::uint32_t add_material(const MaterialDescription& material);
   void add_sphere(const Vec3& center, float radius, std::uint32_t material);
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };

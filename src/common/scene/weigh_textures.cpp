@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "common/light/light_list.h"
+#include "common/light/light.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {
@@ -29,11 +29,12 @@ double mean_luminance(const Texture& texture, const std::byte* texels) {
 }
 
 void weigh_emission_textures(SceneData& scene) {
-  for (MaterialTextures& textures : scene.material_textures) {
-    if (textures.emission == no_texture) continue;
-    const Texture& texture = scene.textures[textures.emission];
+  for (MaterialDescription& material : scene.materials) {
+    Emission& emission = material.emission;
+    if (emission.texture == no_texture || is_black(emission.radiance)) continue;
+    const Texture& texture = scene.textures[emission.texture];
     const auto mean = static_cast<float>(mean_luminance(texture, scene.texels.data()));
-    textures.emission_mean = std::isfinite(mean) ? mean : 1.0f;
+    emission.texture_mean = std::isfinite(mean) ? mean : 1.0f;
   }
 }
 

@@ -20,11 +20,12 @@ struct IncidentLight {
 /// A primitive that emits, chosen uniformly (Lighting::emitters).
 PT_HD IncidentLight sample_emitter(const Scene& scene, const Vec3& from, const Vec4& u) {
   const float count = static_cast<float>(scene.light_count);
-  const std::uint32_t choice = static_cast<std::uint32_t>(u.z * count);
-  const std::uint32_t primitive =
-      scene.lights[choice < scene.light_count ? choice : scene.light_count - 1];
-  const LightSample light = sample_primitive(scene.primitives, primitive, from, u.x, u.y);
-  return {light.wi, light.end, scene.material(primitive).emission, light.pdf / count};
+  const std::uint32_t wanted = static_cast<std::uint32_t>(u.z * count);
+  const std::uint32_t choice = wanted < scene.light_count ? wanted : scene.light_count - 1;
+  const Color Le = load_wide(&scene.emissions[scene.light_emission[choice]]).radiance;
+  const LightSample light =
+      sample_primitive(scene.primitives, scene.lights[choice], from, u.x, u.y);
+  return {light.wi, light.end, Le, light.pdf / count};
 }
 
 PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
@@ -36,13 +37,13 @@ PT_HD Color textured_radiance(const Scene& scene, const Light& light, const Vec3
   if (light.emission_texture == no_texture) return light.radiance;
   const bool has_uvs = light.triangle != no_texture;
   const Vec2 uv = texture_coordinates(scene, light.triangle, has_uvs, barycentric);
-  return light.radiance * sample_texture(scene.textures[light.emission_texture], scene.texels, uv);
+  return textured(scene, light.radiance, light.emission_texture, uv);
 }
 
 /// Any light but the environment.
 PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
                                         float u0, float u1) {
-  if (light.kind <= LightKind::turned_triangle) {
+  if (is_triangle(light.kind)) {
     const TriangleLightSample s =
         sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
@@ -57,54 +58,57 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
   return {s.wi, s.end, s.irradiance, 1.0f, true};
 }
 
-PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
-  const LightList& list = scene.light_list;
-  const float p = list.environment_probability;
-  if (u.z < p) {
+/// Any light (Lighting::full), chosen by the selector.
+PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, const Vec4& u) {
+  const LightChoice choice = scene.light_selector.sample(from, u.z, u.w);
+  if (choice.light == environment_light) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
-    return {s.wi, beyond_scene * s.wi, s.radiance, p * s.pdf};
+    return {s.wi, beyond_scene * s.wi, s.radiance, choice.pmf * s.pdf};
   }
-  if (list.count == 0) return {};
-  const AliasSample choice = sample_alias(list.selection, list.count, (u.z - p) / (1.0f - p), u.w);
-  const Light light = load_wide(&list.lights[choice.index]);
+  if (choice.light == no_light) return {};
+  const Light light = load_wide(&scene.light_selector.lights[choice.light]);
   IncidentLight incident = sample_listed_light(scene, light, from, u.x, u.y);
-  incident.pdf *= list.probability(light.weight);
+  incident.pdf *= choice.pmf;
   return incident;
+}
+
+template <class Traits>
+PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
+  if constexpr (Traits::lighting == Lighting::emitters) return sample_emitter(scene, from, u);
+  return sample_selected_light(scene, from, u);
 }
 
 /// Twice the area of a triangle times its normal, in the world: from its edges as list_lights() has
 /// them, which do not know where the instance lies.
-template <class Traits>
-PT_HD Vec3 world_normal(const Scene& scene, const Triangle& triangle, std::uint32_t instance) {
+PT_HD Vec3 world_normal(const Triangle& triangle, const Affine* to_world) {
   Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
-  if (is_placed<Traits>(scene)) {
-    const Affine to_world = load_wide(&scene.to_world[scene.triangles.instances[instance].number]);
-    edge1 = to_world.vector(edge1), edge2 = to_world.vector(edge2);
+  if (to_world != nullptr) {
+    const Affine map = load_wide(to_world);
+    edge1 = map.vector(edge1), edge2 = map.vector(edge2);
   }
   return cross_rounded(edge1, edge2);
 }
 
-/// The density with which sample_light would have found the surface that a ray hit.
+/// The density with which sample_light would have found the lamp that a ray hit.
 template <class Traits>
 PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
   if constexpr (Traits::lighting == Lighting::emitters) {
     return emitter_pdf(scene, ray, hit);
   } else {
+    const LightSelector& selector = scene.light_selector;
     if (hit.primitive < scene.primitives.count()) {
       const Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
-      return scene.light_list.probability(
-                 emitter_weight(scene.material(hit.primitive).emission, sphere_area(sphere))) *
+      return selector.pmf(ray.origin, scene.light_map.spheres[hit.primitive]) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
     const Triangle t =
         load_wide(&scene.triangles.triangles[hit.primitive - scene.primitives.count()]);
-    const Vec3 normal = world_normal<Traits>(scene, t, hit.instance);
-    const Material& material = scene.materials[t.material];
-    const float mean = scene.material_textures[material.textures].emission_mean;
+    const bool placed = is_placed<Traits>(scene);
+    const std::uint32_t instance = placed ? scene.triangles.instances[hit.instance].number : 0;
+    const Vec3 normal = world_normal(t, placed ? &scene.to_world[instance] : nullptr);
     // The side is the caller's affair: in an instance that mirrors, this normal is turned.
     const float side = dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
-    return scene.light_list.probability(
-               emitter_weight(material.emission, 0.5f * glm::length(normal), mean)) *
+    return selector.pmf(ray.origin, scene.light_map.of_triangle(t.id, instance)) *
            triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);
   }
 }

@@ -13,8 +13,8 @@ template <Lighting lighting>
 PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path) {
   Color radiance = sky_radiance(scene.sky, ray_direction);
   if constexpr (lighting == Lighting::full) {
-    if (scene.light_list.environment_probability > 0.0f) {
-      const float pdf = scene.light_list.environment_probability *
+    if (scene.light_selector.environment_probability > 0.0f) {
+      const float pdf = scene.light_selector.environment_probability *
                         environment_pdf(scene.environment, ray_direction);
       const Color environment = environment_radiance(scene.environment, ray_direction);
       const float weight = power_heuristic(path.bsdf_pdf, pdf);

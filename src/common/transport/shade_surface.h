@@ -2,6 +2,7 @@
 // path on (pbrt-v4, section 13.2.2: path tracing with multiple importance sampling).
 #pragma once
 
+#include "common/math/frame.h"
 #include "common/sampling/mis.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
@@ -22,11 +23,17 @@ struct Scattering {
 template <class Traits>
 PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
                              const PathState& path, const Surface& surface) {
-  const Color& emission = surface.material.emission;
-  if (is_black(emission) || dot(ray.direction, surface.point.normal) >= 0.0f) {
+  if (surface.material.emission == no_emission ||
+      dot(ray.direction, surface.point.normal) >= 0.0f) {
     return Color(0.0f);
   }
-  return path.beta * emission * power_heuristic(path.bsdf_pdf, light_pdf<Traits>(scene, ray, hit));
+  const Emission emission = scene.emission(surface.material);
+  Color Le = emission.radiance;
+  if constexpr (Traits::lighting == Lighting::full) {
+    Le = textured(scene, Le, emission.texture, surface.uv);
+  }
+  const float pdf = light_pdf<Traits>(scene, ray, hit);
+  return path.beta * Le * power_heuristic(path.bsdf_pdf, pdf);
 }
 
 /// The ray from a surface to where `light`, sampled as seen from `from`, wants it to end. Where a
@@ -45,26 +52,15 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
           radiance};
 }
 
-/// One light, asked for its direct contribution (next-event estimation), as seen from where rays
-/// begin that the BSDF sends: see light_sample.h.
-template <class Traits, class Bsdf>
-PT_HD ShadowRay sample_direct_light(const Scene& scene, const PathState& path, const Bsdf& bsdf,
-                                    const Surface& surface, const Vec3& wo, const Vec4& u) {
-  const Vec3 from = spawn_origin(surface.point, wo);
-  IncidentLight light;
-  if constexpr (Traits::lighting == Lighting::emitters) {
-    light = sample_emitter(scene, from, u);
-  } else {
-    light = sample_light(scene, from, u);
-  }
-  if (light.pdf <= 0.0f) return {};
-  const Vec3& n = surface.shading_normal;
-  const Color f = bsdf.evaluate(wo, light.wi, n);
-  if (is_black(f)) return {};
-  const float weight =
-      light.is_delta ? 1.0f : power_heuristic(light.pdf, bsdf.pdf(wo, light.wi, n));
+/// What a light, sampled as seen from `from`, contributes directly (next-event estimation), given
+/// what the BSDF says of its direction.
+template <class Traits>
+PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const Vec3& from,
+                          const IncidentLight& light, const BsdfValue& value) {
+  if (light.pdf <= 0.0f || is_black(value.f)) return {};
+  const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
   return spawn_shadow_ray<Traits>(surface.point, from, light,
-                                  path.beta * f * light.radiance * (weight / light.pdf));
+                                  path.beta * value.f * light.radiance * (weight / light.pdf));
 }
 
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
@@ -76,37 +72,38 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
                                const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
   constexpr bool has_lights = Traits::has_lights;
   const Surface surface = surface_at<Traits>(scene, ray, hit);
-  const Vec3& n = surface.shading_normal;
-  const Vec3 wo = -ray.direction;
   Scattering result;
   if constexpr (has_lights) {
     result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface);
   }
   if (path.rays >= limits.max_depth) return result;
-  if (Traits::lighting == Lighting::full && surface.material.one_sided && dot(wo, n) <= 0.0f) {
+  if (Traits::lighting == Lighting::full && surface.material.is(Material::one_sided) &&
+      dot(ray.direction, surface.shading_normal) >= 0.0f) {
     return result;
   }
-
+  // The light is chosen before the BSDF is known, as seen from where the BSDF's rays begin
+  // (light_sample.h): so its code is there once, not once per BSDF.
+  const bool asks = has_lights && limits.ask_lights && !surface.material.is(Material::delta);
+  const Vec3 from = spawn_origin(surface.point, -ray.direction);
+  IncidentLight incident;
+  if (asks) incident = sample_light<Traits>(scene, from, light);
+  const Frame frame = make_frame(surface.shading_normal);
+  const Vec3 wo = frame.to_local(-ray.direction);
   BsdfSample next;
-  visit(surface.material, [&](const auto& bsdf) {
-    if constexpr (has_lights) {
-      path.bsdf_pdf = PathState::delta_distribution;
-      if (!bsdf.is_delta() && limits.ask_lights) {
-        result.shadow = sample_direct_light<Traits>(scene, path, bsdf, surface, wo, light);
-      }
-    }
-    next = bsdf.sample(wo, n, scatter);
-    if constexpr (has_lights) {
-      if (!bsdf.is_delta() && limits.ask_lights) path.bsdf_pdf = bsdf.pdf(wo, next.wi, n);
-    }
+  BsdfValue value;
+  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+    if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
+    next = bsdf.sample(wo, Vec3(scatter));
   });
   if constexpr (has_lights) {
+    path.bsdf_pdf = asks ? next.pdf : PathState::delta_distribution;
+    result.shadow = ask_light<Traits>(path, surface, from, incident, value);
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
   if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w, next.outside);
   result.alive = !is_black(path.beta);
-  result.ray = spawn_ray(surface.point, next.wi);
+  result.ray = spawn_ray(surface.point, normalize(frame.to_world(next.wi)));
   return result;
 }
 

@@ -11,7 +11,41 @@ namespace pt {
 struct Surface {
   SurfacePoint point;
   Vec3 shading_normal;
-  Material material;  ///< its colours multiplied by its textures
+  Material material;
+  Vec2 uv = Vec2(0.0f);  ///< where the material is textured
+};
+
+/// c, multiplied by a texture of this number where there is one.
+PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, const Vec2& uv) {
+  if (texture == no_texture) return c;
+  return c * sample_texture(scene.textures[texture], scene.texels, uv);
+}
+
+/// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
+/// read ahead of the dispatch, for nearly all BSDFs have a colour there: so its texture is looked
+/// up by one piece of code, whatever the BSDF.
+template <class Traits>
+class SurfaceParameters {
+ public:
+  PT_HD SurfaceParameters(const Scene& scene, const Surface& surface)
+      : scene_(scene), surface_(surface), first_(value_of(surface.material.first)) {}
+
+  PT_HD Color color(int i) const { return i == 0 ? first_ : read(i); }
+  PT_HD float scalar(int i) const { return color(i).x; }
+
+ private:
+  PT_HD Color read(int i) const {
+    return value_of(load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]));
+  }
+
+  PT_HD Color value_of(const Parameter& p) const {
+    if constexpr (Traits::lighting != Lighting::full) return p.value;
+    return textured(scene_, p.value, p.texture, surface_.uv);
+  }
+
+  const Scene& scene_;
+  const Surface& surface_;
+  Color first_;
 };
 
 template <class Traits>
@@ -25,19 +59,6 @@ PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bo
                                const Vec3& barycentric) {
   return has_uvs ? scene.attributes.uv(triangle_id, barycentric)
                  : Vec2(barycentric.y, barycentric.z);
-}
-
-PT_HD void apply_textures(const Scene& scene, const Triangle& triangle, const Vec3& barycentric,
-                          Material& material) {
-  const MaterialTextures textures = scene.material_textures[material.textures];
-  const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
-  const Vec2 uv = texture_coordinates(scene, triangle.id, has_uvs, barycentric);
-  if (textures.albedo != no_texture) {
-    material.albedo *= sample_texture(scene.textures[textures.albedo], scene.texels, uv);
-  }
-  if (textures.emission != no_texture) {
-    material.emission *= sample_texture(scene.textures[textures.emission], scene.texels, uv);
-  }
 }
 
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
@@ -82,7 +103,10 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
                                       8.0f * half_ulp * max_abs(size))},
                   normalize(shading_normal),
                   load_wide(&scene.materials[triangle.material])};
-  if (surface.material.textures != 0) apply_textures(scene, triangle, b, surface.material);
+  if (surface.material.is(Material::textured)) {
+    const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
+    surface.uv = texture_coordinates(scene, triangle.id, has_uvs, b);
+  }
   return surface;
 }
 

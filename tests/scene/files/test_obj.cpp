@@ -119,7 +119,7 @@ TEST_F(ObjMaterials, AMeshForEachMaterial) {
   for (const Mesh& mesh : file.meshes) {
     const ObjMaterial& material = file.materials.at(mesh.material);
     if (material.name == "red wine") {
-      EXPECT_EQ(material.material.albedo, Color(1, 0, 0));
+      EXPECT_EQ(material.material.color(0), Color(1, 0, 0));
       triangles_of_red = mesh.triangles.size();
       EXPECT_EQ(mesh.positions.size(), 3u);
     }
@@ -134,27 +134,27 @@ TEST_F(ObjMaterials, AMeshForEachMaterial) {
 
 TEST_F(ObjMaterials, NearestOfOurs) {
   const ObjMaterial diffuse = read_material("Kd 0.1 0.2 0.3\nKe 4 5 6\nmap_Kd tex\\a b.png\n");
-  EXPECT_EQ(diffuse.material.kind, MaterialKind::diffuse);
-  EXPECT_EQ(diffuse.material.albedo, Color(0.1f, 0.2f, 0.3f));
-  EXPECT_EQ(diffuse.material.emission, Color(4, 5, 6));
+  EXPECT_EQ(diffuse.material.kind, kind_of<Diffuse>);
+  EXPECT_EQ(diffuse.material.color(0), Color(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(diffuse.material.emission.radiance, Color(4, 5, 6));
   EXPECT_EQ(diffuse.albedo_map, std::filesystem::path(folder_.file("tex/a b.png")));
   EXPECT_TRUE(diffuse.emission_map.empty());
 
   const ObjMaterial lamp = read_material("Kd 0 0 0\nmap_Ke glow.png\n");
-  EXPECT_EQ(lamp.material.emission, Color(1));
+  EXPECT_EQ(lamp.material.emission.radiance, Color(1));
   EXPECT_EQ(lamp.emission_map, std::filesystem::path(folder_.file("glow.png")));
 
   const ObjMaterial glass = read_material("Kd 0.1 0.2 0.3\nNi 1.33\nillum 7\n");
-  EXPECT_EQ(glass.material.kind, MaterialKind::dielectric);
-  EXPECT_FLOAT_EQ(glass.material.parameter, 1.33f);
-  EXPECT_EQ(read_material("d 0.1\nNi 1\n").material.parameter, 1.5f);
+  EXPECT_EQ(glass.material.kind, kind_of<Dielectric>);
+  EXPECT_FLOAT_EQ(glass.material.scalar(1), 1.33f);
+  EXPECT_EQ(read_material("d 0.1\nNi 1\n").material.scalar(1), 1.5f);
 
   const ObjMaterial metal = read_material("Kd 0 0 0\nKs 0.9 0.8 0.7\nNs 198\nillum 3\n");
-  EXPECT_EQ(metal.material.kind, MaterialKind::metal);
-  EXPECT_EQ(metal.material.albedo, Color(0.9f, 0.8f, 0.7f));
-  EXPECT_FLOAT_EQ(metal.material.parameter, 0.1f);
+  EXPECT_EQ(metal.material.kind, kind_of<Metal>);
+  EXPECT_EQ(metal.material.color(0), Color(0.9f, 0.8f, 0.7f));
+  EXPECT_FLOAT_EQ(metal.material.scalar(1), 0.1f);
 
-  EXPECT_EQ(read_material("Kd 7 -1 0.5\n").material.albedo, Color(1, 0, 0.5f));
+  EXPECT_EQ(read_material("Kd 7 -1 0.5\n").material.color(0), Color(1, 0, 0.5f));
 }
 
 TEST_F(ObjMaterials, WhatIsLostIsSaid) {

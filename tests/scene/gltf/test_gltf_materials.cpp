@@ -4,7 +4,7 @@
 namespace pt {
 namespace {
 
-Material material_of(const GltfMaker& maker) {
+MaterialDescription material_of(const GltfMaker& maker) {
   const Loaded loaded(maker);
   return loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
 }
@@ -14,30 +14,30 @@ TEST(GltfMaterials, BelowHalfMetallicIsDiffuse) {
                                     {{"baseColorFactor", {0.1, 0.2, 0.3, 1}},
                                      {"metallicFactor", 0.4},
                                      {"roughnessFactor", 0.5}}}});
-  const Material one_sided = material_of(maker);
-  EXPECT_EQ(one_sided.kind, MaterialKind::diffuse);
-  expect_near(one_sided.albedo, {0.1f, 0.2f, 0.3f});
+  const MaterialDescription one_sided = material_of(maker);
+  EXPECT_EQ(one_sided.kind, kind_of<Diffuse>);
+  expect_near(one_sided.color(0), {0.1f, 0.2f, 0.3f});
   EXPECT_TRUE(one_sided.one_sided);
-  EXPECT_EQ(one_sided.textures, 0u);
+  EXPECT_FALSE(one_sided.is_textured());
   maker.root["materials"][0]["doubleSided"] = true;
   EXPECT_FALSE(material_of(maker).one_sided);
 }
 
 TEST(GltfMaterials, MetalHasTheFuzzOfRoughnessSquared) {
-  const Material metal = material_of(
+  const MaterialDescription metal = material_of(
       with_material({{"pbrMetallicRoughness",
                       {{"baseColorFactor", {0.9, 0.8, 0.7, 1}}, {"roughnessFactor", 0.5}}}}));
-  EXPECT_EQ(metal.kind, MaterialKind::metal);
-  expect_near(metal.albedo, {0.9f, 0.8f, 0.7f});
-  EXPECT_FLOAT_EQ(metal.parameter, 0.25f);
+  EXPECT_EQ(metal.kind, kind_of<Metal>);
+  expect_near(metal.color(0), {0.9f, 0.8f, 0.7f});
+  EXPECT_FLOAT_EQ(metal.scalar(1), 0.25f);
   EXPECT_FALSE(metal.one_sided);
 }
 
 TEST(GltfMaterials, TheDefaultMaterialIsRoughWhiteMetal) {  // so says the specification
-  const Material material = material_of(triangle_file());
-  EXPECT_EQ(material.kind, MaterialKind::metal);
-  EXPECT_EQ(material.parameter, 1.0f);
-  EXPECT_EQ(material.albedo, Color(1.0f));
+  const MaterialDescription material = material_of(triangle_file());
+  EXPECT_EQ(material.kind, kind_of<Metal>);
+  EXPECT_EQ(material.scalar(1), 1.0f);
+  EXPECT_EQ(material.color(0), Color(1.0f));
 }
 
 TEST(GltfMaterials, TransmissionIsGlass) {
@@ -45,32 +45,32 @@ TEST(GltfMaterials, TransmissionIsGlass) {
                                    {"extensions",
                                     {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                                      {"KHR_materials_ior", {{"ior", 1.33}}}}}});
-  const Material water = material_of(maker);
-  EXPECT_EQ(water.kind, MaterialKind::dielectric);
-  EXPECT_FLOAT_EQ(water.parameter, 1.33f);
-  expect_near(water.albedo, {0.5f, 1, 1});
+  const MaterialDescription water = material_of(maker);
+  EXPECT_EQ(water.kind, kind_of<Dielectric>);
+  EXPECT_FLOAT_EQ(water.scalar(1), 1.33f);
+  expect_near(water.color(0), {0.5f, 1, 1});
   maker.root["materials"][0]["extensions"].erase("KHR_materials_ior");
-  EXPECT_FLOAT_EQ(material_of(maker).parameter, 1.5f);
+  EXPECT_FLOAT_EQ(material_of(maker).scalar(1), 1.5f);
   maker.root["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] =
       0.4;
-  EXPECT_EQ(material_of(maker).kind, MaterialKind::metal);
+  EXPECT_EQ(material_of(maker).kind, kind_of<Metal>);
 }
 
 TEST(GltfMaterials, SpecularGlossinessIsDiffuse) {
-  const Material material = material_of(with_material(
+  const MaterialDescription material = material_of(with_material(
       {{"extensions",
         {{"KHR_materials_pbrSpecularGlossiness", {{"diffuseFactor", {0.2, 0.4, 0.6, 1}}}}}}}));
-  EXPECT_EQ(material.kind, MaterialKind::diffuse);
-  expect_near(material.albedo, {0.2f, 0.4f, 0.6f});
+  EXPECT_EQ(material.kind, kind_of<Diffuse>);
+  expect_near(material.color(0), {0.2f, 0.4f, 0.6f});
 }
 
 TEST(GltfMaterials, UnlitEmitsItsColour) {
   const Loaded loaded(
       with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.6, 1}}}},
                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}}));
-  const Material& material = loaded.scene.materials.at(0);
-  expect_near(material.emission, {0.2f, 0.4f, 0.6f});
-  EXPECT_TRUE(is_black(material.albedo));
+  const MaterialDescription& material = loaded.scene.materials.at(0);
+  expect_near(material.emission.radiance, {0.2f, 0.4f, 0.6f});
+  EXPECT_TRUE(is_black(material.color(0)));
   EXPECT_TRUE(is_black(loaded.scene.sky.zenith));
 }
 
@@ -78,7 +78,7 @@ TEST(GltfMaterials, EmissionHasAStrength) {
   const Loaded loaded(with_material(
       {{"emissiveFactor", {1, 0.5, 0.25}},
        {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}}));
-  expect_near(loaded.scene.materials.at(0).emission, {8, 4, 2});
+  expect_near(loaded.scene.materials.at(0).emission.radiance, {8, 4, 2});
   EXPECT_EQ(loaded.count("no light"), 0u);
   EXPECT_TRUE(is_black(loaded.scene.sky.zenith));
 }

@@ -35,8 +35,8 @@ GltfMaker with_texture(const Json& use = Json::object(), const Json& sampler = J
 }
 
 Texture base_texture(const SceneData& scene) {
-  const Material& material = scene.materials.at(scene.meshes.at(0).material);
-  return scene.textures.at(scene.material_textures.at(material.textures).albedo);
+  const MaterialDescription& material = scene.materials.at(scene.meshes.at(0).material);
+  return scene.textures.at(material.parameters[0].texture);
 }
 
 /// The texel of a texture at (u, v), the nearest, as R G B.
@@ -58,7 +58,7 @@ TEST(GltfTextures, BaseColourIsSrgbAndHeadUp) {
   EXPECT_EQ(texture.height, 2u);
   EXPECT_EQ(texture.wrap_u, TextureWrap::repeat);
   EXPECT_EQ(texture.filter, TextureFilter::bilinear);
-  EXPECT_EQ(loaded.scene.materials.at(0).albedo, Color(1.0f));
+  EXPECT_EQ(loaded.scene.materials.at(0).color(0), Color(1.0f));
   EXPECT_EQ(texel_at(loaded.scene, texture, 0.25f, 0.75f), (std::vector{255, 0, 0}));
   EXPECT_EQ(texel_at(loaded.scene, texture, 0.75f, 0.75f), (std::vector{0, 255, 0}));
   EXPECT_EQ(texel_at(loaded.scene, texture, 0.25f, 0.25f), (std::vector{0, 0, 255}));
@@ -71,14 +71,14 @@ TEST(GltfTextures, FactorsMultiplyTheirTextures) {
   material["emissiveFactor"] = {0.75, 0.5, 0.25};
   material["emissiveTexture"] = {{"index", 0}};
   const Loaded loaded(maker);
-  EXPECT_EQ(loaded.scene.materials.at(0).albedo, Color(0.5f, 0.25f, 0.125f));
-  EXPECT_EQ(loaded.scene.materials.at(0).emission, Color(0.75f, 0.5f, 0.25f));
-  const MaterialTextures& textures = loaded.scene.material_textures.at(1);
-  EXPECT_NE(textures.albedo, no_texture);
-  EXPECT_NE(textures.emission, no_texture);
+  EXPECT_EQ(loaded.scene.materials.at(0).color(0), Color(0.5f, 0.25f, 0.125f));
+  EXPECT_EQ(loaded.scene.materials.at(0).emission.radiance, Color(0.75f, 0.5f, 0.25f));
+  const MaterialDescription& textured = loaded.scene.materials.at(0);
+  EXPECT_NE(textured.parameters[0].texture, no_texture);
+  EXPECT_NE(textured.emission.texture, no_texture);
   // The texture itself is not coloured: the factor would count twice.
-  EXPECT_EQ(loaded.scene.textures.at(textures.albedo).color0, Color(1.0f));
-  EXPECT_EQ(loaded.scene.textures.at(textures.emission).color0, Color(1.0f));
+  EXPECT_EQ(loaded.scene.textures.at(textured.parameters[0].texture).color0, Color(1.0f));
+  EXPECT_EQ(loaded.scene.textures.at(textured.emission.texture).color0, Color(1.0f));
 }
 
 TEST(GltfTextures, SamplersSayWrapAndFilter) {
@@ -141,9 +141,9 @@ TEST(GltfTextures, AnImageIsStoredOnce) {
   const Loaded loaded(maker);
   EXPECT_EQ(loaded.scene.textures.size(), 2u);
   EXPECT_EQ(loaded.scene.texels.size(), 16u);
-  const MaterialTextures& textures = loaded.scene.material_textures.at(1);
-  EXPECT_EQ(loaded.scene.textures.at(textures.emission).u_row[0], 2.0f);
-  EXPECT_EQ(loaded.scene.textures.at(textures.albedo).u_row[0], 1.0f);
+  const MaterialDescription& textured = loaded.scene.materials.at(0);
+  EXPECT_EQ(loaded.scene.textures.at(textured.emission.texture).u_row[0], 2.0f);
+  EXPECT_EQ(loaded.scene.textures.at(textured.parameters[0].texture).u_row[0], 1.0f);
 }
 
 TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
@@ -152,9 +152,9 @@ TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
   pbr["metallicFactor"] = 1;
   pbr["metallicRoughnessTexture"] = {{"index", 0}};
   const Loaded loaded(maker);  // blue and green: 1 in two of four texels
-  const Material& material = loaded.scene.materials.at(0);
-  EXPECT_EQ(material.kind, MaterialKind::metal);
-  EXPECT_NEAR(material.parameter, 0.25f, 1e-6f);
+  const MaterialDescription& material = loaded.scene.materials.at(0);
+  EXPECT_EQ(material.kind, kind_of<Metal>);
+  EXPECT_NEAR(material.scalar(1), 0.25f, 1e-6f);
   EXPECT_EQ(loaded.count("their means are used"), 1u);
   EXPECT_EQ(loaded.scene.texels.size(), 16u);
   // Without the green and red of the white texel: metalness is blue, roughness green.
@@ -162,8 +162,8 @@ TEST(GltfTextures, MetallicAndRoughnessAreMeans) {
   texels[54 + 4] = texels[54 + 5] = '\0';
   maker.root["images"][0]["uri"] = "data:image/bmp;base64," + base64(texels);
   const Loaded blue(maker);
-  EXPECT_EQ(blue.scene.materials.at(0).kind, MaterialKind::metal);
-  EXPECT_NEAR(blue.scene.materials.at(0).parameter, 0.0625f, 1e-6f);
+  EXPECT_EQ(blue.scene.materials.at(0).kind, kind_of<Metal>);
+  EXPECT_NEAR(blue.scene.materials.at(0).scalar(1), 0.0625f, 1e-6f);
 }
 
 TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {
@@ -175,8 +175,8 @@ TEST(GltfTextures, AMeanThatCannotBeTakenLeavesTheFactor) {
   for (const char* uri : {"data:image/png;base64,AAAA", "missing.ktx2"}) {
     maker.root["images"][1] = {{"uri", uri}};
     const Loaded loaded(maker);
-    EXPECT_EQ(loaded.scene.materials.at(0).kind, MaterialKind::metal);
-    EXPECT_NEAR(loaded.scene.materials.at(0).parameter, 0.64f, 1e-6f);
+    EXPECT_EQ(loaded.scene.materials.at(0).kind, kind_of<Metal>);
+    EXPECT_NEAR(loaded.scene.materials.at(0).scalar(1), 0.64f, 1e-6f);
     EXPECT_EQ(loaded.count("images[1]"), 1u);
     EXPECT_EQ(loaded.count("the factor alone is used"), 1u);
     expect_error([&] { Loaded strict(maker, true); }, "--strict");

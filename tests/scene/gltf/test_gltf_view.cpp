@@ -21,7 +21,7 @@ TEST(GltfLights, Point) {
   const Loaded loaded(with_light({{"type", "point"}, {"color", {1, 0.5, 0}}, {"intensity", 20}}));
   ASSERT_EQ(loaded.scene.delta_lights.size(), 1u);
   const DeltaLight& light = loaded.scene.delta_lights[0];
-  EXPECT_EQ(light.kind, DeltaLight::Kind::point);
+  EXPECT_EQ(light.kind, LightKind::point);
   expect_near(light.position, {1, 5, 2});
   expect_near(light.intensity, {20, 10, 0});
   EXPECT_TRUE(is_black(loaded.scene.sky.zenith));
@@ -36,7 +36,7 @@ TEST(GltfLights, Spot) {
                                   {"range", 10},
                                   {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 1.0}}}}));
   const DeltaLight& light = loaded.scene.delta_lights.at(0);
-  EXPECT_EQ(light.kind, DeltaLight::Kind::spot);
+  EXPECT_EQ(light.kind, LightKind::spot);
   expect_near(light.position, {1, 5, 2});
   expect_near(light.direction, {0, -1, 0});
   expect_near(light.intensity, {3, 3, 3});
@@ -48,7 +48,7 @@ TEST(GltfLights, Spot) {
 TEST(GltfLights, Directional) {
   const Loaded loaded(with_light({{"type", "directional"}}));
   const DeltaLight& light = loaded.scene.delta_lights.at(0);
-  EXPECT_EQ(light.kind, DeltaLight::Kind::directional);
+  EXPECT_EQ(light.kind, LightKind::directional);
   expect_near(light.direction, {0, -1, 0});
   expect_near(light.intensity, {1, 1, 1});
 }

@@ -7,7 +7,7 @@ namespace {
 
 const std::string lamp = "<emitter type=\"constant\"/>";
 
-Material material_of(const LoadedScene& loaded) {
+MaterialDescription material_of(const LoadedScene& loaded) {
   return loaded.scene.materials.at(loaded.scene.sphere_material.at(0));
 }
 
@@ -20,7 +20,7 @@ TEST(LenientMitsuba, ThePropertyGivenLastHolds) {
       "<bsdf type=\"diffuse\">\n<rgb name=\"reflectance\" value=\"0.1\"/>\n"
       "<rgb name=\"reflectance\" value=\"0.3\"/></bsdf>");
   const LoadedScene loaded = load_xml(xml);
-  EXPECT_EQ(material_of(loaded).albedo, Color(0.3f));
+  EXPECT_EQ(material_of(loaded).color(0), Color(0.3f));
   EXPECT_EQ(loaded.count("scene.xml:4: 'reflectance' is given twice"), 1);
   expect_error([&] { load_xml(xml, "3.0.0", {{}, true, {}}); }, "given twice");
 }
@@ -30,7 +30,7 @@ TEST(LenientMitsuba, AnIndexOfRefractionBelowZeroIsZero) {
       load_xml(sphere("<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"-0.5 1 2\"/>"
                       "<rgb name=\"k\" value=\"3 -1 0\"/></bsdf>"));
   // ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2) with eta = 0, 1, 2 and k = 3, 0, 0
-  expect_near(material_of(loaded).albedo, {1.0f, 0.0f, 1.0f / 9.0f}, 1e-6f);
+  expect_near(material_of(loaded).color(0), {1.0f, 0.0f, 1.0f / 9.0f}, 1e-6f);
   EXPECT_EQ(loaded.count("negative component"), 1);
   expect_error(
       [&] {
@@ -45,7 +45,7 @@ TEST(LenientMitsuba, DiffuseReflectanceOfDiffuse) {
   const LoadedScene loaded = load_xml(
       sphere("<bsdf type=\"diffuse\"><rgb name=\"diffuseReflectance\" value=\"0.7\"/></bsdf>"),
       "0.6.0");
-  EXPECT_EQ(material_of(loaded).albedo, Color(0.7f));
+  EXPECT_EQ(material_of(loaded).color(0), Color(0.7f));
   EXPECT_EQ(loaded.count("diffuse"), 0);
 }
 

@@ -142,14 +142,15 @@ void print_probe(std::ostream& out, const SceneData& scene, const Vec3& o, const
     out << '\n';
     return;
   }
-  const Material& material = scene.materials[nearest.material];
-  const MaterialTextures& textures = scene.material_textures[material.textures];
-  Color albedo = material.albedo, emission = material.emission;
+  const MaterialDescription& material = scene.materials[nearest.material];
+  const std::uint32_t albedo_map = material.parameters[0].texture;
+  const std::uint32_t emission_map = material.emission.texture;
+  Color albedo = material.color(0), emission = material.emission.radiance;
   const auto look_up = [&](std::uint32_t texture) {
     return sample_texture(scene.textures[texture], scene.texels.data(), *nearest.uv);
   };
-  if (nearest.uv && textures.albedo != no_texture) albedo *= look_up(textures.albedo);
-  if (nearest.uv && textures.emission != no_texture) emission *= look_up(textures.emission);
+  if (nearest.uv && albedo_map != no_texture) albedo *= look_up(albedo_map);
+  if (nearest.uv && emission_map != no_texture) emission *= look_up(emission_map);
   out << "hit " << nearest.t << ' ';
   print(out, nearest.side), print(out, nearest.shading);
   out << static_cast<int>(material.kind) << ' ';

@@ -72,7 +72,7 @@ TEST(MitsubaXml, includesAreReadBesideTheFileThatNamesThem) {
   const SceneData scene = load_mitsuba_xml(folder.file("scene.xml"));
   ASSERT_EQ(scene.spheres.size(), 1u);
   EXPECT_EQ(scene.spheres[0].radius_squared, 4.0f);
-  EXPECT_EQ(scene.materials[scene.sphere_material[0]].albedo, Color(0.5f, 0, 0));
+  EXPECT_EQ(scene.materials[scene.sphere_material[0]].color(0), Color(0.5f, 0, 0));
 }
 
 TEST(MitsubaXml, includesThatDoNotEndAreErrors) {
@@ -95,9 +95,9 @@ TEST(MitsubaXml, referencesAndAliases) {
       "<alias id=\"a\" as=\"b\"/><shape type=\"sphere\"><ref id=\"b\"/></shape>"
       "<bsdf type=\"dielectric\" id=\"a\"><float name=\"int_ior\" value=\"2\"/>"
       "<float name=\"ext_ior\" value=\"1\"/></bsdf>");
-  const Material& material = loaded.scene.materials[loaded.scene.sphere_material[0]];
-  EXPECT_EQ(material.kind, MaterialKind::dielectric);
-  EXPECT_EQ(material.parameter, 2.0f);
+  const MaterialDescription& material = loaded.scene.materials[loaded.scene.sphere_material[0]];
+  EXPECT_EQ(material.kind, kind_of<Dielectric>);
+  EXPECT_EQ(material.scalar(1), 2.0f);
   expect_xml_error("<shape type=\"sphere\"><ref id=\"b\"/></shape>", "scene.xml:2: there is no");
   expect_xml_error("<bsdf type=\"diffuse\" id=\"x\"/>\n<bsdf type=\"diffuse\" id=\"x\"/>",
                    "scene.xml:3: the id 'x' is used twice");

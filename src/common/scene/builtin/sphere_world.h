@@ -4,9 +4,9 @@
 #pragma once
 
 #include "common/geometry/sphere.h"
-#include "common/material/material.h"
 #include "common/sampling/philox.h"
 #include "common/sampling/warp.h"
+#include "common/scene/material_description.h"
 
 namespace pt {
 
@@ -15,11 +15,11 @@ enum class SphereWorldKind { spheres, rtow };
 /// Receives up to `capacity` spheres with a material each.
 struct SphereWorld {
   Sphere* spheres;
-  Material* materials;
+  MaterialDescription* materials;
   std::uint32_t capacity;
   std::uint32_t count = 0;
 
-  PT_HD void add(const Vec3& center, float radius, const Material& material) {
+  PT_HD void add(const Vec3& center, float radius, const MaterialDescription& material) {
     if (count == capacity) return;
     spheres[count] = {center, multiply_rounded(radius, radius)};
     materials[count] = material;
@@ -61,7 +61,7 @@ PT_HD Color random_diffuse_albedo(WorldRandom& random) {
   return albedo;
 }
 
-PT_HD Material random_metal(WorldRandom& random) {
+PT_HD MaterialDescription random_metal(WorldRandom& random) {
   Color albedo;
   for (int i = 0; i < 3; ++i) albedo[i] = random.next(0.5f, 1.0f);
   return make_metal(albedo, random.next(0.0f, 0.5f));
@@ -109,9 +109,10 @@ PT_HD void create_rtow(SphereWorld& world) {
       const float dx = add_rounded(x, -4.0f);
       // Not inside the large metal sphere.
       if (add_rounded(multiply_rounded(dx, dx), multiply_rounded(z, z)) <= 0.81f) continue;
-      const Material material = choice < 0.8f    ? make_diffuse(random_diffuse_albedo(random))
-                                : choice < 0.95f ? random_metal(random)
-                                                 : make_dielectric(Color(1.0f), 1.5f);
+      const MaterialDescription material = choice < 0.8f
+                                               ? make_diffuse(random_diffuse_albedo(random))
+                                           : choice < 0.95f ? random_metal(random)
+                                                            : make_dielectric(Color(1.0f), 1.5f);
       world.add({x, 0.2f, z}, 0.2f, material);
     }
   }

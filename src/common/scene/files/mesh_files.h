@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/geometry/mesh.h"
-#include "common/material/material.h"
+#include "common/scene/material_description.h"
 
 namespace pt {
 
@@ -37,7 +37,7 @@ Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options 
 /// A material of an MTL file as the nearest of ours.
 struct ObjMaterial {
   std::string name;
-  Material material;
+  MaterialDescription material;
   std::filesystem::path albedo_map, emission_map;  ///< beside the MTL file; empty: none
 };
 

@@ -36,7 +36,7 @@ float fuzz_of(const tinyobj::material_t& mtl) {
   return std::clamp(std::sqrt(2.0f / (std::max(mtl.shininess, 0.0f) + 2.0f)), 0.0f, 1.0f);
 }
 
-Material nearest_material(const tinyobj::material_t& mtl) {
+MaterialDescription nearest_material(const tinyobj::material_t& mtl) {
   const Color kd = reflectance(mtl.diffuse), ks = reflectance(mtl.specular);
   if (is_one_of(mtl.illum, {4, 6, 7, 9}) || mtl.dissolve < 0.5f) {
     const bool plausible = mtl.ior > 1.0f && mtl.ior < 5.0f;
@@ -59,13 +59,13 @@ std::filesystem::path map_path(const std::filesystem::path& mtl_path, std::strin
   return found.empty() ? mtl_path.parent_path() / name : found;
 }
 
-void warn_of_losses(const tinyobj::material_t& mtl, const Material& material,
+void warn_of_losses(const tinyobj::material_t& mtl, const MaterialDescription& material,
                     std::vector<std::string>& warnings) {
   std::string lost;
   const auto check = [&](bool present, const char* what) {
     if (present) lost += (lost.empty() ? "" : ", ") + std::string(what);
   };
-  const bool diffuse = material.kind == MaterialKind::diffuse;
+  const bool diffuse = material.kind == kind_of<Diffuse>;
   check(diffuse && max_abs(reflectance(mtl.specular)) > 0.1f, "highlights (Ks)");
   check(diffuse && mtl.dissolve < 1.0f, "partial transparency (d)");
   check(!mtl.alpha_texname.empty(), "map_d");
@@ -79,14 +79,14 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
                     std::vector<std::string>& warnings) {
   ObjMaterial result{mtl.name, nearest_material(mtl), {}, {}};
   warn_of_losses(mtl, result.material, warnings);
-  if (result.material.kind != MaterialKind::dielectric) {
+  if (result.material.kind != kind_of<Dielectric>) {
     result.albedo_map = map_path(mtl_path, mtl.diffuse_texname, warnings);
   }
-  if (result.material.kind == MaterialKind::diffuse) {
+  if (result.material.kind == kind_of<Diffuse>) {
     result.emission_map = map_path(mtl_path, mtl.emissive_texname, warnings);
-    result.material.emission = limited(mtl.emission, 1e30f);
-    if (!result.emission_map.empty() && is_black(result.material.emission)) {
-      result.material.emission = Color(1.0f);  // a map alone means the map itself
+    result.material.emission.radiance = limited(mtl.emission, 1e30f);
+    if (!result.emission_map.empty() && is_black(result.material.emission.radiance)) {
+      result.material.emission.radiance = Color(1.0f);  // a map alone means the map itself
     }
   }
   return result;

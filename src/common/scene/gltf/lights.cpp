@@ -45,11 +45,11 @@ DeltaLight make_light(File& file, const tinygltf::Light& source, const Affine& t
     light.direction = normalize(direction);
   }
   if (source.type == "spot") {
-    light.kind = DeltaLight::Kind::spot;
+    light.kind = LightKind::spot;
     light.falloff = SpotFalloff::square_cosine;
     set_cone(file, source.spot, place, light);
   } else if (source.type == "directional") {
-    light.kind = DeltaLight::Kind::directional;
+    light.kind = LightKind::directional;
   } else if (source.type != "point") {
     file.fail(place + ".type",
               fmt::format("'{:.40}': expected point, spot or directional", source.type));

@@ -1,7 +1,6 @@
 #include "common/scene/gltf/materials.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "common/scene/gltf/values.h"
 
@@ -32,42 +31,28 @@ std::uint32_t Materials::number(int index, const std::string& place) {
   if (known != numbers_.end()) return known->second;
   std::uint32_t result;
   if (index < 0) {
-    result = add(convert(tinygltf::Material(), place), place);
+    result = scene_.add_material(convert(tinygltf::Material(), place));
   } else {
     const auto& source = file_.at(file_.model.materials, index, "materials", place + ".material");
     const std::string material_place = fmt::format(
         "materials[{}]{}", index, source.name.empty() ? "" : fmt::format(" '{:.60}'", source.name));
-    result = add(convert(source, material_place), material_place);
+    result = scene_.add_material(convert(source, material_place));
   }
   numbers_.emplace(index, result);
   return result;
 }
 
-std::uint32_t Materials::add(const Converted& converted, const std::string& place) {
-  Material material = converted.material;
-  if (converted.textures.albedo != no_texture || converted.textures.emission != no_texture) {
-    if (scene_.material_textures.size() > std::numeric_limits<std::uint16_t>::max()) {
-      file_.fail(place, "too many materials with textures: expected at most 65535");
-    }
-    material.textures = static_cast<std::uint16_t>(scene_.material_textures.size());
-    scene_.material_textures.push_back(converted.textures);
-  }
-  return scene_.add_material(material);
-}
-
-Materials::Converted Materials::convert(const tinygltf::Material& source,
-                                        const std::string& place) {
-  Converted result;
+MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place) {
+  MaterialDescription result;
   report_ignored(source, place);
   if (find_extension(source.extensions, "KHR_materials_unlit")) {
     file_.report(place,
                  "KHR_materials_unlit: black that emits the base colour is used, and lights "
                  "the scene");
     set_base(source, place, result);
-    result.material.emission = result.material.albedo;
-    result.textures.emission = result.textures.albedo;
-    result.material.albedo = Color(0.0f);
-    result.textures.albedo = no_texture;
+    result.emission.radiance = result.color(0);
+    result.emission.texture = result.parameters[0].texture;
+    result.parameters[0] = {};
     return result;
   }
   const auto* glossiness = find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
@@ -77,22 +62,22 @@ Materials::Converted Materials::convert(const tinygltf::Material& source,
     set_metallic_roughness(source, place, result);
   }
   set_emission(source, place, result);
-  result.material.one_sided = result.material.kind == MaterialKind::diffuse && !source.doubleSided;
+  result.one_sided = result.kind == kind_of<Diffuse> && !source.doubleSided;
   return result;
 }
 
 void Materials::set_base(const tinygltf::Material& source, const std::string& place,
-                         Converted& result) {
+                         MaterialDescription& result) {
   const auto& pbr = source.pbrMetallicRoughness;
-  result.material.albedo = clamped(to_color(pbr.baseColorFactor));
+  result.parameters[0].value = clamped(to_color(pbr.baseColorFactor));
   if (const TextureUse use = texture_use(pbr.baseColorTexture)) {
-    result.textures.albedo =
+    result.parameters[0].texture =
         textures_.add_color(use, place + ".pbrMetallicRoughness.baseColorTexture");
   }
 }
 
 void Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
-                                       Converted& result) {
+                                       MaterialDescription& result) {
   set_base(source, place, result);
   const auto& pbr = source.pbrMetallicRoughness;
   auto metallic = static_cast<float>(pbr.metallicFactor);
@@ -108,8 +93,8 @@ void Materials::set_metallic_roughness(const tinygltf::Material& source, const s
     file_.report(place,
                  "metallic >= 0.5: metal in the base colour is used, its fuzz is roughness "
                  "squared");
-    result.material.kind = MaterialKind::metal;
-    result.material.parameter = std::clamp(roughness * roughness, 0.0f, 1.0f);
+    result.kind = kind_of<Metal>;
+    result.parameters[1].value = Color(std::clamp(roughness * roughness, 0.0f, 1.0f));
   } else {
     file_.report(place,
                  "metallic < 0.5: diffuse in the base colour is used, without a specular "
@@ -118,17 +103,17 @@ void Materials::set_metallic_roughness(const tinygltf::Material& source, const s
 }
 
 void Materials::set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
-                                        Converted& result) {
+                                        MaterialDescription& result) {
   file_.report(place, "KHR_materials_pbrSpecularGlossiness: diffuse in the diffuse colour is used");
-  result.material.albedo = clamped(Color(vector_or(source, "diffuseFactor", Vec4(1.0f))));
+  result.parameters[0].value = clamped(Color(vector_or(source, "diffuseFactor", Vec4(1.0f))));
   if (const TextureUse use = texture_use(member(source, "diffuseTexture"))) {
-    result.textures.albedo = textures_.add_color(
+    result.parameters[0].texture = textures_.add_color(
         use, place + ".extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture");
   }
 }
 
 bool Materials::set_transmission(const tinygltf::Material& source, const std::string& place,
-                                 Converted& result) {
+                                 MaterialDescription& result) {
   const auto* extension = find_extension(source.extensions, "KHR_materials_transmission");
   float transmission = extension ? number_or(*extension, "transmissionFactor", 0.0f) : 0.0f;
   if (!(transmission > 0.0f)) return false;
@@ -148,13 +133,13 @@ bool Materials::set_transmission(const tinygltf::Material& source, const std::st
   if (!std::isfinite(ior) || ior < 1.0f) {
     file_.fail(place + ".extensions.KHR_materials_ior.ior", fmt::format("{}: expected >= 1", ior));
   }
-  result.material.kind = MaterialKind::dielectric;
-  result.material.parameter = ior;
+  result.kind = kind_of<Dielectric>;
+  result.parameters[1].value = Color(ior);
   return true;
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,
-                             Converted& result) {
+                             MaterialDescription& result) {
   if (source.emissiveFactor.size() != 3) return;  // the default material
   const float strength =
       extension_number(source, "KHR_materials_emissive_strength", "emissiveStrength", 1.0f);
@@ -164,13 +149,13 @@ void Materials::set_emission(const tinygltf::Material& source, const std::string
       file_.fail(place + ".emissiveFactor", "expected finite numbers >= 0");
     }
   }
-  result.material.emission = emission;
+  result.emission.radiance = emission;
   if (is_black(emission)) return;
   if (source.doubleSided) {
     file_.report(place, "doubleSided and emissive: light from the front side only");
   }
   if (const TextureUse use = texture_use(source.emissiveTexture)) {
-    result.textures.emission = textures_.add_color(use, place + ".emissiveTexture");
+    result.emission.texture = textures_.add_color(use, place + ".emissiveTexture");
   }
 }
 

@@ -20,22 +20,18 @@ class Materials {
   std::uint32_t number(int index, const std::string& place);
 
  private:
-  struct Converted {
-    Material material;
-    MaterialTextures textures;
-  };
-
-  Converted convert(const tinygltf::Material& source, const std::string& place);
-  void set_base(const tinygltf::Material& source, const std::string& place, Converted& result);
+  MaterialDescription convert(const tinygltf::Material& source, const std::string& place);
+  void set_base(const tinygltf::Material& source, const std::string& place,
+                MaterialDescription& result);
   void set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
-                              Converted& result);
+                              MaterialDescription& result);
   void set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
-                               Converted& result);
+                               MaterialDescription& result);
   bool set_transmission(const tinygltf::Material& source, const std::string& place,
-                        Converted& result);
-  void set_emission(const tinygltf::Material& source, const std::string& place, Converted& result);
+                        MaterialDescription& result);
+  void set_emission(const tinygltf::Material& source, const std::string& place,
+                    MaterialDescription& result);
   void report_ignored(const tinygltf::Material& source, const std::string& place);
-  std::uint32_t add(const Converted& converted, const std::string& place);
 
   File& file_;
   SceneData& scene_;

@@ -17,7 +17,7 @@ Color radiance_of(Context& context, const Object& emitter, std::string_view name
 
 void add_point(Context& context, const Object& emitter) {
   DeltaLight light;
-  light.kind = DeltaLight::Kind::point;
+  light.kind = LightKind::point;
   light.intensity = radiance_of(context, emitter, "intensity");
   const Vec3 moved = emitter.transform("to_world").translation();
   light.position = emitter.vector("position", moved);
@@ -28,7 +28,7 @@ float cosine(float degrees) { return std::cos(degrees * pi / 180.0f); }
 
 void add_spot(Context& context, const Object& emitter) {
   DeltaLight light;
-  light.kind = DeltaLight::Kind::spot;
+  light.kind = LightKind::spot;
   light.falloff = SpotFalloff::linear_angle;
   light.intensity = radiance_of(context, emitter, "intensity");
   const Affine to_world = emitter.transform("to_world");
@@ -49,7 +49,7 @@ void add_spot(Context& context, const Object& emitter) {
 
 void add_directional(Context& context, const Object& emitter) {
   DeltaLight light;
-  light.kind = DeltaLight::Kind::directional;
+  light.kind = LightKind::directional;
   light.intensity = radiance_of(context, emitter, "irradiance");
   const Vec3 along = emitter.transform("to_world").vector({0, 0, 1});
   const Vec3 direction = emitter.vector("direction", along);

@@ -45,7 +45,7 @@ Surface metal_of(Context& context, const Object& bsdf, float fuzz) {
       read_color_texture(context, bsdf, "specular_reflectance", Color(1.0f));
   const Color albedo = conductor_reflectance(context, bsdf) * specular.color;
   surface.material = make_metal(albedo, fuzz);
-  surface.textures.albedo = specular.texture;
+  surface.material.parameters[0].texture = specular.texture;
   return surface;
 }
 
@@ -53,8 +53,7 @@ Surface metal_of(Context& context, const Object& bsdf, float fuzz) {
 
 Surface diffuse_of(const ColorTexture& reflectance) {
   Surface surface;
-  surface.material.albedo = reflectance.color;
-  surface.textures.albedo = reflectance.texture;
+  surface.material.parameters[0] = {reflectance.color, reflectance.texture};
   surface.material.one_sided = true;
   return surface;
 }
@@ -132,8 +131,10 @@ Surface read_principled(Context& context, const Object& bsdf) {
   Surface surface = diffuse_of(base);
   if (metallic > 0.5f) {
     surface.material = make_metal(base.color, fuzz_of(roughness * roughness));
+    surface.material.parameters[0].texture = base.texture;
   } else if (transmission > 0.5f) {
     surface.material = make_dielectric(base.color, eta > 0.0f ? eta : 1.5f);
+    surface.material.parameters[0].texture = base.texture;
   }
   return surface;
 }

@@ -26,30 +26,13 @@ void add_emission(Context& context, const Object& emitter, Surface& surface) {
   emitter.ignore({"sampling_weight"});
   const ColorTexture radiance =
       read_color_texture(context, emitter, "radiance", Color(1.0f), Quantity::emission);
-  surface.material.emission = radiance.color;
-  surface.textures.emission = radiance.texture;
+  surface.material.emission = {radiance.color, radiance.texture};
   if (surface.invisible) {
     context.warn_once("invisible emitter", emitter.element(),
                       "an emitter that light passes is not supported: it is black instead");
     surface = default_surface(&emitter);
-    surface.material.emission = radiance.color;
-    surface.textures.emission = radiance.texture;
+    surface.material.emission = {radiance.color, radiance.texture};
   }
-}
-
-std::uint16_t add_textures(Context& context, const Object& shape, const MaterialTextures& wanted) {
-  std::vector<MaterialTextures>& all = context.scene.material_textures;
-  if (wanted.albedo == no_texture && wanted.emission == no_texture) return 0;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    if (all[i].albedo == wanted.albedo && all[i].emission == wanted.emission) {
-      return static_cast<std::uint16_t>(i);
-    }
-  }
-  if (all.size() > 0xffff) {
-    fail(shape.element(), "more than 65535 pairs of textures; expected fewer");
-  }
-  all.push_back(wanted);
-  return static_cast<std::uint16_t>(all.size() - 1);
 }
 
 const Object* emitter_of(Context& context, const Object& shape, std::uint32_t group) {
@@ -79,7 +62,6 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
     Surface surface = bsdf ? read_surface(context, *bsdf) : default_surface(emitter);
     if (emitter) add_emission(context, *emitter, surface);
     if (!surface.invisible) {
-      surface.material.textures = add_textures(context, shape, surface.textures);
       entry->second = context.scene.add_material(surface.material);
     }
   }

@@ -51,7 +51,7 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
 }
 
 bool is_textured(const SceneData& scene, std::uint32_t material) {
-  return scene.materials[material].textures != 0;
+  return scene.materials[material].is_textured();
 }
 
 }  // namespace

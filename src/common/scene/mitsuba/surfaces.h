@@ -7,8 +7,7 @@ namespace pt::mitsuba {
 
 /// What a bsdf becomes.
 struct Surface {
-  Material material;
-  MaterialTextures textures;
+  MaterialDescription material;
   bool invisible = false;  ///< light passes as if nothing were there
 };
 

@@ -1,15 +1,9 @@
-// All lights of a scene in one list, and the choice of one of them.
+// The record of any light but the environment.
 #pragma once
 
 #include "common/light/delta_light.h"
-#include "common/light/environment.h"
-#include "common/sampling/alias_table.h"
 
 namespace pt {
-
-/// A turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors,
-/// and mirroring would turn the side that shines away.
-enum class LightKind : std::uint8_t { triangle, turned_triangle, sphere, point, spot, directional };
 
 /// A LightError in three bytes, rounded up: the relative part to a power of two, by its exponent;
 /// the absolute one to the upper half of a float.
@@ -48,39 +42,16 @@ struct alignas(16) Light {
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;
 
-  PT_HD bool is_delta() const { return kind >= LightKind::point; }
+  PT_HD bool is_delta() const { return pt::is_delta(kind); }
   PT_HD LightError error() const {
     return PackedLightError{relative_error, absolute_error}.unpack();
   }
   PT_HD DeltaLight delta() const {
-    return {static_cast<DeltaLight::Kind>(static_cast<std::uint32_t>(kind) -
-                                          static_cast<std::uint32_t>(LightKind::point)),
-            a,
-            b,
-            radiance,
-            c.x,
-            c.y,
-            static_cast<SpotFalloff>(float_to_bits(c.z))};
+    return {kind, a, b, radiance, c.x, c.y, static_cast<SpotFalloff>(float_to_bits(c.z))};
   }
 };
 
 static_assert(sizeof(Light) == 64);
-
-/// A view. One of the lights is chosen with a probability proportional to its weight, about its
-/// power; the environment, whose power depends on the size of the scene more than on what it does
-/// for it, with a fixed one.
-struct LightList {
-  const Light* lights = nullptr;
-  const AliasEntry* selection = nullptr;  ///< [light]
-  std::uint32_t count = 0;
-  float total_weight = 0.0f;
-  float environment_probability = 0.0f;  ///< 1 without other lights, 0 without an environment
-
-  /// Probability of choosing a light of this weight.
-  PT_HD float probability(float weight) const {
-    return (1.0f - environment_probability) * weight / total_weight;
-  }
-};
 
 PT_HD float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 

@@ -1,0 +1,52 @@
+// A material as scenes describe it, before prepare_materials() packs it for the kernels. Loaders
+// and built-in scenes fill it in, one of them on the device: so it is plain data of fixed size.
+#pragma once
+
+#include "common/light/emission.h"
+#include "common/material/material.h"
+
+namespace pt {
+
+inline constexpr int parameters_max = 8;  ///< of one material
+
+struct MaterialDescription {
+  MaterialKind kind = kind_of<Diffuse>;
+  bool one_sided = false;  ///< black when seen from behind
+  Parameter parameters[parameters_max] = {{Color(0.5f)}};
+  Emission emission;  ///< on the side to which the normal points
+
+  // What a BSDF makes itself of, without textures.
+  PT_HD const Color& color(int i) const { return parameters[i].value; }
+  PT_HD float scalar(int i) const { return parameters[i].value.x; }
+
+  bool is_textured() const {
+    bool any = emission.texture != no_texture;
+    for (const Parameter& p : parameters) any = any || p.texture != no_texture;
+    return any;
+  }
+};
+
+PT_HD MaterialDescription make_diffuse(const Color& albedo, const Color& emission = Color(0.0f)) {
+  MaterialDescription m;
+  m.parameters[0].value = albedo;
+  m.emission.radiance = emission;
+  return m;
+}
+
+PT_HD MaterialDescription make_metal(const Color& albedo, float fuzz) {
+  MaterialDescription m;
+  m.kind = kind_of<Metal>;
+  m.parameters[0].value = albedo;
+  m.parameters[1].value = Color(fuzz);
+  return m;
+}
+
+PT_HD MaterialDescription make_dielectric(const Color& tint, float eta) {
+  MaterialDescription m;
+  m.kind = kind_of<Dielectric>;
+  m.parameters[0].value = tint;
+  m.parameters[1].value = Color(eta);
+  return m;
+}
+
+}  // namespace pt

@@ -1,0 +1,12 @@
+// Packs the materials' descriptions into what kernels read.
+#pragma once
+
+#include "common/scene/scene_data.h"
+
+namespace pt {
+
+/// Fills material_records, parameters and emissions from the materials: parameters of each in a
+/// row, emissions only of what shines, textures' means measured.
+void prepare_materials(SceneData& scene);
+
+}  // namespace pt

@@ -1,0 +1,41 @@
+// A path from a ray to its end: what one thread does that follows it alone.
+#pragma once
+
+#include "common/sampling/random.h"
+#include "common/transport/shade_miss.h"
+#include "common/transport/shade_surface.h"
+
+namespace pt {
+
+/// shade_surface with the random numbers that decide this ray of the path.
+template <class Traits, class Stream>
+PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
+                              const PathLimits& limits, Stream& random) {
+  const Vec4 u = random.draw(scatter_block(path.rays));
+  const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+  return shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
+}
+
+/// Traces `ray` and what follows it. Returns the path's radiance: `radiance`, which it brings
+/// along, and all that is added.
+template <class Traits, class Stream>
+PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radiance,
+                        const PathLimits& limits, Stream& random) {
+  for (;;) {
+    const Hit hit = intersect_closest<Traits>(scene, ray);
+    ++path.rays;
+    if (hit.is_miss()) {
+      return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
+    }
+    const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
+    radiance = add_rounded(radiance, scattering.emitted);
+    if (Traits::has_lights && !is_black(scattering.shadow.radiance) &&
+        !intersect_shadow<Traits>(scene, scattering.shadow)) {
+      radiance = add_rounded(radiance, scattering.shadow.radiance);
+    }
+    if (!scattering.alive) return radiance;
+    ray = scattering.ray;
+  }
+}
+
+}  // namespace pt
