@@ -19,10 +19,17 @@ MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, i
 
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
   check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, stream()), "cudaMemsetAsync");
-  with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
+  const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     with_random_source(
         [&](const auto& source) { launch_megakernel(storage, shared_bytes, source, batch); });
-  });
+  };
+  const bool scans_spheres =
+      traits_.accel == Accel::brute && traits_.geometry == Geometry::spheres_and_quads;
+  if (scans_spheres) {
+    with_scene_storage(launch_with);
+  } else {
+    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
+  }
 }
 
 std::unique_ptr<Renderer> make_megakernel_cuda(const Options& options, const SceneData& scene,

@@ -1,5 +1,5 @@
-// The megakernel's renderer. Its kernel has 48 variants (scene, branching, random numbers, scene
-// memory), so launching is split into one file per kind of random number and scene memory.
+// The megakernel's renderer. Its kernel has 37 variants (scene, branching, random numbers, scene
+// memory), so launching is split into files that compile side by side.
 #pragma once
 
 #include "common/device/cuda_renderer.cuh"

@@ -25,9 +25,9 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   const dim3 block(options_.block.x, options_.block.y);
   const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
                               static_cast<std::uint32_t>(options_.height), next_path_};
-  // Only the paper's scenes have their spheres elsewhere than in global memory.
+  // Only where brute force scans the spheres do they lie elsewhere than in global memory.
   using Kinds = std::conditional_t<memory == SceneMemory::global, KindsWith<Source, SceneKinds>,
-                                   SphereSceneKinds>;
+                                   BruteSphereKinds>;
   dispatch_traits(Kinds{}, traits_, [&](auto traits) {
     dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       constexpr auto kernel =

@@ -24,6 +24,20 @@ struct StageOutcomes {
   bool casts_shadow_rays;
 };
 
+/// How a stage reads the spheres; where they may lie decides how many kernels it has.
+enum class SphereAccess {
+  once,       ///< a hit's sphere at most: from global memory
+  scan,       ///< all of them for every ray: where --scene-memory says
+  last_scan,  ///< likewise, by a kernel too short to be copied for shared memory
+};
+
+/// Only brute force scans.
+template <class Traits, SphereAccess access>
+inline constexpr SphereAccess sphere_access =
+    Traits::accel == Accel::brute&& Traits::geometry == Geometry::spheres_and_quads
+        ? access
+        : SphereAccess::once;
+
 /// What the stages that begin and shade paths need. `rank` in their calls is the place of the slot
 /// in the stage's queue.
 template <class Source>
@@ -38,19 +52,20 @@ struct StageContext {
 
 /// Ends a path: its sample gets the last radiance and the path's counts. Without lights nothing has
 /// been added before, and the sample need not be read.
-template <bool has_lights>
-PT_HD void end_path(const SampleBuffer& samples, const PathState& path, const Color& radiance) {
+PT_HD void end_path(const SampleBuffer& samples, const PathState& path, const Color& radiance,
+                    bool has_lights) {
   const Color before = has_lights ? samples.samples[path.number].radiance : Color(0.0f);
   samples.store(path, add_rounded(before, radiance));
 }
 
-template <bool has_lights, class Source>
+template <class Source>
 struct GeneratePaths {
   static constexpr StageId id = StageId::generate;
   static constexpr PathTag tag = PathTag::free;
-  static constexpr bool scans_spheres = false;
+  static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{PathTag::intersect}, false, false};
   StageContext<Source> context;
+  bool has_lights;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t rank) const {
     const auto& [pool, samples, source, counters, ray_queue, limits] = context;
@@ -66,22 +81,27 @@ struct GeneratePaths {
     const Ray ray = generate_camera_path(scene, id_of_path.pixel, random.draw(scatter_block(0)));
     source.close(id_of_path, random);
     pool.store_new_path(slot, ray, number);
-    if constexpr (has_lights) store_wide(&samples.samples[number], Sample{});
+    if (has_lights) store_wide(&samples.samples[number], Sample{});
     return {PathTag::intersect};
   }
 };
 
-template <class Traits, Branching branching>
+/// What tracing depends on: scenes that differ in their light alone share its kernels.
+template <class T>
+using RayTraits = Traits<T::accel, T::geometry, Lighting::sky>;
+
+template <class Traits>
 struct IntersectRays {
   static constexpr StageId id = StageId::intersect;
   static constexpr PathTag tag = PathTag::intersect;
-  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
+  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
   static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
   PathPool pool;
+  bool parts_misses;  ///< false: a surface's stage shades them, too (Branching::reduced)
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot));
-    if (branching == Branching::divergent && hit.is_miss()) return {PathTag::miss};
+    if (parts_misses && hit.is_miss()) return {PathTag::miss};
     pool.store_hit(slot, hit);
     return {PathTag::surface};
   }
@@ -92,7 +112,7 @@ struct IntersectRays {
 struct SortHits {
   static constexpr StageId id = StageId::intersect;
   static constexpr PathTag tag = PathTag::intersect;
-  static constexpr bool scans_spheres = false;
+  static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
   PathPool pool;
 
@@ -101,22 +121,23 @@ struct SortHits {
   }
 };
 
+/// Of Lighting::full, or of the others, which differ only in whether lights have added to a sample.
 template <Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
   static constexpr PathTag tag = PathTag::miss;
-  static constexpr bool scans_spheres = false;
+  static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{PathTag::free, PathTag::free}, true, false};
   PathPool pool;
   SampleBuffer samples;
+  bool has_lights;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     Ray ray;
     PathState path = lighting == Lighting::full ? pool.load_path(slot, ray)
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
-    end_path<lighting != Lighting::sky>(samples, path,
-                                        shade_miss<lighting>(scene, ray.direction, path));
+    end_path(samples, path, shade_miss<lighting>(scene, ray.direction, path), has_lights);
     return {PathTag::free};
   }
 };
@@ -147,7 +168,7 @@ struct ShadeSurface {
   static constexpr StageId id = StageId::shade_surface;
   static constexpr PathTag tag = PathTag::surface;
   static constexpr StageOutcomes outcomes = {{PathTag::intersect, PathTag::free}, true, has_lights};
-  static constexpr bool scans_spheres = false;
+  static constexpr SphereAccess spheres = SphereAccess::once;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -160,7 +181,7 @@ struct ShadeSurface {
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
     if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
     if (!scattering.alive) {
-      end_path<has_lights>(context.samples, path, scattering.emitted);
+      end_path(context.samples, path, scattering.emitted, has_lights);
       return {PathTag::free, shadow};
     }
     if (has_lights) add_radiance(context.samples, path.number, scattering.emitted);
@@ -173,7 +194,7 @@ template <class Traits>
 struct TraceShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr PathTag tag = PathTag::surface;  // of the shadow tags
-  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
+  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
   static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
   PathPool pool;
   SampleBuffer samples;
@@ -189,13 +210,14 @@ struct TraceShadowRays {
 };
 
 /// The last of a batch: when few paths are left, waves cost more than what they do, and one thread
-/// follows each path to its end.
-template <class Traits, Branching branching, class Source>
+/// follows each path to its end. The image is the same without the paper's toggles, which therefore
+/// have no kernels of their own here.
+template <class Traits, class Source>
 struct FinishPaths {
   static constexpr StageId id = StageId::finish;
   static constexpr PathTag tag = PathTag::intersect;
   static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
-  static constexpr bool scans_spheres = Traits::geometry == Geometry::spheres_and_quads;
+  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::last_scan>;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -206,11 +228,12 @@ struct FinishPaths {
     for (bool alive = true; alive;) {
       const Hit hit = intersect_closest<Traits>(scene, ray);
       ++path.rays;
-      if (branching == Branching::divergent && hit.is_miss()) {
+      if (hit.is_miss()) {
         radiance = add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
         break;
       }
-      const Scattering scattering = scatter_path<Traits, branching>(scene, context, ray, hit, path);
+      const Scattering scattering =
+          scatter_path<Traits, Branching::divergent>(scene, context, ray, hit, path);
       radiance = add_rounded(radiance, scattering.emitted);
       if (has_lights && !is_black(scattering.shadow.radiance) &&
           !intersect_shadow<Traits>(scene, scattering.shadow)) {

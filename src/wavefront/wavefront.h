@@ -69,15 +69,16 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   execute.compact(b.request(tags, free, PathTag::free, PathTag::intersect));
   execute.begin_wave();
   if (starts_paths) {
-    execute.run(GeneratePaths<Traits::has_lights, Source>{context},
+    execute.run(GeneratePaths<Source>{context, Traits::has_lights},
                 b.stage_queues(free, &counters->generate, tags));
   }
-  execute.run(IntersectRays<Traits, branching>{b.pool},
+  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, branching == Branching::divergent},
               b.stage_queues(intersect, &counters->intersect, tags));
 
   execute.compact(b.request(tags, miss, PathTag::miss, PathTag::surface));
   if constexpr (branching == Branching::divergent) {
-    execute.run(ShadeMiss<Traits::lighting>{b.pool, context.samples},
+    constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
+    execute.run(ShadeMiss<sky>{b.pool, context.samples, Traits::has_lights},
                 b.stage_queues(miss, b.waiting(miss), tags));
   }
   execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context},
@@ -86,15 +87,15 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   if constexpr (Traits::has_lights) {
     PathTag* shadow_tags = b.pool.shadow_tag;
     execute.compact(b.request(shadow_tags, shadow, PathTag::surface, PathTag::miss));
-    execute.run(TraceShadowRays<Traits>{b.pool, context.samples},
+    execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, context.samples},
                 b.stage_queues(shadow, b.waiting(shadow), shadow_tags));
   }
 }
 
 /// After the last wave: the paths that begin_wave left over are followed to their ends.
-template <class Traits, Branching branching, class Source, class Executor>
+template <class Traits, class Source, class Executor>
 void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
-  execute.run(FinishPaths<Traits, branching, Source>{context},
+  execute.run(FinishPaths<Traits, Source>{context},
               b.stage_queues(QueueId::intersect, &b.counters->finish, b.pool.tag));
 }
 

@@ -112,7 +112,7 @@ class WavefrontCpu : public CpuRenderer {
         buffers_.pool, batch, source, &counters_, buffers_.queue(QueueId::intersect), limits_};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
-    run_finish<Traits, branching>(execute, buffers_, context);
+    run_finish<Traits>(execute, buffers_, context);
     waves_ += counters_.waves;
   }
 

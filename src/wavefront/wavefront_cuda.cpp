@@ -113,17 +113,23 @@ void WavefrontCuda::start_queues() {
   copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
 }
 
+template <class Source>
+StageContext<Source> WavefrontCuda::context_of(const SampleBuffer& batch,
+                                               const Source& source) const {
+  return {buffers_.pool, batch, source, buffers_.counters, buffers_.queue(QueueId::intersect),
+          limits_};
+}
+
 template <class Function>
 void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
-    const StageContext<Source> context{
-        buffers_.pool, batch, source, buffers_.counters, buffers_.queue(QueueId::intersect),
-        limits_};
     if (traits_.geometry == Geometry::spheres_and_quads) {
-      function(SphereSceneKinds{}, context);
+      function(SphereSceneKinds{}, context_of(batch, source));
     } else if constexpr (draws_in_all_scenes<Source>) {
-      function(TriangleSceneKinds{}, context);
+      function(TriangleSceneKinds{}, context_of(batch, source));
+    } else {
+      throw_no_kernel(traits_);
     }
   });
 }
@@ -138,8 +144,9 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
 }
 
 void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
-  with_context(
-      batch, [&](auto kinds, const auto& context) { enqueue_finish_of<decltype(kinds)>(context); });
+  with_context(batch, [&](auto kinds, const auto& context) {
+    enqueue_finish_of<decltype(kinds)>(context_of(batch, AnySource<CurandState>(context.source)));
+  });
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {

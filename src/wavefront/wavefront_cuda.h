@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/device/cuda_renderer.cuh"
+#include "wavefront/any_source.h"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/wavefront.h"
 
@@ -24,7 +25,7 @@ class WavefrontCuda : public CudaRenderer {
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
   template <class Traits>
-  void run(const IntersectRays<Traits, Branching::divergent>& stage, const StageQueues& queues);
+  void run(const IntersectRays<Traits>& stage, const StageQueues& queues);
   template <class Traits>
   void run(const TraceShadowRays<Traits>& stage, const StageQueues& queues);
 
@@ -38,14 +39,16 @@ class WavefrontCuda : public CudaRenderer {
   /// need, by the type of the random source.
   template <class Function>
   void with_context(const SampleBuffer& batch, Function&& function);
+  template <class Source>
+  StageContext<Source> context_of(const SampleBuffer& batch, const Source& source) const;
   template <class Stage>
   void run_stage(const Stage& stage, const StageQueues& queues);
   template <class Rays>
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
-  template <class Kinds, class Source>
-  void enqueue_finish_of(const StageContext<Source>& context);
+  template <class Kinds>
+  void enqueue_finish_of(const StageContext<AnySource<CurandState>>& context);
   void allocate_pool();
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();

@@ -22,11 +22,20 @@ void WavefrontCuda::run_stage(const Stage& stage, const StageQueues& queues) {
            blocks < resident ? blocks : resident, block, shared_bytes, storage, stage, queues,
            clock());
   };
-  // Only these kernels read the spheres again and again.
-  if constexpr (Stage::scans_spheres) {
-    with_scene_storage(launch_with);
-  } else {
+  const auto launch_global = [&] {
     launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
+  };
+  if constexpr (Stage::spheres == SphereAccess::once) {
+    launch_global();
+  } else {
+    with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
+      constexpr SceneMemory memory = std::remove_cvref_t<decltype(storage)>::memory;
+      if constexpr (memory == SceneMemory::shared && Stage::spheres != SphereAccess::scan) {
+        launch_global();
+      } else {
+        launch_with(storage, shared_bytes);
+      }
+    });
   }
 }
 
@@ -50,8 +59,7 @@ void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
 }
 
 template <class Traits>
-void WavefrontCuda::run(const IntersectRays<Traits, Branching::divergent>& stage,
-                        const StageQueues& queues) {
+void WavefrontCuda::run(const IntersectRays<Traits>& stage, const StageQueues& queues) {
   if constexpr (has_persistent_tracer<Traits>) {
     if (queues.tags == nullptr) {
       run_persistent(QueuedPaths{{stage.pool, queues, &buffers_.counters->traced}},
@@ -84,13 +92,14 @@ void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool st
   });
 }
 
-template <class Kinds, class Source>
-void WavefrontCuda::enqueue_finish_of(const StageContext<Source>& context) {
-  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
-    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
-      run_finish<decltype(traits), decltype(branching)::value>(*this, buffers_, context);
-    });
-  });
+template <class Kinds>
+void WavefrontCuda::enqueue_finish_of(const StageContext<AnySource<CurandState>>& context) {
+  dispatch_traits(Kinds{}, traits_,
+                  [&](auto traits) { run_finish<decltype(traits)>(*this, buffers_, context); });
 }
+
+// Needed in the files of all kinds of scenes, compiled in one.
+extern template void WavefrontCuda::run_stage(const GeneratePaths<PhiloxSource>&,
+                                              const StageQueues&);
 
 }  // namespace pt

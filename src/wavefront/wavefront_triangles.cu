@@ -6,6 +6,7 @@ namespace pt {
 using PhiloxContext = StageContext<PhiloxSource>;
 
 template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const PhiloxContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(const PhiloxContext&);
+template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(
+    const StageContext<AnySource<CurandState>>&);
 
 }  // namespace pt

@@ -13,11 +13,13 @@ namespace pt {
 
 // The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
 // whatever a file can hold shares the rest.
-using SphereSceneKinds =
+using BruteSphereKinds =
     TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-             Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>,
-             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
-             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>;
+             Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>>;
+using SphereSceneKinds = decltype(concatenate(
+    BruteSphereKinds{},
+    TypeList<Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>{}));
 using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
                                     Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
                                     Traits<Accel::brute, Geometry::mixed, Lighting::full>,
@@ -34,10 +36,14 @@ inline constexpr bool draws_in_all_scenes = std::is_same_v<Source, PhiloxSource>
 template <class Source, class All>
 using KindsWith = std::conditional_t<draws_in_all_scenes<Source>, All, SphereSceneKinds>;
 
-/// function(Traits<...>{}) for the member of the list that has these traits.
+/// Throws Error, which names the traits.
+[[noreturn]] void throw_no_kernel(const SceneTraits& traits);
+
+/// function(Traits<...>{}) for the member of the list that has these traits. Throws Error when none
+/// has.
 template <class Function, class... T>
 void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
-  (void)((T::value() == traits && (function(T{}), true)) || ...);
+  if (!((T::value() == traits && (function(T{}), true)) || ...)) throw_no_kernel(traits);
 }
 
 /// function(Constant<branching>). Branches are reduced in the paper's scenes only.

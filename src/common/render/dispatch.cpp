@@ -1,0 +1,43 @@
+#include "common/render/dispatch.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+
+namespace pt {
+namespace {
+
+const char* name_of(Geometry geometry) {
+  switch (geometry) {
+    case Geometry::spheres_and_quads:
+      return "spheres and quads";
+    case Geometry::triangles:
+      return "triangles";
+    case Geometry::mixed:
+      return "triangles and others";
+  }
+  return "?";
+}
+
+const char* name_of(Lighting lighting) {
+  switch (lighting) {
+    case Lighting::sky:
+      return "sky";
+    case Lighting::emitters:
+      return "emitters";
+    case Lighting::full:
+      return "all kinds";
+  }
+  return "?";
+}
+
+}  // namespace
+
+void throw_no_kernel(const SceneTraits& traits) {
+  throw Error(
+      fmt::format("no kernel for a scene with --accel {}, geometry: {}, lights: {}; expected one "
+                  "of the kinds that this mode, device and --rng have",
+                  accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting)));
+}
+
+}  // namespace pt

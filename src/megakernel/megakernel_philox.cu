@@ -1,0 +1,10 @@
+// All kinds of scenes.
+#include "megakernel/megakernel_launch.cuh"
+
+namespace pt {
+
+template void MegakernelCuda::launch_megakernel(const SceneStorage<SceneMemory::global>&,
+                                                std::size_t, const PhiloxSource&,
+                                                const SampleBuffer&);
+
+}  // namespace pt

@@ -1,0 +1,67 @@
+// From run-time choices to kernels: every kind of scene has its own, and one without has an error.
+#include <gtest/gtest.h>
+
+#include "common/error.h"
+#include "common/render/dispatch.h"
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+template <class... T, class Test>
+void for_each_kind(TypeList<T...>, Test&& test) {
+  (test(T{}), ...);
+}
+
+TEST(Dispatch, EveryKindOfSceneFindsItself) {
+  for_each_kind(CpuSceneKinds{}, [](auto kind) {
+    int calls = 0;
+    dispatch_traits(CpuSceneKinds{}, kind.value(), [&](auto found) {
+      ++calls;
+      EXPECT_TRUE(found.value() == kind.value());
+    });
+    EXPECT_EQ(calls, 1);
+  });
+}
+
+void expect_no_kernel(const std::function<void()>& call, const std::string& traits) {
+  try {
+    call();
+    ADD_FAILURE() << "not refused; expected: " << traits;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(traits), std::string::npos) << error.what();
+  }
+}
+
+TEST(Dispatch, NamesTheTraitsThatHaveNoKernel) {
+  const auto call = [](SceneTraits traits) {
+    return
+        [traits] { dispatch_traits(SphereSceneKinds{}, traits, [](auto) { FAIL() << "called"; }); };
+  };
+  expect_no_kernel(call({Accel::cwbvh, Geometry::triangles, Lighting::full}),
+                   "--accel cwbvh, geometry: triangles, lights: all kinds");
+  expect_no_kernel(call({Accel::brute, Geometry::spheres_and_quads, Lighting::full}),
+                   "--accel brute, geometry: spheres and quads, lights: all kinds");
+  expect_no_kernel(call({Accel::embree, Geometry::mixed, Lighting::emitters}),
+                   "--accel embree, geometry: triangles and others, lights: emitters");
+}
+
+// A stored state is for the paper's scenes: others have no kernel with it, in any mode.
+TEST(Dispatch, ARenderWithoutAKernelIsNoBlackImage) {
+  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+    const Options options = with({}, {{"scene", "terrain:1K"},
+                                      {"width", "8"},
+                                      {"height", "8"},
+                                      {"spp", "1"},
+                                      {"device", "cpu"},
+                                      {"mode", mode}});
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    const Options xorwow = with(options, {{"rng", "xorwow"}});
+    expect_no_kernel([&] { take_image(*make_renderer(xorwow, scene, device)); },
+                     "geometry: triangles, lights: all kinds");
+  }
+}
+
+}  // namespace
+}  // namespace pt
