@@ -98,8 +98,6 @@ class CudaRenderer : public Renderer {
 
  private:
   void upload(const SceneData& scene);
-  void upload_triangles(const SceneData& scene);
-  void upload_tree(const TriangleTreeData& tree);
   void allocate_film();
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>

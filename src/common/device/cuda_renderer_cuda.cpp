@@ -14,6 +14,7 @@
 #include "common/render/option_names.h"
 #include "common/scene/prepare_scene.h"
 #include "common/scene/prepare_triangles.h"
+#include "common/scene/scene_arrays.h"
 #include "common/scene/scene_facts.h"
 
 namespace pt {
@@ -112,44 +113,18 @@ void CudaRenderer::upload(const SceneData& scene) {
                     scene.spheres.size(), sphere_bytes, properties_.sharedMemPerBlockOptin));
   }
   scene_ = host_view(scene, options_.width, options_.height);
-  scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
-  scene_.primitives.scan = memory_.upload("scene", scene.scan_spheres);
-  scene_.primitives.quads = memory_.upload("scene", scene.quads);
-  scene_.materials = memory_.upload("scene", scene.materials);
-  scene_.material_of = memory_.upload("scene", scene.material_of);
-  scene_.lights = memory_.upload("scene", scene.lights);
-  scene_.bvh_nodes = memory_.upload("acceleration structure", scene.bvh_nodes);
-  if (traits_.geometry != Geometry::spheres_and_quads) upload_triangles(scene);
-}
-
-void CudaRenderer::upload_tree(const TriangleTreeData& data) {
-  TriangleTree& tree = scene_.triangles;
-  tree.bvh2 = memory_.upload("acceleration structure", data.bvh2);
-  tree.cwbvh = memory_.upload("acceleration structure", data.cwbvh);
-  tree.triangles = memory_.upload("triangles", data.triangles);
-  tree.instances = memory_.upload("instances", data.instances);
-}
-
-void CudaRenderer::upload_triangles(const SceneData& scene) {
-  if (is_device_builder(options_.builder)) {
+  const auto upload_array = [&](auto*& pointer, const auto& values, const char* kind) {
+    pointer = memory_.upload(kind, values);
+  };
+  for_each_array(scene, scene_, upload_array);
+  if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(options_.builder)) {
     const DeviceTriangleTree built = build_device_triangle_tree(
         scene.meshes, scene.instances, tree_options(traits_.accel, options_.builder), memory_);
     scene_.triangles = built.view;
     tree_facts_ = tree_facts(built.summary, scene.triangle_count());
   } else {
-    upload_tree(scene.tree);
+    scene_.triangles = scene.tree.view(upload_array);
   }
-  scene_.to_world = memory_.upload("instances", scene.to_world);
-  scene_.attributes = {memory_.upload("vertex attributes", scene.attributes.triangles),
-                       memory_.upload("vertex attributes", scene.attributes.normals),
-                       memory_.upload("vertex attributes", scene.attributes.uvs)};
-  scene_.light_list.lights = memory_.upload("lights", scene.light_list.lights);
-  scene_.light_list.selection = memory_.upload("lights", scene.light_list.selection);
-  scene_.environment.texels = memory_.upload("environment", scene.environment_map.texels);
-  scene_.environment.alias = memory_.upload("environment", scene.environment_map.alias);
-  scene_.material_textures = memory_.upload("scene", scene.material_textures);
-  scene_.textures = memory_.upload("textures", scene.textures);
-  scene_.texels = memory_.upload("textures", scene.texels);
 }
 
 void CudaRenderer::allocate_film() {
