@@ -38,7 +38,8 @@ LAYERS = [
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stats.h"], []),
-    ("error", ["common/error.h", "common/error_context.h", "common/build_info.h"], []),
+    ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
+               "common/build_info.h"], []),
     # Around the physics: renderers and batches; what becomes of the samples.
     ("render", ["common/render/*"], ["film", "image", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),

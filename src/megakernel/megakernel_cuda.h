@@ -20,7 +20,7 @@ class MegakernelCuda : public CudaRenderer {
 
  private:
   template <class Kernel>
-  dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, std::uint32_t samples);
+  dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
   std::uint32_t* next_path_ = nullptr;
 };

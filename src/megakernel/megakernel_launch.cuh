@@ -9,13 +9,14 @@ namespace pt {
 
 template <class Kernel>
 dim3 MegakernelCuda::grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes,
-                               std::uint32_t samples) {
+                               const SampleBuffer& batch) {
   if (options_.work == Work::persistent) {
     return dim3(resident_blocks(reinterpret_cast<const void*>(kernel),
                                 static_cast<int>(block.x * block.y), shared_bytes));
   }
-  return dim3((options_.width + block.x - 1) / block.x, (options_.height + block.y - 1) / block.y,
-              options_.work == Work::sample ? samples : 1);
+  return dim3((batch.width.divisor() + block.x - 1) / block.x,
+              (batch.height() + block.y - 1) / block.y,
+              options_.work == Work::sample ? batch.sample_count : 1);
 }
 
 template <SceneMemory memory, class Source>
@@ -23,8 +24,7 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        std::size_t shared_bytes, const Source& source,
                                        const SampleBuffer& batch) {
   const dim3 block(options_.block.x, options_.block.y);
-  const WorkDivision division{options_.work, static_cast<std::uint32_t>(options_.width),
-                              static_cast<std::uint32_t>(options_.height), next_path_};
+  const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
   // Only where brute force scans the spheres do they lie elsewhere than in global memory.
   using Kinds = std::conditional_t<memory == SceneMemory::global, KindsWith<Source, SceneKinds>,
                                    BruteSphereKinds>;
@@ -32,8 +32,8 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
     dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
-      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch.sample_count),
-             block, shared_bytes, storage, batch, division, source, limits_, clock());
+      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,
+             shared_bytes, storage, batch, division, source, limits_, clock());
     });
   });
 }

@@ -151,10 +151,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
   if (schedule_ != "graph") return;
-  if (graph_exec_ != nullptr && batch.first_sample == graph_first_sample_ &&
-      batch.path_count == graph_path_count_) {
-    return;
-  }
+  if (graph_exec_ != nullptr && batch == graph_batch_) return;
   destroy_graph();
   build_graph(batch);
 }
@@ -186,8 +183,7 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaGraphInstantiate(&graph_exec_, graph_, 0), "cudaGraphInstantiate");
   check_cuda(cudaGraphUpload(graph_exec_, stream()), "cudaGraphUpload");
   check_cuda(cudaStreamSynchronize(stream()), "cudaGraphUpload");
-  graph_first_sample_ = batch.first_sample;
-  graph_path_count_ = batch.path_count;
+  graph_batch_ = batch;
 }
 
 void WavefrontCuda::destroy_graph() {

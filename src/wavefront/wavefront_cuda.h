@@ -64,10 +64,10 @@ class WavefrontCuda : public CudaRenderer {
   // What the wave being enqueued belongs to:
   std::uint32_t path_count_ = 0;
   cudaGraphConditionalHandle loop_ = 0;
-  // The graph of the last batch: batches of the same place and size share it.
+  // The graph of the last batch: renders of the same batch share it.
   cudaGraph_t graph_ = nullptr;
   cudaGraphExec_t graph_exec_ = nullptr;
-  std::uint32_t graph_first_sample_ = 0, graph_path_count_ = 0;
+  SampleBuffer graph_batch_;
 };
 
 }  // namespace pt

@@ -107,6 +107,7 @@ class FakeRenderer : public Renderer {
     }
     return run;
   }
+  RenderRun render(Film&, int, const RenderHooks& hooks) override { return render(hooks); }
   Image image() override { return {}; }
   void describe(RenderReport&) const override {}
 

@@ -1,4 +1,4 @@
-// What all modes share on the CPU: the film, the batches, the clock and the threads.
+// What all modes share on the CPU: the memory of the film, the clock and the threads.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -6,10 +6,8 @@
 #include <chrono>
 #include <vector>
 
-#include "common/film/film.h"
 #include "common/render/dispatch.h"
-#include "common/render/path_limits_of.h"
-#include "common/render/renderer.h"
+#include "common/render/film_renderer.h"
 #include "common/scene/scene_data.h"
 
 namespace pt {
@@ -31,14 +29,12 @@ class StageTimer {
   std::vector<StageTime> stages_;
 };
 
-class CpuRenderer : public Renderer {
+class CpuRenderer : public FilmRenderer {
  public:
   /// `threads`: 0 for all. `scene` must outlive the renderer. Throws Error when the machine's
   /// memory cannot hold the film.
   CpuRenderer(const Options& options, const SceneData& scene, int threads);
 
-  RenderRun render(const RenderHooks& hooks) override;
-  Image image() override;
   void describe(RenderReport& report) const override;
 
  protected:
@@ -58,8 +54,6 @@ class CpuRenderer : public Renderer {
 
   void note_memory(const char* name, std::uint64_t size_bytes);
 
-  const Options options_;
-  const PathLimits limits_;
   const SceneTraits traits_;
   const Scene scene_;
   StageTimer timer_;
@@ -67,16 +61,19 @@ class CpuRenderer : public Renderer {
   std::uint64_t pool_size_ = 0;
 
  private:
+  void begin_render(const Film& film) override;
+  void render_batch(const SampleBuffer& batch, RenderRun& run) override;
+  void end_render(RenderRun& run) override;
+  void read_film(Film& film) override;
   void init_random_states(const SampleBuffer& batch);
   void accumulate(const SampleBuffer& batch);
 
   int threads_;
   tbb::task_arena arena_;
   std::uint64_t primitive_count_;
-  int batch_samples_;
   double setup_ms_ = 0;
-  std::vector<Sample> samples_;
-  std::vector<FilmPixel> film_;
+  std::vector<Sample> sample_memory_;
+  std::vector<FilmPixel> pixels_;  ///< of the film that is rendered, the first ones
   std::vector<XorwowState> states_;
   PathTally tally_;
   std::vector<BufferSize> memory_;

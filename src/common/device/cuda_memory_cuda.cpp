@@ -2,7 +2,7 @@
 
 #include "common/device/cuda_check.cuh"
 #include "common/device/cuda_memory.cuh"
-#include "common/error.h"
+#include "common/memory_error.h"
 
 namespace pt {
 
@@ -27,10 +27,7 @@ void* CudaMemory::allocate_bytes(const std::string& name, std::uint64_t size_byt
   void* pointer = nullptr;
   if (cudaMalloc(&pointer, size_bytes) != cudaSuccess) {
     cudaGetLastError();  // clears it
-    constexpr double mib = 1024.0 * 1024.0;
-    throw Error(fmt::format("not enough device memory: {} needs {:.0f} MiB, {:.0f} MiB are free",
-                            name, static_cast<double>(size_bytes) / mib,
-                            static_cast<double>(free_bytes()) / mib));
+    throw memory_error("device memory", name, size_bytes, free_bytes());
   }
   pointers_.push_back(pointer);
   for (BufferSize& entry : sizes_) {

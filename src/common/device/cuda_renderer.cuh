@@ -1,4 +1,4 @@
-// What the modes share on CUDA: the scene's upload, the film, the batches, the clocks.
+// What the modes share on CUDA: the scene's upload, the memory of the film, launches, the clocks.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -14,10 +14,8 @@
 #include "common/device/cuda_memory.cuh"
 #include "common/device/scene_storage.cuh"
 #include "common/device/stage_clock.h"
-#include "common/film/film.h"
 #include "common/render/dispatch.h"
-#include "common/render/path_limits_of.h"
-#include "common/render/renderer.h"
+#include "common/render/film_renderer.h"
 #include "common/scene/scene_data.h"
 
 namespace pt {
@@ -27,14 +25,12 @@ struct CurandState;
 /// The name of a kernel in reports: that of its stage where it is one.
 const char* clock_name(ClockId id);
 
-class CudaRenderer : public Renderer {
+class CudaRenderer : public FilmRenderer {
  public:
   /// Throws Error when the scene, the film or the options do not fit the device.
   CudaRenderer(const Options& options, const SceneData& scene, int device);
   ~CudaRenderer() override;
 
-  RenderRun render(const RenderHooks& hooks) override;
-  Image image() override;
   void describe(RenderReport& report) const override;
 
  protected:
@@ -81,14 +77,9 @@ class CudaRenderer : public Renderer {
     }
   }
 
-  /// Paths of the largest batch.
-  std::uint64_t batch_paths() const { return batch_paths_; }
-
   cudaStream_t stream() const { return stream_; }
   StageClock* clock() const { return clock_; }
 
-  const Options options_;
-  const PathLimits limits_;
   const SceneTraits traits_;
   Scene scene_;  ///< a view of device memory
   CudaMemory memory_;
@@ -98,8 +89,6 @@ class CudaRenderer : public Renderer {
 
  private:
   void upload(const SceneData& scene);
-  void upload_triangles(const SceneData& scene);
-  void upload_tree(const TriangleTreeData& tree);
   void allocate_film();
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>
@@ -124,10 +113,12 @@ class CudaRenderer : public Renderer {
   void launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
                      std::size_t shared_bytes, void** arguments);
   void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
-  /// For an image of `pixels` pixels; the samples are still to be chosen.
-  SampleBuffer sample_buffer(std::uint32_t width, std::uint32_t pixels) const;
   void load_kernels();
-  void render_batch(const SampleBuffer& batch, RenderRun& run);
+  void begin_render(const Film& film) override;
+  void render_batch(const SampleBuffer& batch, RenderRun& run) override;
+  void end_render(RenderRun& run) override;
+  void read_film(Film& film) override;
+  PathTally read_tally() const;
   void read_clock(RenderRun& run);
 
   int device_;
@@ -136,12 +127,9 @@ class CudaRenderer : public Renderer {
   TreeFacts tree_facts_;  ///< of a tree built on the device
   std::vector<Sphere> scan_spheres_;
   SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
-  int batch_samples_ = 1;
-  std::uint64_t batch_paths_ = 0;
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
-  Sample* samples_ = nullptr;
-  FilmPixel* film_ = nullptr;
+  FilmPixel* pixels_ = nullptr;  ///< of the film that is rendered, the first ones
   PathTally* tally_ = nullptr;
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;

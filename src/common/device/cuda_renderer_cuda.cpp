@@ -10,10 +10,10 @@
 #include "common/device/film_kernels.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
-#include "common/render/batches.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_scene.h"
 #include "common/scene/prepare_triangles.h"
+#include "common/scene/scene_arrays.h"
 #include "common/scene/scene_facts.h"
 
 namespace pt {
@@ -21,8 +21,6 @@ namespace {
 
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
-
-constexpr double mib = 1024.0 * 1024.0;
 
 class Stopwatch {
  public:
@@ -51,8 +49,7 @@ const char* clock_name(ClockId id) {
 }
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
-    : options_(options),
-      limits_(path_limits_of(options)),
+    : FilmRenderer(options),
       traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
@@ -112,79 +109,37 @@ void CudaRenderer::upload(const SceneData& scene) {
                     scene.spheres.size(), sphere_bytes, properties_.sharedMemPerBlockOptin));
   }
   scene_ = host_view(scene, options_.width, options_.height);
-  scene_.primitives.spheres = memory_.upload("scene", scene.spheres);
-  scene_.primitives.scan = memory_.upload("scene", scene.scan_spheres);
-  scene_.primitives.quads = memory_.upload("scene", scene.quads);
-  scene_.materials = memory_.upload("scene", scene.material_records);
-  scene_.parameters = memory_.upload("scene", scene.parameters);
-  scene_.emissions = memory_.upload("scene", scene.emissions);
-  scene_.material_of = memory_.upload("scene", scene.material_of);
-  scene_.lights = memory_.upload("scene", scene.lights);
-  scene_.light_emission = memory_.upload("scene", scene.light_emission);
-  scene_.bvh_nodes = memory_.upload("acceleration structure", scene.bvh_nodes);
-  if (traits_.geometry != Geometry::spheres_and_quads) upload_triangles(scene);
-}
-
-void CudaRenderer::upload_tree(const TriangleTreeData& data) {
-  TriangleTree& tree = scene_.triangles;
-  tree.bvh2 = memory_.upload("acceleration structure", data.bvh2);
-  tree.cwbvh = memory_.upload("acceleration structure", data.cwbvh);
-  tree.triangles = memory_.upload("triangles", data.triangles);
-  tree.instances = memory_.upload("instances", data.instances);
-}
-
-void CudaRenderer::upload_triangles(const SceneData& scene) {
-  if (is_device_builder(options_.builder)) {
+  const auto upload_array = [&](auto*& pointer, const auto& values, const char* kind) {
+    pointer = memory_.upload(kind, values);
+  };
+  for_each_array(scene, scene_, upload_array);
+  if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(options_.builder)) {
     const DeviceTriangleTree built = build_device_triangle_tree(
         scene.meshes, scene.instances, tree_options(traits_.accel, options_.builder), memory_);
     scene_.triangles = built.view;
     tree_facts_ = tree_facts(built.summary, scene.triangle_count());
   } else {
-    upload_tree(scene.tree);
+    scene_.triangles = scene.tree.view(upload_array);
   }
-  scene_.to_world = memory_.upload("instances", scene.to_world);
-  scene_.attributes = {memory_.upload("vertex attributes", scene.attributes.triangles),
-                       memory_.upload("vertex attributes", scene.attributes.normals),
-                       memory_.upload("vertex attributes", scene.attributes.uvs)};
-  scene_.light_selector.lights = memory_.upload("lights", scene.light_list.lights);
-  scene_.light_selector.table = memory_.upload("lights", scene.light_list.selection);
-  scene_.light_map = {memory_.upload("lights", scene.light_list.first),
-                      memory_.upload("lights", scene.light_list.rank),
-                      memory_.upload("lights", scene.light_list.spheres)};
-  scene_.environment.texels = memory_.upload("environment", scene.environment_map.texels);
-  scene_.environment.alias = memory_.upload("environment", scene.environment_map.alias);
-  scene_.textures = memory_.upload("textures", scene.textures);
-  scene_.texels = memory_.upload("textures", scene.texels);
 }
 
 void CudaRenderer::allocate_film() {
   const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
-  const std::uint64_t bytes_per_path =
-      sizeof(Sample) + (options_.rng == RngKind::xorwow ? random_state_bytes() : 0);
-  const std::uint64_t least = pixels * (sizeof(FilmPixel) + bytes_per_path);
-  const std::uint64_t free = CudaMemory::free_bytes();
-  if (least > free || pixels > 0x7fffffffu) {
-    throw Error(
-        fmt::format("not enough device memory: an image of {} x {} pixels needs {:.0f} MiB, "
-                    "{:.0f} MiB are free",
-                    options_.width, options_.height, static_cast<double>(least) / mib,
-                    static_cast<double>(free) / mib));
-  }
-  // Half of what is free is left to the path pool and to others.
-  const std::uint64_t room = std::max(free / 2, least) - pixels * sizeof(FilmPixel);
-  batch_samples_ =
-      batch_samples(options_.spp, pixels, std::min(batch_paths_max, room / bytes_per_path));
-  const std::uint64_t paths = pixels * static_cast<std::uint64_t>(batch_samples_);
-  batch_paths_ = paths;
-  film_ = memory_.allocate<FilmPixel>("film", pixels);
-  samples_ = memory_.allocate<Sample>("samples", paths);
-  if (options_.rng == RngKind::xorwow) {
-    states_ = reinterpret_cast<CurandState*>(
-        memory_.allocate<char>("random states", paths * random_state_bytes()));
-  }
+  const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
+  make_samples({"device memory", CudaMemory::free_bytes(), sizeof(FilmPixel),
+                sizeof(Sample) + state_bytes, batch_paths_max},
+               [&](std::uint64_t paths) {
+                 pixels_ = memory_.allocate<FilmPixel>("film", pixels);
+                 Sample* samples = memory_.allocate<Sample>("samples", paths);
+                 if (state_bytes > 0) {
+                   states_ = reinterpret_cast<CurandState*>(
+                       memory_.allocate<char>("random states", paths * state_bytes));
+                 }
+                 return samples;
+               });
   tally_ = memory_.allocate<PathTally>("counters", 1);
   clock_ = memory_.allocate<StageClock>("counters", 1);
-  check_cuda(cudaMemset(film_, 0, pixels * sizeof(FilmPixel)), "cudaMemset");
+  check_cuda(cudaMemset(pixels_, 0, pixels * sizeof(FilmPixel)), "cudaMemset");
   check_cuda(cudaMemset(tally_, 0, sizeof(PathTally)), "cudaMemset");
 }
 
@@ -249,7 +204,7 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   const int accumulate_block = options_.stage_block[static_cast<int>(StageId::accumulate)];
   launch("accumulate", accumulate_film,
          (batch.pixel_count.divisor() + accumulate_block - 1) / accumulate_block, accumulate_block,
-         0, film_, batch, tally_, clock_);
+         0, pixels_, batch, tally_, clock_);
   launch("stop_clock", stop_clock, 1, 1, 0, clock_);
   check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");
   check_cuda(cudaEventSynchronize(stop_), "rendering a batch");
@@ -258,49 +213,55 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   run.kernel_ms += elapsed_ms;
 }
 
-SampleBuffer CudaRenderer::sample_buffer(std::uint32_t width, std::uint32_t pixels) const {
-  SampleBuffer batch;
-  batch.samples = samples_;
-  batch.width = FastDivider(width);
-  batch.pixel_count = FastDivider(pixels);
-  return batch;
-}
-
 // CUDA loads a kernel when it is first asked for, which takes longer than most of them run. A batch
 // of a few pixels asks for all that the render will.
 void CudaRenderer::load_kernels() {
   const Stopwatch watch;
-  const int width = std::min(options_.width, 8), height = std::min(options_.height, 4);
-  SampleBuffer batch =
-      sample_buffer(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(width * height));
-  batch.sample_count = 1;
-  batch.path_count = batch.pixel_count.divisor();
+  const Window window = {0, 0, static_cast<std::uint32_t>(std::min(options_.width, 8)),
+                         static_cast<std::uint32_t>(std::min(options_.height, 4))};
   RenderRun run;
-  render_batch(batch, run);
+  render_batch({samples(), window, 0, 1}, run);
   take_wave_count();
   load_ms_ = watch.ms();
 }
 
-RenderRun CudaRenderer::render(const RenderHooks& hooks) {
+// The copies are in the stream: the kernels wait for them.
+void CudaRenderer::begin_render(const Film& film) {
   check_cuda(cudaSetDevice(device_), "cudaSetDevice");
   if (load_ms_ == 0) load_kernels();
-  const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
-  check_cuda(cudaMemsetAsync(film_, 0, pixels * sizeof(FilmPixel), stream_), "cudaMemset");
-  check_cuda(cudaMemsetAsync(tally_, 0, sizeof(PathTally), stream_), "cudaMemset");
+  const std::uint64_t film_bytes = film.window.pixel_count() * sizeof(FilmPixel);
+  if (film.is_empty()) {
+    check_cuda(cudaMemsetAsync(pixels_, 0, film_bytes, stream_), "cudaMemset");
+  } else {
+    check_cuda(
+        cudaMemcpyAsync(pixels_, film.pixels.data(), film_bytes, cudaMemcpyHostToDevice, stream_),
+        "uploading the film");
+  }
+  check_cuda(
+      cudaMemcpyAsync(tally_, &film.tally, sizeof(PathTally), cudaMemcpyHostToDevice, stream_),
+      "cudaMemcpyAsync");
   check_cuda(cudaMemsetAsync(clock_, 0, sizeof(StageClock), stream_), "cudaMemset");
-  SampleBuffer batch =
-      sample_buffer(static_cast<std::uint32_t>(options_.width), static_cast<std::uint32_t>(pixels));
-  RenderRun run;
-  run.samples_done = for_each_batch(
-      options_.spp, batch_samples_, pixels, hooks, [&](int first_sample, int samples) {
-        batch.first_sample = static_cast<std::uint32_t>(first_sample);
-        batch.sample_count = static_cast<std::uint32_t>(samples);
-        batch.path_count = static_cast<std::uint32_t>(pixels) * batch.sample_count;
-        render_batch(batch, run);
-      });
+}
+
+void CudaRenderer::end_render(RenderRun& run) {
   run.waves = take_wave_count();
   read_clock(run);
-  return run;
+}
+
+void CudaRenderer::read_film(Film& film) {
+  const Stopwatch transfer;
+  film.pixels.resize(film.window.pixel_count());
+  check_cuda(cudaMemcpy(film.pixels.data(), pixels_, film.pixels.size() * sizeof(FilmPixel),
+                        cudaMemcpyDeviceToHost),
+             "downloading the film");
+  transfer_ms_ += transfer.ms();
+  film.tally = read_tally();
+}
+
+PathTally CudaRenderer::read_tally() const {
+  PathTally tally;
+  check_cuda(cudaMemcpy(&tally, tally_, sizeof tally, cudaMemcpyDeviceToHost), "cudaMemcpy");
+  return tally;
 }
 
 void CudaRenderer::read_clock(RenderRun& run) {
@@ -313,19 +274,7 @@ void CudaRenderer::read_clock(RenderRun& run) {
   }
 }
 
-Image CudaRenderer::image() {
-  const Stopwatch transfer;
-  std::vector<FilmPixel> film(std::uint64_t(options_.width) * std::uint64_t(options_.height));
-  check_cuda(
-      cudaMemcpy(film.data(), film_, film.size() * sizeof(FilmPixel), cudaMemcpyDeviceToHost),
-      "downloading the image");
-  transfer_ms_ += transfer.ms();
-  return develop(film, options_.width, options_.height);
-}
-
 void CudaRenderer::describe(RenderReport& report) const {
-  PathTally tally;
-  check_cuda(cudaMemcpy(&tally, tally_, sizeof tally, cudaMemcpyDeviceToHost), "cudaMemcpy");
   report.device_kind = "cuda";
   report.device_name = properties_.name;
   report.driver = driver_;
@@ -337,7 +286,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.setup_ms = setup_ms_;
   report.load_ms = load_ms_;
   report.transfer_ms = transfer_ms_;
-  report.counts = summarize(tally);
+  report.counts = summarize(read_tally());
   report.memory = memory_.buffers();
   report.kernels = kernels_;
 }

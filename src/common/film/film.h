@@ -14,26 +14,67 @@ struct alignas(16) Sample {
   std::uint32_t rays = 0;  ///< closest-hit rays, shadow rays << 16
 };
 
-/// The samples of one batch: [sample in the batch][y][x]. A path's number is its place here.
+/// A rectangle of an image's pixels.
+struct Window {
+  std::uint32_t x = 0, y = 0;  ///< the first column and row
+  std::uint32_t width = 0, height = 0;
+
+  bool operator==(const Window&) const = default;
+  std::uint64_t pixel_count() const { return std::uint64_t{width} * height; }
+  bool contains(const Window& w) const {
+    return w.x >= x && w.y >= y && end(w.x, w.width) <= end(x, width) &&
+           end(w.y, w.height) <= end(y, height);
+  }
+  bool overlaps(const Window& w) const {
+    return w.x < end(x, width) && x < end(w.x, w.width) && w.y < end(y, height) &&
+           y < end(w.y, w.height);
+  }
+
+ private:
+  static std::uint64_t end(std::uint32_t first, std::uint32_t count) {
+    return std::uint64_t{first} + count;
+  }
+};
+
+/// The samples of one batch: [sample in the batch][y][x] of a window's pixels. A path's number is
+/// its place here; its name (PathId) and so its random numbers are the image's, whatever the
+/// window.
 struct SampleBuffer {
   Sample* samples = nullptr;
-  FastDivider width;
+  FastDivider width;  ///< of the window
   FastDivider pixel_count;
+  std::uint32_t corner = 0;        ///< the window's first pixel: x | y << 16
   std::uint32_t first_sample = 0;  ///< of the batch, counted from the image's first
   std::uint32_t sample_count = 0;  ///< in the batch
   std::uint32_t path_count = 0;    ///< sample_count * pixels, below 2^31
+
+  SampleBuffer() = default;
+  /// The samples [first, first + count) of a window's pixels.
+  SampleBuffer(Sample* place, const Window& window, std::uint32_t first, std::uint32_t count)
+      : samples(place),
+        width(window.width),
+        pixel_count(window.width * window.height),
+        corner(pack_pixel(window.x, window.y)),
+        first_sample(first),
+        sample_count(count),
+        path_count(window.width * window.height * count) {}
+  bool operator==(const SampleBuffer&) const = default;
+
+  PT_HD std::uint32_t height() const { return pixel_count.divisor() / width.divisor(); }
 
   PT_HD PathId id_of(std::uint32_t number) const {
     const std::uint32_t sample = pixel_count.quotient(number);
     const std::uint32_t pixel = number - sample * pixel_count.divisor();
     const std::uint32_t y = width.quotient(pixel);
-    return {pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, number};
+    return {corner + pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, number};
   }
 
+  /// The path of a sample of the batch, at this place in the window.
   PT_HD std::uint32_t number_of(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
     return sample * pixel_count.divisor() + y * width.divisor() + x;
   }
 
+  /// The end of every path, in all modes.
   PT_HD void store(const PathState& path, const Color& radiance) const {
     store_wide(&samples[path.number], Sample{radiance, path.packed_rays()});
   }

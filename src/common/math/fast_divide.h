@@ -15,6 +15,8 @@ class FastDivider {
     multiplier_ = ((std::uint64_t{1} << (31 + shift_)) + divisor - 1) / divisor;
   }
 
+  bool operator==(const FastDivider&) const = default;
+
   PT_HD std::uint32_t divisor() const { return divisor_; }
   PT_HD std::uint32_t quotient(std::uint32_t n) const {
     return static_cast<std::uint32_t>((n * multiplier_) >> (31 + shift_));

@@ -31,13 +31,10 @@ class CudaEvent {
   cudaEvent_t event_ = nullptr;
 };
 
-TriangleTree upload(const TriangleTreeData& data, CudaMemory& memory) {
-  TriangleTree tree = data.view();
-  tree.bvh2 = memory.upload("nodes", data.bvh2);
-  tree.cwbvh = memory.upload("nodes", data.cwbvh);
-  tree.triangles = memory.upload("triangles", data.triangles);
-  tree.instances = memory.upload("instances", data.instances);
-  return tree;
+TriangleTree upload(const TriangleTreeData& tree, CudaMemory& memory) {
+  return tree.view([&](auto*& pointer, const auto& values, const char* kind) {
+    pointer = memory.upload(kind, values);
+  });
 }
 
 TraceVariant choose_variant(TraceVariant wanted, const TriangleTree& tree, const RayArrays& rays) {

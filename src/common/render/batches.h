@@ -9,6 +9,20 @@
 
 namespace pt {
 
+/// What the film and the samples of an image may take of a device's memory.
+struct FilmMemory {
+  const char* name;  ///< "memory" or "device memory"
+  std::uint64_t free_bytes;
+  std::uint64_t bytes_per_pixel;
+  std::uint64_t bytes_per_path;   ///< sample and, if it is stored, random state
+  std::uint64_t batch_paths_max;  ///< more do not pay
+};
+
+/// Paths of the largest batch, for which a sample buffer is made: half of the free memory is left
+/// to the path pool and to others. Throws Error when one sample per pixel does not fit, and for an
+/// image of 2^31 pixels or more.
+std::uint64_t plan_batches(const Options& options, const FilmMemory& memory);
+
 /// Samples per pixel of one batch: as many of `spp` as fit into `paths_max` paths, at least one.
 /// Batches are of equal size but for the last, and never exceed 2^31 - 1 paths.
 int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "common/film/film_data.h"
 #include "common/image/image.h"
 #include "common/render/options.h"
 #include "common/render/stats.h"
@@ -12,7 +13,8 @@
 namespace pt {
 
 struct RenderHooks {
-  /// Called between batches with the samples done and wanted (pixels x spp). May be empty.
+  /// Called between batches with the samples done and wanted (pixels x spp) of this render. May be
+  /// empty.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
   /// Polled between batches; true ends the render early with the samples that it has. May be empty.
   std::function<bool()> stop;
@@ -25,11 +27,19 @@ class Renderer {
   /// Renders the image from its first sample, forgetting any earlier render. Throws Error.
   virtual RenderRun render(const RenderHooks& hooks) = 0;
 
-  /// The mean of the samples of the last render.
+  /// Adds the next `samples` samples of each of its pixels to `film`, which may be blank or come
+  /// from another renderer of the same scene and options. The bits do not depend on how an image's
+  /// pixels are divided into films, nor on how the samples of a film are divided into renders; on
+  /// CUDA, between devices of one kind. Throws Error for a window that is no part of the image and
+  /// for a film that lacks some of its pixels.
+  virtual RenderRun render(Film& film, int samples, const RenderHooks& hooks) = 0;
+
+  /// The mean of all samples of the film of the last render.
   virtual Image image() = 0;
 
-  /// Fills in all fields of `report` that the renderer knows (device, counts of the last render,
-  /// memory, kernels, set-up and transfer times). Leaves `runs`, `scene_ms` and `image_write_ms`.
+  /// Fills in all fields of `report` that the renderer knows (device, counts of the film of the
+  /// last render, memory, kernels, set-up and transfer times). Leaves `runs`, `scene_ms` and
+  /// `image_write_ms`.
   virtual void describe(RenderReport& report) const = 0;
 };
 

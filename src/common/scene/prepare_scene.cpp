@@ -8,6 +8,7 @@
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
+#include "common/scene/scene_arrays.h"
 
 namespace pt {
 namespace {
@@ -57,36 +58,23 @@ void prepare_scene(SceneData& scene, const Options& options) {
 }
 
 Scene host_view(const SceneData& scene, int width, int height) {
+  const auto count = [](const auto& values) { return static_cast<std::uint32_t>(values.size()); };
   Scene view;
   view.camera = make_camera(scene.camera, width, height);
   view.sky = scene.sky;
-  view.primitives = {scene.spheres.data(), scene.quads.data(),
-                     static_cast<std::uint32_t>(scene.spheres.size()),
-                     static_cast<std::uint32_t>(scene.quads.size())};
-  view.primitives.scan = scene.scan_spheres.data();
-  view.primitives.scan_count = static_cast<std::uint32_t>(scene.scan_spheres.size());
+  view.primitives.sphere_count = count(scene.spheres);
+  view.primitives.quad_count = count(scene.quads);
+  view.primitives.scan_count = count(scene.scan_spheres);
   view.primitives.scan_center = scene.scan_center;
-  view.bvh_nodes = scene.bvh_nodes.data();
-  view.materials = scene.material_records.data();
-  view.parameters = scene.parameters.data();
-  view.emissions = scene.emissions.data();
-  view.material_of = scene.material_of.data();
-  view.lights = scene.lights.data();
-  view.light_emission = scene.light_emission.data();
-  view.light_count = static_cast<std::uint32_t>(scene.lights.size());
+  view.light_count = count(scene.lights);
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
-  view.attributes = {scene.attributes.triangles.data(), scene.attributes.normals.data(),
-                     scene.attributes.uvs.data()};
-  view.to_world = scene.to_world.data();
-  const LightListData& list = scene.light_list;
-  view.light_selector = {list.lights.data(), list.selection.data(),
-                         static_cast<std::uint32_t>(list.lights.size()), list.total_weight,
-                         list.environment_probability};
-  view.light_map = {list.first.data(), list.rank.data(), list.spheres.data()};
+  view.light_selector.count = count(scene.light_list.lights);
+  view.light_selector.total_weight = scene.light_list.total_weight;
+  view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
-  view.textures = scene.textures.data();
-  view.texels = scene.texels.data();
+  for_each_array(scene, view,
+                 [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   return view;
 }
 

@@ -34,20 +34,37 @@ struct TriangleTreeData {
   double build_ms = 0;
 
   bool is_empty() const { return triangles.empty(); }
+  /// Calls function(pointer in `tree`, vector, kind of memory) for each array: the only list of
+  /// them.
+  template <class Function>
+  void for_each_array(TriangleTree& tree, Function&& function) const {
+    function(tree.bvh2, bvh2, "acceleration structure");
+    function(tree.cwbvh, cwbvh, "acceleration structure");
+    function(tree.triangles, triangles, "triangles");
+    function(tree.instances, instances, "instances");
+  }
+  /// With the arrays where `place`, called as by for_each_array, sets their pointers.
+  template <class Function>
+  TriangleTree view(Function&& place) const {
+    TriangleTree tree;
+    tree.triangle_count = static_cast<std::uint32_t>(triangles.size());
+    tree.instance_count = static_cast<std::uint32_t>(instances.size());
+    tree.root = root;
+    for_each_array(tree, place);
+    return tree;
+  }
   /// Valid while this is neither changed nor destroyed.
   TriangleTree view() const {
-    return {bvh2.data(),
-            cwbvh.data(),
-            triangles.data(),
-            instances.data(),
-            static_cast<std::uint32_t>(triangles.size()),
-            static_cast<std::uint32_t>(instances.size()),
-            root};
+    return view([](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   }
   /// Of nodes, triangles and instances.
   std::uint64_t size_bytes() const {
-    return bvh2.size() * sizeof(Bvh2Node) + cwbvh.size() * sizeof(CwbvhNode) +
-           triangles.size() * sizeof(Triangle) + instances.size() * sizeof(InstanceRecord);
+    std::uint64_t sum = 0;
+    TriangleTree none;
+    for_each_array(none, [&](auto* pointer, const auto& values, const char*) {
+      sum += values.size() * sizeof *pointer;
+    });
+    return sum;
   }
 };
 
