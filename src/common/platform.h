@@ -74,6 +74,15 @@ PT_HD void store_wide(T* p, const T& value) {
 #endif
 }
 
+/// x, which the compiler takes for a new value: what it made of x before it makes again, instead of
+/// keeping it in registers that other things need meanwhile.
+PT_HD float anew(float x) {
+#ifdef __CUDA_ARCH__
+  asm volatile("" : "+f"(x));
+#endif
+  return x;
+}
+
 /// The smaller, or `b` where `a` is NaN; `b` is a number. One instruction.
 PT_HD float min_number(float a, float b) {
 #ifdef __CUDA_ARCH__
