@@ -37,6 +37,7 @@ LAYERS = [
     ("device", ["common/device/*"], ["build_cuda", "cuda_memory", "render", "film", "transport", *SCENE]),
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
+                 "common/render/stage_info.h", "common/render/compaction_info.h",
                  "common/render/stats.h"], []),
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
                "common/build_info.h"], []),

@@ -1,33 +1,41 @@
+#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_scan.h>
 
 #include <array>
+#include <set>
 
+#include "common/error.h"
 #include "wavefront/compaction.h"
 
 namespace pt {
 namespace {
 
 using Range = tbb::blocked_range<std::uint32_t>;
-using Counts = std::array<std::uint32_t, 2>;
+using Counts = std::array<std::uint32_t, CompactionRequest::queues_max>;
 
 constexpr std::uint32_t grain = 8192;
 
 Counts count_tags(const CompactionRequest& request, const Range& range) {
   Counts counts{};
   for (std::uint32_t slot = range.begin(); slot < range.end(); ++slot) {
-    for (int c = 0; c < 2; ++c) counts[c] += request.tags[slot] == request.wanted[c] ? 1 : 0;
+    for (int c = 0; c < request.queues_wanted; ++c) {
+      counts[c] += request.tags[slot] == request.wanted[c] ? 1 : 0;
+    }
   }
   return counts;
 }
 
-Counts sum(const Counts& a, const Counts& b) { return {a[0] + b[0], a[1] + b[1]}; }
+Counts sum(Counts a, const Counts& b) {
+  for (std::size_t c = 0; c < a.size(); ++c) a[c] += b[c];
+  return a;
+}
 
-// Writes the range's slots to both queues, from the given places on.
+// Writes the range's slots to their queues, from the given places on.
 void gather(const CompactionRequest& request, const Range& range, Counts place) {
   for (std::uint32_t slot = range.begin(); slot < range.end(); ++slot) {
-    for (int c = 0; c < 2; ++c) {
+    for (int c = 0; c < request.queues_wanted; ++c) {
       if (request.tags[slot] == request.wanted[c]) request.queues[c][place[c]++] = slot;
     }
   }
@@ -35,11 +43,30 @@ void gather(const CompactionRequest& request, const Range& range, Counts place) 
 
 }  // namespace
 
-void compact_cpu(Compaction strategy, const CompactionRequest& request) {
+void check_request(const CompactionRequest& request) {
+  if (request.queues_wanted < 1 || request.queues_wanted > CompactionRequest::queues_max) {
+    throw Error(fmt::format("compaction: {} queues wanted; expected 1 to {}", request.queues_wanted,
+                            CompactionRequest::queues_max));
+  }
+  if (request.capacity < request.slot_count) {
+    throw Error(fmt::format(
+        "compaction: a queue of {} places for {} slots; expected at least as many places",
+        request.capacity, request.slot_count));
+  }
+  const std::set<StageId> tags(request.wanted, request.wanted + request.queues_wanted);
+  if (static_cast<int>(tags.size()) < request.queues_wanted) {
+    throw Error("compaction: two wanted tags are the same; expected different ones");
+  }
+  if (request.slot_count > 0x7fffffffu) {
+    throw Error(fmt::format("compaction: {} slots; expected fewer than 2^31", request.slot_count));
+  }
+}
+
+void compact_cpu(TagPass pass, const CompactionRequest& request) {
   check_request(request);
   const Range all(0, request.slot_count, grain);
   Counts total;
-  if (strategy == Compaction::none) {
+  if (pass == TagPass::count) {
     total = tbb::parallel_reduce(
         all, Counts{},
         [&](const Range& range, const Counts& before) {
@@ -56,7 +83,7 @@ void compact_cpu(Compaction strategy, const CompactionRequest& request) {
         },
         sum);
   }
-  for (int c = 0; c < 2; ++c) request.counts[c] = total[c];
+  for (int c = 0; c < request.queues_wanted; ++c) request.counts[c] = total[c];
 }
 
 }  // namespace pt

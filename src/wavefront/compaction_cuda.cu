@@ -6,6 +6,7 @@
 
 #include "common/device/cuda_check.cuh"
 #include "common/device/stage_stamp.cuh"
+#include "common/error.h"
 #include "wavefront/compaction_cuda.h"
 
 namespace pt {
@@ -16,13 +17,13 @@ constexpr int block_threads = 256;
 /// CUB's question for each slot. Being asked about slot 0 is also how the clock learns that the
 /// compaction has begun: CUB's kernels are not ours to change.
 struct HasTag {
-  const PathTag* tags;
-  PathTag wanted;
+  const StageId* tags;
+  StageId wanted;
   StageClock* clock;
 
   __device__ bool operator()(std::uint32_t slot) const {
     const unsigned together = __activemask();
-    if (slot == 0 && clock != nullptr) stamp(clock, ClockId::compact);
+    if (slot == 0 && clock != nullptr) stamp(clock, StageId::compact);
     __syncwarp(together);  // CUB's next barrier wants the warp undivided
     return tags[slot] == wanted;
   }
@@ -30,23 +31,25 @@ struct HasTag {
 
 cudaError_t partition(void* storage, std::size_t& storage_bytes, const CompactionRequest& request,
                       StageClock* clock, cudaStream_t stream) {
-  // Three classes: the first queue, the second, and the slots that wait for neither.
+  // Three classes: the first queue, the second, and the slots that wait for neither. No slot waits
+  // for `idle`.
+  const bool two = request.queues_wanted > 1;
   return cub::DevicePartition::If(
       storage, storage_bytes, thrust::counting_iterator<std::uint32_t>(0), request.queues[0],
-      request.queues[1], thrust::discard_iterator<>(), request.counts,
+      request.queues[two ? 1 : 0], thrust::discard_iterator<>(), request.counts,
       static_cast<int>(request.slot_count), HasTag{request.tags, request.wanted[0], clock},
-      HasTag{request.tags, request.wanted[1], nullptr}, stream);
+      HasTag{request.tags, two ? request.wanted[1] : StageId::idle, nullptr}, stream);
 }
 
-/// Compaction::none: how many slots have each tag.
+/// How many slots have each tag.
 __global__ void count_tags(CompactionRequest request, StageClock* clock) {
-  if (clock != nullptr) stamp_first_thread(clock, ClockId::compact);
+  if (clock != nullptr) stamp_first_thread(clock, StageId::compact);
   for (std::uint32_t i = blockIdx.x * blockDim.x; i < request.slot_count;
        i += gridDim.x * blockDim.x) {
     const std::uint32_t slot = i + threadIdx.x;
     const bool inside = slot < request.slot_count;
-    const PathTag tag = inside ? request.tags[slot] : PathTag{};
-    for (int c = 0; c < 2; ++c) {
+    const StageId tag = inside ? request.tags[slot] : StageId::idle;
+    for (int c = 0; c < request.queues_wanted; ++c) {
       const int votes = __syncthreads_count(inside && tag == request.wanted[c]);
       if (threadIdx.x == 0 && votes > 0) atomicAdd(&request.counts[c], votes);
     }
@@ -55,9 +58,9 @@ __global__ void count_tags(CompactionRequest request, StageClock* clock) {
 
 }  // namespace
 
-CudaCompactor::CudaCompactor(Compaction strategy, std::uint32_t slot_count_max, CudaMemory& memory)
-    : strategy_(strategy), slot_count_max_(slot_count_max) {
-  if (strategy != Compaction::cub) return;
+CudaCompactor::CudaCompactor(TagPass pass, std::uint32_t slot_count_max, CudaMemory& memory)
+    : pass_(pass), slot_count_max_(slot_count_max) {
+  if (pass != TagPass::gather) return;
   CompactionRequest request;
   request.slot_count = slot_count_max;
   check_cuda(partition(nullptr, cub_storage_bytes_, request, nullptr, nullptr),
@@ -72,12 +75,19 @@ void CudaCompactor::enqueue(const CompactionRequest& request, StageClock* clock,
     throw Error("compaction: " + std::to_string(request.slot_count) +
                 " slots; expected at most the " + std::to_string(slot_count_max_) + " announced");
   }
-  if (strategy_ == Compaction::cub) {
+  if (pass_ == TagPass::gather) {
+    if (request.queues_wanted > 2) {
+      throw Error("compaction: " + std::to_string(request.queues_wanted) +
+                  " queues wanted; expected at most two on CUDA");
+    }
     std::size_t bytes = cub_storage_bytes_;
     check_cuda(partition(cub_storage_, bytes, request, clock, stream), "cub::DevicePartition::If");
   } else {
-    check_cuda(cudaMemsetAsync(request.counts, 0, 2 * sizeof *request.counts, stream),
-               "cudaMemsetAsync");
+    check_cuda(
+        cudaMemsetAsync(request.counts, 0,
+                        static_cast<std::size_t>(request.queues_wanted) * sizeof *request.counts,
+                        stream),
+        "cudaMemsetAsync");
     constexpr std::uint32_t blocks_max = 1024;
     const std::uint32_t blocks = (request.slot_count + block_threads - 1) / block_threads;
     const std::uint32_t grid = std::clamp(blocks, 1u, blocks_max);

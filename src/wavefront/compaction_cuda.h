@@ -11,16 +11,17 @@ namespace pt {
 
 class CudaCompactor {
  public:
-  /// `slot_count_max`: of all requests to come. Memory is taken from `memory` now, none later.
-  CudaCompactor(Compaction strategy, std::uint32_t slot_count_max, CudaMemory& memory);
+  /// `pass`: not TagPass::none. `slot_count_max`: of all requests to come. Memory is taken from
+  /// `memory` now, none later.
+  CudaCompactor(TagPass pass, std::uint32_t slot_count_max, CudaMemory& memory);
 
-  /// Enqueues the request, which Compaction::atomic does not need; its pointers are device memory.
-  /// `clock` may be null. Can be captured into a graph. Throws Error as check_request does, or when
-  /// there are more slots than announced.
+  /// Enqueues the request; its pointers are device memory. TagPass::gather serves two queues at
+  /// most. `clock` may be null. Can be captured into a graph. Throws Error as check_request does,
+  /// or when there are more slots than announced.
   void enqueue(const CompactionRequest& request, StageClock* clock, cudaStream_t stream) const;
 
  private:
-  Compaction strategy_;
+  TagPass pass_;
   std::uint32_t slot_count_max_;
   void* cub_storage_ = nullptr;
   std::size_t cub_storage_bytes_ = 0;

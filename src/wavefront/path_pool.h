@@ -4,13 +4,16 @@
 #pragma once
 
 #include "common/film/film.h"
+#include "common/render/stage_info.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
 
 namespace pt {
 
-/// The stage that a slot waits for.
-enum class PathTag : std::uint8_t { free, intersect, miss, surface };
+/// The tag of a slot is the stage in whose queue it waits. A free one waits for a new path; what is
+/// filled with zeros is free.
+inline constexpr StageId free_slot = StageId::generate;
+static_assert(static_cast<int>(free_slot) == 0);
 
 struct alignas(16) Record {
   float x, y, z;
@@ -32,8 +35,8 @@ struct PathPool {
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   // Only with compaction over tags:
-  PathTag* tag = nullptr;
-  PathTag* shadow_tag = nullptr;  ///< surface: a shadow ray waits; free: none
+  StageId* tag = nullptr;
+  StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
   // Only in scenes with lights:
   Record* shadow_origin = nullptr;     ///< ray origin, distance
   Record* shadow_direction = nullptr;  ///< ray direction, number of the path

@@ -17,8 +17,8 @@ class RangeAppender {
  public:
   static constexpr std::uint32_t range_max = 512;
 
-  void append(QueueId queue, std::uint32_t slot) {
-    const int q = static_cast<int>(queue);
+  void append(StageId to, std::uint32_t slot) {
+    const int q = queue_index(to);
     slots_[q][counts_[q]++] = slot;
   }
 
@@ -40,28 +40,27 @@ class RangeAppender {
 template <class Stage>
 void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
   // simple_partitioner: no range is longer than its grain.
+  constexpr StageId own_tag = stage_info(Stage::id).queue;
   const tbb::blocked_range<std::uint32_t> all(0, *queues.count, RangeAppender::range_max);
   const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
     RangeAppender appender;
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      const std::uint32_t slot = queues.slots == nullptr ? i : queues.slots[i];
-      const bool looks_at_tags = queues.slots == nullptr && queues.tags != nullptr;
-      if (looks_at_tags && queues.tags[slot] != Stage::tag) continue;
+      const std::uint32_t slot = queues.input == StageInput::queue ? queues.slots[i] : i;
+      if (queues.input == StageInput::tags && queues.tags[slot] != own_tag) continue;
       const Next next = stage(scene, slot, i);
-      if (queues.tags != nullptr) {
-        queues.tags[slot] = next.tag;
+      if (!queues.appends) {
+        queues.tags[slot] = next.to;
         if (Stage::outcomes.casts_shadow_rays) {
-          queues.shadow_tags[slot] = next.shadow ? PathTag::surface : PathTag::free;
+          queues.shadow_tags[slot] = next.shadow ? StageId::shadow : free_slot;
         }
       } else {
-        const int to = static_cast<int>(next.tag);
-        if (Stage::outcomes.sends && queues.next[to] != nullptr) {
-          appender.append(static_cast<QueueId>(to), slot);
+        if (Stage::outcomes.sends && queues.next[queue_index(next.to)] != nullptr) {
+          appender.append(next.to, slot);
         }
-        if (next.shadow) appender.append(QueueId::shadow, slot);
+        if (next.shadow) appender.append(StageId::shadow, slot);
       }
     }
-    if (queues.tags == nullptr) appender.flush(queues);
+    if (queues.appends) appender.flush(queues);
   };
   tbb::parallel_for(all, run_range, tbb::simple_partitioner());
 }

@@ -78,9 +78,9 @@ template <class Stage, class Appender>
 __device__ void append_next(Appender& appender, const StageQueues& queues, bool done, Next next,
                             std::uint32_t slot) {
   constexpr StageOutcomes outcomes = Stage::outcomes;
-  const int a = static_cast<int>(outcomes.tag[0]), b = static_cast<int>(outcomes.tag[1]);
-  const bool to_a = done && next.tag == outcomes.tag[0];
-  constexpr int shadow = static_cast<int>(QueueId::shadow);
+  constexpr int a = queue_index(outcomes.to[0]), b = queue_index(outcomes.to[1]);
+  const bool to_a = done && next.to == outcomes.to[0];
+  constexpr int shadow = queue_of<StageId::shadow>;
   if (queues.next[a] == nullptr && queues.next[b] == nullptr) return;
   const bool to_b = done && !to_a && queues.next[b] != nullptr;
   if constexpr (outcomes.casts_shadow_rays) {
@@ -106,22 +106,24 @@ __global__ void __launch_bounds__(1024)
   if (blockIdx.x * blockDim.x >= count) return;
   const Scene scene = storage.bind();
   Appender appender(shared);
-  const bool appends = queues.tags == nullptr;
-  const bool looks_at_tags = queues.slots == nullptr && !appends;
+  constexpr StageId own_tag = stage_info(Stage::id).queue;
+  const bool appends = queues.appends;
+  const bool has_queue = queues.input == StageInput::queue;
+  const bool looks_at_tags = queues.input == StageInput::tags;
   for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
     const std::uint32_t i = base + threadIdx.x;
     std::uint32_t slot = i;
     bool mine = i < count;
-    if (mine && queues.slots != nullptr) slot = queues.slots[i];
-    if (mine && looks_at_tags) mine = queues.tags[slot] == Stage::tag;
+    if (mine && has_queue) slot = queues.slots[i];
+    if (mine && looks_at_tags) mine = queues.tags[slot] == own_tag;
     Next next{};
     if (mine) next = stage(scene, slot, i);
     if (appends) {
       if constexpr (Stage::outcomes.sends) append_next<Stage>(appender, queues, mine, next, slot);
     } else if (mine) {
-      queues.tags[slot] = next.tag;
+      queues.tags[slot] = next.to;
       if constexpr (Stage::outcomes.casts_shadow_rays) {
-        queues.shadow_tags[slot] = next.shadow ? PathTag::surface : PathTag::free;
+        queues.shadow_tags[slot] = next.shadow ? StageId::shadow : free_slot;
       }
     }
   }

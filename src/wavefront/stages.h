@@ -1,5 +1,6 @@
 // The stages of the wavefront: each loads a slot, calls one transport function, stores, and says
-// which stage the path waits for next. How it gets there is the schedule's affair.
+// which stage the path waits for next. How it gets there is not
+// its affair.
 #pragma once
 
 #include "common/render/options.h"
@@ -12,14 +13,14 @@ namespace pt {
 
 /// What a stage says of a slot that it has finished.
 struct Next {
-  PathTag tag;          ///< what the path waits for
+  StageId to;           ///< what the slot waits for
   bool shadow = false;  ///< a shadow ray of it waits, too
 };
 
 /// Where the slots of a stage can go; a stage that does not send them says so because they are
 /// queued already or wait for nothing.
 struct StageOutcomes {
-  PathTag tag[2];
+  StageId to[2];
   bool sends;
   bool casts_shadow_rays;
 };
@@ -46,7 +47,7 @@ struct StageContext {
   SampleBuffer samples;
   Source source;
   WaveCounters* counters;
-  std::uint32_t* ray_queue;  ///< null: there are no queues (Compaction::none)
+  std::uint32_t* ray_queue;  ///< null: there are no queues, and no slot has a place in one
   PathLimits limits;
 };
 
@@ -61,9 +62,8 @@ PT_HD void end_path(const SampleBuffer& samples, const PathState& path, const Co
 template <class Source>
 struct GeneratePaths {
   static constexpr StageId id = StageId::generate;
-  static constexpr PathTag tag = PathTag::free;
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr StageOutcomes outcomes = {{PathTag::intersect}, false, false};
+  static constexpr StageOutcomes outcomes = {{StageId::intersect}, false, false};
   StageContext<Source> context;
   bool has_lights;
 
@@ -71,7 +71,7 @@ struct GeneratePaths {
     const auto& [pool, samples, source, counters, ray_queue, limits] = context;
     if (ray_queue == nullptr) {
       rank = atomic_fetch_add(&counters->ticket, 1);
-      if (rank >= counters->generate) return {PathTag::free};
+      if (rank >= counters->generate) return {free_slot};
     } else {
       ray_queue[counters->live + rank] = slot;  // a new path takes part in this very wave
     }
@@ -82,7 +82,7 @@ struct GeneratePaths {
     source.close(id_of_path, random);
     pool.store_new_path(slot, ray, number);
     if (has_lights) store_wide(&samples.samples[number], Sample{});
-    return {PathTag::intersect};
+    return {StageId::intersect};
   }
 };
 
@@ -93,31 +93,31 @@ using RayTraits = Traits<T::accel, T::geometry, Lighting::sky>;
 template <class Traits>
 struct IntersectRays {
   static constexpr StageId id = StageId::intersect;
-  static constexpr PathTag tag = PathTag::intersect;
   static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
-  static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
+  static constexpr StageOutcomes outcomes = {
+      {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
   bool parts_misses;  ///< false: a surface's stage shades them, too (Branching::reduced)
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot));
-    if (parts_misses && hit.is_miss()) return {PathTag::miss};
+    if (parts_misses && hit.is_miss()) return {StageId::shade_miss};
     pool.store_hit(slot, hit);
-    return {PathTag::surface};
+    return {StageId::shade_surface};
   }
 };
 
 /// Sends each path whose ray has been traced to the stage that shades it: for tracers that store
-/// the hits and do no more.
+/// the hits and do no more (trace_rays in wavefront.h).
 struct SortHits {
-  static constexpr StageId id = StageId::intersect;
-  static constexpr PathTag tag = PathTag::intersect;
+  static constexpr StageId id = StageId::sort_hits;
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr StageOutcomes outcomes = {{PathTag::surface, PathTag::miss}, true, false};
+  static constexpr StageOutcomes outcomes = {
+      {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
 
   PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t) const {
-    return {pool.load_hit(slot).is_miss() ? PathTag::miss : PathTag::surface};
+    return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };
 
@@ -125,9 +125,8 @@ struct SortHits {
 template <Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
-  static constexpr PathTag tag = PathTag::miss;
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr StageOutcomes outcomes = {{PathTag::free, PathTag::free}, true, false};
+  static constexpr StageOutcomes outcomes = {{free_slot, free_slot}, true, false};
   PathPool pool;
   SampleBuffer samples;
   bool has_lights;
@@ -138,7 +137,7 @@ struct ShadeMiss {
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
     end_path(samples, path, shade_miss<lighting>(scene, ray.direction, path), has_lights);
-    return {PathTag::free};
+    return {free_slot};
   }
 };
 
@@ -166,8 +165,7 @@ template <class Traits, Branching branching, class Source>
 struct ShadeSurface {
   static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::shade_surface;
-  static constexpr PathTag tag = PathTag::surface;
-  static constexpr StageOutcomes outcomes = {{PathTag::intersect, PathTag::free}, true, has_lights};
+  static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   StageContext<Source> context;
 
@@ -182,20 +180,19 @@ struct ShadeSurface {
     if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
     if (!scattering.alive) {
       end_path(context.samples, path, scattering.emitted, has_lights);
-      return {PathTag::free, shadow};
+      return {free_slot, shadow};
     }
     if (has_lights) add_radiance(context.samples, path.number, scattering.emitted);
     pool.store_path(slot, scattering.ray, path);
-    return {PathTag::intersect, shadow};
+    return {StageId::intersect, shadow};
   }
 };
 
 template <class Traits>
 struct TraceShadowRays {
   static constexpr StageId id = StageId::shadow;
-  static constexpr PathTag tag = PathTag::surface;  // of the shadow tags
   static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
-  static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
+  static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   PathPool pool;
   SampleBuffer samples;
 
@@ -205,7 +202,7 @@ struct TraceShadowRays {
     if (!intersect_shadow<Traits>(scene, shadow)) {
       add_radiance(samples, number, shadow.radiance);
     }
-    return {PathTag::free};
+    return {free_slot};
   }
 };
 
@@ -215,8 +212,7 @@ struct TraceShadowRays {
 template <class Traits, class Source>
 struct FinishPaths {
   static constexpr StageId id = StageId::finish;
-  static constexpr PathTag tag = PathTag::intersect;
-  static constexpr StageOutcomes outcomes = {{PathTag::free}, false, false};
+  static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::last_scan>;
   StageContext<Source> context;
 
@@ -243,7 +239,7 @@ struct FinishPaths {
       alive = scattering.alive;
     }
     context.samples.store(path, radiance);
-    return {PathTag::free};
+    return {free_slot};
   }
 };
 

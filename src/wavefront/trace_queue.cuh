@@ -73,8 +73,8 @@ inline constexpr int trace_blocks_least = 8;  ///< per multiprocessor: 64 regist
 
 template <class Rays>
 __global__ void __launch_bounds__(trace_block, trace_blocks_least)
-    trace_queue(const __grid_constant__ TriangleTree tree, const __grid_constant__ Rays rays,
-                StageId stage, StageClock* clock) {
+    trace_rays_of_queue(const __grid_constant__ TriangleTree tree,
+                        const __grid_constant__ Rays rays, StageId stage, StageClock* clock) {
   __shared__ PersistentMemory<trace_block> memory;
   stamp_first_thread(clock, stage);
   if (*rays.rays.queues.count == 0) return;

@@ -2,16 +2,12 @@
 #pragma once
 
 #include "common/platform.h"
+#include "common/render/stage_info.h"
 
 namespace pt {
 
-/// A queue for each stage that waits; the first four have PathTag's numbers. One pass over the tags
-/// fills two that stand side by side.
-enum class QueueId { free, intersect, miss, surface, shadow };
-inline constexpr int queue_count = 5;
-
 struct WaveCounters {
-  std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; the last one is none's
+  std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; a pass may use the one behind
   std::uint32_t live;                      ///< paths in flight when the wave begins
   std::uint32_t generate;                  ///< paths that it starts, in the first free slots
   std::uint32_t intersect;                 ///< rays that it traces: live + generate
@@ -29,12 +25,13 @@ struct WaveCounters {
 /// regeneration the pool is filled again only when all of its paths have ended.
 PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate,
                       std::uint32_t finish_paths) {
-  std::uint32_t& free = c.waiting[static_cast<int>(QueueId::free)];
-  std::uint32_t& rays = c.waiting[static_cast<int>(QueueId::intersect)];
+  constexpr int free_queue = queue_of<StageId::generate>, ray_queue = queue_of<StageId::intersect>;
+  std::uint32_t& free = c.waiting[free_queue];
+  std::uint32_t& rays = c.waiting[ray_queue];
   const std::uint32_t remaining = path_count - c.next_path;
-  c.waiting[static_cast<int>(QueueId::miss)] = 0;
-  c.waiting[static_cast<int>(QueueId::surface)] = 0;
-  c.waiting[static_cast<int>(QueueId::shadow)] = 0;
+  for (int queue = 0; queue < queue_count; ++queue) {
+    if (queue != free_queue && queue != ray_queue) c.waiting[queue] = 0;
+  }
   c.live = rays;
   c.generate = 0;
   c.intersect = 0;

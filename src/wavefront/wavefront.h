@@ -1,4 +1,4 @@
-// The schedule: what one wave does, the same on every device. Read this file first.
+// The waves: what one of them does, the same on every device. Read this file first.
 #pragma once
 
 #include <memory>
@@ -10,85 +10,149 @@
 
 namespace pt {
 
-/// Where a stage finds its slots, the first *count of a queue, and where they go from there; all in
-/// the device's memory.
+/// How a stage finds its slots.
+enum class StageInput {
+  queue,       ///< in its queue
+  tags,        ///< in the whole pool: those whose tag says that they wait for it
+  every_slot,  ///< in the whole pool: all
+};
+
+/// Where a stage finds its slots and where they go from there; all in the device's memory.
 struct StageQueues {
-  const std::uint32_t* slots = nullptr;  ///< null: slots in their own order; of those that have
-                                         ///< tags, the ones whose tag is the stage's
+  StageInput input = StageInput::queue;
+  bool appends = true;  ///< finished slots are appended to queues; else their tags are written
+  const std::uint32_t* slots = nullptr;  ///< with StageInput::queue, the first *count of it
   const std::uint32_t* count = nullptr;
-  PathTag* tags = nullptr;  ///< null: slots are appended to the queues instead
-  PathTag* shadow_tags = nullptr;
-  std::uint32_t* next[queue_count] = {};  ///< null: nobody waits there
+  StageId* tags = nullptr;                ///< these two where slots have tags
+  StageId* shadow_tags = nullptr;         ///< only with lights
+  std::uint32_t* next[queue_count] = {};  ///< where slots are appended; null: nobody waits there
   std::uint32_t* waiting = nullptr;       ///< [queue_count] ends of the queues
 };
 
 /// The buffers of a wavefront, allocated by the device's renderer.
 struct WaveBuffers {
+  CompactionInfo compaction;
   PathPool pool;
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
-  std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null without queues
+  std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
   bool reuses_slots = true;  ///< false: the pool holds the whole batch, a free slot stays free
 
-  std::uint32_t* queue(QueueId id) const { return queues[static_cast<int>(id)]; }
-  std::uint32_t* waiting(QueueId id) const { return &counters->waiting[static_cast<int>(id)]; }
-
-  /// A pass that fills the queue `id` with the slots tagged `a` and the one after it with those
-  /// tagged `b`.
-  CompactionRequest request(const PathTag* tags, QueueId id, PathTag a, PathTag b) const {
-    const int i = static_cast<int>(id);
-    std::uint32_t* second =
-        i + 1 < queue_count ? queues[i + 1] : queues[0];  // no slot is tagged so
-    return {tags, pool.slot_count, {a, b}, {queues[i], second}, pool.slot_count, waiting(id)};
+  /// Calls function(queue) for each that this render needs.
+  template <class Function>
+  void for_each_queue(bool has_lights, Function&& function) {
+    for (const StageInfo& stage : stage_table) {
+      const bool unused = (stage.id == StageId::generate && !reuses_slots) ||
+                          (stage.id == StageId::shadow && !has_lights);
+      if (compaction.has_queues && stage.has_own_queue() && !unused) {
+        function(queues[queue_index(stage.id)]);
+      }
+    }
   }
 
-  StageQueues stage_queues(QueueId id, const std::uint32_t* count, PathTag* tags) const {
+  std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
+  std::uint32_t* waiting(StageId id) const { return &counters->waiting[queue_index(id)]; }
+
+  /// A pass that fills the queues of these stages, which stand side by side in the table.
+  template <StageId first, StageId... others>
+  CompactionRequest request(const StageId* tags) const {
+    constexpr StageId ids[] = {first, others...};
+    CompactionRequest result;
+    result.tags = tags;
+    result.slot_count = result.capacity = pool.slot_count;
+    result.counts = waiting(first);
+    for (const StageId id : ids) {
+      result.wanted[result.queues_wanted] = id;
+      result.queues[result.queues_wanted++] = queue(id);
+    }
+    static_assert(queue_of<ids[std::size(ids) - 1]> == queue_of<first> + int(std::size(ids)) - 1);
+    return result;
+  }
+
+  StageInput input_of(StageId id) const {
+    if (!compaction.has_queues) return StageInput::tags;
+    const bool all = id == StageId::generate && !reuses_slots;
+    return all ? StageInput::every_slot : StageInput::queue;
+  }
+
+  /// For the stage `id`, of which `count` slots wait; `tags` are null where slots have none.
+  StageQueues stage_queues(StageId id, const std::uint32_t* count, StageId* tags) const {
     StageQueues result;
-    const bool looks_at_tags = queue(id) == nullptr && tags != nullptr;
+    result.input = input_of(id);
+    result.appends = compaction.appends;
     result.slots = queue(id);
-    result.count = looks_at_tags ? slot_count : count;
+    result.count = result.input == StageInput::tags ? slot_count : count;
     result.tags = tags;
     result.shadow_tags = pool.shadow_tag;
     for (int i = 0; i < queue_count; ++i) result.next[i] = queues[i];
-    if (!reuses_slots) result.next[static_cast<int>(QueueId::free)] = nullptr;
     result.waiting = counters->waiting;
     return result;
   }
 };
 
-/// One wave: free slots get new paths, and every path in flight one more ray. An Executor fills the
-/// queues by a pass (a no-op where stages append), decides between two waves, and runs a stage.
-/// Without `starts_paths` it does not look for free slots.
+// What follows is written for an Executor, the device's way to do it:
+//   compact(request)         a pass over the tags, where the strategy makes one
+//   begin_wave()             the decision between two waves
+//   run(stage, queues)       a stage over its slots, a thread for each
+//   traces_queues<Traits>    whether persistent warps can trace such scenes' queues of rays, and
+//   trace_queue(queues)      does so: the next hit of each path is stored
+//   trace_shadow_queue(queues, samples)   likewise: light that arrives is added
+
+/// What every ray meets. Where warps persist they trace the whole queue and store the hits, and a
+/// light stage sends the paths on; a thread per ray does both at once.
+template <class Traits, class Executor>
+void trace_rays(Executor& execute, const WaveBuffers& b, bool parts_misses) {
+  const StageQueues rays = b.stage_queues(StageId::intersect, &b.counters->intersect, b.pool.tag);
+  if constexpr (Executor::template traces_queues<Traits>) {
+    if (rays.appends) {
+      execute.trace_queue(rays);
+      execute.run(SortHits{b.pool}, rays);
+      return;
+    }
+  }
+  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, parts_misses}, rays);
+}
+
+/// Which light arrives, likewise.
+template <class Traits, class Executor>
+void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
+  const StageQueues rays =
+      b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
+  if constexpr (Executor::template traces_queues<Traits>) {
+    if (rays.appends) return execute.trace_shadow_queue(rays, samples);
+  }
+  execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, samples}, rays);
+}
+
+/// One wave: free slots get new paths, and every path in flight one more ray. Without
+/// `starts_paths` it does not look for free slots.
 template <class Traits, Branching branching, class Source, class Executor>
 void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
               bool starts_paths = true) {
-  using enum QueueId;
-  PathTag* tags = b.pool.tag;
-  const WaveCounters* counters = b.counters;
+  using enum StageId;
+  constexpr bool parts_misses = branching == Branching::divergent;
+  StageId* tags = b.pool.tag;
 
-  execute.compact(b.request(tags, free, PathTag::free, PathTag::intersect));
+  execute.compact(b.request<generate, intersect>(tags));
   execute.begin_wave();
   if (starts_paths) {
     execute.run(GeneratePaths<Source>{context, Traits::has_lights},
-                b.stage_queues(free, &counters->generate, tags));
+                b.stage_queues(generate, &b.counters->generate, tags));
   }
-  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, branching == Branching::divergent},
-              b.stage_queues(intersect, &counters->intersect, tags));
+  trace_rays<Traits>(execute, b, parts_misses);
 
-  execute.compact(b.request(tags, miss, PathTag::miss, PathTag::surface));
-  if constexpr (branching == Branching::divergent) {
+  execute.compact(b.request<shade_miss, shade_surface>(tags));
+  if constexpr (parts_misses) {
     constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
     execute.run(ShadeMiss<sky>{b.pool, context.samples, Traits::has_lights},
-                b.stage_queues(miss, b.waiting(miss), tags));
+                b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
   execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context},
-              b.stage_queues(surface, b.waiting(surface), tags));
+              b.stage_queues(shade_surface, b.waiting(shade_surface), tags));
 
   if constexpr (Traits::has_lights) {
-    PathTag* shadow_tags = b.pool.shadow_tag;
-    execute.compact(b.request(shadow_tags, shadow, PathTag::surface, PathTag::miss));
-    execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, context.samples},
-                b.stage_queues(shadow, b.waiting(shadow), shadow_tags));
+    execute.compact(b.request<shadow>(b.pool.shadow_tag));
+    trace_shadow_rays<Traits>(execute, b, context.samples);
   }
 }
 
@@ -96,7 +160,7 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
 template <class Traits, class Source, class Executor>
 void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   execute.run(FinishPaths<Traits, Source>{context},
-              b.stage_queues(QueueId::intersect, &b.counters->finish, b.pool.tag));
+              b.stage_queues(StageId::finish, &b.counters->finish, b.pool.tag));
 }
 
 std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene);

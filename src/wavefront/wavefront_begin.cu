@@ -9,7 +9,7 @@ namespace {
 __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
                                   std::uint32_t finish_paths, cudaGraphConditionalHandle loop,
                                   StageClock* clock) {
-  stamp(clock, ClockId::begin_wave);
+  stamp(clock, StageId::begin_wave);
   const bool more = pt::begin_wave(*counters, path_count, regenerate, finish_paths);
   if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
 }

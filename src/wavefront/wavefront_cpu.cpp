@@ -25,8 +25,9 @@ class CpuExecutor {
         path_count_(path_count) {}
 
   void compact(const CompactionRequest& request) {
-    if (appends_in_stages(options_.compaction)) return;
-    timer_.time("compact", [&] { compact_cpu(options_.compaction, request); });
+    const TagPass pass = compaction_info(options_.compaction).pass;
+    if (pass == TagPass::none) return;
+    timer_.time(to_string(StageId::compact), [&] { compact_cpu(pass, request); });
   }
 
   void begin_wave() {
@@ -35,6 +36,9 @@ class CpuExecutor {
   }
 
   bool more() const { return more_; }
+
+  template <class Traits>
+  static constexpr bool traces_queues = false;  // a thread is no warp
 
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
@@ -58,8 +62,9 @@ class WavefrontCpu : public CpuRenderer {
     const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
                                       static_cast<std::uint64_t>(options.spp);
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
+    buffers_.compaction = compaction_info(options_.compaction);
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                   !appends_in_stages(options_.compaction)};
+                                   !buffers_.compaction.appends};
     const std::uint64_t size_bytes =
         pool_size_ * (PathPool::bytes_per_slot(parts) + queue_count * sizeof(std::uint32_t));
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
@@ -75,12 +80,11 @@ class WavefrontCpu : public CpuRenderer {
     buffers_.counters = &counters_;
     pool.allocate_arrays(parts,
                          [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
-    if (options_.compaction != Compaction::none) {
-      for (std::uint32_t*& queue : buffers_.queues) queue = array<std::uint32_t>();
-    }
+    buffers_.for_each_queue(parts.lights,
+                            [&](std::uint32_t*& queue) { queue = array<std::uint32_t>(); });
   }
 
-  // Zero-filled, so every tag is PathTag::free.
+  // Zero-filled, so every slot is free.
   template <class T>
   T* array() {
     arrays_.push_back(
@@ -102,14 +106,13 @@ class WavefrontCpu : public CpuRenderer {
   template <class Traits, Branching branching, class Source>
   void run_waves(const Source& source, const SampleBuffer& batch) {
     counters_ = {};
-    if (appends_in_stages(
-            options_.compaction)) {  // every slot begins in the queue of the free ones
-      std::uint32_t* free = buffers_.queue(QueueId::free);
+    if (buffers_.compaction.appends) {  // every slot begins in the queue of the free ones
+      std::uint32_t* free = buffers_.queue(free_slot);
       std::iota(free, free + slot_count_, 0u);
-      *buffers_.waiting(QueueId::free) = slot_count_;
+      *buffers_.waiting(free_slot) = slot_count_;
     }
     const StageContext<Source> context{
-        buffers_.pool, batch, source, &counters_, buffers_.queue(QueueId::intersect), limits_};
+        buffers_.pool, batch, source, &counters_, buffers_.queue(StageId::intersect), limits_};
     CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
     run_finish<Traits>(execute, buffers_, context);

@@ -38,7 +38,8 @@ WavefrontCuda::~WavefrontCuda() {
 }
 
 void WavefrontCuda::allocate_pool() {
-  const bool appends = appends_in_stages(options_.compaction);
+  buffers_.compaction = compaction_info(options_.compaction);
+  const bool appends = buffers_.compaction.appends;
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
                                  !appends};
   const std::uint64_t bytes_per_slot =
@@ -65,23 +66,17 @@ void WavefrontCuda::allocate_pool() {
   pool.allocate_arrays(parts, [&](auto* array) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", n);
   });
-  if (options_.compaction != Compaction::none) {
-    for (int i = 0; i < queue_count; ++i) {
-      const QueueId id = static_cast<QueueId>(i);
-      const bool used = id == QueueId::free     ? buffers_.reuses_slots
-                        : id == QueueId::shadow ? parts.lights
-                                                : true;
-      if (used) buffers_.queues[i] = memory_.allocate<std::uint32_t>("queues", n);
-    }
+  buffers_.for_each_queue(parts.lights, [&](std::uint32_t*& queue) {
+    queue = memory_.allocate<std::uint32_t>("queues", n);
+  });
+  if (appends && buffers_.reuses_slots) {
+    std::vector<std::uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0u);
+    all_slots_ = memory_.upload("queues", all);
   }
-  if (appends) {
-    if (buffers_.reuses_slots) {
-      std::vector<std::uint32_t> all(n);
-      std::iota(all.begin(), all.end(), 0u);
-      all_slots_ = memory_.upload("queues", all);
-    }
-  } else {
-    compactor_ = std::make_unique<CudaCompactor>(options_.compaction, pool.slot_count, memory_);
+  if (buffers_.compaction.pass != TagPass::none) {
+    compactor_ =
+        std::make_unique<CudaCompactor>(buffers_.compaction.pass, pool.slot_count, memory_);
   }
   buffers_.counters = memory_.allocate<WaveCounters>("counters", 1);
   buffers_.slot_count =
@@ -95,28 +90,28 @@ void WavefrontCuda::compact(const CompactionRequest& request) {
 // Every slot is free when a batch begins.
 void WavefrontCuda::start_queues() {
   const PathPool& pool = buffers_.pool;
-  const auto fill = [&](PathTag* tags) {
+  const auto fill = [&](StageId* tags) {
     if (tags == nullptr) return;
-    check_cuda(cudaMemsetAsync(tags, static_cast<int>(PathTag::free), pool.slot_count, stream()),
+    check_cuda(cudaMemsetAsync(tags, static_cast<int>(free_slot), pool.slot_count, stream()),
                "cudaMemsetAsync");
   };
   check_cuda(cudaMemsetAsync(buffers_.counters, 0, sizeof(WaveCounters), stream()),
              "cudaMemsetAsync");
   fill(pool.tag);
   fill(pool.shadow_tag);
-  if (compactor_ != nullptr) return;
+  if (!buffers_.compaction.appends) return;
   const auto copy = [&](std::uint32_t* to, const std::uint32_t* from, std::size_t count) {
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof *to, cudaMemcpyDeviceToDevice, stream()),
                "cudaMemcpyAsync");
   };
-  if (all_slots_ != nullptr) copy(buffers_.queue(QueueId::free), all_slots_, pool.slot_count);
-  copy(buffers_.waiting(QueueId::free), buffers_.slot_count, 1);
+  if (all_slots_ != nullptr) copy(buffers_.queue(free_slot), all_slots_, pool.slot_count);
+  copy(buffers_.waiting(free_slot), buffers_.slot_count, 1);
 }
 
 template <class Source>
 StageContext<Source> WavefrontCuda::context_of(const SampleBuffer& batch,
                                                const Source& source) const {
-  return {buffers_.pool, batch, source, buffers_.counters, buffers_.queue(QueueId::intersect),
+  return {buffers_.pool, batch, source, buffers_.counters, buffers_.queue(StageId::intersect),
           limits_};
 }
 

@@ -24,10 +24,12 @@ class WavefrontCuda : public CudaRenderer {
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
+  /// Wide trees, where a thread per ray would wait for the slowest of its warp.
   template <class Traits>
-  void run(const IntersectRays<Traits>& stage, const StageQueues& queues);
-  template <class Traits>
-  void run(const TraceShadowRays<Traits>& stage, const StageQueues& queues);
+  static constexpr bool traces_queues =
+      Traits::accel == Accel::cwbvh&& Traits::geometry == Geometry::triangles;
+  void trace_queue(const StageQueues& queues);
+  void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
 
  protected:
   void prepare_batch(const SampleBuffer& batch) override;
@@ -41,8 +43,6 @@ class WavefrontCuda : public CudaRenderer {
   void with_context(const SampleBuffer& batch, Function&& function);
   template <class Source>
   StageContext<Source> context_of(const SampleBuffer& batch, const Source& source) const;
-  template <class Stage>
-  void run_stage(const Stage& stage, const StageQueues& queues);
   template <class Rays>
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>

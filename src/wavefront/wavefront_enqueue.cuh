@@ -3,13 +3,12 @@
 
 #include "common/device/curand_state.cuh"
 #include "wavefront/stage_kernel.cuh"
-#include "wavefront/trace_queue.cuh"
 #include "wavefront/wavefront_cuda.h"
 
 namespace pt {
 
 template <class Stage>
-void WavefrontCuda::run_stage(const Stage& stage, const StageQueues& queues) {
+void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   const int block = options_.stage_block[static_cast<int>(Stage::id)];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
@@ -18,9 +17,8 @@ void WavefrontCuda::run_stage(const Stage& stage, const StageQueues& queues) {
         (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
     const std::uint32_t resident =
         resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
-    launch(clock_name(static_cast<ClockId>(Stage::id)), kernel,
-           blocks < resident ? blocks : resident, block, shared_bytes, storage, stage, queues,
-           clock());
+    launch(stage_info(Stage::id).name.data(), kernel, blocks < resident ? blocks : resident, block,
+           shared_bytes, storage, stage, queues, clock());
   };
   const auto launch_global = [&] {
     launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
@@ -37,49 +35,6 @@ void WavefrontCuda::run_stage(const Stage& stage, const StageQueues& queues) {
       }
     });
   }
-}
-
-template <class Stage>
-void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
-  run_stage(stage, queues);
-}
-
-/// Which scenes' rays persistent warps trace, where stages append to queues.
-template <class Traits>
-inline constexpr bool has_persistent_tracer =
-    Traits::accel == Accel::cwbvh&& Traits::geometry == Geometry::triangles;
-
-template <class Rays>
-void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
-  const auto kernel = trace_queue<Rays>;
-  const std::uint32_t blocks =
-      resident_blocks(reinterpret_cast<const void*>(kernel), trace_block, 0);
-  launch(clock_name(static_cast<ClockId>(stage)), kernel, blocks, trace_block, 0, scene_.triangles,
-         rays, stage, clock());
-}
-
-template <class Traits>
-void WavefrontCuda::run(const IntersectRays<Traits>& stage, const StageQueues& queues) {
-  if constexpr (has_persistent_tracer<Traits>) {
-    if (queues.tags == nullptr) {
-      run_persistent(QueuedPaths{{stage.pool, queues, &buffers_.counters->traced}},
-                     StageId::intersect);
-      return run_stage(SortHits{stage.pool}, queues);
-    }
-  }
-  run_stage(stage, queues);
-}
-
-template <class Traits>
-void WavefrontCuda::run(const TraceShadowRays<Traits>& stage, const StageQueues& queues) {
-  if constexpr (has_persistent_tracer<Traits>) {
-    if (queues.tags == nullptr) {
-      return run_persistent(
-          QueuedShadowRays{{stage.pool, queues, &buffers_.counters->shadow_traced}, stage.samples},
-          StageId::shadow);
-    }
-  }
-  run_stage(stage, queues);
 }
 
 template <class Kinds, class Source>
@@ -99,7 +54,6 @@ void WavefrontCuda::enqueue_finish_of(const StageContext<AnySource<CurandState>>
 }
 
 // Needed in the files of all kinds of scenes, compiled in one.
-extern template void WavefrontCuda::run_stage(const GeneratePaths<PhiloxSource>&,
-                                              const StageQueues&);
+extern template void WavefrontCuda::run(const GeneratePaths<PhiloxSource>&, const StageQueues&);
 
 }  // namespace pt

@@ -1,7 +1,28 @@
 // Scenes with triangles.
+#include "wavefront/trace_queue.cuh"
 #include "wavefront/wavefront_enqueue.cuh"
 
 namespace pt {
+
+template <class Rays>
+void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
+  constexpr auto kernel = trace_rays_of_queue<Rays>;
+  const std::uint32_t blocks =
+      resident_blocks(reinterpret_cast<const void*>(kernel), trace_block, 0);
+  launch(stage_info(stage).name.data(), kernel, blocks, trace_block, 0, scene_.triangles, rays,
+         stage, clock());
+}
+
+void WavefrontCuda::trace_queue(const StageQueues& queues) {
+  run_persistent(QueuedPaths{{buffers_.pool, queues, &buffers_.counters->traced}},
+                 StageId::intersect);
+}
+
+void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
+  run_persistent(
+      QueuedShadowRays{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples},
+      StageId::shadow);
+}
 
 using PhiloxContext = StageContext<PhiloxSource>;
 

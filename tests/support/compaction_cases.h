@@ -4,9 +4,9 @@
 //   static bool available(); static constexpr const char* name;
 //   void* allocate(std::size_t size_bytes); void release(void*);
 //   void upload(void* to, const void* from, std::size_t size_bytes); void download(...);
-//   Compactor compactor(Compaction, std::uint32_t slot_count_max);
+//   Compactor compactor(TagPass, std::uint32_t slot_count_max);
 //   static std::vector<Shape> shapes();   // ways to run a stage, the usual one first
-//   static constexpr bool numbers_slots;  // can run a stage without a queue and without tags
+//   static constexpr int pass_queues_max;  // queues that a gathering pass fills at once
 //   void run(const Stage&, const StageQueues&, const Shape&);
 #pragma once
 
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/render/option_names.h"
+#include "common/render/compaction_info.h"
 #include "statistics.h"
 #include "wavefront/wavefront.h"
 
@@ -173,16 +173,16 @@ inline Slots waiting_slots(const std::vector<Role>& roles, Role role) {
 template <class Device>
 class PassTest {
  public:
-  PassTest(Device& device, Compaction strategy, std::uint32_t slot_count,
-           std::uint32_t slot_count_max)
-      : strategy_(strategy),
-        compact_(device.compactor(strategy, slot_count_max)),
-        tags_(device, std::vector<PathTag>(slot_count)),
+  PassTest(Device& device, TagPass pass, std::uint32_t slot_count, std::uint32_t slot_count_max)
+      : pass_(pass),
+        compact_(device.compactor(pass, slot_count_max)),
+        tags_(device, std::vector<StageId>(slot_count)),
         queues_{{device, Slots(slot_count, poison)}, {device, Slots(slot_count, poison)}},
         counts_(device, Slots(2, poison)),
         contents_{Slots(slot_count, poison), Slots(slot_count, poison)} {
     request_.tags = tags_.data();
     request_.slot_count = request_.capacity = slot_count;
+    request_.queues_wanted = 2;
     for (int c = 0; c < 2; ++c) request_.queues[c] = queues_[c].data();
     request_.counts = counts_.data();
   }
@@ -190,8 +190,8 @@ class PassTest {
   CompactionRequest& request() { return request_; }
 
   /// One pass; `meaning` is the tag of each role.
-  void expect_pass(const std::vector<Role>& roles, const PathTag (&meaning)[4]) {
-    std::vector<PathTag> tags;
+  void expect_pass(const std::vector<Role>& roles, const StageId (&meaning)[4]) {
+    std::vector<StageId> tags;
     tags.reserve(roles.size());
     for (const Role role : roles) tags.push_back(meaning[static_cast<int>(role)]);
     tags_.upload(tags);
@@ -201,7 +201,7 @@ class PassTest {
     for (int c = 0; c < 2; ++c) {
       const Slots waiting = waiting_slots(roles, static_cast<Role>(c));
       counts.push_back(static_cast<std::uint32_t>(waiting.size()));
-      if (strategy_ != Compaction::none) std::ranges::copy(waiting, contents_[c].begin());
+      if (pass_ == TagPass::gather) std::ranges::copy(waiting, contents_[c].begin());
     }
     counts_.expect(counts, "counts");
     expect_contents();
@@ -228,26 +228,25 @@ class PassTest {
     for (int c = 0; c < 2; ++c) queues_[c].expect(contents_[c], "queue " + std::to_string(c));
   }
 
-  Compaction strategy_;
+  TagPass pass_;
   Compactor compact_;
-  GuardedArray<Device, PathTag> tags_;
+  GuardedArray<Device, StageId> tags_;
   GuardedArray<Device, std::uint32_t> queues_[2], counts_;
   Slots contents_[2];  ///< of the queues, with what earlier passes left behind
   CompactionRequest request_;
 };
 
 /// Where a slot went in a case, by role; both others stay where they are.
-inline constexpr PathTag tag_meanings[][4] = {
-    {PathTag::miss, PathTag::surface, PathTag::free, PathTag::intersect},
-    {PathTag::free, PathTag::intersect, PathTag::surface, PathTag::miss},
-    {PathTag::surface, PathTag::miss, PathTag::free, PathTag::free},
+inline constexpr StageId tag_meanings[][4] = {
+    {StageId::shade_miss, StageId::shade_surface, free_slot, StageId::intersect},
+    {free_slot, StageId::intersect, StageId::shade_surface, StageId::shade_miss},
+    {StageId::shade_surface, StageId::shade_miss, free_slot, free_slot},
 };
 
 /// A stage without physics: every slot goes where the case wants it.
-template <PathTag first, PathTag second, bool shadows>
+template <StageId first, StageId second, bool shadows>
 struct SortingStage {
   static constexpr StageId id = StageId::intersect;
-  static constexpr PathTag tag = PathTag::intersect;
   static constexpr StageOutcomes outcomes = {{first, second}, true, shadows};
   const Next* next;      ///< [slot]
   std::uint32_t* calls;  ///< [slot]: how often the stage was called for it
@@ -260,19 +259,13 @@ struct SortingStage {
   }
 };
 
-/// What a stage finds as its input.
-enum class StageInput {
-  queue,      ///< a queue
-  tags,       ///< the whole pool, of which it takes the slots with its tag
-  every_slot  ///< the whole pool
-};
-
 /// Runs a stage on slots of the roles first and second (with StageInput::every_slot: on all, the
 /// others going the same two ways), and the pass behind it if the strategy makes one.
 template <class Stage, class Device>
 class SendTest {
  public:
-  SendTest(Device& device, Compaction strategy, StageInput input, std::vector<Role> roles)
+  SendTest(Device& device, const CompactionInfo& strategy, StageInput input,
+           std::vector<Role> roles)
       : device_(device), strategy_(strategy), input_(input), roles_(std::move(roles)) {
     for (Role& role : roles_) {
       if (input == StageInput::every_slot) role = static_cast<Role>(static_cast<int>(role) % 2);
@@ -280,32 +273,32 @@ class SendTest {
   }
 
   /// `dropped`: nobody waits for these.
-  void expect_sent(typename Device::Shape shape, const std::vector<PathTag>& dropped = {}) {
+  void expect_sent(typename Device::Shape shape, const std::vector<StageId>& dropped = {}) {
     const auto n = static_cast<std::uint32_t>(roles_.size());
     TestRandom random(n);
     std::vector<Next> next(n);
-    std::vector<PathTag> tags(n), shadow_tags(n);
+    std::vector<StageId> tags(n), shadow_tags(n);
     for (std::uint32_t i = 0; i < n; ++i) {
       const int role = static_cast<int>(roles_[i]);
-      next[i] = {Stage::outcomes.tag[role % 2], shadows && random.bits() % 3 == 0};
-      tags[i] = role < 2 ? Stage::tag : PathTag::free;
-      shadow_tags[i] = static_cast<PathTag>(random.below(4));
+      next[i] = {Stage::outcomes.to[role % 2], shadows && random.bits() % 3 == 0};
+      tags[i] = role < 2 ? stage_info(Stage::id).queue : free_slot;
+      shadow_tags[i] = static_cast<StageId>(random.below(4));
     }
     const Slots slots = input_slots(random);
 
     GuardedArray<Device, Next> device_next(device_, next);
     GuardedArray<Device, std::uint32_t> calls(device_, Slots(n)), ranks(device_, Slots(n, poison));
-    GuardedArray<Device, PathTag> device_tags(device_, tags), device_shadow(device_, shadow_tags);
+    GuardedArray<Device, StageId> device_tags(device_, tags), device_shadow(device_, shadow_tags);
     GuardedArray<Device, std::uint32_t> input(device_, slots);
     const std::uint32_t length =
         input_ == StageInput::tags ? n : static_cast<std::uint32_t>(slots.size());
     GuardedArray<Device, std::uint32_t> count(device_, {length});
 
     StageQueues q;
-    const bool from_pool = input_ == StageInput::tags || input_ == StageInput::every_slot;
-    q.slots = from_pool ? nullptr : input.data();
+    q.input = input_;
+    q.slots = input_ == StageInput::queue ? input.data() : nullptr;
     q.count = count.data();
-    const bool appends = appends_in_stages(strategy_);
+    const bool appends = q.appends = strategy_.appends;
     q.tags = appends ? nullptr : device_tags.data();
     q.shadow_tags = appends || !shadows ? nullptr : device_shadow.data();
     // Every queue holds something already; what comes is appended behind it.
@@ -314,9 +307,8 @@ class SendTest {
     std::vector<std::unique_ptr<GuardedArray<Device, std::uint32_t>>> queues;
     for (int i = 0; i < queue_count; ++i) {
       queues.push_back(std::make_unique<GuardedArray<Device, std::uint32_t>>(device_, contents));
-      const bool used = i == static_cast<int>(QueueId::shadow) ||
-                        std::ranges::find(dropped, static_cast<PathTag>(i)) == dropped.end();
-      q.next[i] = used && strategy_ != Compaction::none ? queues.back()->data() : nullptr;
+      const bool used = std::ranges::find(dropped, i, queue_index) == dropped.end();
+      q.next[i] = used && strategy_.has_queues ? queues.back()->data() : nullptr;
     }
     GuardedArray<Device, std::uint32_t> waiting(device_, ends);
     q.waiting = waiting.data();
@@ -326,11 +318,11 @@ class SendTest {
     expect_calls(slots, calls.download("calls"), ranks.download("ranks"));
     std::vector<Slots> sent(queue_count);
     for (const std::uint32_t slot : slots) {
-      tags[slot] = next[slot].tag;
-      if (shadows) shadow_tags[slot] = next[slot].shadow ? PathTag::surface : PathTag::free;
-      const auto to = static_cast<std::size_t>(next[slot].tag);
+      tags[slot] = next[slot].to;
+      if (shadows) shadow_tags[slot] = next[slot].shadow ? StageId::shadow : free_slot;
+      const int to = queue_index(next[slot].to);
       if (appends && q.next[to] != nullptr) sent[to].push_back(slot);
-      if (appends && next[slot].shadow) sent[queue_count - 1].push_back(slot);
+      if (appends && next[slot].shadow) sent[queue_index(StageId::shadow)].push_back(slot);
     }
     if (!appends) {
       device_tags.expect(tags, "tags");
@@ -382,7 +374,7 @@ class SendTest {
   }
 
   Device& device_;
-  Compaction strategy_;
+  const CompactionInfo strategy_;
   StageInput input_;
   std::vector<Role> roles_;
 };
@@ -396,17 +388,23 @@ class CompactionOf : public testing::Test {
 };
 TYPED_TEST_SUITE_P(CompactionOf);
 
-inline constexpr Compaction pass_strategies[] = {Compaction::cub, Compaction::none};
+/// Every strategy that makes a pass.
+inline const std::vector<CompactionInfo> pass_strategies = [] {
+  std::vector<CompactionInfo> result;
+  std::ranges::copy_if(compaction_table, std::back_inserter(result),
+                       [](const CompactionInfo& s) { return s.pass != TagPass::none; });
+  return result;
+}();
 
 TYPED_TEST_P(CompactionOf, APassFindsExactlyTheWaitingSlots) {
   TypeParam device;
-  for (const Compaction strategy : pass_strategies) {
-    SCOPED_TRACE(to_string(strategy));
+  for (const CompactionInfo& strategy : pass_strategies) {
+    SCOPED_TRACE(strategy.name);
     for_each_case([&](std::vector<Role> roles) {
       const auto n = static_cast<std::uint32_t>(roles.size());
       const bool large = n > some_pattern_sizes[5];
-      if (large && strategy == Compaction::none) return;
-      PassTest<TypeParam> test(device, strategy, n, n + n / 3);
+      if (large && !strategy.has_queues) return;
+      PassTest<TypeParam> test(device, strategy.pass, n, n + n / 3);
       test.expect_pass(roles, tag_meanings[0]);
       if (large) return;
       // The same buffers again, with other queues and other slots in them.
@@ -418,10 +416,54 @@ TYPED_TEST_P(CompactionOf, APassFindsExactlyTheWaitingSlots) {
   }
 }
 
-TYPED_TEST_P(CompactionOf, NoneCountsWithoutQueues) {
+// The number of queues is the request's: one for each kind of slot, or one alone.
+TYPED_TEST_P(CompactionOf, APassFillsAnyNumberOfQueues) {
+  TypeParam device;
+  constexpr std::uint32_t n = 20000;
+  std::vector<StageId> tags;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    tags.push_back(stage_table[scrambled(i) % CompactionRequest::queues_max].id);
+  }
+  for (const CompactionInfo& strategy : pass_strategies) {
+    SCOPED_TRACE(strategy.name);
+    const bool gathers = strategy.pass == TagPass::gather;
+    const int most = gathers ? TypeParam::pass_queues_max : CompactionRequest::queues_max;
+    for (int wanted = 1; wanted <= most; ++wanted) {
+      SCOPED_TRACE(testing::Message() << wanted << " queues");
+      GuardedArray<TypeParam, StageId> device_tags(device, tags);
+      GuardedArray<TypeParam, std::uint32_t> counts(
+          device, Slots(static_cast<std::size_t>(std::max(wanted, 2)), poison));
+      std::vector<std::unique_ptr<GuardedArray<TypeParam, std::uint32_t>>> queues;
+      CompactionRequest request;
+      request.tags = device_tags.data();
+      request.slot_count = request.capacity = n;
+      request.counts = counts.data();
+      for (request.queues_wanted = 0; request.queues_wanted < wanted; ++request.queues_wanted) {
+        queues.push_back(
+            std::make_unique<GuardedArray<TypeParam, std::uint32_t>>(device, Slots(n, poison)));
+        request.wanted[request.queues_wanted] = stage_table[request.queues_wanted].id;
+        request.queues[request.queues_wanted] = queues.back()->data();
+      }
+      device.compactor(strategy.pass, n)(request);
+      const Slots found = counts.download("counts");
+      for (std::size_t c = 0; c < queues.size(); ++c) {
+        Slots slots;
+        for (std::uint32_t i = 0; i < n; ++i) {
+          if (tags[i] == stage_table[c].id) slots.push_back(i);
+        }
+        EXPECT_EQ(found[c], slots.size());
+        slots.resize(gathers ? slots.size() : 0);
+        slots.resize(n, poison);
+        queues[c]->expect(slots, "queue " + std::to_string(c));
+      }
+    }
+  }
+}
+
+TYPED_TEST_P(CompactionOf, CountsWithoutQueues) {
   TypeParam device;
   for (const std::uint32_t n : {1u, 1000u, 65537u}) {
-    PassTest<TypeParam> test(device, Compaction::none, n, n);
+    PassTest<TypeParam> test(device, TagPass::count, n, n);
     test.request().queues[0] = test.request().queues[1] = nullptr;
     test.expect_pass(make_roles(role_patterns[pattern_half], n), tag_meanings[0]);
   }
@@ -429,14 +471,18 @@ TYPED_TEST_P(CompactionOf, NoneCountsWithoutQueues) {
 
 TYPED_TEST_P(CompactionOf, RefusesWhatCouldOverflow) {
   TypeParam device;
-  for (const Compaction strategy : pass_strategies) {
-    SCOPED_TRACE(to_string(strategy));
-    PassTest<TypeParam> test(device, strategy, 1000, 1000);
+  for (const CompactionInfo& strategy : pass_strategies) {
+    SCOPED_TRACE(strategy.name);
+    PassTest<TypeParam> test(device, strategy.pass, 1000, 1000);
     const std::vector<Role> roles = make_roles(role_patterns[pattern_half], 1000);
     test.expect_pass(roles, tag_meanings[0]);
     test.expect_refusal([](CompactionRequest& r) { r.capacity = 999; }, "999 places for 1000");
     test.expect_refusal([](CompactionRequest& r) { r.capacity = 0; }, "0 places for 1000");
     test.expect_refusal([](CompactionRequest& r) { r.wanted[1] = r.wanted[0]; }, "are the same");
+    test.expect_refusal([](CompactionRequest& r) { r.queues_wanted = 0; }, "0 queues wanted");
+    test.expect_refusal(
+        [](CompactionRequest& r) { r.queues_wanted = CompactionRequest::queues_max + 1; },
+        "queues wanted; expected 1 to");
     test.expect_refusal([](CompactionRequest& r) { r.slot_count = r.capacity = 0x80000000u; },
                         "2147483648 slots");
     test.expect_pass(roles, tag_meanings[1]);
@@ -446,33 +492,33 @@ TYPED_TEST_P(CompactionOf, RefusesWhatCouldOverflow) {
 /// Calls test(strategy, input) for all that a stage can be run with.
 template <class Device, class Test>
 void for_each_input(Test&& test) {
-  using enum StageInput;
-  const auto run = [&](Compaction strategy, StageInput input, const char* name) {
+  const auto run = [&](const CompactionInfo& strategy, StageInput input, const char* name) {
     if (testing::Test::HasFailure()) return;
-    SCOPED_TRACE(testing::Message() << to_string(strategy) << ", " << name);
+    SCOPED_TRACE(testing::Message() << strategy.name << ", " << name);
     test(strategy, input);
   };
-  for (const Compaction strategy : {Compaction::atomic, Compaction::cub}) {
-    run(strategy, queue, "a queue");
+  for (const CompactionInfo& strategy : compaction_table) {
+    if (!strategy.has_queues) run(strategy, StageInput::tags, "by tag");
+    if (strategy.has_queues) run(strategy, StageInput::queue, "a queue");
+    if (strategy.appends) run(strategy, StageInput::every_slot, "every slot");
   }
-  run(Compaction::none, tags, "by tag");
-  if (Device::numbers_slots) run(Compaction::atomic, every_slot, "every slot");
 }
 
 /// Runs all kinds of stages once.
 template <class Device>
 void expect_all_sent(Device& device, const std::vector<Role>& roles,
                      const typename Device::Shape& shape) {
-  using enum PathTag;
-  for_each_input<Device>([&](Compaction strategy, StageInput input) {
-    SendTest<SortingStage<surface, miss, false>, Device>(device, strategy, input, roles)
+  using enum StageId;
+  for_each_input<Device>([&](const CompactionInfo& strategy, StageInput input) {
+    SendTest<SortingStage<shade_surface, shade_miss, false>, Device>(device, strategy, input, roles)
         .expect_sent(shape);
-    SendTest<SortingStage<intersect, free, true>, Device> shadows(device, strategy, input, roles);
+    SendTest<SortingStage<intersect, generate, true>, Device> shadows(device, strategy, input,
+                                                                      roles);
     shadows.expect_sent(shape);
-    shadows.expect_sent(shape, {free});
-    SendTest<SortingStage<free, free, false>, Device> ends(device, strategy, input, roles);
+    shadows.expect_sent(shape, {generate});
+    SendTest<SortingStage<generate, generate, false>, Device> ends(device, strategy, input, roles);
     ends.expect_sent(shape);
-    ends.expect_sent(shape, {free});
+    ends.expect_sent(shape, {generate});
   });
 }
 
@@ -498,13 +544,15 @@ TYPED_TEST_P(CompactionOf, AStageSendsEverySlotOnInEveryShape) {
 TYPED_TEST_P(CompactionOf, AStageSendsMillionsOfSlotsOn) {
   TypeParam device;
   for (const std::uint32_t n : {(1u << 20) - 1, 1u << 20, (1u << 22) + 1}) {
-    SendTest<SortingStage<PathTag::surface, PathTag::miss, false>, TypeParam>(
-        device, Compaction::atomic, StageInput::queue, make_roles(role_patterns[pattern_half], n))
+    SendTest<SortingStage<StageId::shade_surface, StageId::shade_miss, false>, TypeParam>(
+        device, compaction_info(Compaction::atomic), StageInput::queue,
+        make_roles(role_patterns[pattern_half], n))
         .expect_sent(TypeParam::shapes().front());
   }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(CompactionOf, APassFindsExactlyTheWaitingSlots, NoneCountsWithoutQueues,
+REGISTER_TYPED_TEST_SUITE_P(CompactionOf, APassFindsExactlyTheWaitingSlots,
+                            APassFillsAnyNumberOfQueues, CountsWithoutQueues,
                             RefusesWhatCouldOverflow, AStageSendsEverySlotOn,
                             AStageSendsEverySlotOnInEveryShape, AStageSendsMillionsOfSlotsOn);
 

@@ -15,7 +15,7 @@ namespace {
 class CpuDevice {
  public:
   static constexpr const char* name = "CPU";
-  static constexpr bool numbers_slots = false;
+  static constexpr int pass_queues_max = CompactionRequest::queues_max;
   struct Shape {
     int threads;
     std::string text() const { return std::to_string(threads) + " threads"; }
@@ -29,9 +29,9 @@ class CpuDevice {
   void upload(void* to, const void* from, std::size_t size_bytes) { copy(to, from, size_bytes); }
   void download(void* to, const void* from, std::size_t size_bytes) { copy(to, from, size_bytes); }
 
-  Compactor compactor(Compaction strategy, std::uint32_t /*slot_count_max*/) {
-    return [this, strategy](const CompactionRequest& request) {
-      arena_.execute([&] { compact_cpu(strategy, request); });
+  Compactor compactor(TagPass pass, std::uint32_t /*slot_count_max*/) {
+    return [this, pass](const CompactionRequest& request) {
+      arena_.execute([&] { compact_cpu(pass, request); });
     };
   }
 
@@ -58,7 +58,7 @@ TEST(RangeAppender, GivesNoPlaceTwice) {
   constexpr std::uint32_t thread_count = 4, appends = 2'000'000;
   Slots queue(thread_count * appends, poison), waiting(queue_count + 1);
   StageQueues queues;
-  queues.next[static_cast<int>(QueueId::surface)] = queue.data();
+  queues.next[queue_index(StageId::shade_surface)] = queue.data();
   queues.waiting = waiting.data();
   std::latch start(thread_count);
   std::vector<std::thread> threads;
@@ -67,13 +67,13 @@ TEST(RangeAppender, GivesNoPlaceTwice) {
       RangeAppender appender;
       start.arrive_and_wait();
       for (std::uint32_t i = 0; i < appends; ++i) {
-        appender.append(QueueId::surface, t * appends + i);
+        appender.append(StageId::shade_surface, t * appends + i);
         appender.flush(queues);
       }
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(waiting[static_cast<int>(QueueId::surface)], queue.size());
+  EXPECT_EQ(waiting[queue_index(StageId::shade_surface)], queue.size());
   std::vector<int> times(queue.size());
   for (const std::uint32_t slot : queue) {
     ASSERT_LT(slot, times.size()) << "a place is empty";

@@ -10,7 +10,7 @@ namespace {
 class CudaDevice {
  public:
   static constexpr const char* name = "CUDA";
-  static constexpr bool numbers_slots = true;
+  static constexpr int pass_queues_max = 2;
   struct Shape {
     int block;
     std::uint32_t blocks_max;
@@ -43,9 +43,9 @@ class CudaDevice {
     check_cuda(cudaMemcpy(to, from, size_bytes, cudaMemcpyDeviceToHost), "download");
   }
 
-  Compactor compactor(Compaction strategy, std::uint32_t slot_count_max) {
+  Compactor compactor(TagPass pass, std::uint32_t slot_count_max) {
     const auto memory = std::make_shared<CudaMemory>();
-    const auto compactor = std::make_shared<CudaCompactor>(strategy, slot_count_max, *memory);
+    const auto compactor = std::make_shared<CudaCompactor>(pass, slot_count_max, *memory);
     return [this, memory, compactor](const CompactionRequest& request) {
       compactor->enqueue(request, clock_.data(), nullptr);
       check_cuda(cudaDeviceSynchronize(), "compact");
@@ -75,28 +75,30 @@ class CudaCompactorTest : public CudaTest {};
 
 TEST_F(CudaCompactorTest, RefusesMoreSlotsThanAnnounced) {
   CudaDevice device;
-  for (const Compaction strategy : pass_strategies) {
-    PassTest<CudaDevice> test(device, strategy, 1000, 999);
-    test.expect_refusal([](CompactionRequest& r) { r.wanted[1] = PathTag::miss; },
+  for (const CompactionInfo& strategy : pass_strategies) {
+    PassTest<CudaDevice> test(device, strategy.pass, 1000, 999);
+    test.expect_refusal([](CompactionRequest& r) { r.wanted[1] = StageId::shade_miss; },
                         "1000 slots; expected at most the 999 announced");
   }
 }
 
 // CUB asks each slot once, which is how the clock knows of a pass.
 TEST_F(CudaCompactorTest, StampsTheClockOncePerPass) {
-  const DeviceArray<PathTag> tags{std::vector<PathTag>(5000, PathTag::miss)};
+  const DeviceArray<StageId> tags{std::vector<StageId>(5000, StageId::shade_miss)};
   const DeviceArray<std::uint32_t> first(5000), second(5000), counts(2);
-  for (const Compaction strategy : pass_strategies) {
+  for (const CompactionInfo& strategy : pass_strategies) {
     const DeviceArray<StageClock> clock{std::vector<StageClock>(1)};
     CudaMemory memory;
-    const CudaCompactor compactor(strategy, 5000, memory);
-    CompactionRequest request{tags.data(), 5000, {PathTag::miss, PathTag::free}};
+    const CudaCompactor compactor(strategy.pass, 5000, memory);
+    CompactionRequest request;
+    request.tags = tags.data(), request.slot_count = 5000, request.queues_wanted = 2;
+    request.wanted[0] = StageId::shade_miss, request.wanted[1] = free_slot;
     request.queues[0] = first.data(), request.queues[1] = second.data();
     request.capacity = 5000, request.counts = counts.data();
     for (int i = 0; i < 3; ++i) compactor.enqueue(request, clock.data(), nullptr);
     compactor.enqueue(request, nullptr, nullptr);
-    EXPECT_EQ(clock.download()[0].launches[static_cast<int>(ClockId::compact)], 3u)
-        << to_string(strategy);
+    EXPECT_EQ(clock.download()[0].launches[static_cast<int>(StageId::compact)], 3u)
+        << strategy.name;
     EXPECT_EQ(counts.download(), (Slots{5000, 0}));
   }
 }

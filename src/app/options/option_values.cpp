@@ -120,8 +120,8 @@ BlockSize parse_block(const std::string& name, const std::string& text) {
   return {*x, *y};
 }
 
-std::array<int, stage_count> parse_stage_blocks(const std::string& name, const std::string& text,
-                                                std::array<int, stage_count> blocks) {
+StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
+                               StageBlocks blocks) {
   if (text.find('=') == std::string::npos) {
     blocks.fill(parse_stage_threads(name, text));
     return blocks;
@@ -169,13 +169,15 @@ std::string vector_text(const std::array<float, 3>& value) {
 
 std::string block_text(const BlockSize& block) { return fmt::format("{}x{}", block.x, block.y); }
 
-std::string stage_blocks_text(const std::array<int, stage_count>& blocks) {
-  if (std::set<int>(blocks.begin(), blocks.end()).size() == 1) return std::to_string(blocks[0]);
+std::string stage_blocks_text(const StageBlocks& blocks) {
+  std::set<int> threads;
   std::string text;
-  for (const auto& [stage, stage_name] : enum_names<StageId>)
-    text += fmt::format("{}{}={}", text.empty() ? "" : ",", stage_name,
-                        blocks[static_cast<std::size_t>(stage)]);
-  return text;
+  for (const auto& [stage, stage_name] : enum_names<StageId>) {
+    const int block = blocks[static_cast<std::size_t>(stage)];
+    threads.insert(block);
+    text += fmt::format("{}{}={}", text.empty() ? "" : ",", stage_name, block);
+  }
+  return threads.size() == 1 ? std::to_string(*threads.begin()) : text;
 }
 
 void parse_definition(const std::string& name, const std::string& text,

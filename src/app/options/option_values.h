@@ -25,8 +25,8 @@ bool parse_switch(const std::string& name, const std::string& text);  ///< "on" 
 DeviceChoice parse_device(const std::string& name, const std::string& text);
 BlockSize parse_block(const std::string& name, const std::string& text);  ///< "16x8"
 /// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
-std::array<int, stage_count> parse_stage_blocks(const std::string& name, const std::string& text,
-                                                std::array<int, stage_count> blocks);
+StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
+                               StageBlocks blocks);
 /// "auto" (0) or a number of paths, "K" and "M" standing for 2^10 and 2^20.
 std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
 
@@ -41,7 +41,7 @@ E parse_name(const std::string& name, const std::string& text) {
 std::string number_text(float value);
 std::string vector_text(const std::array<float, 3>& value);
 std::string block_text(const BlockSize& block);
-std::string stage_blocks_text(const std::array<int, stage_count>& blocks);
+std::string stage_blocks_text(const StageBlocks& blocks);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
 

@@ -12,8 +12,7 @@ namespace {
 /// The stages that have columns of their own; others are summed as "other".
 std::vector<std::string> column_stages() {
   std::vector<std::string> names;
-  for (const auto& [stage, name] : enum_names<StageId>) names.emplace_back(name);
-  names.insert(names.end(), {"compact", "megakernel", "serial", "render_init"});
+  for (const StageInfo& stage : stage_table) names.emplace_back(stage.name);
   return names;
 }
 

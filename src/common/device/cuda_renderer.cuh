@@ -22,9 +22,6 @@ namespace pt {
 
 struct CurandState;
 
-/// The name of a kernel in reports: that of its stage where it is one.
-const char* clock_name(ClockId id);
-
 class CudaRenderer : public FilmRenderer {
  public:
   /// Throws Error when the scene, the film or the options do not fit the device.

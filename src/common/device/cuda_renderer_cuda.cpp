@@ -35,19 +35,6 @@ class Stopwatch {
 
 }  // namespace
 
-const char* clock_name(ClockId id) {
-  static_assert(static_cast<int>(ClockId::compact) == stage_count);  // before it stand the stages
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (int i = 0; i < stage_count; ++i) list.push_back(to_string(static_cast<StageId>(i)));
-    for (const char* name : {"compact", "begin_wave", "megakernel", "render_init", "idle"}) {
-      list.emplace_back(name);
-    }
-    return list;
-  }();
-  return names.at(static_cast<std::size_t>(id)).c_str();
-}
-
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
     : FilmRenderer(options),
       traits_(scene.traits),
@@ -267,10 +254,11 @@ PathTally CudaRenderer::read_tally() const {
 void CudaRenderer::read_clock(RenderRun& run) {
   StageClock clock;
   check_cuda(cudaMemcpy(&clock, clock_, sizeof clock, cudaMemcpyDeviceToHost), "cudaMemcpy");
-  for (int i = 0; i < static_cast<int>(ClockId::idle); ++i) {
+  for (const StageInfo& stage : stage_table) {
+    const auto i = static_cast<std::size_t>(stage.id);
     if (clock.launches[i] == 0) continue;
-    run.stages.push_back({clock_name(static_cast<ClockId>(i)),
-                          static_cast<double>(clock.time_ns[i]) * 1e-6, clock.launches[i]});
+    run.stages.push_back(
+        {std::string(stage.name), static_cast<double>(clock.time_ns[i]) * 1e-6, clock.launches[i]});
   }
 }
 

@@ -9,7 +9,7 @@ std::size_t random_state_bytes() { return sizeof(CurandState); }
 /// The paper's render_init: one generator state per path.
 __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64_t seed,
                             StageClock* clock) {
-  stamp_first_thread(clock, ClockId::render_init);
+  stamp_first_thread(clock, StageId::render_init);
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= batch.path_count) return;
   const PathId id = batch.id_of(i);
@@ -28,7 +28,7 @@ __device__ void add_to(std::uint64_t* sum, std::uint64_t value) {
 // slowest part of the kernel by far.
 __global__ void __launch_bounds__(1024)
     accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally, StageClock* clock) {
-  stamp_first_thread(clock, ClockId::accumulate);
+  stamp_first_thread(clock, StageId::accumulate);
   __shared__ std::uint64_t block_rays, block_shadow_rays, block_nonfinite;
   __shared__ std::uint32_t lengths[path_length_bins];
   for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) lengths[i] = 0;
@@ -57,9 +57,9 @@ __global__ void start_clock(StageClock* clock) {
   std::uint64_t now;
   asm volatile("mov.u64 %0, %globaltimer;" : "=l"(now));
   clock->last_ns = now;
-  clock->running = ClockId::idle;
+  clock->running = StageId::idle;
 }
 
-__global__ void stop_clock(StageClock* clock) { stamp(clock, ClockId::idle); }
+__global__ void stop_clock(StageClock* clock) { stamp(clock, StageId::idle); }
 
 }  // namespace pt

@@ -6,30 +6,15 @@
 
 #include <cstdint>
 
+#include "common/render/stage_info.h"
+
 namespace pt {
 
-/// The kernels that have a time of their own. The first ones are StageId's.
-enum class ClockId {
-  generate,
-  intersect,
-  shade_miss,
-  shade_surface,
-  shadow,
-  finish,
-  accumulate,
-  compact,
-  begin_wave,
-  megakernel,
-  render_init,
-  idle
-};
-inline constexpr int clock_count = static_cast<int>(ClockId::idle) + 1;
-
 struct StageClock {
-  std::uint64_t time_ns[clock_count];
-  std::uint64_t launches[clock_count];
+  std::uint64_t time_ns[stage_count + 1];   ///< by StageId; the last one's is StageId::idle's
+  std::uint64_t launches[stage_count + 1];  ///< likewise
   std::uint64_t last_ns;
-  ClockId running;
+  StageId running;
 };
 
 }  // namespace pt

@@ -2,12 +2,11 @@
 #pragma once
 
 #include "common/device/stage_clock.h"
-#include "common/render/options.h"
 
 namespace pt {
 
 /// To be called by one thread of a kernel when it starts: `id` runs now.
-__device__ inline void stamp(StageClock* clock, ClockId id) {
+__device__ inline void stamp(StageClock* clock, StageId id) {
   std::uint64_t now;
   asm volatile("mov.u64 %0, %globaltimer;" : "=l"(now));
   clock->time_ns[static_cast<int>(clock->running)] += now - clock->last_ns;
@@ -16,12 +15,8 @@ __device__ inline void stamp(StageClock* clock, ClockId id) {
   clock->running = id;
 }
 
-__device__ inline void stamp_first_thread(StageClock* clock, ClockId id) {
-  if ((blockIdx.x | blockIdx.y | blockIdx.z | threadIdx.x | threadIdx.y) == 0) stamp(clock, id);
-}
-
 __device__ inline void stamp_first_thread(StageClock* clock, StageId id) {
-  stamp_first_thread(clock, static_cast<ClockId>(id));  // ClockId begins with StageId's values
+  if ((blockIdx.x | blockIdx.y | blockIdx.z | threadIdx.x | threadIdx.y) == 0) stamp(clock, id);
 }
 
 }  // namespace pt

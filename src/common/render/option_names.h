@@ -2,6 +2,7 @@
 // every error message read these tables.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -27,8 +28,13 @@ template <>
 inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
     {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});
 template <>
-inline constexpr auto enum_names<Compaction> = std::to_array<EnumName<Compaction>>(
-    {{Compaction::cub, "cub"}, {Compaction::atomic, "atomic"}, {Compaction::none, "none"}});
+inline constexpr auto enum_names<Compaction> = [] {
+  std::array<EnumName<Compaction>, std::size(compaction_table)> names{};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    names[i] = {compaction_table[i].id, compaction_table[i].name};
+  }
+  return names;
+}();
 template <>
 inline constexpr auto enum_names<Schedule> = std::to_array<EnumName<Schedule>>(
     {{Schedule::automatic, "auto"}, {Schedule::host, "host"}, {Schedule::graph, "graph"}});
@@ -61,16 +67,17 @@ inline constexpr auto enum_names<TreeBuilder> =
 template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});
+/// The stages that --stage-block has.
 template <>
-inline constexpr auto enum_names<StageId> =
-    std::to_array<EnumName<StageId>>({{StageId::generate, "generate"},
-                                      {StageId::intersect, "intersect"},
-                                      {StageId::shade_miss, "shade_miss"},
-                                      {StageId::shade_surface, "shade_surface"},
-                                      {StageId::shadow, "shadow"},
-                                      {StageId::finish, "finish"},
-                                      {StageId::accumulate, "accumulate"}});
-static_assert(enum_names<StageId>.size() == stage_count);
+inline constexpr auto enum_names<StageId> = [] {
+  constexpr auto count = std::ranges::count(stage_table, true, &StageInfo::has_block);
+  std::array<EnumName<StageId>, count> names{};
+  std::size_t i = 0;
+  for (const StageInfo& stage : stage_table) {
+    if (stage.has_block) names[i++] = {stage.id, stage.name};
+  }
+  return names;
+}();
 template <>
 inline constexpr auto enum_names<DeviceChoice::Kind> =
     std::to_array<EnumName<DeviceChoice::Kind>>({{DeviceChoice::Kind::automatic, "auto"},

@@ -8,11 +8,13 @@
 #include <optional>
 #include <string>
 
+#include "common/render/compaction_info.h"
+#include "common/render/stage_info.h"
+
 namespace pt {
 
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
-enum class Compaction { cub, atomic, none };
 enum class Schedule { automatic, host, graph };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class Branching { divergent, reduced };
@@ -21,9 +23,12 @@ enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
 enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
 enum class WorldBuilder { host, device };
 
-/// The wavefront's kernels, in the order in which a wave runs them.
-enum class StageId { generate, intersect, shade_miss, shade_surface, shadow, finish, accumulate };
-inline constexpr int stage_count = 7;
+using StageBlocks = std::array<int, stage_count>;  ///< threads per block, by StageId
+constexpr StageBlocks make_stage_blocks(int threads) {
+  StageBlocks blocks{};
+  for (int& block : blocks) block = threads;
+  return blocks;
+}
 
 struct DeviceChoice {
   enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
@@ -82,7 +87,7 @@ struct Options {
   bool regenerate = true;
   int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
-  std::array<int, stage_count> stage_block = {256, 256, 256, 256, 256, 256, 256};  ///< by StageId
+  StageBlocks stage_block = make_stage_blocks(256);
 
   // The paper's toggles
   SceneMemory scene_memory = SceneMemory::automatic;  ///< constant where the spheres fit
