@@ -4,8 +4,8 @@
 #pragma once
 
 #include "common/render/options.h"
+#include "common/transport/follow_path.h"
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/shade_any.h"
 #include "wavefront/path_pool.h"
 #include "wavefront/wave_counters.h"
 
@@ -141,18 +141,17 @@ struct ShadeMiss {
   }
 };
 
-/// What a surface does to a path, with the random numbers that decide it.
+/// What a surface does to a path.
 template <class Traits, Branching branching, class Source>
-PT_HD Scattering scatter_path(const Scene& scene, const StageContext<Source>& context,
-                              const Ray& ray, const Hit& hit, PathState& path) {
+PT_HD Scattering scatter_stored_path(const Scene& scene, const StageContext<Source>& context,
+                                     const Ray& ray, const Hit& hit, PathState& path) {
   const PathId id = context.samples.id_of(path.number);
   auto random = context.source.open(id);
-  const Vec4 u = random.draw(scatter_block(path.rays));
-  const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+  constexpr bool may_miss = branching == Branching::reduced;
+  const Scattering scattering =
+      scatter_path<Traits, may_miss>(scene, ray, hit, path, context.limits, random);
   context.source.close(id, random);
-  return branching == Branching::reduced
-             ? shade_any<Traits>(scene, ray, hit, path, context.limits, u, light)
-             : shade_surface<Traits>(scene, ray, hit, path, context.limits, u, light);
+  return scattering;
 }
 
 PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
@@ -175,7 +174,7 @@ struct ShadeSurface {
     PathState path = pool.load_path(slot, ray);
     ++path.rays;
     const Scattering scattering =
-        scatter_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
+        scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
     if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
     if (!scattering.alive) {
@@ -217,28 +216,15 @@ struct FinishPaths {
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    constexpr bool has_lights = Traits::has_lights;
+    const auto& [pool, samples, source, counters, ray_queue, limits] = context;
     Ray ray;
-    PathState path = context.pool.load_path(slot, ray);
-    Color radiance = has_lights ? context.samples.samples[path.number].radiance : Color(0.0f);
-    for (bool alive = true; alive;) {
-      const Hit hit = intersect_closest<Traits>(scene, ray);
-      ++path.rays;
-      if (hit.is_miss()) {
-        radiance = add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
-        break;
-      }
-      const Scattering scattering =
-          scatter_path<Traits, Branching::divergent>(scene, context, ray, hit, path);
-      radiance = add_rounded(radiance, scattering.emitted);
-      if (has_lights && !is_black(scattering.shadow.radiance) &&
-          !intersect_shadow<Traits>(scene, scattering.shadow)) {
-        radiance = add_rounded(radiance, scattering.shadow.radiance);
-      }
-      ray = scattering.ray;
-      alive = scattering.alive;
-    }
-    context.samples.store(path, radiance);
+    PathState path = pool.load_path(slot, ray);
+    const PathId id_of_path = samples.id_of(path.number);
+    auto random = source.open(id_of_path);
+    const Color before = Traits::has_lights ? samples.samples[path.number].radiance : Color(0.0f);
+    const Color radiance = follow_path<Traits>(scene, ray, path, before, limits, random);
+    source.close(id_of_path, random);
+    samples.store(path, radiance);
     return {free_slot};
   }
 };

@@ -2,17 +2,18 @@
 #pragma once
 
 #include "common/sampling/random.h"
-#include "common/transport/shade_miss.h"
-#include "common/transport/shade_surface.h"
+#include "common/transport/shade_any.h"
 
 namespace pt {
 
-/// shade_surface with the random numbers that decide this ray of the path.
-template <class Traits, class Stream>
+/// shade_surface with the random numbers that decide this ray of the path; shade_any where the hit
+/// may be a miss.
+template <class Traits, bool may_miss = false, class Stream>
 PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                               const PathLimits& limits, Stream& random) {
   const Vec4 u = random.draw(scatter_block(path.rays));
   const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
+  if constexpr (may_miss) return shade_any<Traits>(scene, ray, hit, path, limits, u, light);
   return shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
 }
 
