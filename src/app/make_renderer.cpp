@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "common/error.h"
-#include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/load_scene.h"
 #include "common/scene/prepare_scene.h"
@@ -55,25 +54,8 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device, const
   return scene;
 }
 
-namespace {
-
-/// The paper's toggles are for the paper's scenes.
-void check_scene_options(const Options& options, const SceneData& scene) {
-  if (scene.traits.geometry == Geometry::spheres_and_quads) return;
-  constexpr const char* text = "--{} {}: is for scenes of spheres and quads alone; '{}' is none";
-  if (options.rng != RngKind::philox) {
-    throw Error(fmt::format(text, "rng", to_string(options.rng), scene.name));
-  }
-  if (options.branching != Branching::divergent) {
-    throw Error(fmt::format(text, "branching", to_string(options.branching), scene.name));
-  }
-}
-
-}  // namespace
-
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
                                         [[maybe_unused]] const DeviceInfo& device) {
-  check_scene_options(options, scene);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
     return options.mode == Mode::megakernel

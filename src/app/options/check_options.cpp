@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <vector>
+#include <span>
 
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
@@ -15,58 +15,31 @@
 namespace pt {
 namespace {
 
-using Kind = DeviceChoice::Kind;
-
-/// Where an option, or one value of it, has an effect.
-struct Rule {
-  const char* option;
-  const char* value;  ///< nullptr: any value
-  std::vector<Mode> modes;
-  std::vector<Kind> devices;
-};
-
-/// The whole policy. What stands in no rule applies everywhere.
-const std::vector<Rule>& rules() {
-  static const std::vector<Mode> parallel{Mode::megakernel, Mode::wavefront};
-  static const std::vector<Mode> megakernel{Mode::megakernel}, wavefront{Mode::wavefront};
-  static const std::vector<Kind> cpu{Kind::cpu}, cuda{Kind::cuda}, any{Kind::cpu, Kind::cuda};
-  // clang-format off
-  static const std::vector<Rule> list{
-      {"device",       "cuda",     parallel,   cuda},
-      {"threads",      nullptr,    parallel,   cpu},
-      {"work",         nullptr,    megakernel, any},
-      {"block",        nullptr,    megakernel, cuda},
-      {"compaction",   nullptr,    wavefront,  any},
-      {"pool-size",    nullptr,    wavefront,  any},
-      {"finish-paths", nullptr,    wavefront,  any},
-      {"regenerate",   nullptr,    wavefront,  any},
-      {"schedule",     nullptr,    wavefront,  any},
-      {"schedule",     "graph",    wavefront,  cuda},
-      {"stage-block",  nullptr,    wavefront,  cuda},
-      {"create-world", "device",   parallel,   cuda},
-      {"scene-memory", "shared",   parallel,   cuda},
-      {"scene-memory", "constant", parallel,   cuda},
-      {"branching",    "reduced",  parallel,   any},
-  };
-  // clang-format on
-  return list;
+template <typename E>
+bool contains(std::span<const E> list, E value) {
+  return std::ranges::find(list, value) != list.end();
 }
 
 template <typename E>
-bool contains(const std::vector<E>& list, E value) {
-  return std::find(list.begin(), list.end(), value) != list.end();
-}
-
-template <typename E>
-std::string joined(const std::vector<E>& list) {
+std::string joined(std::span<const E> list) {
   std::string text;
   for (const E value : list) text += (text.empty() ? "" : " or ") + to_string(value);
   return text;
 }
 
 /// "cuda:1" is the value "cuda".
-bool has_value(const Rule& rule, const std::string& text) {
-  return rule.value == nullptr || text.substr(0, text.find(':')) == rule.value;
+bool has_value(const OptionRule& rule, const std::string& text) {
+  return rule.value.empty() || text.substr(0, text.find(':')) == rule.value;
+}
+
+void check_rule(const OptionRule& rule, const std::string& name, const std::string& value,
+                Mode mode, std::optional<DeviceChoice::Kind> device) {
+  if (!contains(rule.modes, mode))
+    throw Error(fmt::format("--{} {}: has no effect with --mode {}; it applies to {}", name, value,
+                            to_string(mode), joined(rule.modes)));
+  if (device && !contains(rule.devices, *device))
+    throw Error(fmt::format("--{} {}: has no effect on the device {}; it applies to {}", name,
+                            value, to_string(*device), joined(rule.devices)));
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -129,15 +102,12 @@ void check_consistent(const Options& options, const GivenOptions& given) {
 
 void check_applicable(const Options& options, const GivenOptions& given,
                       std::optional<DeviceChoice::Kind> device) {
-  for (const Rule& rule : rules()) {
-    const std::string value = find_option(rule.option).text(options);
-    if (!given.contains(rule.option) || !has_value(rule, value)) continue;
-    if (!contains(rule.modes, options.mode))
-      throw Error(fmt::format("--{} {}: has no effect with --mode {}; it applies to {}",
-                              rule.option, value, to_string(options.mode), joined(rule.modes)));
-    if (device && !contains(rule.devices, *device))
-      throw Error(fmt::format("--{} {}: has no effect on the device {}; it applies to {}",
-                              rule.option, value, to_string(*device), joined(rule.devices)));
+  for (const OptionEntry& entry : option_list()) {
+    if (!given.contains(entry.name)) continue;
+    const std::string value = entry.text(options);
+    for (const OptionRule& rule : entry.rules) {
+      if (has_value(rule, value)) check_rule(rule, entry.name, value, options.mode, device);
+    }
   }
 }
 

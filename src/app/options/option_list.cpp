@@ -16,6 +16,12 @@ constexpr std::uint64_t max_int = INT32_MAX;
 // Some room below the largest int: a scene adds its own primitives to the random ones.
 constexpr std::uint64_t max_spheres = 100'000'000;
 
+using Kind = DeviceChoice::Kind;
+
+constexpr Mode parallel[] = {Mode::megakernel, Mode::wavefront};
+constexpr Mode megakernel[] = {Mode::megakernel}, wavefront[] = {Mode::wavefront};
+constexpr Kind cpu[] = {Kind::cpu}, cuda[] = {Kind::cuda}, any_device[] = {Kind::cpu, Kind::cuda};
+
 /// Collects the entries of one heading of the help.
 class Group {
  public:
@@ -27,6 +33,13 @@ class Group {
     entry.help = std::move(help);
     entry.short_flag = std::move(short_flag);
     list_.push_back(std::move(entry));
+    return *this;
+  }
+
+  /// The option added last, or this value of it, has an effect in these modes and on these devices
+  /// alone.
+  Group& only(std::span<const Mode> modes, std::span<const Kind> devices, std::string value = "") {
+    list_.back().rules.push_back({std::move(value), modes, devices});
     return *this;
   }
 
@@ -90,7 +103,8 @@ void add_scene(std::vector<OptionEntry>& list) {
            "Random spheres of the scene 'spheres', besides the ground")
       .add(choice("create-world", &Options::create_world),
            "Who makes a random scene: the host, or a CUDA kernel that\n"
-           "makes the same one");
+           "makes the same one")
+      .only(parallel, cuda, "device");
 }
 
 void add_camera(std::vector<OptionEntry>& list) {
@@ -122,7 +136,9 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return to_string(o.device); }),
            "Where to render; auto: the first GPU if there is one,\n"
            "else the CPU. See --list-devices")
+      .only(parallel, cuda, "cuda")
       .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
+      .only(parallel, cpu)
       .add(choice("accel", &Options::accel),
            "How a ray finds its hit: by testing every primitive, through\n"
            "a binary BVH, a compressed 8-wide one (triangles only), or\n"
@@ -134,15 +150,18 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(choice("work", &Options::work),
            "megakernel: what a thread renders: a pixel, a sample of a\n"
            "pixel, or whatever it fetches from a common counter")
+      .only(megakernel, any_device)
       .add(custom(
                "block", OptionForm::text, "WxH",
                [](Options& o, const std::string& s) { o.block = parse_block("block", s); },
                [](const Options& o) { return block_text(o.block); }),
            "megakernel on CUDA: threads of a block, at most 1,024")
+      .only(megakernel, cuda)
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"
            "cub: a selection in order; atomic: appended in any order;\n"
            "none: not at all, every stage visits the whole pool")
+      .only(wavefront, any_device)
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",
                [](Options& o, const std::string& s) {
@@ -152,6 +171,7 @@ void add_execution(std::vector<OptionEntry>& list) {
                  return o.pool_size == 0 ? "auto" : std::to_string(o.pool_size);
                }),
            "wavefront: paths in flight; K and M mean 2^10 and 2^20")
+      .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",
                [](Options& o, const std::string& s) {
@@ -160,13 +180,17 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return o.regenerate ? "on" : "off"; }),
            "wavefront: a path that ends gives its slot to a new one;\n"
            "off: the pool runs empty before it is filled again")
+      .only(wavefront, any_device)
       .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
            "wavefront: when no sample is left to start and so many paths\n"
            "are still alive, a thread follows each to its end; 0: waves\n"
            "to the last ray")
+      .only(wavefront, any_device)
       .add(choice("schedule", &Options::schedule),
            "wavefront: the host launches every stage, or one CUDA graph\n"
            "loops on the device; auto: graph on CUDA, host on the CPU")
+      .only(wavefront, any_device)
+      .only(wavefront, cuda, "graph")
       .add(custom(
                "stage-block", OptionForm::text, "N|STAGE=N,...",
                [](Options& o, const std::string& s) {
@@ -175,7 +199,8 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return stage_blocks_text(o.stage_block); }),
            "wavefront on CUDA: threads per block, for all stages or by\n"
            "name: generate, intersect, shade_miss, shade_surface,\n"
-           "shadow, finish, accumulate; e.g. intersect=128,shadow=64");
+           "shadow, finish, accumulate; e.g. intersect=128,shadow=64")
+      .only(wavefront, cuda);
 }
 
 void add_toggles(std::vector<OptionEntry>& list) {
@@ -183,9 +208,12 @@ void add_toggles(std::vector<OptionEntry>& list) {
       .add(choice("scene-memory", &Options::scene_memory),
            "CUDA: where kernels read the spheres from; constant: the\n"
            "constant bank, refused when they do not fit")
+      .only(parallel, cuda, "shared")
+      .only(parallel, cuda, "constant")
       .add(choice("branching", &Options::branching),
            "reduced: a miss is shaded as a surface that reflects\n"
            "nothing, so that hits and misses share one branch")
+      .only(parallel, any_device, "reduced")
       .add(choice("rng", &Options::rng),
            "philox: stateless. xorwow: a state kept per path, set up by\n"
            "render_init as in the paper");

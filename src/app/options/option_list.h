@@ -1,8 +1,10 @@
 // Every option of `ptexp` that fills a field of Options, in one list: the command line, its help,
-// the statistics and the image metadata all iterate it. A new option is one entry.
+// the statistics, the image metadata and the check of what applies all iterate it. A new option is
+// one entry; scene_options.h has the few rules that depend on the scene.
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +21,13 @@ enum class OptionForm {
   flag     ///< no value, a JSON boolean
 };
 
+/// Where an option, or one value of it, has an effect. What has no rule applies everywhere.
+struct OptionRule {
+  std::string value;  ///< empty: any; "cuda" stands for "cuda:1", too
+  std::span<const Mode> modes;
+  std::span<const DeviceChoice::Kind> devices;
+};
+
 struct OptionEntry {
   std::string name;          ///< long name without the dashes, e.g. "max-depth"
   std::string short_flag{};  ///< e.g. "-o"; empty: none
@@ -30,6 +39,7 @@ struct OptionEntry {
   std::function<void(Options&, const std::string&)> set{};
   /// The value as `set` accepts it; empty where the scene or nothing decides.
   std::function<std::string(const Options&)> text{};
+  std::vector<OptionRule> rules{};
 };
 
 const std::vector<OptionEntry>& option_list();

@@ -75,12 +75,6 @@ void CudaRenderer::upload(const SceneData& scene) {
                         ? SceneMemory::constant
                         : SceneMemory::global;
   }
-  if (scene_memory_ != SceneMemory::global && traits_.geometry != Geometry::spheres_and_quads) {
-    throw Error(
-        fmt::format("--scene-memory {}: holds the spheres of scenes without triangles; expected "
-                    "global or auto",
-                    to_string(scene_memory_)));
-  }
   if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(
         fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "

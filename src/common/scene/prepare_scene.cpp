@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
-#include "common/render/option_names.h"
 #include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_arrays.h"
+#include "common/scene/scene_options.h"
 
 namespace pt {
 namespace {
@@ -16,23 +16,7 @@ namespace {
 // Up to here testing every primitive is faster than walking a tree: results/ has the measurement.
 constexpr std::size_t brute_force_max = 96;
 
-/// Whether the lean kernels of the paper's scenes can render it.
-bool has_primitives_only(const SceneData& scene) {
-  return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty();
-}
-
 void prepare_primitives_only(SceneData& scene, const Options& options) {
-  if (options.accel == AccelKind::cwbvh || options.accel == AccelKind::embree) {
-    throw Error(
-        fmt::format("--accel {}: holds triangles; scene '{}' has spheres and quads only, expected "
-                    "brute or bvh2",
-                    options.accel == AccelKind::cwbvh ? "cwbvh" : "embree", scene.name));
-  }
-  if (options.builder != TreeBuilder::automatic) {
-    throw Error(fmt::format("--builder {}: builds trees over triangles; scene '{}' has none",
-                            to_string(options.builder), scene.name));
-  }
   const bool brute =
       options.accel == AccelKind::brute ||
       (options.accel == AccelKind::automatic && scene.primitive_count() <= brute_force_max);
@@ -47,6 +31,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
+  check_scene_options(options, scene);
   prepare_materials(scene);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);

@@ -1,0 +1,69 @@
+#include "common/scene/scene_options.h"
+
+#include <fmt/format.h>
+
+#include "common/error.h"
+#include "common/render/option_names.h"
+
+namespace pt {
+namespace {
+
+enum class SceneKind { primitives, triangles };
+
+/// The option's value, if it is one that not every scene takes; else empty.
+using Limited = std::string (*)(const Options&);
+
+struct SceneRule {
+  const char* option;
+  Limited limited;
+  SceneKind scene;      ///< which it is for
+  const char* problem;  ///< elsewhere; {}: the scene's name
+};
+
+template <class E, class... Usual>
+std::string unless(E value, Usual... usual) {
+  return ((value == usual) || ...) ? "" : to_string(value);
+}
+
+constexpr const char* paper = "is for scenes of spheres and quads alone; '{}' is none";
+
+/// The whole policy. What stands in no rule is for every scene.
+constexpr SceneRule rules[] = {
+    {"accel",
+     [](const Options& o) {
+       return unless(o.accel, AccelKind::automatic, AccelKind::brute, AccelKind::bvh2);
+     },
+     SceneKind::triangles,
+     "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
+    {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
+     SceneKind::triangles, "builds trees over triangles; scene '{}' has none"},
+    {"scene-memory",
+     [](const Options& o) {
+       return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
+     },
+     SceneKind::primitives,
+     "holds the spheres of scenes without triangles; expected global or auto"},
+    {"branching", [](const Options& o) { return unless(o.branching, Branching::divergent); },
+     SceneKind::primitives, paper},
+    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); }, SceneKind::primitives,
+     paper},
+};
+
+}  // namespace
+
+bool has_primitives_only(const SceneData& scene) {
+  return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
+         scene.textures.empty();
+}
+
+void check_scene_options(const Options& options, const SceneData& scene) {
+  const SceneKind kind = has_primitives_only(scene) ? SceneKind::primitives : SceneKind::triangles;
+  for (const SceneRule& rule : rules) {
+    const std::string value = rule.limited(options);
+    if (value.empty() || rule.scene == kind) continue;
+    throw Error(fmt::format("--{} {}: {}", rule.option, value,
+                            fmt::format(fmt::runtime(rule.problem), scene.name)));
+  }
+}
+
+}  // namespace pt

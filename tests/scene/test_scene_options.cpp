@@ -1,0 +1,66 @@
+// What a scene cannot have is refused when it is prepared, whatever the mode and the device.
+#include <gtest/gtest.h>
+
+#include "app/options/option_list.h"
+#include "common/error.h"
+#include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/prepare_scene.h"
+
+namespace pt {
+namespace {
+
+/// Prepares a scene with one option; the message, or nothing.
+std::string refusal(const std::string& scene, const std::string& name, const std::string& value) {
+  Options options;
+  options.scene = scene;
+  find_option(name).set(options, value);
+  SceneData data = build_scene(options);
+  try {
+    prepare_scene(data, options);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
+  for (const std::string value : {"cwbvh", "embree"}) {
+    EXPECT_EQ(refusal("cornell", "accel", value),
+              "--accel " + value +
+                  ": holds triangles; scene 'cornell' has spheres and quads only, expected brute "
+                  "or bvh2");
+  }
+  for (const std::string value : {"sah", "sbvh", "lbvh", "hploc"}) {
+    EXPECT_EQ(refusal("spheres", "builder", value),
+              "--builder " + value + ": builds trees over triangles; scene 'spheres' has none");
+  }
+  for (const char* value : {"auto", "brute", "bvh2"})
+    EXPECT_EQ(refusal("cornell", "accel", value), "");
+  EXPECT_EQ(refusal("spheres", "builder", "auto"), "");
+  EXPECT_EQ(refusal("spheres", "rng", "xorwow"), "");
+  EXPECT_EQ(refusal("spheres", "branching", "reduced"), "");
+  for (const char* value : {"auto", "global", "shared", "constant"}) {
+    EXPECT_EQ(refusal("spheres", "scene-memory", value), "");
+  }
+}
+
+TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
+  EXPECT_EQ(refusal("boxes", "rng", "xorwow"),
+            "--rng xorwow: is for scenes of spheres and quads alone; 'boxes' is none");
+  EXPECT_EQ(refusal("boxes", "branching", "reduced"),
+            "--branching reduced: is for scenes of spheres and quads alone; 'boxes' is none");
+  for (const std::string value : {"shared", "constant"}) {
+    EXPECT_EQ(refusal("boxes", "scene-memory", value),
+              "--scene-memory " + value +
+                  ": holds the spheres of scenes without triangles; expected global or auto");
+  }
+  for (const char* value : {"auto", "global"})
+    EXPECT_EQ(refusal("boxes", "scene-memory", value), "");
+  for (const char* value : {"auto", "brute", "bvh2", "cwbvh"}) {
+    EXPECT_EQ(refusal("boxes", "accel", value), "");
+  }
+  EXPECT_EQ(refusal("boxes", "builder", "sbvh"), "");
+}
+
+}  // namespace
+}  // namespace pt
