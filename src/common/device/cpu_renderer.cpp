@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <span>
 #include <thread>
 
 #include "common/film/develop.h"
@@ -75,6 +76,12 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
 
 void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
   memory_.push_back({name, size_bytes});
+}
+
+Image CpuRenderer::image() {
+  const Window& w = window();
+  return develop(std::span<const FilmPixel>(pixels_).first(w.pixel_count()),
+                 static_cast<int>(w.width), static_cast<int>(w.height));
 }
 
 void CpuRenderer::begin_render(const Film& film) {

@@ -35,6 +35,7 @@ class CpuRenderer : public FilmRenderer {
   /// memory cannot hold the film.
   CpuRenderer(const Options& options, const SceneData& scene, int threads);
 
+  Image image() override;  ///< without a copy of the film
   void describe(RenderReport& report) const override;
 
  protected:

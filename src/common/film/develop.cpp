@@ -5,7 +5,7 @@
 
 namespace pt {
 
-Image develop(const std::vector<FilmPixel>& film, int width, int height) {
+Image develop(std::span<const FilmPixel> film, int width, int height) {
   Image image{width, height, {}};
   image.rgb.reserve(3 * film.size());
   for (const FilmPixel& pixel : film) {

@@ -1,7 +1,7 @@
 // The film becomes an image, the tally becomes the counts of a report.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "common/film/film.h"
 #include "common/image/image.h"
@@ -10,7 +10,7 @@
 namespace pt {
 
 /// Mean of each pixel's samples; black where it has none.
-Image develop(const std::vector<FilmPixel>& film, int width, int height);
+Image develop(std::span<const FilmPixel> film, int width, int height);
 
 PathCounts summarize(const PathTally& tally);
 

@@ -13,7 +13,7 @@ class FilmRenderer : public Renderer {
  public:
   RenderRun render(const RenderHooks& hooks) final;
   RenderRun render(Film& film, int samples, const RenderHooks& hooks) final;
-  Image image() final;
+  Image image() override;
 
  protected:
   explicit FilmRenderer(const Options& options);
@@ -25,6 +25,8 @@ class FilmRenderer : public Renderer {
     samples_ = make(batch_paths_);
   }
 
+  /// Of the last render.
+  const Window& window() const { return window_; }
   /// Paths of the largest batch.
   std::uint64_t batch_paths() const { return batch_paths_; }
   Sample* samples() const { return samples_; }
@@ -45,7 +47,7 @@ class FilmRenderer : public Renderer {
   void check(const Film& film, int samples) const;
   RenderRun add_samples(const Film& film, int samples, const RenderHooks& hooks);
 
-  Window window_;  ///< of the last render
+  Window window_;
   std::uint64_t batch_paths_ = 0;
   Sample* samples_ = nullptr;
 };
