@@ -19,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/error.h"
 #include "common/render/compaction_info.h"
 #include "statistics.h"
 #include "wavefront/wavefront.h"

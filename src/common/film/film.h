@@ -1,4 +1,4 @@
-// From samples to pixels, in an order that no schedule can change: each sample's radiance has its
+// From samples to pixels, in an order that no mode can change: each sample's radiance has its
 // own place in the batch's sample buffer, and a pixel adds its samples one after the other.
 #pragma once
 

@@ -21,7 +21,7 @@ inline constexpr float half_ulp = 5.9604645e-8f;     ///< 2^-24: rounding error 
 inline constexpr float one_minus_ulp = 0.99999994f;  ///< the largest float below 1
 
 // Sums of products whose roundings are written out. Which product of a sum the compiler fuses
-// depends on what else it finds in the kernel, so these are what physics is made of: a schedule, or
+// depends on what else it finds in the kernel, so these are what physics is made of: a mode, or
 // a way of traversing, cannot change a bit.
 
 PT_HD float dot(const Vec3& a, const Vec3& b) {

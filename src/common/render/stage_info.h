@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <string_view>
 
@@ -54,18 +55,29 @@ inline std::string to_string(StageId id) {
   return id == StageId::idle ? "idle" : std::string(stage_info(id).name);
 }
 
-/// The number of the queue in which the slots of this stage wait: queues stand side by side, in the
-/// order of the table. All of them for StageId::idle.
-constexpr int queue_index(StageId id) {
-  const StageId queue = id == StageId::idle ? id : stage_info(id).queue;
-  int index = 0;
+inline constexpr int queue_count = [] {
+  int count = 0;
+  for (const StageInfo& stage : stage_table) count += stage.has_own_queue() ? 1 : 0;
+  return count;
+}();
+
+/// [StageId] queue_index.
+inline constexpr auto queue_indices = [] {
+  std::array<std::uint8_t, stage_count> indices{};
   for (const StageInfo& stage : stage_table) {
-    if (stage.id == queue) break;
-    index += stage.has_own_queue() ? 1 : 0;
+    int index = 0;
+    for (const StageInfo& other : stage_table) {
+      if (other.id == stage.queue) break;
+      index += other.has_own_queue() ? 1 : 0;
+    }
+    indices[static_cast<std::size_t>(stage.id)] = static_cast<std::uint8_t>(index);
   }
-  return index;
-}
-inline constexpr int queue_count = queue_index(StageId::idle);
+  return indices;
+}();
+
+/// The number of the queue in which the slots of this stage wait: queues stand side by side, in the
+/// order of the table. queue_count for a stage that takes none.
+constexpr int queue_index(StageId id) { return queue_indices[static_cast<std::size_t>(id)]; }
 
 /// The same for code that runs on a device.
 template <StageId id>

@@ -22,7 +22,7 @@ struct RenderRun {
   int samples_done = 0;     ///< per pixel; less than asked for after an interruption
 };
 
-/// What was traced: equal for every mode, device and schedule that renders the same image.
+/// What was traced: equal for every mode, device and --schedule that renders the same image.
 struct PathCounts {
   std::uint64_t paths = 0;
   std::uint64_t rays = 0;  ///< closest-hit rays, camera rays included
@@ -68,11 +68,11 @@ struct SceneFacts {
 };
 
 struct RenderReport {
-  std::string device_name;      ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
-  std::string device_kind;      ///< "cpu" or "cuda"
-  std::string driver;           ///< CUDA driver and runtime versions; empty on the CPU
-  std::string accel;            ///< the structure used, e.g. "bvh2"
-  std::string schedule;         ///< the schedule used: "host" or "graph"; empty where there is none
+  std::string device_name;  ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
+  std::string device_kind;  ///< "cpu" or "cuda"
+  std::string driver;       ///< CUDA driver and runtime versions; empty on the CPU
+  std::string accel;        ///< the structure used, e.g. "bvh2"
+  std::string schedule;  ///< of --schedule, as used: "host" or "graph"; empty where there is none
   std::uint64_t pool_size = 0;  ///< paths in flight used; 0 in modes without a pool
   std::uint64_t primitives = 0;
   SceneFacts scene;
