@@ -20,7 +20,7 @@ struct Frame {
 /// Duff et al. 2017, 'Building an Orthonormal Basis, Revisited', JCGT 6(1).
 PT_HD Frame make_frame(const Vec3& n) {
   const float sign = copysignf(1.0f, n.z);
-  const float a = -1.0f / (sign + n.z);
+  const float a = -approximate_inverse(sign + n.z);
   const float b = multiply_rounded(n.x * n.y, a);
   return {{fused_multiply_add(sign * n.x * n.x, a, 1.0f), sign * b, -sign * n.x},
           {b, fused_multiply_add(n.y * n.y, a, sign), -n.y},

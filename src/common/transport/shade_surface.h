@@ -81,7 +81,6 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
     return result;
   }
-  const SurfaceParameters<Traits> parameters(scene, surface);
   // The light is chosen before the BSDF is known, as seen from where the BSDF's rays begin
   // (light_sample.h): so its code is there once, not once per BSDF.
   const bool asks = has_lights && limits.ask_lights && !surface.material.is(Material::delta);
@@ -89,10 +88,10 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   IncidentLight incident;
   if (asks) incident = sample_light<Traits>(scene, from, light);
   const Frame frame = make_frame(surface.shading_normal);
-  const Vec3 wo = frame.to_local(-ray.direction);
   BsdfSample next;
   BsdfValue value;
-  visit(surface.material.kind, parameters, [&](const auto& bsdf) {
+  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+    const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
     if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
     next = bsdf.sample(wo, Vec3(scatter));
   });
@@ -104,7 +103,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   path.beta = multiply_rounded(path.beta, next.weight);
   if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w, next.outside);
   result.alive = !is_black(path.beta);
-  const Vec3 wi = make_frame(anew(surface.shading_normal)).to_world(next.wi);  // the same frame
+  // The same frame, made anew where registers are scarce.
+  const Vec3 wi = (has_lights ? make_frame(anew(surface.shading_normal)) : frame).to_world(next.wi);
   result.ray = spawn_ray(surface.point, normalize(wi));
   return result;
 }
