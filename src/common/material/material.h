@@ -25,8 +25,9 @@ struct alignas(16) Parameter {
 /// Nothing shines.
 inline constexpr std::uint32_t no_emission = 0xffffffffu;
 
-/// 32 bytes: two loads. The first parameter, which nearly all BSDFs have, lies here: one load less
-/// in a row.
+/// 16 bytes: one load. Its first parameter, which nearly all BSDFs have, has the material's own
+/// number in the scene's pool, so that it can be read beside this record; the others follow behind
+/// those of all materials.
 struct alignas(16) Material {
   static constexpr std::uint8_t one_sided = 1;  ///< black when seen from behind
   static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): lights are not asked
@@ -34,9 +35,8 @@ struct alignas(16) Material {
 
   MaterialKind kind = kind_of<Diffuse>;
   std::uint8_t flags = 0;
-  std::uint32_t parameters = 0;          ///< where the others begin in the scene's pool
+  std::uint32_t parameters = 0;          ///< where the others begin in the pool
   std::uint32_t emission = no_emission;  ///< which of the scene's Emissions
-  Parameter first;
 
   PT_HD bool is(std::uint8_t flag) const { return (flags & flag) != 0; }
 };

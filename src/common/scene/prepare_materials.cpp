@@ -23,7 +23,6 @@ Material pack(const MaterialDescription& source, SceneData& scene) {
   material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
                                              (is_delta(source) ? Material::delta : 0) |
                                              (source.is_textured() ? Material::textured : 0));
-  material.first = source.parameters[0];
   material.parameters = size32(scene.parameters);
   scene.parameters.insert(scene.parameters.end(), source.parameters + 1, end);
   if (!is_black(source.emission.radiance)) {
@@ -38,6 +37,7 @@ Material pack(const MaterialDescription& source, SceneData& scene) {
 void prepare_materials(SceneData& scene) {
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
+  for (const MaterialDescription& m : scene.materials) scene.parameters.push_back(m.parameters[0]);
   for (const MaterialDescription& m : scene.materials) {
     scene.material_records.push_back(pack(m, scene));
   }

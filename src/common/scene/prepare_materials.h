@@ -5,8 +5,8 @@
 
 namespace pt {
 
-/// Fills material_records, parameters and emissions from the materials: parameters of each in a
-/// row, emissions only of what shines, textures' means measured.
+/// Fills material_records, parameters and emissions from the materials: the first parameters by
+/// material and then the others, emissions only of what shines, textures' means measured.
 void prepare_materials(SceneData& scene);
 
 }  // namespace pt

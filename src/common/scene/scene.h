@@ -20,7 +20,7 @@ struct Scene {
   Primitives primitives;
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;
-  const Parameter* parameters = nullptr;          ///< of all materials but their first ones
+  const Parameter* parameters = nullptr;          ///< see Material
   const Emission* emissions = nullptr;            ///< of those that shine
   const std::uint32_t* material_of = nullptr;     ///< [primitive]
   const std::uint32_t* lights = nullptr;          ///< primitives that emit (Lighting::emitters)
@@ -36,9 +36,7 @@ struct Scene {
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
 
-  PT_HD Material material(std::uint32_t primitive) const {
-    return load_wide(&materials[material_of[primitive]]);
-  }
+  PT_HD Material material(std::uint32_t number) const { return load_wide(&materials[number]); }
   /// `material` shines.
   PT_HD Emission emission(const Material& material) const {
     return load_wide(&emissions[material.emission]);

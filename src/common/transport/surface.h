@@ -11,6 +11,7 @@ namespace pt {
 struct Surface {
   SurfacePoint point;
   Vec3 shading_normal;
+  std::uint32_t material_number;
   Material material;
   Vec2 uv = Vec2(0.0f);  ///< where the material is textured
 };
@@ -28,7 +29,9 @@ template <class Traits>
 class SurfaceParameters {
  public:
   PT_HD SurfaceParameters(const Scene& scene, const Surface& surface)
-      : scene_(scene), surface_(surface), first_(value_of(surface.material.first)) {}
+      : scene_(scene),
+        surface_(surface),
+        first_(value_of(load_wide(&scene.parameters[surface.material_number]))) {}
 
   PT_HD Color color(int i) const { return i == 0 ? first_ : read(i); }
   PT_HD float scalar(int i) const { return color(i).x; }
@@ -102,7 +105,8 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
                    fused_multiply_add(16.0f * half_ulp, dot(glm::abs(normal), extent),
                                       8.0f * half_ulp * max_abs(size))},
                   normalize(shading_normal),
-                  load_wide(&scene.materials[triangle.material])};
+                  triangle.material,
+                  scene.material(triangle.material)};
   if (surface.material.is(Material::textured)) {
     const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
     surface.uv = texture_coordinates(scene, triangle.id, has_uvs, b);
@@ -118,7 +122,8 @@ PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
     if (is_triangle) return triangle_surface<Traits>(scene, ray, hit);
   }
   const SurfacePoint point = surface_point(scene.primitives, ray, hit);
-  return {point, point.normal, scene.material(hit.primitive)};
+  const std::uint32_t material = scene.material_of[hit.primitive];
+  return {point, point.normal, material, scene.material(material)};
 }
 
 }  // namespace pt
