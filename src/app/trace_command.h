@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/options/subcommand.h"
+#include "app/options/subcommand_option.h"
 #include "common/rays/generate_rays.h"
 #include "common/rays/trace_rays.h"
 #include "common/render/options.h"

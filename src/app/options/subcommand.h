@@ -1,4 +1,5 @@
-// Options of a subcommand: a table of names, help and what to do with the value.
+// Parses a subcommand by the table of its options. CLI11 takes long to compile, so few files
+// include this one.
 #pragma once
 
 #include <fmt/format.h>
@@ -7,19 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "app/options/subcommand_option.h"
 #include "common/error.h"
 
 namespace pt {
-
-/// `set` parses and stores; it throws Error naming option and value.
-template <class Command>
-struct SubcommandOption {
-  const char* name;
-  const char* placeholder;  ///< of the value, with its default; null: a flag
-  const char* help;
-  void (*set)(Command&, const std::string& value);
-  bool is_required = false;
-};
 
 /// Adds the options to CLI11's subcommand `app`.
 template <class Command>
