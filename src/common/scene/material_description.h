@@ -26,27 +26,26 @@ struct MaterialDescription {
   }
 };
 
-PT_HD MaterialDescription make_diffuse(const Color& albedo, const Color& emission = Color(0.0f)) {
+/// Of a BSDF whose parameters are a colour and, perhaps, a number.
+template <class Bsdf>
+PT_HD MaterialDescription describe(const Color& color, float number = 0.0f) {
   MaterialDescription m;
-  m.parameters[0].value = albedo;
+  m.kind = kind_of<Bsdf>;
+  m.parameters[0].value = color;
+  m.parameters[1].value = Color(number);
+  return m;
+}
+
+PT_HD MaterialDescription make_diffuse(const Color& albedo, const Color& emission = Color(0.0f)) {
+  MaterialDescription m = describe<Diffuse>(albedo);
   m.emission.radiance = emission;
   return m;
 }
-
 PT_HD MaterialDescription make_metal(const Color& albedo, float fuzz) {
-  MaterialDescription m;
-  m.kind = kind_of<Metal>;
-  m.parameters[0].value = albedo;
-  m.parameters[1].value = Color(fuzz);
-  return m;
+  return describe<Metal>(albedo, fuzz);
 }
-
 PT_HD MaterialDescription make_dielectric(const Color& tint, float eta) {
-  MaterialDescription m;
-  m.kind = kind_of<Dielectric>;
-  m.parameters[0].value = tint;
-  m.parameters[1].value = Color(eta);
-  return m;
+  return describe<Dielectric>(tint, eta);
 }
 
 }  // namespace pt
