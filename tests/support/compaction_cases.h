@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "common/error.h"
-#include "common/error.h"
 #include "common/render/compaction_info.h"
 #include "statistics.h"
 #include "wavefront/wavefront.h"
