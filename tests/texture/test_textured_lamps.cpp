@@ -119,6 +119,10 @@ TEST(TexturedLamps, ABlackTextureIsNoLight) {
   const Options options = image_options(4, 4, 2, 3);
   prepare_scene(scene, options);
   EXPECT_TRUE(scene.light_list.lights.empty());
+  // Or a ray that meets it would ask for its place in the list.
+  for (const Mesh& mesh : scene.meshes) {
+    EXPECT_EQ(scene.material_records[mesh.material].emission, no_emission);
+  }
   for (const float v : render(scene, options).image.rgb) EXPECT_EQ(v, 0.0f);
 }
 

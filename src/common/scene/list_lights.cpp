@@ -34,13 +34,10 @@ class Lister {
       total += light.weight;
     }
     data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
-    if (total > 0) {
-      data_.selection = build_alias_table(weights);
-    } else {
-      data_.lights.clear();
-    }
+    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
+    if (total > 0) data_.selection = build_alias_table(weights);
     if (scene_.environment.width > 0) {
-      data_.environment_probability = data_.lights.empty() ? 1.0f : 0.5f;
+      data_.environment_probability = data_.selection.empty() ? 1.0f : 0.5f;
     }
     return std::move(data_);
   }

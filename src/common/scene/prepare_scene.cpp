@@ -54,7 +54,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_count = count(scene.lights);
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
-  view.light_selector.count = count(scene.light_list.lights);
+  view.light_selector.count = count(scene.light_list.selection);
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();

@@ -35,6 +35,7 @@ void weigh_emission_textures(SceneData& scene) {
     const Texture& texture = scene.textures[emission.texture];
     const auto mean = static_cast<float>(mean_luminance(texture, scene.texels.data()));
     emission.texture_mean = std::isfinite(mean) ? mean : 1.0f;
+    if (emission.texture_mean == 0.0f) emission.radiance = Color(0.0f);  // nothing shines
   }
 }
 

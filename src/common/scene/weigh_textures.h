@@ -8,7 +8,8 @@ namespace pt {
 /// Luminance of a texture's colours, on average over the whole of it.
 double mean_luminance(const Texture& texture, const std::byte* texels);
 
-/// Sets Emission::texture_mean, by which lights are chosen.
+/// Sets Emission::texture_mean, and radiance to 0 where the texture is black, by which lights are
+/// chosen.
 void weigh_emission_textures(SceneData& scene);
 
 }  // namespace pt
