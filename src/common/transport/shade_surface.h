@@ -96,7 +96,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     next = bsdf.sample(wo, Vec3(scatter));
   });
   if constexpr (has_lights) {
-    path.bsdf_pdf = asks ? next.pdf : PathState::delta_distribution;
+    path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
     result.shadow = ask_light<Traits>(path, surface, from, incident, value);
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
