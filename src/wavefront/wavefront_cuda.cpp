@@ -124,7 +124,7 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
     } else if constexpr (draws_in_all_scenes<Source>) {
       function(TriangleSceneKinds{}, context_of(batch, source));
     } else {
-      throw_no_kernel(traits_);
+      throw_no_kernel(traits_, options_.integrator);
     }
   });
 }

@@ -53,6 +53,8 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(integer("width", &Options::width, 1, 65535), "Width in pixels, 1 to 65,535")
       .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
+      .add(choice("integrator", &Options::integrator),
+           "What a path computes, in all modes and on all devices")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),

@@ -17,6 +17,7 @@ enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class Schedule { automatic, host, graph };
 enum class SceneMemory { automatic, global, shared, constant };
+enum class IntegratorKind { path };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
 enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
@@ -56,8 +57,9 @@ struct CameraOverrides {
 
 struct Options {
   // Image
-  int width = 600;     ///< pixels, 1..65535
-  int height = 300;    ///< pixels, 1..65535
+  int width = 600;   ///< pixels, 1..65535
+  int height = 300;  ///< pixels, 1..65535
+  IntegratorKind integrator = IntegratorKind::path;
   int spp = 50;        ///< samples per pixel, >= 1
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never

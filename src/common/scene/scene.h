@@ -60,10 +60,14 @@ struct SceneTraits {
   bool has_lights() const { return lighting != Lighting::sky; }
 };
 
-/// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host
-/// pass.)
-template <Accel accel_value, Geometry geometry_value, Lighting lighting_value>
+struct PathIntegrator;  // transport/path_integrator.h
+
+/// The same as a type, and the integrator, for all that is known of a path before its kernels are
+/// chosen. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
+          class IntegratorType = PathIntegrator>
 struct Traits {
+  using Integrator = IntegratorType;
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
@@ -74,6 +78,6 @@ struct Traits {
 
 /// What shading depends on: scenes that differ in their structure alone share its kernels.
 template <class T>
-using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting>;
+using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, typename T::Integrator>;
 
 }  // namespace pt
