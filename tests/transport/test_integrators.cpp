@@ -35,7 +35,7 @@ struct AmbientOcclusion {
 };
 
 using Kind =
-    Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters, AmbientOcclusion>;
+    Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters, false, AmbientOcclusion>;
 
 constexpr std::uint32_t width = 8, height = 8, sample_count = 256;
 constexpr PhiloxSource source{7};
@@ -74,7 +74,7 @@ class Integrators : public testing::Test {
       PathState path;
       path.number = i;
       const Ray ray = generate_camera_path(view_, batch.id_of(i).pixel, random.draw(0));
-      batch.store(path, follow_path<Kind>(view_, ray, path, Color(0.0f), limits, random));
+      batch.store(path, follow_path<Kind>(view_, ray, path, Color(0.0f), limits, random, 0));
     }
     return result;
   }
