@@ -1,16 +1,22 @@
 // Materials: the closed list of BSDFs, a record that names one, and its dispatch.
 #pragma once
 
+#include "common/material/conductor.h"
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/principled.h"
+#include "common/material/principled_thin.h"
+#include "common/material/rough_dielectric.h"
+#include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, Conductor, RoughDielectric, ThinDielectric,
+                       Principled, PrincipledThin>;
 
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
