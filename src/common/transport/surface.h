@@ -14,6 +14,10 @@ struct Surface {
   std::uint32_t material_number;
   Material material;
   Vec2 uv = Vec2(0.0f);  ///< where the material is textured
+  // Lighting::full. Derivatives of the place where the material needs tangents; 0: there are none.
+  Vec3 dp_du = Vec3(0.0f), dp_dv = Vec3(0.0f);
+  Vec3 base_normal = Vec3(0.0f);  ///< the shading normal before a map turned it
+  float map_roughness2 = -1.0f;   ///< see map_visibility; below 0: no map
 };
 
 /// c, multiplied by a texture of this number where there is one.
@@ -74,6 +78,24 @@ PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bo
                  : Vec2(barycentric.y, barycentric.z);
 }
 
+/// Sets dp_du and dp_dv of a triangle with texture coordinates; v grows as ours does, upwards.
+PT_HD void set_derivatives(const Scene& scene, const Triangle& triangle, const Affine* to_world,
+                           Surface& surface) {
+  const TriangleIndices t = scene.attributes.triangles[triangle.id];
+  const Vec2* uvs = scene.attributes.uvs;
+  const Vec2 uv1 = uvs[t.v[1]] - uvs[t.v[0]], uv2 = uvs[t.v[2]] - uvs[t.v[0]];
+  const float determinant = difference_of_products(uv1.x, uv2.y, uv1.y, uv2.x);
+  if (determinant == 0.0f) return;
+  const float scale = 1.0f / determinant;
+  const Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
+  const auto combine = [&](float a, float b) {
+    const Vec3 sum = weighted_sum(scale * Vec3(a, b, 0.0f), edge1, edge2, Vec3(0.0f));
+    return to_world != nullptr ? to_world->vector(sum) : sum;
+  };
+  surface.dp_du = combine(uv2.y, -uv1.y);
+  surface.dp_dv = combine(-uv2.x, uv1.x);
+}
+
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
 /// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled, and
 /// what the intersection of the ray that leaves may round: on an axis-parallel plane through 0 the
@@ -120,6 +142,13 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if (surface.material.is(Material::textured)) {
     const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
     surface.uv = texture_coordinates(scene, triangle.id, has_uvs, b);
+  }
+  if constexpr (Traits::lighting == Lighting::full) {
+    if (surface.material.is(Material::tangents) &&
+        (triangle.attributes & TriangleAttributes::uvs) != 0) {
+      set_derivatives(scene, triangle, placed ? &scene.to_world[instance.number] : nullptr,
+                      surface);
+    }
   }
   return surface;
 }
