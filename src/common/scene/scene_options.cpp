@@ -51,13 +51,16 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
-bool is_nested(const MaterialDescription& material) { return material.node != MaterialNode::none; }
+/// Kernels without triangles know no other materials.
+bool is_of_paper(const MaterialDescription& material) {
+  return material.node == MaterialNode::none && static_cast<int>(material.kind) < PaperBsdfs::size;
+}
 
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty() && std::ranges::none_of(scene.materials, is_nested);
+         scene.textures.empty() && std::ranges::all_of(scene.materials, is_of_paper);
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {
