@@ -51,16 +51,17 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
-/// Kernels without triangles know no other materials.
-bool is_of_paper(const MaterialDescription& material) {
-  return material.node == MaterialNode::none && static_cast<int>(material.kind) < PaperBsdfs::size;
+/// Kernels without triangles know the paper's materials alone.
+bool needs_triangles(const MaterialDescription& material) {
+  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+         static_cast<int>(material.kind) >= PaperBsdfs::size;
 }
 
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty() && std::ranges::all_of(scene.materials, is_of_paper);
+         scene.textures.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {

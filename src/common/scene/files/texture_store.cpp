@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/texture/sample_texture.h"
+
 namespace pt {
 namespace {
 
@@ -72,6 +74,33 @@ std::uint32_t TextureStore::add_plain(const Texture& texture) {
     return static_cast<std::uint32_t>(textures_.size() - 1);
   }
   return static_cast<std::uint32_t>(equal - textures_.begin());
+}
+
+std::uint32_t TextureStore::add_alpha_of(std::uint32_t number) {
+  Texture alpha = textures_[number];
+  if (alpha.kind != TextureKind::image || alpha.format == TextureFormat::rgb32f) return no_texture;
+  const std::size_t end = alpha.offset + std::size_t{4} * alpha.width * alpha.height;
+  bool is_opaque = true;
+  for (std::size_t i = alpha.offset + 3; i < end; i += 4) {
+    is_opaque = is_opaque && texels_[i] == std::byte{255};
+  }
+  if (is_opaque) return no_texture;
+  alpha.format = TextureFormat::alpha8;
+  alpha.color0 = Color(1.0f);
+  return add_plain(alpha);
+}
+
+bool TextureStore::is_normal_map(std::uint32_t number) const {
+  const Texture& texture = textures_[number];
+  double sum[3] = {};
+  for (std::uint32_t y = 0; y < texture.height; ++y) {
+    for (std::uint32_t x = 0; x < texture.width; ++x) {
+      const Color c = load_texel(texture, texels_.data(), x, y);
+      for (int i = 0; i < 3; ++i) sum[i] += c[i];
+    }
+  }
+  const double red_green = 0.5 * (sum[0] + sum[1]);
+  return sum[2] > 1.3 * red_green;
 }
 
 TextureStore::Stored TextureStore::store(const TextureImage& image) {

@@ -34,6 +34,14 @@ class TextureStore {
   /// An image made by the caller.
   std::uint32_t add_image(const TextureImage& image, const Texture& look = {});
 
+  /// The alpha of texture `number`, an image, as a texture that shares its texels; no_texture where
+  /// it has none or is 1 everywhere.
+  std::uint32_t add_alpha_of(std::uint32_t number);
+
+  /// Whether the image of texture `number`, as linear numbers, looks like normals and not like
+  /// heights: they are grey, normals are blue.
+  bool is_normal_map(std::uint32_t number) const;
+
   /// A texture without texels, such as a checkerboard.
   std::uint32_t add_plain(const Texture& texture);
 
