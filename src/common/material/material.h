@@ -1,16 +1,25 @@
 // Materials: the closed list of BSDFs, a record that names one, and its dispatch.
 #pragma once
 
+#include "common/material/conductor.h"
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/principled.h"
+#include "common/material/principled_thin.h"
+#include "common/material/rough_dielectric.h"
+#include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, Conductor, RoughDielectric, ThinDielectric,
+                       Principled, PrincipledThin>;
+
+/// The first ones, those of the paper's scenes: no others are in kernels without triangles.
+using PaperBsdfs = TypeList<Diffuse, Metal, Dielectric>;
 
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
@@ -59,20 +68,21 @@ struct alignas(16) Material {
 };
 
 namespace detail {
-template <int index, class Parameters, class Function>
+template <class List, int index, class Parameters, class Function>
 PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  using Bsdf = TypeAt<index, Bsdfs>;
-  if constexpr (index + 1 < Bsdfs::size) {
-    if (kind != kind_of<Bsdf>) return visit_from<index + 1>(kind, parameters, function);
+  using Bsdf = TypeAt<index, List>;
+  if constexpr (index + 1 < List::size) {
+    if (kind != kind_of<Bsdf>) return visit_from<List, index + 1>(kind, parameters, function);
   }
   return function(Bsdf::make(parameters));
 }
 }  // namespace detail
 
 /// Calls `function` with the BSDF as a value of its own type, made of parameters (see bsdf.h).
-template <class Parameters, class Function>
+/// `List` is Bsdfs or a list with which it begins, if `kind` is one of it.
+template <class List = Bsdfs, class Parameters, class Function>
 PT_HD auto visit(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  return detail::visit_from<0>(kind, parameters, function);
+  return detail::visit_from<List, 0>(kind, parameters, function);
 }
 
 }  // namespace pt

@@ -51,8 +51,10 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
+/// Kernels without triangles know the paper's materials alone.
 bool needs_triangles(const MaterialDescription& material) {
-  return material.node != MaterialNode::none || !material.opacity.is_opaque();
+  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+         static_cast<int>(material.kind) >= PaperBsdfs::size;
 }
 
 }  // namespace

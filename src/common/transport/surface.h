@@ -26,6 +26,13 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
   return c * sample_texture(scene.textures[texture], scene.texels, uv);
 }
 
+/// The same, not inlined: BSDFs have dozens of parameters together, and a lookup's code is long.
+template <class Traits>
+PT_NOINLINE Color textured_apart(const Texture* texture, const std::byte* texels, float r, float g,
+                                 float b, float u, float v) {
+  return Color(r, g, b) * sample_texture(*texture, texels, {u, v});
+}
+
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
 /// read ahead of the dispatch, for nearly all BSDFs have a colour there: so its texture is looked
 /// up by one piece of code, whatever the BSDF.
@@ -42,7 +49,10 @@ class SurfaceParameters {
 
  private:
   PT_HD Color read(int i) const {
-    return value_of(load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]));
+    const Parameter p = load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]);
+    if (Traits::lighting != Lighting::full || p.texture == no_texture) return p.value;
+    return textured_apart<Traits>(&scene_.textures[p.texture], scene_.texels, p.value.x, p.value.y,
+                                  p.value.z, surface_.uv.x, surface_.uv.y);
   }
 
   PT_HD Color value_of(const Parameter& p) const {
