@@ -4,13 +4,18 @@
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/oren_nayar.h"
+#include "common/material/phong.h"
+#include "common/material/plastic.h"
+#include "common/material/rough_plastic.h"
+#include "common/material/ward.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward>;
 
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
