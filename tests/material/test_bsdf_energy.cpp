@@ -10,10 +10,11 @@ namespace {
 double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
 TEST(BsdfEnergy, NeverGrows) {
-  for_each_bsdf([](const BsdfCase&, const auto& bsdf, const Vec3& wo) {
+  for_each_bsdf([](const BsdfCase& one, const auto& bsdf, const Vec3& wo) {
     const BsdfIntegral integral(bsdf, wo);
-    EXPECT_LE(largest(integral.albedo()), 1.0015);
-    EXPECT_LE(largest(integral.sampled_albedo()), 1.0015 + integral.sampled_error());
+    EXPECT_LE(largest(integral.albedo()), one.albedo_max + 1.5e-3);
+    EXPECT_LE(largest(integral.sampled_albedo()),
+              one.albedo_max + 1.5e-3 + integral.sampled_error());
   });
 }
 
@@ -58,7 +59,7 @@ TEST(BsdfEnergy, IsTheSameOnBothSides) {
   TestRandom random;
   const Vec3 flip(1, 1, -1);
   for_each_bsdf([&](const BsdfCase&, const auto& bsdf, const Vec3& wo) {
-    if (passing_eta(bsdf, wo)) return;
+    if (passing_eta(bsdf, {0, 0, 1}) || passing_eta(bsdf, {0, 0, -1})) return;
     for (int i = 0; i < 2000; ++i) {
       const Vec3 wi(random.direction());
       const BsdfValue here = bsdf.evaluate(wo, wi), there = bsdf.evaluate(flip * wo, flip * wi);

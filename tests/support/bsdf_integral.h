@@ -73,7 +73,9 @@ class BsdfIntegral {
         densities[through] = s.pdf, poles[through] = s.wi;
       }
     }
-    return {PolarGrid(poles[0]), PolarGrid(poles[1])};
+    const auto fineness = [](float density) { return density > 50.0f ? 4 : 1; };
+    return {PolarGrid(poles[0], fineness(densities[0])),
+            PolarGrid(poles[1], fineness(densities[1]))};
   }
 
   Vec3 wo_;

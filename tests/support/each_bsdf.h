@@ -61,7 +61,9 @@ class PolarGrid {
  public:
   static constexpr int rings = 20, sectors = 20, cells = rings * sectors;
 
-  explicit PolarGrid(const Vec3& pole) : pole_(glm::normalize(Vec3d(pole))) {
+  /// With `fineness` times as many points along each angle: for a narrow lobe, cut by the horizon.
+  explicit PolarGrid(const Vec3& pole, int fineness = 1)
+      : pole_(glm::normalize(Vec3d(pole))), fineness_(fineness) {
     x_ = glm::cross(std::abs(pole_.x) > 0.5 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0), pole_);
     x_ = glm::normalize(x_);
     y_ = glm::cross(pole_, x_);
@@ -78,7 +80,7 @@ class PolarGrid {
   /// Calls f(cell, direction, solid angle) for points all over the sphere.
   template <class F>
   void for_each_point(const F& f) const {
-    constexpr int steps = 28, turns = 8;  // per cell, in each angle
+    const int steps = 28 * fineness_, turns = 8 * fineness_;  // per cell
     for (int i = 0; i < rings * steps; ++i) {
       const double s = (i + 0.5) / (rings * steps), theta = pi_double * s * s;
       const double d_theta = 2 * pi_double * s / (rings * steps);
@@ -94,6 +96,7 @@ class PolarGrid {
 
  private:
   Vec3d pole_, x_, y_;
+  int fineness_;
 };
 
 }  // namespace pt

@@ -3,7 +3,8 @@
 // `plastic`; the sum is that of Saunderson 1942).
 #pragma once
 
-#include "common/material/dielectric.h"
+#include "common/material/bsdf.h"
+#include "common/material/fresnel.h"
 #include "common/sampling/warp.h"
 
 namespace pt {

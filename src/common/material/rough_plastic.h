@@ -1,6 +1,6 @@
 // Plastic with a rough coat: microfacets that reflect, over a diffuse body (Mitsuba 3's
-// `roughplastic`). What passes the rough boundary is a polynomial in the cosine's root, fitted for
-// one roughness (scene/plastic_material.h).
+// `roughplastic`). What passes the rough boundary is a polynomial, fitted
+// for one roughness (scene/rough_boundary.h).
 #pragma once
 
 #include "common/material/microfacet.h"
@@ -11,19 +11,20 @@ namespace pt {
 
 struct RoughPlastic {
   static constexpr const char* name = "rough plastic";
-  static constexpr int parameter_count = 7;
+  static constexpr int parameter_count = 8;
+  static constexpr int terms = 9;
 
   CoatedBody body;
   Microfacets facets;
-  float coefficients[7];  ///< of transmittance(), the constant first
+  float coefficients[terms];  ///< of transmittance(), the constant first
 
   template <class Parameters>
   PT_HD static RoughPlastic make(const Parameters& p) {
     const Color a = p.color(4), b = p.color(5), c = p.color(6);
     const float alpha = p.scalar(2);
     return {{p.color(0), p.color(1), p.color(3)},
-            Microfacets::make(alpha, alpha, c.y != 0.0f),
-            {a.x, a.y, a.z, b.x, b.y, b.z, c.x}};
+            Microfacets::make(alpha, alpha, p.scalar(7) != 0.0f),
+            {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z}};
   }
 
   PT_HD bool is_delta() const { return false; }
@@ -60,10 +61,11 @@ struct RoughPlastic {
  private:
   /// The part of the light along w that the boundary does not reflect and that gets through it.
   PT_HD float transmittance(const Vec3& w) const {
-    const float x = fast_sqrt(fminf(fabsf(w.z), 1.0f));
-    float sum = coefficients[6];
-    PT_UNROLL(6)
-    for (int i = 5; i >= 0; --i) sum = fused_multiply_add(sum, x, coefficients[i]);
+    const float root = fast_sqrt(fminf(fabsf(w.z), 1.0f));
+    const float x = fused_multiply_add(2.0f, root, -1.0f);
+    float sum = coefficients[terms - 1];
+    PT_UNROLL(8)
+    for (int i = terms - 2; i >= 0; --i) sum = fused_multiply_add(sum, x, coefficients[i]);
     return fminf(fmaxf(sum, 0.0f), 1.0f);
   }
 };

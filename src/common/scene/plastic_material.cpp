@@ -41,7 +41,8 @@ MaterialDescription make_rough_plastic(const Color& diffuse, const Color& specul
   m.parameters[3].value = packed(coat, boundary.internal_reflectance);
   m.parameters[4].value = {t[0], t[1], t[2]};
   m.parameters[5].value = {t[3], t[4], t[5]};
-  m.parameters[6].value = {t[6], is_beckmann ? 1.0f : 0.0f, 0.0f};
+  m.parameters[6].value = {t[6], t[7], t[8]};
+  m.parameters[7].value = Color(is_beckmann ? 1.0f : 0.0f);
   return m;
 }
 
