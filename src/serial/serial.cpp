@@ -29,7 +29,8 @@ class SerialRenderer : public CpuRenderer {
       PathState path;
       path.number = i;
       const Ray ray = generate_camera_path(scene_, id.pixel, random.draw(scatter_block(0)));
-      batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random));
+      batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
+                                            mask_key<Traits>(scene_, id)));
     }
   }
 };

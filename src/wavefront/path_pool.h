@@ -40,7 +40,7 @@ struct PathPool {
   // Only in scenes with lights:
   Record* shadow_origin = nullptr;     ///< ray origin, distance
   Record* shadow_direction = nullptr;  ///< ray direction, number of the path
-  Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free
+  Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free, rays of the path
 
   static constexpr std::uint32_t new_path = 0x80000000u;  ///< numbers are below 2^31
 
@@ -114,6 +114,15 @@ struct PathPool {
     store_wide(&throughput[slot], pack(path.beta, path.packed_rays()));
   }
 
+  /// The path's number and rays alone.
+  PT_HD PathState load_name(std::uint32_t slot) const {
+    PathState path;
+    path.number = direction[slot].w;
+    if ((path.number & new_path) == 0) path.rays = static_cast<std::uint16_t>(throughput[slot].w);
+    path.number &= ~new_path;
+    return path;
+  }
+
   PT_HD Hit load_hit(std::uint32_t slot) const {
     const StoredHit record = hit[slot];
     return {record.t, record.primitive, hit_instance != nullptr ? hit_instance[slot] : 0};
@@ -123,11 +132,14 @@ struct PathPool {
     if (hit_instance != nullptr) hit_instance[slot] = h.instance;
   }
 
-  PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow, std::uint32_t number) const {
+  PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow,
+                          const PathState& path) const {
     store_wide(&shadow_origin[slot], pack(shadow.ray.origin, float_to_bits(shadow.distance)));
-    store_wide(&shadow_direction[slot], pack(shadow.ray.direction, number));
-    store_wide(&shadow_radiance[slot], pack(shadow.radiance, 0));
+    store_wide(&shadow_direction[slot], pack(shadow.ray.direction, path.number));
+    store_wide(&shadow_radiance[slot], pack(shadow.radiance, path.rays));
   }
+  /// Of the path when it asked.
+  PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const { return shadow_radiance[slot].w; }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
     const Record o = load_wide(&shadow_origin[slot]);
     const Record d = load_wide(&shadow_direction[slot]);

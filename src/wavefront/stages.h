@@ -88,7 +88,7 @@ struct GeneratePaths {
 
 /// What tracing depends on: scenes that differ in their light alone share its kernels.
 template <class T>
-using RayTraits = Traits<T::accel, T::geometry, Lighting::sky>;
+using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks>;
 
 template <class Traits>
 struct IntersectRays {
@@ -98,9 +98,15 @@ struct IntersectRays {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
   bool parts_misses;  ///< false: a surface's stage shades them, too (Branching::reduced)
+  SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot));
+    std::uint32_t key = 0;
+    if constexpr (Traits::has_masks) {
+      const PathState path = pool.load_name(slot);
+      key = next_ray_key(mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
+    }
+    const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot), key);
     if (parts_misses && hit.is_miss()) return {StageId::shade_miss};
     pool.store_hit(slot, hit);
     return {StageId::shade_surface};
@@ -176,7 +182,7 @@ struct ShadeSurface {
     const Scattering scattering =
         scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
-    if (shadow) pool.store_shadow(slot, scattering.shadow, path.number);
+    if (shadow) pool.store_shadow(slot, scattering.shadow, path);
     if (!scattering.alive) {
       end_path(context.samples, path, scattering.emitted, has_lights);
       return {free_slot, shadow};
@@ -196,9 +202,13 @@ struct TraceShadowRays {
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    std::uint32_t number;
+    std::uint32_t number, key = 0;
     const ShadowRay shadow = pool.load_shadow(slot, number);
-    if (!intersect_shadow<Traits>(scene, shadow)) {
+    if constexpr (Traits::has_masks) {
+      key = shadow_ray_key(mask_key<Traits>(scene, samples.id_of(number)),
+                           pool.load_shadow_rays(slot));
+    }
+    if (!intersect_shadow<Traits>(scene, shadow, key)) {
       add_radiance(samples, number, shadow.radiance);
     }
     return {free_slot};
@@ -222,7 +232,8 @@ struct FinishPaths {
     const PathId id_of_path = samples.id_of(path.number);
     auto random = source.open(id_of_path);
     const Color before = Traits::has_lights ? samples.samples[path.number].radiance : Color(0.0f);
-    const Color radiance = follow_path<Traits>(scene, ray, path, before, limits, random);
+    const Color radiance = follow_path<Traits>(scene, ray, path, before, limits, random,
+                                               mask_key<Traits>(scene, id_of_path));
     source.close(id_of_path, random);
     samples.store(path, radiance);
     return {free_slot};

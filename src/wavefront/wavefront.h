@@ -101,7 +101,8 @@ struct WaveBuffers {
 /// What every ray meets. Where warps persist they trace the whole queue and store the hits, and a
 /// light stage sends the paths on; a thread per ray does both at once.
 template <class Traits, class Executor>
-void trace_rays(Executor& execute, const WaveBuffers& b, bool parts_misses) {
+void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples,
+                bool parts_misses) {
   const StageQueues rays = b.stage_queues(StageId::intersect, &b.counters->intersect, b.pool.tag);
   if constexpr (Executor::template traces_queues<Traits>) {
     if (rays.appends) {
@@ -110,7 +111,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, bool parts_misses) {
       return;
     }
   }
-  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, parts_misses}, rays);
+  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, parts_misses, samples}, rays);
 }
 
 /// Which light arrives, likewise.
@@ -139,7 +140,7 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
     execute.run(GeneratePaths<Source>{context, Traits::has_lights},
                 b.stage_queues(generate, &b.counters->generate, tags));
   }
-  trace_rays<Traits>(execute, b, parts_misses);
+  trace_rays<Traits>(execute, b, context.samples, parts_misses);
 
   execute.compact(b.request<shade_miss, shade_surface>(tags));
   if constexpr (parts_misses) {

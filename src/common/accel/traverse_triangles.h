@@ -12,6 +12,15 @@ namespace pt {
 Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 
+/// By threads that follow a ray each; not for embree, which has traversals of its own.
+template <Accel accel, bool instanced, class Query>
+PT_HD void traverse_triangles(const TriangleTree& tree, const Ray& ray, Query& query) {
+  static_assert(accel != Accel::embree);
+  if constexpr (accel == Accel::brute) traverse_triangles_brute<instanced>(tree, ray, query);
+  if constexpr (accel == Accel::bvh2) traverse_triangles_bvh2<instanced>(tree, ray, query);
+  if constexpr (accel == Accel::cwbvh) traverse_cwbvh<instanced>(tree, ray, query);
+}
+
 /// The closest hit with t_min < t < t_max; t_min >= 0. Hit::primitive is the triangle's slot.
 template <Accel accel, bool instanced>
 PT_HD Hit closest_triangle(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {

@@ -19,6 +19,8 @@ struct MetTriangle {
 /// in which a structure finds them.
 class ClosestTriangle {
  public:
+  static constexpr bool has_masks = false;
+
   PT_HD ClosestTriangle(float t_min, float t_max) : t_min_(t_min) { hit_.t = t_max; }
 
   /// Boxes that the ray enters beyond this need no visit.
@@ -88,6 +90,8 @@ class ClosestTriangleId {
 /// Whether there is a hit with t_min < t < t_max.
 class AnyTriangle {
  public:
+  static constexpr bool has_masks = false;
+
   PT_HD AnyTriangle(float t_min, float t_max) : t_min_(t_min), t_max_(t_max) {}
 
   PT_HD float t_max() const { return t_max_; }
@@ -108,6 +112,28 @@ class AnyTriangle {
  private:
   float t_min_, t_max_;
   bool found_ = false;
+};
+
+/// The same of what is there of masked triangles. Mask has
+///   bool hides(const Triangle&, const TriangleHit&, std::uint32_t instance) const
+/// and is asked about them alone. Only offer_slots() heeds it.
+template <class Query, class Mask>
+class MaskedQuery : public Query {
+ public:
+  static constexpr bool has_masks = true;
+
+  PT_HD MaskedQuery(float t_min, float t_max, const Mask& mask)
+      : Query(t_min, t_max), mask_(mask) {}
+
+  /// `t` is that of the hit, or where an instance's box has moved it.
+  PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
+                   std::uint32_t instance) const {
+    return (triangle.attributes & TriangleAttributes::masked) != 0 && t > this->t_min() &&
+           t <= this->t_max() && mask_.hides(triangle, hit, instance);
+  }
+
+ private:
+  Mask mask_;
 };
 
 /// A ray that is not finite or has no direction meets nothing. It must be sorted out before the
@@ -159,6 +185,9 @@ PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::ui
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
     const Triangle triangle = load_wide(&tree.triangles[slot]);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
+    if constexpr (Query::has_masks) {
+      if (query.hides(triangle, hit, hit.t, 0)) continue;
+    }
     if (query.offer(tree, hit.t, slot, 0)) return true;
   }
   return false;
@@ -172,7 +201,11 @@ PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::ui
   for (std::uint32_t slot = first; slot < first + count; ++slot) {
     const Triangle triangle = load_wide(&tree.triangles[slot]);
     const TriangleHit hit = intersect_triangle(ray, triangle.v0, triangle.v1, triangle.v2);
-    if (query.offer(tree, visit.moved(hit.t), slot, instance)) return true;
+    const float t = visit.moved(hit.t);
+    if constexpr (Query::has_masks) {
+      if (query.hides(triangle, hit, t, instance)) continue;
+    }
+    if (query.offer(tree, t, slot, instance)) return true;
   }
   return false;
 }

@@ -15,6 +15,7 @@
 #include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_arrays.h"
 #include "common/scene/scene_facts.h"
+#include "common/transport/mask.h"
 
 namespace pt {
 namespace {
@@ -90,6 +91,7 @@ void CudaRenderer::upload(const SceneData& scene) {
                     scene.spheres.size(), sphere_bytes, properties_.sharedMemPerBlockOptin));
   }
   scene_ = host_view(scene, options_.width, options_.height);
+  scene_.mask_seed = mask_seed(options_.seed);
   const auto upload_array = [&](auto*& pointer, const auto& values, const char* kind) {
     pointer = memory_.upload(kind, values);
   };

@@ -21,6 +21,7 @@ struct Mesh {
   std::vector<Vec2> uvs;  ///< texture coordinates by vertex, or empty; v = 0 is the image's foot
   std::uint32_t material = 0;
   std::uint32_t group = 0;  ///< 0: part of the world; else what instances of this group repeat
+  bool masked = false;      ///< set from the material: see TriangleAttributes
 };
 
 }  // namespace pt

@@ -33,6 +33,7 @@ struct alignas(16) Triangle {
 struct TriangleAttributes {
   static constexpr std::uint32_t normals = 1;  ///< by vertex: smooth shading
   static constexpr std::uint32_t uvs = 2;      ///< texture coordinates by vertex
+  static constexpr std::uint32_t masked = 4;   ///< of its material only a part is there
 };
 
 PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -23,6 +23,9 @@ namespace pt {
 using Bsdfs = TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward,
                        Conductor, RoughDielectric, ThinDielectric, Principled, PrincipledThin>;
 
+/// The first ones, those of the paper's scenes: no others are in kernels without triangles.
+using PaperBsdfs = TypeList<Diffuse, Metal, Dielectric>;
+
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
 inline constexpr MaterialKind kind_of{static_cast<std::uint8_t>(index_in<Bsdf>(Bsdfs{}))};
@@ -70,20 +73,21 @@ struct alignas(16) Material {
 };
 
 namespace detail {
-template <int index, class Parameters, class Function>
+template <class List, int index, class Parameters, class Function>
 PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  using Bsdf = TypeAt<index, Bsdfs>;
-  if constexpr (index + 1 < Bsdfs::size) {
-    if (kind != kind_of<Bsdf>) return visit_from<index + 1>(kind, parameters, function);
+  using Bsdf = TypeAt<index, List>;
+  if constexpr (index + 1 < List::size) {
+    if (kind != kind_of<Bsdf>) return visit_from<List, index + 1>(kind, parameters, function);
   }
   return function(Bsdf::make(parameters));
 }
 }  // namespace detail
 
 /// Calls `function` with the BSDF as a value of its own type, made of parameters (see bsdf.h).
-template <class Parameters, class Function>
+/// `List` is Bsdfs or a list with which it begins, if `kind` is one of it.
+template <class List = Bsdfs, class Parameters, class Function>
 PT_HD auto visit(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  return detail::visit_from<0>(kind, parameters, function);
+  return detail::visit_from<List, 0>(kind, parameters, function);
 }
 
 }  // namespace pt

@@ -12,6 +12,7 @@ namespace pt {
 struct Principled {
   static constexpr const char* name = "principled";
   static constexpr int parameter_count = 12;
+  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float metallic, spec_trans;

@@ -10,6 +10,7 @@ namespace pt {
 struct PrincipledThin {
   static constexpr const char* name = "thin principled";
   static constexpr int parameter_count = 10;
+  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float spec_trans;

@@ -35,9 +35,10 @@ const char* name_of(Lighting lighting) {
 
 void throw_no_kernel(const SceneTraits& traits) {
   throw Error(
-      fmt::format("no kernel for a scene with --accel {}, geometry: {}, lights: {}; expected one "
+      fmt::format("no kernel for a scene with --accel {}, geometry: {}, lights: {}{}; expected one "
                   "of the kinds that this mode, device and --rng have",
-                  accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting)));
+                  accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting),
+                  traits.has_masks ? ", masks" : ""));
 }
 
 }  // namespace pt

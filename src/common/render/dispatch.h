@@ -24,10 +24,13 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
                                     Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
                                     Traits<Accel::brute, Geometry::mixed, Lighting::full>,
                                     Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>>;
+                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
 using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
 using CpuSceneKinds = decltype(concatenate(
-    SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>>{}));
+    SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>,
+                           Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
 
 /// Random numbers with a stored state are the paper's, and kept for its scenes.
 template <class Source>

@@ -18,6 +18,7 @@ void convert_quads(SceneData& scene) {
   }
   for (auto& [material, mesh] : by_material) {
     mesh.material = material;
+    mesh.masked = !scene.materials[material].opacity.is_opaque();
     scene.meshes.push_back(std::move(mesh));
   }
   scene.quads.clear();

@@ -99,6 +99,7 @@ class Lister {
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
                                     emission.texture_mean);
+      if (mesh.masked) light.weight = 0.0f;  // what is not there does not shine: met by chance
       light.triangle =
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
       light.radiance = emission.radiance;

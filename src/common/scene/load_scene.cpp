@@ -43,13 +43,43 @@ SceneData load_ply(const std::filesystem::path& path, const LoadOptions& options
   return scene;
 }
 
-void add_obj_material(ObjMaterial source, TextureStore& textures, SceneData& scene) {
+/// The alpha of the picture where it has one, else its luminance.
+void add_opacity_map(const std::filesystem::path& map, TextureStore& textures,
+                     MaterialDescription& material) {
+  if (map.empty()) return;
+  Texture look;
+  look.format = TextureFormat::linear8;
+  const std::uint32_t grey = textures.add_file(map, look), alpha = textures.add_alpha_of(grey);
+  material.opacity = textured_opacity(1.0f, alpha != no_texture ? alpha : grey);
+}
+
+/// A material under its map of heights or, where its picture looks like that, of normals.
+std::uint32_t add_bumped(const ObjMaterial& source, MaterialDescription material,
+                         TextureStore& textures, SceneData& scene) {
+  if (source.bump_map.empty()) return scene.add_material(material);
+  Texture look;
+  look.format = TextureFormat::linear8;
+  const std::uint32_t map = textures.add_file(source.bump_map, look);
+  const bool normals = textures.is_normal_map(map);
+  MaterialDescription bumped =
+      make_mapped(normals ? MaterialNode::gltf_normal_map : MaterialNode::bump_map,
+                  {{source.bump_scale, 0.0f, 0.0f}, map}, 0);
+  std::swap(bumped.emission, material.emission);
+  std::swap(bumped.opacity, material.opacity);
+  bumped.children[0] = bumped.children[1] = scene.add_material(material);
+  return scene.add_material(bumped);
+}
+
+std::uint32_t add_obj_material(const ObjMaterial& source, TextureStore& textures,
+                               SceneData& scene) {
   const auto add = [&](const std::filesystem::path& map) {
     return map.empty() ? no_texture : textures.add_file(map);
   };
-  source.material.parameters[0].texture = add(source.albedo_map);
-  source.material.emission.texture = add(source.emission_map);
-  scene.add_material(source.material);
+  MaterialDescription material = source.material;
+  material.parameters[0].texture = add(source.albedo_map);
+  material.emission.texture = add(source.emission_map);
+  add_opacity_map(source.opacity_map, textures, material);
+  return add_bumped(source, material, textures, scene);
 }
 
 SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options) {
@@ -57,8 +87,12 @@ SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options
   ObjFile file = read_obj_with_materials(path);
   for (const std::string& warning : file.warnings) options.report(warning);
   TextureStore textures(scene.textures, scene.texels);
-  for (const ObjMaterial& material : file.materials) add_obj_material(material, textures, scene);
+  std::vector<std::uint32_t> numbers;
+  for (const ObjMaterial& material : file.materials) {
+    numbers.push_back(add_obj_material(material, textures, scene));
+  }
   scene.meshes = std::move(file.meshes);
+  for (Mesh& mesh : scene.meshes) mesh.material = numbers[mesh.material];
   complete(path, options, scene);
   return scene;
 }

@@ -24,7 +24,7 @@ struct MaterialDescription {
   PT_HD float scalar(int i) const { return parameters[i].value.x; }
 
   bool is_textured() const {
-    bool any = emission.texture != no_texture || !opacity.is_opaque();
+    bool any = emission.texture != no_texture;
     for (const Parameter& p : parameters) any = any || p.texture != no_texture;
     return any;
   }

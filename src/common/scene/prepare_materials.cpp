@@ -61,11 +61,31 @@ Material pack(const MaterialDescription& source, SceneData& scene) {
   return material;
 }
 
+void list_opacities(SceneData& scene) {
+  scene.opacities.clear();
+  bool any = false;
+  for (const MaterialDescription& m : scene.materials) any = any || !m.opacity.is_opaque();
+  for (Mesh& mesh : scene.meshes) {
+    mesh.masked = !scene.materials[mesh.material].opacity.is_opaque();
+  }
+  if (!any) return;
+  for (const MaterialDescription& m : scene.materials) scene.opacities.push_back(m.opacity);
+  for (const std::uint32_t material : scene.sphere_material) {
+    if (!scene.materials[material].opacity.is_opaque()) {
+      throw Error(
+          fmt::format("scene '{}' has a sphere of material {}, which is masked; expected "
+                      "masks on triangles alone",
+                      scene.name, material));
+    }
+  }
+}
+
 }  // namespace
 
 void prepare_materials(SceneData& scene) {
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
+  list_opacities(scene);
   for (const MaterialDescription& m : scene.materials) scene.parameters.push_back(m.parameters[0]);
   for (const MaterialDescription& m : scene.materials) {
     scene.material_records.push_back(pack(m, scene));

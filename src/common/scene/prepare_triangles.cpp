@@ -1,9 +1,12 @@
 #include "common/scene/prepare_triangles.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
+#include "common/error.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
@@ -17,7 +20,8 @@ namespace {
 Accel automatic_structure(const SceneData& scene, const Options& options) {
   const bool persistent = options.device.kind == DeviceChoice::Kind::cuda &&
                           options.mode == Mode::wavefront && scene.instances.empty() &&
-                          scene.spheres.empty() && options.compaction == Compaction::atomic;
+                          scene.opacities.empty() && scene.spheres.empty() &&
+                          options.compaction == Compaction::atomic;
   return persistent ? Accel::cwbvh : Accel::bvh2;
 }
 
@@ -87,9 +91,14 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
   const Accel accel = structure_of(scene, options);
-  const bool mixed = !scene.instances.empty() || !scene.spheres.empty() || accel == Accel::brute ||
-                     accel == Accel::embree;
-  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full};
+  const bool masked = !scene.opacities.empty();
+  if (masked && accel == Accel::embree) {
+    throw Error(fmt::format("--accel embree: scene '{}' has masks; expected brute, bvh2 or cwbvh",
+                            scene.name));
+  }
+  const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
+                     accel == Accel::brute || accel == Accel::embree;
+  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked};
   const TreeOptions tree = tree_options(accel, options.builder);
   check_builder(tree.builder, tree.accel, is_on_cuda(options));
   if (is_device_builder(options.builder)) {

@@ -10,6 +10,7 @@
 #include "common/light/light_selector.h"
 #include "common/light/sky.h"
 #include "common/material/material.h"
+#include "common/material/opacity.h"
 #include "common/scene/camera.h"
 
 namespace pt {
@@ -29,10 +30,12 @@ struct Scene {
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
   VertexAttributes attributes;
-  const Affine* to_world = nullptr;  ///< [InstanceRecord::number]
-  LightSelector light_selector;      ///< Lighting::full
-  LightMap light_map;                ///< Lighting::full
-  Environment environment;           ///< Lighting::full
+  const Affine* to_world = nullptr;    ///< [InstanceRecord::number]
+  LightSelector light_selector;        ///< Lighting::full
+  LightMap light_map;                  ///< Lighting::full
+  Environment environment;             ///< Lighting::full
+  const Opacity* opacities = nullptr;  ///< [material], in scenes with masks
+  std::uint32_t mask_seed = 0;         ///< of this render
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
 
@@ -55,6 +58,7 @@ struct SceneTraits {
   Accel accel = Accel::brute;
   Geometry geometry = Geometry::spheres_and_quads;
   Lighting lighting = Lighting::sky;
+  bool has_masks = false;
 
   bool operator==(const SceneTraits&) const = default;
   bool has_lights() const { return lighting != Lighting::sky; }
@@ -62,17 +66,27 @@ struct SceneTraits {
 
 /// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host
 /// pass.)
-template <Accel accel_value, Geometry geometry_value, Lighting lighting_value>
+template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
+          bool has_masks_value = false>
 struct Traits {
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
+  static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
-  static SceneTraits value() { return {accel, geometry, lighting}; }
+  static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
 };
 
+<<<<<<< HEAD
+/// The BSDFs of a scene's kernels.
+template <class T>
+using BsdfsOf = std::conditional_t<T::lighting == Lighting::full, Bsdfs, PaperBsdfs>;
+
 /// What shading depends on: scenes that differ in their structure alone share its kernels.
+=======
+/// What shading depends on: scenes that differ in their structure or in masks share its kernels.
+>>>>>>> nested
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting>;
 

@@ -31,6 +31,7 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.light_map.spheres, scene.light_list.spheres, "lights");
   function(view.environment.texels, scene.environment_map.texels, "environment");
   function(view.environment.alias, scene.environment_map.alias, "environment");
+  function(view.opacities, scene.opacities, "scene");
   function(view.textures, scene.textures, "textures");
   function(view.texels, scene.texels, "textures");
 }

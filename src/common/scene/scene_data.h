@@ -69,6 +69,7 @@ struct SceneData {
   std::vector<Material> material_records;  ///< by material
   std::vector<Parameter> parameters;
   std::vector<Emission> emissions;
+  std::vector<Opacity> opacities;             ///< by material; empty: there are no masks
   std::vector<Bvh2Node> bvh_nodes;            ///< over spheres and quads; empty: they are scanned
   std::vector<std::uint32_t> material_of;     ///< by primitive
   std::vector<std::uint32_t> lights;          ///< primitives that emit

@@ -51,13 +51,17 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
-bool is_nested(const MaterialDescription& material) { return material.node != MaterialNode::none; }
+/// Kernels without triangles know the paper's materials alone.
+bool needs_triangles(const MaterialDescription& material) {
+  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+         static_cast<int>(material.kind) >= PaperBsdfs::size;
+}
 
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty() && std::ranges::none_of(scene.materials, is_nested);
+         scene.textures.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {

@@ -56,6 +56,9 @@ PT_HD Color load_texel(const Texture& texture, const std::byte* texels, std::uin
     return {srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b)};
   }
   constexpr float scale = 1.0f / 255.0f;
+  if (texture.format == TextureFormat::alpha8) {
+    return Color(multiply_rounded(static_cast<float>(rgba >> 24), scale));
+  }
   return {multiply_rounded(static_cast<float>(r), scale),
           multiply_rounded(static_cast<float>(g), scale),
           multiply_rounded(static_cast<float>(b), scale)};

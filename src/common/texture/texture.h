@@ -9,6 +9,7 @@ enum class TextureKind : std::uint8_t { image, checkerboard };
 enum class TextureFormat : std::uint8_t {
   srgb8,    ///< 4 bytes a texel, R G B A; R, G and B in the sRGB curve
   linear8,  ///< 4 bytes a texel, linear
+  alpha8,   ///< 4 bytes a texel: of these A, for all components
   rgb32f    ///< three floats a texel, linear
 };
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };

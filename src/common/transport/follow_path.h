@@ -18,12 +18,12 @@ PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit
 }
 
 /// Traces `ray` and what follows it. Returns the path's radiance: `radiance`, which it brings
-/// along, and all that is added.
+/// along, and all that is added. `path_key` is mask_key().
 template <class Traits, class Stream>
 PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radiance,
-                        const PathLimits& limits, Stream& random) {
+                        const PathLimits& limits, Stream& random, std::uint32_t path_key) {
   for (;;) {
-    const Hit hit = intersect_closest<Traits>(scene, ray);
+    const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(path_key, path.rays));
     ++path.rays;
     if (hit.is_miss()) {
       return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
@@ -31,7 +31,7 @@ PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radi
     const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
     radiance = add_rounded(radiance, scattering.emitted);
     if (Traits::has_lights && !is_black(scattering.shadow.radiance) &&
-        !intersect_shadow<Traits>(scene, scattering.shadow)) {
+        !intersect_shadow<Traits>(scene, scattering.shadow, shadow_ray_key(path_key, path.rays))) {
       radiance = add_rounded(radiance, scattering.shadow.radiance);
     }
     if (!scattering.alive) return radiance;

@@ -5,6 +5,7 @@
 #include "common/accel/traverse_bvh2.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/scene/scene.h"
+#include "common/transport/mask.h"
 
 namespace pt {
 
@@ -35,8 +36,33 @@ PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
   }
 }
 
+/// Both among the triangles; `ray_key` is for masks.
 template <class Traits>
-PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray) {
+PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
+  if constexpr (Traits::has_masks) {
+    MaskedQuery<ClosestTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
+  } else {
+    return closest_triangle<Traits::accel, Traits::has_instances>(scene.triangles, ray, 0.0f,
+                                                                  t_max);
+  }
+}
+
+template <class Traits>
+PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
+  if constexpr (Traits::has_masks) {
+    MaskedQuery<AnyTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
+    traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
+    return query.result();
+  } else {
+    return any_triangle<Traits::accel, Traits::has_instances>(scene.triangles, ray, 0.0f, t_max);
+  }
+}
+
+/// `ray_key` (next_ray_key) decides what masks let through; read in scenes with masks alone.
+template <class Traits>
+PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ray_key = 0) {
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return closest_primitive<Traits>(scene, ray);
   } else {
@@ -44,17 +70,17 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray) {
     if (Traits::geometry == Geometry::mixed && scene.primitives.count() > 0) {
       nearest = closest_primitive<Traits>(scene, ray);
     }
-    Hit hit = closest_triangle<Traits::accel, Traits::has_instances>(scene.triangles, ray, 0.0f,
-                                                                     nearest.t);
+    Hit hit = closest_triangle<Traits>(scene, ray, nearest.t, ray_key);
     if (hit.is_miss()) return nearest;
     hit.primitive += scene.primitives.count();
     return hit;
   }
 }
 
-/// True when something lies between the shadow ray's ends.
+/// True when something lies between the shadow ray's ends. `ray_key`: shadow_ray_key.
 template <class Traits>
-PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow) {
+PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow,
+                            std::uint32_t ray_key = 0) {
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return any_primitive<Traits>(scene, shadow.ray, shadow.distance);
   } else {
@@ -62,8 +88,7 @@ PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow) {
         any_primitive<Traits>(scene, shadow.ray, shadow.distance)) {
       return true;
     }
-    return any_triangle<Traits::accel, Traits::has_instances>(scene.triangles, shadow.ray, 0.0f,
-                                                              shadow.distance);
+    return any_triangle<Traits>(scene, shadow.ray, shadow.distance, ray_key);
   }
 }
 

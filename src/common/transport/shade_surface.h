@@ -100,7 +100,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);
   BsdfSample next;
   BsdfValue value;
-  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+  const SurfaceParameters<Traits> parameters(scene, surface);
+  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
     if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
     next = bsdf.sample(wo, Vec3(scatter));

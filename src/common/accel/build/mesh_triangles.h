@@ -13,7 +13,8 @@ namespace pt {
 /// Triangle::attributes of a mesh's triangles.
 inline std::uint32_t triangle_attributes(const Mesh& mesh) {
   return (mesh.normals.empty() ? 0 : TriangleAttributes::normals) |
-         (mesh.uvs.empty() ? 0 : TriangleAttributes::uvs);
+         (mesh.uvs.empty() ? 0 : TriangleAttributes::uvs) |
+         (mesh.masked ? TriangleAttributes::masked : 0);
 }
 
 /// Numbers the triangles of all meshes, or of those of one group, in the order of the meshes. Keeps

@@ -39,6 +39,8 @@ struct ObjMaterial {
   std::string name;
   MaterialDescription material;
   std::filesystem::path albedo_map, emission_map;  ///< beside the MTL file; empty: none
+  std::filesystem::path opacity_map = {}, bump_map = {};
+  float bump_scale = 1.0f;
 };
 
 struct ObjFile {

@@ -38,7 +38,7 @@ float fuzz_of(const tinyobj::material_t& mtl) {
 
 MaterialDescription nearest_material(const tinyobj::material_t& mtl) {
   const Color kd = reflectance(mtl.diffuse), ks = reflectance(mtl.specular);
-  if (is_one_of(mtl.illum, {4, 6, 7, 9}) || mtl.dissolve < 0.5f) {
+  if (mtl.alpha_texname.empty() && (is_one_of(mtl.illum, {4, 6, 7, 9}) || mtl.dissolve < 0.5f)) {
     const bool plausible = mtl.ior > 1.0f && mtl.ior < 5.0f;
     return make_dielectric(Color(1.0f), plausible ? mtl.ior : 1.5f);
   }
@@ -67,9 +67,6 @@ void warn_of_losses(const tinyobj::material_t& mtl, const MaterialDescription& m
   };
   const bool diffuse = material.kind == kind_of<Diffuse>;
   check(diffuse && max_abs(reflectance(mtl.specular)) > 0.1f, "highlights (Ks)");
-  check(diffuse && mtl.dissolve < 1.0f, "partial transparency (d)");
-  check(!mtl.alpha_texname.empty(), "map_d");
-  check(!mtl.bump_texname.empty() || !mtl.normal_texname.empty(), "bumps");
   check(!mtl.displacement_texname.empty(), "disp");
   check(!mtl.specular_texname.empty(), "map_Ks");
   if (!lost.empty()) warnings.push_back(fmt::format("material {}: no {}", mtl.name, lost));
@@ -79,7 +76,13 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
                     std::vector<std::string>& warnings) {
   ObjMaterial result{mtl.name, nearest_material(mtl), {}, {}};
   warn_of_losses(mtl, result.material, warnings);
+  result.bump_map = map_path(
+      mtl_path, mtl.normal_texname.empty() ? mtl.bump_texname : mtl.normal_texname, warnings);
+  result.bump_scale = mtl.bump_texopt.bump_multiplier;
   if (result.material.kind != kind_of<Dielectric>) {
+    result.opacity_map = map_path(mtl_path, mtl.alpha_texname, warnings);
+    const float d = std::isfinite(mtl.dissolve) ? std::clamp(mtl.dissolve, 0.0f, 1.0f) : 1.0f;
+    if (result.opacity_map.empty()) result.material.opacity = constant_opacity(d);
     result.albedo_map = map_path(mtl_path, mtl.diffuse_texname, warnings);
   }
   if (result.material.kind == kind_of<Diffuse>) {

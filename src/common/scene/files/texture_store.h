@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,15 +22,25 @@ class TextureStore {
 
   /// `look` says all but the image: wrap, filter, transform, color0, and in `format` whether
   /// integers are srgb8 or linear8. Throws Error as read_texture_image does.
-  std::uint32_t add_file(const std::filesystem::path& path, const Texture& look = {});
+  /// With `weights` it is grey (grey_image).
+  std::uint32_t add_file(const std::filesystem::path& path, const Texture& look = {},
+                         const std::optional<Color>& weights = {});
 
   /// The same of a file's content. `name` stands for it in errors and must be its own: the same
   /// name is the same image.
   std::uint32_t add_memory(std::string_view bytes, const std::string& name,
-                           const Texture& look = {});
+                           const Texture& look = {}, const std::optional<Color>& weights = {});
 
   /// An image made by the caller.
   std::uint32_t add_image(const TextureImage& image, const Texture& look = {});
+
+  /// The alpha of texture `number`, an image, as a texture that shares its texels; no_texture where
+  /// it has none or is 1 everywhere.
+  std::uint32_t add_alpha_of(std::uint32_t number);
+
+  /// Whether the image of texture `number`, as linear numbers, looks like normals and not like
+  /// heights: they are grey, normals are blue.
+  bool is_normal_map(std::uint32_t number) const;
 
   /// A texture without texels, such as a checkerboard.
   std::uint32_t add_plain(const Texture& texture);

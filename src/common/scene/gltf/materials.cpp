@@ -1,6 +1,7 @@
 #include "common/scene/gltf/materials.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/scene/gltf/values.h"
 
@@ -31,12 +32,12 @@ std::uint32_t Materials::number(int index, const std::string& place) {
   if (known != numbers_.end()) return known->second;
   std::uint32_t result;
   if (index < 0) {
-    result = scene_.add_material(convert(tinygltf::Material(), place));
+    result = add(tinygltf::Material(), place);
   } else {
     const auto& source = file_.at(file_.model.materials, index, "materials", place + ".material");
     const std::string material_place = fmt::format(
         "materials[{}]{}", index, source.name.empty() ? "" : fmt::format(" '{:.60}'", source.name));
-    result = scene_.add_material(convert(source, material_place));
+    result = add(source, material_place);
   }
   numbers_.emplace(index, result);
   return result;
@@ -44,7 +45,7 @@ std::uint32_t Materials::number(int index, const std::string& place) {
 
 MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place) {
   MaterialDescription result;
-  report_ignored(source, place);
+  set_opacity(source, place, result);
   if (find_extension(source.extensions, "KHR_materials_unlit")) {
     file_.report(place,
                  "KHR_materials_unlit: black that emits the base colour is used, and lights "
@@ -159,11 +160,41 @@ void Materials::set_emission(const tinygltf::Material& source, const std::string
   }
 }
 
-void Materials::report_ignored(const tinygltf::Material& source, const std::string& place) {
-  if (source.alphaMode != "OPAQUE") {
-    file_.report(place, "alphaMode MASK and BLEND are ignored: opaque is used");
+void Materials::set_opacity(const tinygltf::Material& source, const std::string& place,
+                            MaterialDescription& result) {
+  if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
+  const auto& pbr = source.pbrMetallicRoughness;
+  const auto factor = static_cast<float>(pbr.baseColorFactor[3]);
+  std::uint32_t alpha = no_texture;
+  if (const TextureUse use = texture_use(pbr.baseColorTexture)) {
+    alpha = textures_.add_alpha(use, place + ".pbrMetallicRoughness.baseColorTexture");
   }
-  if (source.normalTexture.index >= 0) file_.report(place, "normal maps are ignored");
+  const bool cuts = source.alphaMode == "MASK";
+  const auto cutoff = static_cast<float>(source.alphaCutoff);
+  if (alpha != no_texture) {
+    // A cutoff of 0 keeps everything.
+    if (!cuts || cutoff > 0.0f) result.opacity = textured_opacity(factor, alpha, cuts ? cutoff : 0);
+  } else {
+    result.opacity = constant_opacity(!cuts ? factor : factor >= cutoff ? 1.0f : 0.0f);
+  }
+}
+
+std::uint32_t Materials::add(const tinygltf::Material& source, const std::string& place) {
+  MaterialDescription material = convert(source, place);
+  TextureUse use{source.normalTexture.index, source.normalTexture.texCoord, {}};
+  if (!use) return scene_.add_material(material);
+  if (const auto* transform =
+          find_extension(source.normalTexture.extensions, "KHR_texture_transform")) {
+    use.transform = *transform;
+  }
+  const auto scale = static_cast<float>(source.normalTexture.scale);
+  const std::uint32_t map = textures_.add_linear(use, place + ".normalTexture");
+  MaterialDescription mapped =
+      make_mapped(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, 0);
+  std::swap(mapped.emission, material.emission);
+  std::swap(mapped.opacity, material.opacity);
+  mapped.children[0] = mapped.children[1] = scene_.add_material(material);
+  return scene_.add_material(mapped);
 }
 
 }  // namespace pt::gltf

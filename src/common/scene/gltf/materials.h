@@ -31,7 +31,10 @@ class Materials {
                         MaterialDescription& result);
   void set_emission(const tinygltf::Material& source, const std::string& place,
                     MaterialDescription& result);
-  void report_ignored(const tinygltf::Material& source, const std::string& place);
+  void set_opacity(const tinygltf::Material& source, const std::string& place,
+                   MaterialDescription& result);
+  /// Adds a material, under its normal map if it has one.
+  std::uint32_t add(const tinygltf::Material& source, const std::string& place);
 
   File& file_;
   SceneData& scene_;

@@ -98,12 +98,13 @@ TextureImage Textures::integers(const TextureUse& use, const std::string& place)
   return image;
 }
 
-std::uint32_t Textures::add_color(const TextureUse& use, const std::string& place) {
+std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format) {
   const Encoded image = encoded_image(use, place);
   if (use.tex_coord != 0) {
     file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
   }
   Texture look;
+  look.format = format;
   apply_sampler(file_, texture(use, place), fmt::format("textures[{}]", use.texture), look);
   if (use.transform.IsObject()) apply_transform(use.transform, look);
   return store_.add_memory(image.bytes, image.name, look);

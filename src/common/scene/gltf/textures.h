@@ -29,7 +29,17 @@ class Textures {
   Textures(File& file, SceneData& scene) : file_(file), store_(scene.textures, scene.texels) {}
 
   /// A colour texture (sRGB); its number in the scene. `place` is that of the textureInfo.
-  std::uint32_t add_color(const TextureUse& use, const std::string& place);
+  std::uint32_t add_color(const TextureUse& use, const std::string& place) {
+    return add(use, place, TextureFormat::srgb8);
+  }
+  /// One of numbers, as they are.
+  std::uint32_t add_linear(const TextureUse& use, const std::string& place) {
+    return add(use, place, TextureFormat::linear8);
+  }
+  /// The alpha of a colour texture; no_texture where it is 1 everywhere.
+  std::uint32_t add_alpha(const TextureUse& use, const std::string& place) {
+    return store_.add_alpha_of(add_color(use, place));
+  }
 
   /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
   /// image cannot be decoded: a factor is then used alone.
@@ -41,6 +51,7 @@ class Textures {
     std::string name;
   };
 
+  std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format);
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
   TextureImage integers(const TextureUse& use, const std::string& place) const;

@@ -54,6 +54,7 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
 bool is_textured(const SceneData& scene, std::uint32_t number) {
   const MaterialDescription& material = scene.materials[number];
   if (material.is_textured() || uses_tangent(material)) return true;
+  if (!material.opacity.is_opaque()) return true;  // masks are on triangles
   return material.node != MaterialNode::none &&
          (is_textured(scene, material.children[0]) || is_textured(scene, material.children[1]));
 }

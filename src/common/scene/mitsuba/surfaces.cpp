@@ -24,7 +24,7 @@ const std::map<std::string_view, Reader>& readers() {
       {"conductor", read_conductor},
       {"roughconductor", read_rough_conductor},
       {"principled", read_principled},
-      {"principledthin", read_principled},
+      {"principledthin", read_principled_thin},
       {"twosided", read_two_sided},
       {"mask", read_mask},
       {"opacity", read_mask},
