@@ -73,9 +73,8 @@ class BsdfIntegral {
         densities[through] = s.pdf, poles[through] = s.wi;
       }
     }
-    const auto fineness = [](float density) { return density > 50.0f ? 4 : 1; };
-    return {PolarGrid(poles[0], fineness(densities[0])),
-            PolarGrid(poles[1], fineness(densities[1]))};
+    constexpr float narrow = 50.0f;
+    return {PolarGrid(poles[0], densities[0] > narrow), PolarGrid(poles[1], densities[1] > narrow)};
   }
 
   Vec3 wo_;

@@ -61,9 +61,9 @@ class PolarGrid {
  public:
   static constexpr int rings = 20, sectors = 20, cells = rings * sectors;
 
-  /// With `fineness` times as many points along each angle: for a narrow lobe, cut by the horizon.
-  explicit PolarGrid(const Vec3& pole, int fineness = 1)
-      : pole_(glm::normalize(Vec3d(pole))), fineness_(fineness) {
+  /// `is_narrow`: with more points near the pole, for a narrow lobe that the horizon cuts.
+  explicit PolarGrid(const Vec3& pole, bool is_narrow = false)
+      : pole_(glm::normalize(Vec3d(pole))), is_narrow_(is_narrow) {
     x_ = glm::cross(std::abs(pole_.x) > 0.5 ? Vec3d(0, 1, 0) : Vec3d(1, 0, 0), pole_);
     x_ = glm::normalize(x_);
     y_ = glm::cross(pole_, x_);
@@ -80,23 +80,26 @@ class PolarGrid {
   /// Calls f(cell, direction, solid angle) for points all over the sphere.
   template <class F>
   void for_each_point(const F& f) const {
-    const int steps = 28 * fineness_, turns = 8 * fineness_;  // per cell
-    for (int i = 0; i < rings * steps; ++i) {
-      const double s = (i + 0.5) / (rings * steps), theta = pi_double * s * s;
-      const double d_theta = 2 * pi_double * s / (rings * steps);
-      const double angle = std::sin(theta) * d_theta * 2 * pi_double / (sectors * turns);
-      for (int k = 0; k < sectors * turns; ++k) {
-        const double phi = ((k + 0.5) / (sectors * turns) - 0.5) * 2 * pi_double;
-        const Vec3d w =
-            std::cos(theta) * pole_ + std::sin(theta) * (std::cos(phi) * x_ + std::sin(phi) * y_);
-        f(static_cast<std::size_t>(i / steps * sectors + k / turns), Vec3(w), angle);
+    for (int ring = 0; ring < rings; ++ring) {
+      const int fineness = is_narrow_ && ring < 5 ? 4 : 1;
+      const int steps = 24 * fineness, turns = 8 * fineness;  // per cell
+      for (int i = 0; i < steps; ++i) {
+        const double s = (ring + (i + 0.5) / steps) / rings, theta = pi_double * s * s;
+        const double angle = std::sin(theta) * 2 * pi_double * s / (rings * steps) * 2 * pi_double /
+                             (sectors * turns);
+        for (int k = 0; k < sectors * turns; ++k) {
+          const double phi = ((k + 0.5) / (sectors * turns) - 0.5) * 2 * pi_double;
+          const Vec3d w =
+              std::cos(theta) * pole_ + std::sin(theta) * (std::cos(phi) * x_ + std::sin(phi) * y_);
+          f(static_cast<std::size_t>(ring * sectors + k / turns), Vec3(w), angle);
+        }
       }
     }
   }
 
  private:
   Vec3d pole_, x_, y_;
-  int fineness_;
+  bool is_narrow_;
 };
 
 }  // namespace pt

@@ -78,15 +78,11 @@ struct Traits {
   static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
 };
 
-<<<<<<< HEAD
 /// The BSDFs of a scene's kernels.
 template <class T>
 using BsdfsOf = std::conditional_t<T::lighting == Lighting::full, Bsdfs, PaperBsdfs>;
 
-/// What shading depends on: scenes that differ in their structure alone share its kernels.
-=======
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
->>>>>>> nested
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting>;
 
