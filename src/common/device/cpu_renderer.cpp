@@ -49,10 +49,20 @@ void StageTimer::add(const std::string& stage, std::chrono::duration<double, std
   stages_.push_back({stage, elapsed.count(), 1});
 }
 
+namespace {
+
+Scene seeded_view(const SceneData& scene, const Options& options) {
+  Scene view = host_view(scene, options.width, options.height);
+  view.mask_seed = mask_seed(options.seed);
+  return view;
+}
+
+}  // namespace
+
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
     : FilmRenderer(options),
       traits_(scene.traits),
-      scene_(host_view(scene, options.width, options.height)),
+      scene_(seeded_view(scene, options)),
       threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {

@@ -11,6 +11,7 @@
 // terminator problem').
 #pragma once
 
+#include "common/math/frame.h"
 #include "common/texture/texture_gradient.h"
 #include "common/transport/surface.h"
 

@@ -7,6 +7,8 @@
 
 #include "common/texture/sample_texture.h"
 
+#include "common/texture/sample_texture.h"
+
 namespace pt {
 namespace {
 

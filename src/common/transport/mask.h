@@ -1,0 +1,69 @@
+// Masks: whether a ray meets a triangle of which only a part is there.
+//
+// The answer is the same whenever it is asked about one ray and one triangle: it depends on the
+// path's name, the number of the ray in the path, the triangle and its instance, through a hash,
+// and not on the ray's floats. So traversal may meet the triangle in any order, modes agree, and
+// over many paths a mask of opacity a lets 1 - a of them through, independently of other triangles.
+#pragma once
+
+#include "common/accel/triangle_query.h"
+#include "common/sampling/random.h"
+#include "common/scene/scene.h"
+#include "common/texture/sample_texture.h"
+
+namespace pt {
+
+/// Mixes `value` into a hash; the finalizer is Murmur3's (Appleby 2011).
+PT_HD std::uint32_t combine_hash(std::uint32_t hash, std::uint32_t value) {
+  hash = (hash ^ value) + 0x9e3779b9u;
+  hash = (hash ^ hash >> 16) * 0x85ebca6bu;
+  hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
+  return hash ^ hash >> 16;
+}
+
+inline std::uint32_t mask_seed(std::uint64_t seed) {
+  return combine_hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
+}
+
+/// Of a path; 0 in scenes without masks.
+template <class Traits>
+PT_HD std::uint32_t mask_key(const Scene& scene, const PathId& id) {
+  if constexpr (!Traits::has_masks) return 0;
+  return combine_hash(combine_hash(scene.mask_seed, id.pixel), id.sample);
+}
+
+/// Of the ray after `rays_traced` others of the path, and of the shadow ray from where the last of
+/// them ended.
+PT_HD std::uint32_t next_ray_key(std::uint32_t path_key, std::uint32_t rays_traced) {
+  return combine_hash(path_key, 2 * rays_traced);
+}
+PT_HD std::uint32_t shadow_ray_key(std::uint32_t path_key, std::uint32_t rays_traced) {
+  return combine_hash(path_key, 2 * rays_traced + 1);
+}
+
+PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& uv) {
+  if (opacity.texture == no_texture) return opacity.offset;
+  const Color c = sample_texture(scene.textures[opacity.texture], scene.texels, uv);
+  return fused_multiply_add(opacity.scale, grey_of(c), opacity.offset);
+}
+
+/// What MaskedQuery asks about triangles.
+struct MaskTest {
+  const Scene& scene;
+  std::uint32_t ray_key;
+
+  PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, std::uint32_t instance) const {
+    const Opacity opacity = load_wide(&scene.opacities[triangle.material]);
+    Vec2 uv(hit.b1, hit.b2);
+    if ((triangle.attributes & TriangleAttributes::uvs) != 0) {
+      uv = scene.attributes.uv(triangle.id, Vec3(1.0f - hit.b1 - hit.b2, hit.b1, hit.b2));
+    }
+    const float there = opacity_at(scene, opacity, uv);
+    if (opacity.cutoff > 0.0f) return !(there >= opacity.cutoff);
+    const std::uint32_t number =
+        scene.triangles.instance_count > 0 ? scene.triangles.instances[instance].number : 0;
+    return !(to_unit_float(combine_hash(combine_hash(ray_key, triangle.id), number)) < there);
+  }
+};
+
+}  // namespace pt
