@@ -55,6 +55,9 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
   view.light_selector.count = count(scene.light_list.selection);
+  view.light_selector.table_first = scene.light_list.table_first;
+  view.light_selector.table_probability = scene.light_list.table_probability;
+  view.light_selector.tree.root = scene.light_list.tree.root;
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();

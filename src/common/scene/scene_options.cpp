@@ -37,6 +37,13 @@ constexpr SceneRule rules[] = {
      "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
     {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
      SceneKind::triangles, "builds trees over triangles; scene '{}' has none"},
+    {"light-selection",
+     [](const Options& o) {
+       return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
+     },
+     SceneKind::triangles,
+     "needs triangles, textures, an environment or lights without extent; scene '{}' has spheres "
+     "and quads only, expected uniform"},
     {"scene-memory",
      [](const Options& o) {
        return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);

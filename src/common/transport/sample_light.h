@@ -59,8 +59,9 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
 }
 
 /// Any light (Lighting::full), chosen by the selector.
-PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, const Vec4& u) {
-  const LightChoice choice = scene.light_selector.sample(from, u.z, u.w);
+PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, Receiver receiver,
+                                          const Vec4& u) {
+  const LightChoice choice = scene.light_selector.sample(from, receiver, u.z, u.w);
   if (choice.light == environment_light) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
     return {s.wi, beyond_scene * s.wi, s.radiance, choice.pmf * s.pdf};
@@ -73,9 +74,10 @@ PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, 
 }
 
 template <class Traits>
-PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
+PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver receiver,
+                                 const Vec4& u) {
   if constexpr (Traits::lighting == Lighting::emitters) return sample_emitter(scene, from, u);
-  return sample_selected_light(scene, from, u);
+  return sample_selected_light(scene, from, receiver, u);
 }
 
 /// Twice the area of a triangle times its normal, in the world: from its edges as list_lights() has
@@ -91,14 +93,14 @@ PT_HD Vec3 world_normal(const Triangle& triangle, const Affine* to_world) {
 
 /// The density with which sample_light would have found the lamp that a ray hit.
 template <class Traits>
-PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
+PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit) {
   if constexpr (Traits::lighting == Lighting::emitters) {
     return emitter_pdf(scene, ray, hit);
   } else {
     const LightSelector& selector = scene.light_selector;
     if (hit.primitive < scene.primitives.count()) {
       const Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
-      return selector.pmf(ray.origin, scene.light_map.spheres[hit.primitive]) *
+      return selector.pmf(ray.origin, receiver, scene.light_map.spheres[hit.primitive]) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
     const Triangle t =
@@ -108,7 +110,7 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
     const Vec3 normal = world_normal(t, placed ? &scene.to_world[instance] : nullptr);
     // The side is the caller's affair: in an instance that mirrors, this normal is turned.
     const float side = dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
-    return selector.pmf(ray.origin, scene.light_map.of_triangle(t.id, instance)) *
+    return selector.pmf(ray.origin, receiver, scene.light_map.of_triangle(t.id, instance)) *
            triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);
   }
 }
