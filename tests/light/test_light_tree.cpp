@@ -90,6 +90,19 @@ TEST(LightSelector, ProbabilitiesSumToOneAndAreThoseOfTheChoice) {
   }
 }
 
+// A lamp of many triangles counts as one; so do a sphere, a point and the environment.
+TEST(LightSelector, UniformChoosesAmongLamps) {
+  const SceneData data = many_kinds(40, true, LightSelection::uniform);
+  const LightSelector& selector = host_view(data, 8, 8).light_selector;
+  const double share = 1.0 / 42;  // with the directional light and the environment
+  EXPECT_NEAR(selector.pmf(Vec3(0.0f), {}, environment_light), share, 1e-6);
+  const std::vector<Light>& lights = data.light_list.lights;
+  for (std::uint32_t i = 0; i < lights.size(); ++i) {
+    const bool triangle = is_triangle(lights[i].kind);  // one half of a parallelogram
+    EXPECT_NEAR(selector.pmf(Vec3(0.0f), {}, i), triangle ? share / 2 : share, 1e-6) << i;
+  }
+}
+
 /// Whether any of the light reaches `from`, by sampling it.
 bool gives(const Scene& scene, const Light& light, const Vec3& from, const Vec3& normal,
            TestRandom& random) {

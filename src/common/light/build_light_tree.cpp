@@ -186,6 +186,7 @@ void bound_spot(const DeltaLight& spot, LightBounds& bounds) {
 }  // namespace
 
 std::optional<LightBounds> bounds_of(const Light& light) {
+  if (!has_place(light.kind)) return std::nullopt;
   LightBounds bounds;
   bounds.emission = quarter_turn;
   bounds.box.grow(light.a);
@@ -201,7 +202,7 @@ std::optional<LightBounds> bounds_of(const Light& light) {
     bounds.box.grow(light.a - radius), bounds.box.grow(light.a + radius);
     bounds.cone = half_turn;
     bounds.intensity = 0.25f * light.weight;
-  } else if (light.kind == LightKind::point || light.kind == LightKind::spot) {
+  } else {
     bounds.cone = half_turn;
     bounds.intensity = luminance(light.radiance);
     if (light.kind == LightKind::spot) bound_spot(light.delta(), bounds);

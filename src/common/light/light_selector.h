@@ -48,8 +48,13 @@ struct LightSelector {
     if (light == environment_light) return environment_probability;
     if (!has_tree()) return listed_pmf(light);
     const std::uint32_t trail = tree.trail[light];
-    if (trail == LightTree::outside) return table_probability * listed_pmf(light);
+    if (trail == LightTree::outside) return distant_pmf(light);
     return tree_probability() * light_tree_pmf(tree, LightReceiver(point, receiver), trail);
+  }
+
+  /// As pmf(), for a light without place, whoever asks it.
+  PT_HD float distant_pmf(std::uint32_t light) const {
+    return table_probability * listed_pmf(light);
   }
 
  private:
@@ -67,7 +72,7 @@ struct LightSelector {
     if (random.choose(environment_probability)) return {environment_light, environment_probability};
     if (random.choose(table_probability)) {
       const std::uint32_t light = table_first + sample_alias(table, count, random.unit()).index;
-      return {light, table_probability * listed_pmf(light)};
+      return {light, distant_pmf(light)};
     }
     float pmf = 1.0f;
     const std::uint32_t light =

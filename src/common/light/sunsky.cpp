@@ -36,7 +36,9 @@ Step turbidity_step(double turbidity) {
 /// Of a table by turbidity, albedo, six control points and `size` numbers: the i-th number.
 double tabulated(const float* table, int size, int i, double turbidity, double albedo, double x) {
   const Step step = turbidity_step(turbidity);
-  const auto at = [&](int t, int a) { return quintic(table + ((t * 2 + a) * 6) * size + i, size, x); };
+  const auto at = [&](int t, int a) {
+    return quintic(table + ((t * 2 + a) * 6) * size + i, size, x);
+  };
   const auto between = [&](int t) { return (1 - albedo) * at(t, 0) + albedo * at(t, 1); };
   return (1 - step.rest) * between(step.index) + step.rest * between(step.index + 1);
 }
@@ -93,7 +95,8 @@ Vec3 sun_direction(const SunTime& t) {
   // Days since noon of 1 January 2000, universal time; the calendar's by whole-number division.
   const double hours = t.hour - t.timezone + (t.minute + t.second / 60) / 60;
   const int early = (t.month - 14) / 12;  // -1 in January and February
-  const int day_number = 1461 * (t.year + 4800 + early) / 4 + 367 * (t.month - 2 - 12 * early) / 12 -
+  const int day_number = 1461 * (t.year + 4800 + early) / 4 +
+                         367 * (t.month - 2 - 12 * early) / 12 -
                          3 * ((t.year + 4900 + early) / 100) / 4 + t.day - 32075;
   const double days = day_number - 0.5 + hours / 24 - 2451545;
   // The sun on the ecliptic.
@@ -116,7 +119,6 @@ Vec3 sun_direction(const SunTime& t) {
       std::atan2(-std::sin(hour_angle), std::tan(declination) * std::cos(latitude) -
                                             std::sin(latitude) * std::cos(hour_angle));
   zenith += 6371.01 / 149597890 * std::sin(zenith);  // parallax
-  // Azimuth is from north to east; x is south, y is west... Mitsuba's axes.
   return {static_cast<float>(-std::sin(zenith) * std::cos(azimuth)),
           static_cast<float>(-std::sin(zenith) * std::sin(azimuth)),
           static_cast<float>(std::cos(zenith))};

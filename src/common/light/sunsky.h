@@ -36,8 +36,8 @@ struct SunTime {
   double hour = 15, minute = 0, second = 0;
 };
 
-/// The direction to the sun: x is west... see the .cpp. Within 0.01 degrees from 1999 to 2015
-/// (Blanco-Muriel et al. 2001, 'Computing the Solar Vector').
+/// The direction to the sun, of unit length: +z up, -x to the north, -y to the east. Within 0.01
+/// degrees from 1999 to 2015 (Blanco-Muriel et al. 2001, 'Computing the Solar Vector').
 Vec3 sun_direction(const SunTime& time);
 
 }  // namespace pt

@@ -28,12 +28,13 @@ class Lister {
     add_group(0, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) {
-      if (light.kind != LightKind::directional) add_delta(light);
+      if (has_place(light.kind)) add_delta(light);
     }
     const std::size_t first_distant = data_.lights.size();
     for (const DeltaLight& light : scene_.delta_lights) {
-      if (light.kind == LightKind::directional) add_delta(light);
+      if (!has_place(light.kind)) add_delta(light);
     }
+    if (scene_.sun.one_minus_cos > 0.0f) add_sun();
     if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
     if (data_.tree.pairs.empty()) {
       make_table(0);
@@ -178,6 +179,21 @@ class Lister {
     light.triangle = light.emission_texture = no_texture;
     light.kind = delta.kind;
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
+    data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
+  }
+
+  void add_sun() {
+    data_.sun = static_cast<std::uint32_t>(data_.lights.size());
+    const Sun& sun = scene_.sun;
+    Light light{};
+    light.kind = LightKind::sun;
+    light.b = sun.direction;
+    light.c.x = sun.one_minus_cos;
+    light.radiance = sun.radiance;
+    light.triangle = light.emission_texture = no_texture;
+    // As a directional light of its irradiance.
+    light.weight = 2 * pi * sun.one_minus_cos * radius_ * radius_ * luminance(sun.radiance);
     data_.lights.push_back(light);
     finish_lamp(data_.lights.size() - 1);
   }

@@ -47,6 +47,8 @@ Scene host_view(const SceneData& scene, int width, int height) {
   Scene view;
   view.camera = make_camera(scene.camera, width, height);
   view.sky = scene.sky;
+  view.sun = scene.sun;
+  view.sun.light = scene.light_list.sun;
   view.primitives.sphere_count = count(scene.spheres);
   view.primitives.quad_count = count(scene.quads);
   view.primitives.scan_count = count(scene.scan_spheres);

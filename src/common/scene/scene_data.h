@@ -46,6 +46,7 @@ struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
   LightTreeData tree;                               ///< empty unless lights are chosen by it
+  std::uint32_t sun = 0;                            ///< its number
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
   float total_weight = 0.0f;
@@ -58,6 +59,7 @@ struct SceneData {
   CameraParameters camera;
   Sky sky;
   EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
+  Sun sun;                      ///< likewise
   std::vector<DeltaLight> delta_lights;
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;

@@ -60,7 +60,7 @@ constexpr SceneRule rules[] = {
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty();
+         scene.sun.one_minus_cos == 0.0f && scene.textures.empty();
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {
