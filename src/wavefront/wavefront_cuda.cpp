@@ -41,7 +41,7 @@ void WavefrontCuda::allocate_pool() {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                 !appends};
+                                 !appends, scene_.light_selector.has_tree()};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts) + (queue_count + 1) * sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();

@@ -65,6 +65,11 @@ void add_image(std::vector<OptionEntry>& list) {
                [](const Options& o) { return o.nee ? "on" : "off"; }),
            "Next-event estimation: surfaces ask a light for its direct\n"
            "contribution; off: paths find the lights by chance")
+      .add(choice("light-selection", &Options::light_selection),
+           "Which light is asked: any lamp alike, by its power, or by\n"
+           "what it can do for the place, through a tree of lights;\n"
+           "auto: the tree, but uniform where all lights are quads and\n"
+           "spheres of a scene without triangles")
       .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {

@@ -72,6 +72,28 @@ struct alignas(16) Material {
   PT_HD bool is(std::uint8_t flag) const { return (flags & flag) != 0; }
 };
 
+/// Whether all that a BSDF scatters stays on the side from which it came. One that does not say so
+/// (`static constexpr bool reflects_only = true`) is asked for light from both sides.
+template <class Bsdf>
+inline constexpr bool is_reflective = requires {
+  requires Bsdf::reflects_only;
+};
+
+namespace detail {
+template <class... Types>
+constexpr std::uint64_t reflective_kinds(TypeList<Types...>) {
+  std::uint64_t kinds = 0;
+  ((kinds |= std::uint64_t{is_reflective<Types>} << static_cast<int>(kind_of<Types>)), ...);
+  return kinds;
+}
+}  // namespace detail
+
+PT_HD bool reflects_only(MaterialKind kind) {
+  constexpr std::uint64_t kinds = detail::reflective_kinds(Bsdfs{});
+  static_assert(Bsdfs::size <= 64);
+  return (kinds >> static_cast<int>(kind) & 1u) != 0;
+}
+
 namespace detail {
 template <class List, int index, class Parameters, class Function>
 PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&& function) {

@@ -68,6 +68,12 @@ inline constexpr auto enum_names<TreeBuilder> =
                                           {TreeBuilder::lbvh, "lbvh"},
                                           {TreeBuilder::hploc, "hploc"}});
 template <>
+inline constexpr auto enum_names<LightSelection> =
+    std::to_array<EnumName<LightSelection>>({{LightSelection::automatic, "auto"},
+                                             {LightSelection::uniform, "uniform"},
+                                             {LightSelection::power, "power"},
+                                             {LightSelection::tree, "tree"}});
+template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});
 /// The stages that --stage-block has.

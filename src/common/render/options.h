@@ -22,6 +22,7 @@ enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
 enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
 enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
+enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };
 
 using StageBlocks = std::array<int, stage_count>;  ///< threads per block, by StageId
@@ -64,6 +65,7 @@ struct Options {
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
   bool nee = true;     ///< next-event estimation: ask the lights
+  LightSelection light_selection = LightSelection::automatic;
   std::uint64_t seed = 1;
   std::string output = "image.exr";  ///< .exr, .png or .ppm
   ExposureChoice exposure;           ///< for PNG and PPM only

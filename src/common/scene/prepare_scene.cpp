@@ -47,6 +47,8 @@ Scene host_view(const SceneData& scene, int width, int height) {
   Scene view;
   view.camera = make_camera(scene.camera, width, height);
   view.sky = scene.sky;
+  view.sun = scene.sun;
+  view.sun.light = scene.light_list.sun;
   view.primitives.sphere_count = count(scene.spheres);
   view.primitives.quad_count = count(scene.quads);
   view.primitives.scan_count = count(scene.scan_spheres);
@@ -55,6 +57,9 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
   view.light_selector.count = count(scene.light_list.selection);
+  view.light_selector.table_first = scene.light_list.table_first;
+  view.light_selector.table_probability = scene.light_list.table_probability;
+  view.light_selector.tree.root = scene.light_list.tree.root;
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();

@@ -9,6 +9,7 @@
 #include "common/light/environment.h"
 #include "common/light/light_selector.h"
 #include "common/light/sky.h"
+#include "common/light/sun.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
 #include "common/scene/camera.h"
@@ -18,6 +19,7 @@ namespace pt {
 struct Scene {
   Camera camera;
   Sky sky;
+  Sun sun;  ///< Lighting::full
   Primitives primitives;
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;

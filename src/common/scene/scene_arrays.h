@@ -26,6 +26,8 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.attributes.uvs, scene.attributes.uvs, "vertex attributes");
   function(view.light_selector.lights, scene.light_list.lights, "lights");
   function(view.light_selector.table, scene.light_list.selection, "lights");
+  function(view.light_selector.tree.pairs, scene.light_list.tree.pairs, "lights");
+  function(view.light_selector.tree.trail, scene.light_list.tree.trail, "lights");
   function(view.light_map.first, scene.light_list.first, "lights");
   function(view.light_map.rank, scene.light_list.rank, "lights");
   function(view.light_map.spheres, scene.light_list.spheres, "lights");

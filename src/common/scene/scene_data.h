@@ -10,6 +10,7 @@
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
+#include "common/light/build_light_tree.h"
 #include "common/light/delta_light.h"
 #include "common/math/transform.h"
 #include "common/scene/material_description.h"
@@ -44,9 +45,12 @@ struct MeshAttributes {
 struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
+  LightTreeData tree;                               ///< empty unless lights are chosen by it
+  std::uint32_t sun = 0;                            ///< its number
+  std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
   float total_weight = 0.0f;
-  float environment_probability = 0.0f;
+  float environment_probability = 0.0f, table_probability = 1.0f;
 };
 
 struct SceneData {
@@ -55,6 +59,7 @@ struct SceneData {
   CameraParameters camera;
   Sky sky;
   EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
+  Sun sun;                      ///< likewise
   std::vector<DeltaLight> delta_lights;
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;
