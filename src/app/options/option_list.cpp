@@ -85,7 +85,42 @@ void add_image(std::vector<OptionEntry>& list) {
                [](const Options& o) { return exposure_text(o.exposure); }),
            "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
            "is a middle grey. By default 0, but auto for a .png of a file\n"
-           "in photometric units or without lights. An .exr is linear");
+           "in photometric units or without lights. An .exr is linear")
+      .add(custom(
+               "crop", OptionForm::text, "X0,Y0,X1,Y1",
+               [](Options& o, const std::string& s) { o.crop = parse_crop("crop", s); },
+               [](const Options& o) { return crop_text(o.crop); }),
+           "Renders the pixels from X0,Y0 (upper left) up to X1,Y1, both\n"
+           "excluded: the same as in the whole image. An .exr keeps\n"
+           "their place, in its data window")
+      .add(custom(
+               "filter", OptionForm::text, "KIND[:A[:B]]",
+               [](Options& o, const std::string& s) { o.filter = parse_filter("filter", s); },
+               [](const Options& o) { return filter_text(o.filter); }),
+           "Reconstruction filter: box[:RADIUS], tent[:RADIUS],\n"
+           "gaussian[:DEVIATION], mitchell[:B:C] or lanczos[:LOBES].\n"
+           "By default the scene file's, else a box of one pixel")
+      .add(custom(
+               "aov", OptionForm::text, "NAME,...",
+               [](Options& o, const std::string& s) { o.aovs = parse_aovs("aov", s); },
+               [](const Options& o) { return aovs_text(o.aovs); }),
+           "Layers of the .exr besides the image, of what camera rays\n"
+           "meet: albedo, shading_normal, normal, depth, position, uv,\n"
+           "primitive, instance, material; and of the samples: variance,\n"
+           "samples, bounces, rays");
+}
+
+void add_stops(std::vector<OptionEntry>& list) {
+  Group(list,
+        "Stops (the render ends after the batch that reaches one; without --spp there\n"
+        "is no other limit)")
+      .add(number("time-limit", "SECONDS", &Options::time_limit, "seconds above 0",
+                  [](float x) { return x > 0; }),
+           "Seconds of rendering, the scene's preparation left out")
+      .add(number("target-error", "X", &Options::target_error, "a number above 0",
+                  [](float x) { return x > 0; }),
+           "Relative standard error of the image: root of the mean\n"
+           "variance of its pixels by their mean, of luminance");
 }
 
 void add_scene(std::vector<OptionEntry>& list) {
@@ -250,6 +285,7 @@ const std::vector<OptionEntry>& option_list() {
   static const std::vector<OptionEntry> list = [] {
     std::vector<OptionEntry> entries;
     add_image(entries);
+    add_stops(entries);
     add_scene(entries);
     add_camera(entries);
     add_execution(entries);

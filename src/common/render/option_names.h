@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/render/options.h"
+#include "common/render/stats.h"
 
 namespace pt {
 
@@ -73,6 +74,19 @@ inline constexpr auto enum_names<LightSelection> =
                                              {LightSelection::uniform, "uniform"},
                                              {LightSelection::power, "power"},
                                              {LightSelection::tree, "tree"}});
+template <>
+inline constexpr auto enum_names<FilterKind> =
+    std::to_array<EnumName<FilterKind>>({{FilterKind::box, "box"},
+                                         {FilterKind::tent, "tent"},
+                                         {FilterKind::gaussian, "gaussian"},
+                                         {FilterKind::mitchell, "mitchell"},
+                                         {FilterKind::lanczos, "lanczos"}});
+template <>
+inline constexpr auto enum_names<RunEnd> =
+    std::to_array<EnumName<RunEnd>>({{RunEnd::samples, "samples"},
+                                     {RunEnd::time_limit, "time_limit"},
+                                     {RunEnd::target_error, "target_error"},
+                                     {RunEnd::interrupted, "interrupted"}});
 template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});

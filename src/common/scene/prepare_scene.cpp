@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/scene/prepare_camera.h"
+#include "common/scene/prepare_filter.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
@@ -35,6 +36,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   prepare_materials(scene);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
+  prepare_filter(scene, filter_of(options, scene));
   if (has_primitives_only(scene)) {
     prepare_primitives_only(scene, options);
   } else {
@@ -46,6 +48,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   const auto count = [](const auto& values) { return static_cast<std::uint32_t>(values.size()); };
   Scene view;
   view.camera = make_camera(scene.camera, width, height);
+  view.filter = scene.filter;
   view.sky = scene.sky;
   view.sun = scene.sun;
   view.sun.light = scene.light_list.sun;

@@ -12,22 +12,25 @@
 #include "common/light/sun.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
+#include "common/sampling/pixel_filter.h"
 #include "common/scene/camera.h"
 
 namespace pt {
 
 struct Scene {
   Camera camera;
+  PixelFilter filter;
   Sky sky;
   Sun sun;  ///< Lighting::full
   Primitives primitives;
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;
-  const Parameter* parameters = nullptr;          ///< see Material
-  const Emission* emissions = nullptr;            ///< of those that shine
-  const std::uint32_t* material_of = nullptr;     ///< [primitive]
-  const std::uint32_t* lights = nullptr;          ///< primitives that emit (Lighting::emitters)
-  const std::uint32_t* light_emission = nullptr;  ///< what they do
+  const Parameter* parameters = nullptr;             ///< see Material
+  const Emission* emissions = nullptr;               ///< of those that shine
+  const std::uint32_t* material_of = nullptr;        ///< [primitive]
+  const std::uint32_t* primitive_numbers = nullptr;  ///< [primitive], as the scene's maker had it
+  const std::uint32_t* lights = nullptr;             ///< primitives that emit (Lighting::emitters)
+  const std::uint32_t* light_emission = nullptr;     ///< what they do
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;

@@ -13,10 +13,12 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.primitives.spheres, scene.spheres, "scene");
   function(view.primitives.scan, scene.scan_spheres, "scene");
   function(view.primitives.quads, scene.quads, "scene");
+  function(view.filter.quantiles, scene.filter_quantiles, "scene");
   function(view.materials, scene.material_records, "scene");
   function(view.parameters, scene.parameters, "scene");
   function(view.emissions, scene.emissions, "scene");
   function(view.material_of, scene.material_of, "scene");
+  function(view.primitive_numbers, scene.primitive_numbers, "scene");
   function(view.lights, scene.lights, "scene");
   function(view.light_emission, scene.light_emission, "scene");
   function(view.bvh_nodes, scene.bvh_nodes, "acceleration structure");

@@ -96,6 +96,25 @@ PT_HD void set_derivatives(const Scene& scene, const Triangle& triangle, const A
   surface.dp_dv = combine(-uv2.x, uv1.x);
 }
 
+/// Where a ray in the triangle's space, which hit it, meets it.
+PT_HD Vec3 barycentric_at(const Ray& local, const Triangle& triangle) {
+  const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
+                                                triangle.v0, triangle.v1, triangle.v2);
+  return {1.0f - inside.b1 - inside.b2, inside.b1, inside.b2};
+}
+
+/// Where a ray that hit the triangle lies in textures, whether its material has one or not.
+template <class Traits>
+PT_HD Vec2 triangle_uv(const Scene& scene, const Ray& ray, const Hit& hit,
+                       const Triangle& triangle) {
+  const Ray local = is_placed<Traits>(scene)
+                        ? object_ray(load_wide(&scene.triangles.instances[hit.instance]), ray)
+                        : ray;
+  const Vec3 b = barycentric_at(local, triangle);
+  const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
+  return texture_coordinates(scene, triangle.id, has_uvs, b);
+}
+
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
 /// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled, and
 /// what the intersection of the ray that leaves may round: on an axis-parallel plane through 0 the
@@ -111,9 +130,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
     instance = load_wide(&scene.triangles.instances[hit.instance]);
     local = object_ray(instance, ray);
   }
-  const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
-                                                triangle.v0, triangle.v1, triangle.v2);
-  const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
+  const Vec3 b = barycentric_at(local, triangle);
   Vec3 position = weighted_sum(b, triangle.v0, triangle.v1, triangle.v2);
   Vec3 extent = weighted_sum(glm::abs(b), glm::abs(triangle.v0), glm::abs(triangle.v1),
                              glm::abs(triangle.v2));
