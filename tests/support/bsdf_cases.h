@@ -43,6 +43,80 @@ inline std::vector<BsdfCase> bsdf_cases<Dielectric>() {
           {"nothing", make_dielectric(white_case, 1)}};
 }
 
+/// Copper, and a mirror of all colours as Mitsuba's "none".
+template <>
+inline std::vector<BsdfCase> bsdf_cases<Conductor>() {
+  const Color eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), none(0.0f);
+  const auto conductor = [](const Color& tint, const Color& e, const Color& kappa, float ax,
+                            float ay, int is_beckmann) {
+    return describe_all<Conductor>(tint, e, kappa, ax, ay, is_beckmann);
+  };
+  return {{"smooth copper", conductor(coloured_case, eta, k, 0, 0, 0)},
+          {"GGX 0.02, white", conductor(white_case, none, white_case, 0.02f, 0.02f, 0)},
+          {"GGX copper 0.3", conductor(white_case, eta, k, 0.3f, 0.3f, 0)},
+          {"GGX copper 0.05, 0.6", conductor(coloured_case, eta, k, 0.05f, 0.6f, 0)},
+          {"GGX 1, white", conductor(white_case, none, white_case, 1, 1, 0)},
+          {"Beckmann 0.02, white", conductor(white_case, none, white_case, 0.02f, 0.02f, 1)},
+          {"Beckmann copper 0.5, 0.1", conductor(white_case, eta, k, 0.5f, 0.1f, 1)},
+          {"Beckmann 1, white", conductor(white_case, none, white_case, 1, 1, 1)}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<RoughDielectric>() {
+  const auto glass = [](float eta, float ax, float ay, int is_beckmann) {
+    return describe_all<RoughDielectric>(white_case, white_case, eta, ax, ay, is_beckmann);
+  };
+  return {
+      {"smooth glass of two tints",
+       describe_all<RoughDielectric>(coloured_case, white_case, 1.5f, 0, 0, 0), false},
+      {"GGX glass 0.1", glass(1.5f, 0.1f, 0.1f, 0), false},
+      {"GGX glass 0.5, 0.2", glass(1.33f, 0.5f, 0.2f, 0), false},
+      {"GGX diamond 1", glass(2.4f, 1, 1, 0), false},
+      {"GGX air in glass 0.3", glass(1 / 1.5f, 0.3f, 0.3f, 0), false},
+      {"Beckmann glass 0.15", glass(1.5f, 0.15f, 0.15f, 1), false},
+      {"Beckmann glass of two tints 0.4, 0.7",
+       describe_all<RoughDielectric>(coloured_case, Color(0.9f, 0.3f, 0.6f), 1.5f, 0.4f, 0.7f, 1),
+       false}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<ThinDielectric>() {
+  return {{"pane", describe_all<ThinDielectric>(white_case, white_case, 1.5f)},
+          {"stained pane", describe_all<ThinDielectric>(white_case, coloured_case, 1.5f)},
+          {"pane of nothing", describe_all<ThinDielectric>(white_case, white_case, 1)}};
+}
+
+/// Base colour, roughness, metallic, transmission, eta, anisotropic, specular tint, sheen and its
+/// tint, flatness, coat and its gloss. It does not quite conserve energy (Burley 2012).
+template <>
+inline std::vector<BsdfCase> bsdf_cases<Principled>() {
+  const auto all = [](const auto&... parameters) {
+    return describe_all<Principled>(parameters...);
+  };
+  const Color c = coloured_case;
+  return {{"principled, all 0", all(c, 0, 0, 0, 1.5f)},
+          {"principled", all(c, 0.5f, 0, 0, 1.5f)},
+          {"principled metal", all(c, 0.4f, 1, 0, 1.5f, 0.8f)},
+          {"principled glass", all(c, 0.5f, 0, 1, 1.5f), false},
+          {"principled half glass",
+           all(c, 0.6f, 0.3f, 0.5f, 1.33f, 0.5f, 0.4f, 0.3f, 0.7f, 0.5f, 0.8f, 0.5f), false},
+          {"principled cloth", all(c, 1, 0, 0, 1.5f, 0, 0, 1, 1, 1)},
+          {"principled paint", all(c, 0.6f, 0.2f, 0, 1.5f, 0, 1, 0, 0, 0, 1, 0.2f)}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<PrincipledThin>() {
+  const auto all = [](const auto&... parameters) {
+    return describe_all<PrincipledThin>(parameters...);
+  };
+  const Color c = coloured_case;
+  return {{"thin principled", all(c, 0.5f, 0, 1.5f)},
+          {"thin principled leaf", all(c, 0.5f, 0, 1.5f, 0, 0, 0, 0, 0.3f, 1)},
+          {"thin principled pane", all(c, 0.4f, 1, 1.5f), false},
+          {"thin principled, half of all",
+           all(c, 0.6f, 0.5f, 1.4f, 0.7f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f), false}};
+}
+
 inline std::vector<BsdfCase> all_bsdf_cases() {
   std::vector<BsdfCase> all;
   for_each_type(Bsdfs{}, [&](auto type) {

@@ -1,16 +1,22 @@
 // Materials: the closed list of BSDFs, a record that names one, and its dispatch.
 #pragma once
 
+#include "common/material/conductor.h"
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/principled.h"
+#include "common/material/principled_thin.h"
+#include "common/material/rough_dielectric.h"
+#include "common/material/thin_dielectric.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, Conductor, RoughDielectric, ThinDielectric,
+                       Principled, PrincipledThin>;
 
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
@@ -25,6 +31,17 @@ struct alignas(16) Parameter {
 /// Nothing shines.
 inline constexpr std::uint32_t no_emission = 0xffffffffu;
 
+/// What a material does that is no BSDF itself but is made of other materials: see
+/// resolve_material. Its first parameter is what it needs.
+enum class MaterialNode : std::uint8_t {
+  none,        ///< it is a BSDF
+  two_sided,   ///< one material on the side of the normal, another on the other side
+  blend,       ///< of the first material and, by a weight, of the second
+  normal_map,  ///< a texture turns the normal: 2 x - 1 along tangent, their cross product, normal
+  gltf_normal_map,  ///< likewise; the second axis goes where v grows, and it has a scale
+  bump_map          ///< a texture of heights, times a scale, turns the normal
+};
+
 /// 16 bytes: one load. Its first parameter, which nearly all BSDFs have, has the material's own
 /// number in the scene's pool, so that it can be read beside this record; the others follow behind
 /// those of all materials.
@@ -32,11 +49,17 @@ struct alignas(16) Material {
   static constexpr std::uint8_t one_sided = 1;  ///< black when seen from behind
   static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): lights are not asked
   static constexpr std::uint8_t textured = 4;   ///< some parameter, or the emission
+  static constexpr std::uint8_t tangents = 8;   ///< needs a tangent along which u grows
+  static constexpr std::uint8_t nested = 16;    ///< no BSDF, but a MaterialNode
 
   MaterialKind kind = kind_of<Diffuse>;
   std::uint8_t flags = 0;
-  std::uint32_t parameters = 0;          ///< where the others begin in the pool
+  MaterialNode node = MaterialNode::none;
+  std::uint32_t parameters = 0;          ///< where the others begin in the pool; nested: `first`
   std::uint32_t emission = no_emission;  ///< which of the scene's Emissions
+  std::uint32_t second = 0;              ///< nested: a material
+
+  PT_HD std::uint32_t first() const { return parameters; }  ///< nested: a material
 
   PT_HD bool is(std::uint8_t flag) const { return (flags & flag) != 0; }
 };

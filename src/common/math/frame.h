@@ -27,4 +27,13 @@ PT_HD Frame make_frame(const Vec3& n) {
           n};
 }
 
+/// The frame whose tangent is the part of `dp_du` across the normal; any, where there is none.
+PT_HD Frame make_frame(const Vec3& n, const Vec3& dp_du) {
+  const Vec3 across = add_scaled(dp_du, -dot(n, dp_du), n);
+  const float length2 = dot(across, across);
+  if (!(length2 > 1e-12f * dot(dp_du, dp_du))) return make_frame(n);
+  const Vec3 tangent = normalize(across);
+  return {tangent, cross_rounded(n, tangent), n};
+}
+
 }  // namespace pt

@@ -4,27 +4,39 @@
 
 #include "common/light/emission.h"
 #include "common/material/material.h"
+#include "common/material/opacity.h"
 
 namespace pt {
 
-inline constexpr int parameters_max = 8;  ///< of one material
+inline constexpr int parameters_max = 12;  ///< of one material
 
 struct MaterialDescription {
   MaterialKind kind = kind_of<Diffuse>;
   bool one_sided = false;  ///< black when seen from behind
   Parameter parameters[parameters_max] = {{Color(0.5f)}};
   Emission emission;  ///< on the side to which the normal points
+  Opacity opacity;    ///< of the whole, whatever it is made of
+  MaterialNode node = MaterialNode::none;
+  std::uint32_t children[2] = {};  ///< of a node: earlier materials of the scene
 
   // What a BSDF makes itself of, without textures.
   PT_HD const Color& color(int i) const { return parameters[i].value; }
   PT_HD float scalar(int i) const { return parameters[i].value.x; }
 
   bool is_textured() const {
-    bool any = emission.texture != no_texture;
+    bool any = emission.texture != no_texture || !opacity.is_opaque();
     for (const Parameter& p : parameters) any = any || p.texture != no_texture;
     return any;
   }
 };
+
+/// Whether the BSDF depends on the direction in which u grows.
+inline bool uses_tangent(const MaterialDescription& material) {
+  return visit(material.kind, material, [](const auto& bsdf) {
+    if constexpr (requires { bsdf.uses_tangent; }) return bsdf.uses_tangent;
+    return false;
+  });
+}
 
 /// Of a BSDF whose parameters are a colour and, perhaps, a number.
 template <class Bsdf>
@@ -33,6 +45,17 @@ PT_HD MaterialDescription describe(const Color& color, float number = 0.0f) {
   m.kind = kind_of<Bsdf>;
   m.parameters[0].value = color;
   m.parameters[1].value = Color(number);
+  return m;
+}
+
+/// Of a BSDF with these parameters; the others are 0.
+template <class Bsdf, class... Parameters>
+PT_HD MaterialDescription describe_all(const Parameters&... parameters) {
+  static_assert(sizeof...(Parameters) <= parameters_max);
+  MaterialDescription m;
+  m.kind = kind_of<Bsdf>;
+  int i = 0;
+  ((m.parameters[i++].value = Color(parameters)), ...);
   return m;
 }
 
@@ -46,6 +69,28 @@ PT_HD MaterialDescription make_metal(const Color& albedo, float fuzz) {
 }
 PT_HD MaterialDescription make_dielectric(const Color& tint, float eta) {
   return describe<Dielectric>(tint, eta);
+}
+
+/// A node over materials with these numbers; `parameter` is its weight or its map.
+inline MaterialDescription make_node(MaterialNode node, const Parameter& parameter,
+                                     std::uint32_t first, std::uint32_t second) {
+  MaterialDescription m;
+  m.node = node;
+  m.parameters[0] = parameter;
+  m.children[0] = first, m.children[1] = second;
+  return m;
+}
+inline MaterialDescription make_two_sided(std::uint32_t front, std::uint32_t back) {
+  return make_node(MaterialNode::two_sided, {}, front, back);
+}
+/// `weight` is that of the second material.
+inline MaterialDescription make_blend(const Parameter& weight, std::uint32_t first,
+                                      std::uint32_t second) {
+  return make_node(MaterialNode::blend, weight, first, second);
+}
+inline MaterialDescription make_mapped(MaterialNode map, const Parameter& texture,
+                                       std::uint32_t inside) {
+  return make_node(map, texture, inside, inside);
 }
 
 }  // namespace pt

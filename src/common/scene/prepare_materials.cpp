@@ -1,5 +1,8 @@
 #include "common/scene/prepare_materials.h"
 
+#include <fmt/format.h>
+
+#include "common/error.h"
 #include "common/scene/weigh_textures.h"
 
 namespace pt {
@@ -16,15 +19,41 @@ bool is_delta(const MaterialDescription& material) {
 
 std::uint32_t size32(const auto& values) { return static_cast<std::uint32_t>(values.size()); }
 
-Material pack(const MaterialDescription& source, SceneData& scene) {
+/// Its children are packed already. It needs of a surface what they need.
+void pack_node(const MaterialDescription& source, const SceneData& scene, Material& material) {
+  constexpr std::uint8_t inherited = Material::textured | Material::tangents;
+  material.flags = static_cast<std::uint8_t>(material.flags | Material::nested);
+  if (source.node >= MaterialNode::normal_map) material.flags |= Material::tangents;
+  for (const std::uint32_t child : source.children) {
+    if (child >= scene.material_records.size()) {
+      throw Error(
+          fmt::format("scene '{}': material {} is made of material {}, expected earlier ones",
+                      scene.name, scene.material_records.size(), child));
+    }
+    material.flags |= scene.material_records[child].flags & inherited;
+  }
+  material.node = source.node;
+  material.parameters = source.children[0], material.second = source.children[1];
+}
+
+void pack_bsdf(const MaterialDescription& source, SceneData& scene, Material& material) {
   const Parameter* end = source.parameters + parameter_count(source);
-  Material material;
   material.kind = source.kind;
-  material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
-                                             (is_delta(source) ? Material::delta : 0) |
-                                             (source.is_textured() ? Material::textured : 0));
+  material.flags |= static_cast<std::uint8_t>((is_delta(source) ? Material::delta : 0) |
+                                              (uses_tangent(source) ? Material::tangents : 0));
   material.parameters = size32(scene.parameters);
   scene.parameters.insert(scene.parameters.end(), source.parameters + 1, end);
+}
+
+Material pack(const MaterialDescription& source, SceneData& scene) {
+  Material material;
+  material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
+                                             (source.is_textured() ? Material::textured : 0));
+  if (source.node == MaterialNode::none) {
+    pack_bsdf(source, scene, material);
+  } else {
+    pack_node(source, scene, material);
+  }
   if (!is_black(source.emission.radiance)) {
     material.emission = size32(scene.emissions);
     scene.emissions.push_back(source.emission);

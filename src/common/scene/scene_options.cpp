@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/error.h"
 #include "common/render/option_names.h"
 
@@ -49,11 +51,13 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
+bool is_nested(const MaterialDescription& material) { return material.node != MaterialNode::none; }
+
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty();
+         scene.textures.empty() && std::ranges::none_of(scene.materials, is_nested);
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {

@@ -28,6 +28,9 @@ PT_HD float srgb_to_linear(std::uint32_t byte) {
   return fused_multiply_add(sum, c, 0.0008551938226446509f);
 }
 
+/// The one number of a texture where one is asked for: its luminance, as Mitsuba has it.
+PT_HD float grey_of(const Color& c) { return dot(c, Vec3(0.212671f, 0.715160f, 0.072169f)); }
+
 /// A coordinate brought into [0, 1]; one that is not a number becomes 0.
 PT_HD float wrap_coordinate(float t, TextureWrap wrap) {
   if (wrap == TextureWrap::repeat) t = t - floorf(t);

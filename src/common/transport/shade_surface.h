@@ -7,6 +7,7 @@
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
 #include "common/transport/path_limits.h"
+#include "common/transport/resolve_material.h"
 #include "common/transport/sample_light.h"
 
 namespace pt {
@@ -63,6 +64,13 @@ PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const V
                                   path.beta * value.f * light.radiance * (weight / light.pdf));
 }
 
+/// Around the shading normal, along dp_du where the material needs that.
+template <class Traits>
+PT_HD Frame shading_frame(const Vec3& normal, const Vec3& dp_du) {
+  if constexpr (Traits::lighting == Lighting::full) return make_frame(normal, dp_du);
+  return make_frame(normal);
+}
+
 /// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
 /// that name (random.h); `light` is not read in a scene without lights. Updates the path's
 /// throughput, density and counts. A path ends when it is absorbed, has traced all of its rays or
@@ -70,14 +78,16 @@ PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const V
 template <class Traits>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                                const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
-  constexpr bool has_lights = Traits::has_lights;
-  const Surface surface = surface_at<Traits>(scene, ray, hit);
+  constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
+  Surface surface = surface_at<Traits>(scene, ray, hit);
   Scattering result;
   if constexpr (has_lights) {
     result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface);
   }
   if (path.rays >= limits.max_depth) return result;
-  if (Traits::lighting == Lighting::full && surface.material.is(Material::one_sided) &&
+  float choice = scatter.w;
+  if constexpr (full) resolve_material(scene, -ray.direction, choice, surface);
+  if (full && surface.material.is(Material::one_sided) &&
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
     return result;
   }
@@ -87,7 +97,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const Vec3 from = spawn_origin(surface.point, -ray.direction);
   IncidentLight incident;
   if (asks) incident = sample_light<Traits>(scene, from, light);
-  const Frame frame = make_frame(surface.shading_normal);
+  const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);
   BsdfSample next;
   BsdfValue value;
   visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
@@ -95,16 +105,23 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
     next = bsdf.sample(wo, Vec3(scatter));
   });
+  // The same frame, made anew where registers are scarce.
+  const Vec3 normal = has_lights ? anew(surface.shading_normal) : surface.shading_normal;
+  const Vec3 wi =
+      (has_lights ? shading_frame<Traits>(normal, surface.dp_du) : frame).to_world(next.wi);
+  if constexpr (full) {
+    if (asks)
+      value.f *= map_visibility(surface, incident.wi, dot(incident.wi, surface.shading_normal));
+    next.weight *= map_visibility(surface, wi, next.wi.z);
+  }
   if constexpr (has_lights) {
     path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
     result.shadow = ask_light<Traits>(path, surface, from, incident, value);
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w, next.outside);
+  if (limits.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
   result.alive = !is_black(path.beta);
-  // The same frame, made anew where registers are scarce.
-  const Vec3 wi = (has_lights ? make_frame(anew(surface.shading_normal)) : frame).to_world(next.wi);
   result.ray = spawn_ray(surface.point, normalize(wi));
   return result;
 }

@@ -14,12 +14,23 @@ struct Surface {
   std::uint32_t material_number;
   Material material;
   Vec2 uv = Vec2(0.0f);  ///< where the material is textured
+  // Lighting::full. Derivatives of the place where the material needs tangents; 0: there are none.
+  Vec3 dp_du = Vec3(0.0f), dp_dv = Vec3(0.0f);
+  Vec3 base_normal = Vec3(0.0f);  ///< the shading normal before a map turned it
+  float map_roughness2 = -1.0f;   ///< see map_visibility; below 0: no map
 };
 
 /// c, multiplied by a texture of this number where there is one.
 PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, const Vec2& uv) {
   if (texture == no_texture) return c;
   return c * sample_texture(scene.textures[texture], scene.texels, uv);
+}
+
+/// The same, not inlined: BSDFs have dozens of parameters together, and a lookup's code is long.
+template <class Traits>
+PT_NOINLINE Color textured_apart(const Texture* texture, const std::byte* texels, float r, float g,
+                                 float b, float u, float v) {
+  return Color(r, g, b) * sample_texture(*texture, texels, {u, v});
 }
 
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
@@ -38,7 +49,10 @@ class SurfaceParameters {
 
  private:
   PT_HD Color read(int i) const {
-    return value_of(load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]));
+    const Parameter p = load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]);
+    if (Traits::lighting != Lighting::full || p.texture == no_texture) return p.value;
+    return textured_apart<Traits>(&scene_.textures[p.texture], scene_.texels, p.value.x, p.value.y,
+                                  p.value.z, surface_.uv.x, surface_.uv.y);
   }
 
   PT_HD Color value_of(const Parameter& p) const {
@@ -62,6 +76,24 @@ PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bo
                                const Vec3& barycentric) {
   return has_uvs ? scene.attributes.uv(triangle_id, barycentric)
                  : Vec2(barycentric.y, barycentric.z);
+}
+
+/// Sets dp_du and dp_dv of a triangle with texture coordinates; v grows as ours does, upwards.
+PT_HD void set_derivatives(const Scene& scene, const Triangle& triangle, const Affine* to_world,
+                           Surface& surface) {
+  const TriangleIndices t = scene.attributes.triangles[triangle.id];
+  const Vec2* uvs = scene.attributes.uvs;
+  const Vec2 uv1 = uvs[t.v[1]] - uvs[t.v[0]], uv2 = uvs[t.v[2]] - uvs[t.v[0]];
+  const float determinant = difference_of_products(uv1.x, uv2.y, uv1.y, uv2.x);
+  if (determinant == 0.0f) return;
+  const float scale = 1.0f / determinant;
+  const Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
+  const auto combine = [&](float a, float b) {
+    const Vec3 sum = weighted_sum(scale * Vec3(a, b, 0.0f), edge1, edge2, Vec3(0.0f));
+    return to_world != nullptr ? to_world->vector(sum) : sum;
+  };
+  surface.dp_du = combine(uv2.y, -uv1.y);
+  surface.dp_dv = combine(-uv2.x, uv1.x);
 }
 
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
@@ -110,6 +142,13 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if (surface.material.is(Material::textured)) {
     const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
     surface.uv = texture_coordinates(scene, triangle.id, has_uvs, b);
+  }
+  if constexpr (Traits::lighting == Lighting::full) {
+    if (surface.material.is(Material::tangents) &&
+        (triangle.attributes & TriangleAttributes::uvs) != 0) {
+      set_derivatives(scene, triangle, placed ? &scene.to_world[instance.number] : nullptr,
+                      surface);
+    }
   }
   return surface;
 }

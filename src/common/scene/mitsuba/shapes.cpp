@@ -50,8 +50,12 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
   }
 }
 
-bool is_textured(const SceneData& scene, std::uint32_t material) {
-  return scene.materials[material].is_textured();
+/// Whether shading asks where on the surface a point lies.
+bool is_textured(const SceneData& scene, std::uint32_t number) {
+  const MaterialDescription& material = scene.materials[number];
+  if (material.is_textured() || uses_tangent(material)) return true;
+  return material.node != MaterialNode::none &&
+         (is_textured(scene, material.children[0]) || is_textured(scene, material.children[1]));
 }
 
 }  // namespace

@@ -22,6 +22,10 @@ Surface read_rough_conductor(Context& context, const Object& bsdf);
 Surface read_principled(Context& context, const Object& bsdf);
 Surface read_two_sided(Context& context, const Object& bsdf);
 Surface read_mask(Context& context, const Object& bsdf);
+Surface read_normal_map(Context& context, const Object& bsdf);
+Surface read_bump_map(Context& context, const Object& bsdf);
+Surface read_blend(Context& context, const Object& bsdf);
+Surface read_mixture(Context& context, const Object& bsdf);
 Surface read_wrapper(Context& context, const Object& bsdf);
 Surface read_null(Context& context, const Object& bsdf);
 

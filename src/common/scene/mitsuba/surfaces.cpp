@@ -28,13 +28,13 @@ const std::map<std::string_view, Reader>& readers() {
       {"twosided", read_two_sided},
       {"mask", read_mask},
       {"opacity", read_mask},
-      {"bumpmap", read_wrapper},
-      {"bump", read_wrapper},
-      {"normalmap", read_wrapper},
+      {"bumpmap", read_bump_map},
+      {"bump", read_bump_map},
+      {"normalmap", read_normal_map},
       {"coating", read_wrapper},
       {"roughcoating", read_wrapper},
-      {"blendbsdf", read_wrapper},
-      {"mixturebsdf", read_wrapper},
+      {"blendbsdf", read_blend},
+      {"mixturebsdf", read_mixture},
       {"null", read_null},
   };
   return table;

@@ -94,8 +94,6 @@ ColorTexture read_bitmap(Context& context, const Object& object) {
   }
 }
 
-ColorTexture read_texture(Context& context, const Object& object, Quantity quantity);
-
 ColorTexture read_checkerboard(Context& context, const Object& object) {
   Texture texture;
   texture.kind = TextureKind::checkerboard;
@@ -118,6 +116,8 @@ ColorTexture read_scale(Context& context, const Object& object, Quantity quantit
   return result;
 }
 
+}  // namespace
+
 ColorTexture read_texture(Context& context, const Object& object, Quantity quantity) {
   if (object.tag() == "spectrum") {
     return {read_spectrum_object(context, object, quantity), no_texture};
@@ -136,8 +136,6 @@ ColorTexture read_texture(Context& context, const Object& object, Quantity quant
                     fmt::format("texture '{}' is not supported: grey {} is used", type, grey.x));
   return {grey, no_texture};
 }
-
-}  // namespace
 
 ColorTexture read_color_texture(Context& context, const Object& owner, std::string_view name,
                                 const Color& fallback, Quantity quantity) {

@@ -11,6 +11,9 @@ struct ColorTexture {
   std::uint32_t texture = no_texture;
 };
 
+/// A <texture>, or a spectrum in its place.
+ColorTexture read_texture(Context& context, const Object& object, Quantity quantity);
+
 /// The property or nested texture `name` of `owner`, or `fallback` where it has none.
 ColorTexture read_color_texture(Context& context, const Object& owner, std::string_view name,
                                 const Color& fallback, Quantity quantity = Quantity::reflectance);

@@ -1,0 +1,26 @@
+// How much of a surface is there: what a mask lets through passes as if nothing were.
+#pragma once
+
+#include "common/texture/texture.h"
+
+namespace pt {
+
+/// 16 bytes: one load. offset + scale * the texture's luminance, at most 1, is the probability that
+/// a ray meets the surface; with a cutoff it meets what is at least that.
+struct alignas(16) Opacity {
+  float offset = 1.0f;
+  float scale = 0.0f;
+  std::uint32_t texture = no_texture;
+  float cutoff = 0.0f;  ///< 0: none
+
+  PT_HD bool is_opaque() const { return texture == no_texture && offset >= 1.0f; }
+  PT_HD bool is_constant() const { return texture == no_texture; }
+};
+
+inline Opacity constant_opacity(float value) { return {value, 0.0f, no_texture, 0.0f}; }
+inline Opacity textured_opacity(float scale, std::uint32_t texture, float cutoff = 0.0f) {
+  return texture == no_texture ? Opacity{scale, 0.0f, no_texture, cutoff}
+                               : Opacity{0.0f, scale, texture, cutoff};
+}
+
+}  // namespace pt
