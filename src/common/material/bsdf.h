@@ -8,6 +8,7 @@
 //   static constexpr bool uses_tangent     where it is true, x is the direction in which the
 //   surface's
 //                                          u grows; else, or without it, any
+//   static constexpr std::uint8_t lobes    of Lobe: all that sample() may return
 //   bool is_delta()                        whether it scatters into discrete directions only
 //   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
 //   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once

@@ -35,7 +35,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   prepare_materials(scene);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
-  if (has_primitives_only(scene)) {
+  if (is_lean(scene, options)) {
     prepare_primitives_only(scene, options);
   } else {
     prepare_triangles(scene, options);
