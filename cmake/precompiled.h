@@ -1,5 +1,5 @@
-// What most files include, compiled once: a third of the time of a first build. No file may rely on
-// it: each includes what it uses (PTEXP_PRECOMPILE=OFF shows it).
+// What most files include, compiled once: about a third of a first build's time. No file may rely
+// on it: each includes what it uses (PTEXP_PRECOMPILE=OFF shows it).
 #pragma once
 
 #include <fmt/format.h>
