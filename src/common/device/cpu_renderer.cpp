@@ -67,7 +67,6 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
-  scene_.mask_seed = mask_seed(options.seed);
   const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
@@ -148,9 +147,9 @@ void CpuRenderer::accumulate(const SampleBuffer& batch) {
     accumulate_with(batch, [&](std::uint32_t i) { return RadianceSum(film.pixels, i); });
     return;
   }
-  const PhiloxSource source{options_.seed};
+  const SamplerSource source = sampler_source_of(options_);
   accumulate_with(batch, [&](std::uint32_t i) {
-    return PixelPlanes<PhiloxSource>(film, batch, scene_.filter, source, i);
+    return PixelPlanes<SamplerSource>(film, batch, scene_.filter, source, i);
   });
 }
 
@@ -171,8 +170,8 @@ void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum)
 
 void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
   const FilmView film = film_view();
-  const PhiloxSource source{options_.seed};
-  dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
+  const SamplerSource source = sampler_source_of(options_);
+  dispatch_traits(CpuSceneKinds{}, traits_, IntegratorKind::path, [&](auto traits) {
     tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
       pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
     });

@@ -206,7 +206,7 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
 void CudaRenderer::accumulate(const SampleBuffer& batch) {
   const int block = options_.stage_block[static_cast<int>(StageId::accumulate)];
   const int grid = (batch.pixel_count.divisor() + block - 1) / block;
-  const PhiloxSource source{options_.seed};
+  const SamplerSource source = sampler_source_of(options_);
   if (film_.features != nullptr) {
     constexpr int feature_block = 128;
     launch("features", feature_kernel(traits_),

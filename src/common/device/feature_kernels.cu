@@ -7,7 +7,7 @@ namespace {
 template <class Traits>
 __global__ void find_features(const __grid_constant__ Scene scene,
                               const __grid_constant__ FilmView film,
-                              const __grid_constant__ SampleBuffer batch, PhiloxSource source,
+                              const __grid_constant__ SampleBuffer batch, SamplerSource source,
                               StageClock* clock) {
   stamp_first_thread(clock, StageId::features);
   const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
@@ -20,13 +20,13 @@ __global__ void find_features(const __grid_constant__ Scene scene,
 FeatureKernel feature_kernel(const SceneTraits& traits) {
   // Features know no light: scenes of spheres and quads need no kernel for each kind of lighting.
   const bool has_textures = traits.geometry != Geometry::spheres_and_quads;
-  const SceneTraits needed = {traits.accel, traits.geometry,
-                              has_textures ? traits.lighting : Lighting::sky};
+  SceneTraits needed = traits;
+  if (!has_textures) needed.lighting = Lighting::sky;
   using SphereKinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
                                Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(decltype(concatenate(SphereKinds{}, TriangleSceneKinds{})){}, needed,
-                  [&](auto kind) { kernel = find_features<decltype(kind)>; });
+                  IntegratorKind::path, [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
 }
 

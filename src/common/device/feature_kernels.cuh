@@ -9,7 +9,7 @@
 
 namespace pt {
 
-using FeatureKernel = void (*)(Scene scene, FilmView film, SampleBuffer batch, PhiloxSource source,
+using FeatureKernel = void (*)(Scene scene, FilmView film, SampleBuffer batch, SamplerSource source,
                                StageClock* clock);
 
 /// The kernel for a scene. Throws Error where there is none.

@@ -62,11 +62,11 @@ __global__ void __launch_bounds__(1024)
 __global__ void __launch_bounds__(1024)
     accumulate_planes(const __grid_constant__ FilmView film,
                       const __grid_constant__ SampleBuffer batch,
-                      const __grid_constant__ PixelFilter filter, PhiloxSource source,
+                      const __grid_constant__ PixelFilter filter, SamplerSource source,
                       PathTally* tally, StageClock* clock) {
   stamp_first_thread(clock, StageId::accumulate);
   accumulate_block(batch, tally, [&](std::uint32_t i) {
-    return PixelPlanes<PhiloxSource>(film, batch, filter, source, i);
+    return PixelPlanes<SamplerSource>(film, batch, filter, source, i);
   });
 }
 

@@ -22,7 +22,7 @@ __global__ void accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* 
 /// The same with all that a film may sum (film_planes.h).
 __global__ void accumulate_planes(const __grid_constant__ FilmView film,
                                   const __grid_constant__ SampleBuffer batch,
-                                  const __grid_constant__ PixelFilter filter, PhiloxSource source,
+                                  const __grid_constant__ PixelFilter filter, SamplerSource source,
                                   PathTally* tally, StageClock* clock);
 
 /// The stage clock runs between these two, of one thread each.

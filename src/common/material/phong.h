@@ -13,7 +13,7 @@ struct Phong {
   static constexpr int parameter_count = 3;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
 
-  TwoLobes lobes;
+  TwoLobes two;
   float exponent;  ///< >= 0
 
   template <class Parameters>
@@ -24,7 +24,7 @@ struct Phong {
   PT_HD bool is_delta() const { return false; }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
-    const bool glossy = u.z < lobes.glossy_probability();
+    const bool glossy = u.z < two.glossy_probability();
     Vec3 wi = TwoLobes::sample_diffuse(wo, u);
     if (glossy) {
       const float cosine = power(1.0f - u.x, 1.0f / (exponent + 1.0f));
@@ -41,7 +41,7 @@ struct Phong {
     const float lobe = power(dot(mirrored(wo), wi), exponent) * (0.5f * inverse_pi);
     // (n + 1) normalises the density, (n + 2) the reflectance at normal incidence.
     const float factor = (exponent + 2.0f) / (exponent + 1.0f) * fabsf(wi.z);
-    return lobes.evaluate(wi, multiply_rounded(lobe, exponent + 1.0f), factor);
+    return two.evaluate(wi, multiply_rounded(lobe, exponent + 1.0f), factor);
   }
 
  private:

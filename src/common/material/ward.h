@@ -13,7 +13,7 @@ struct Ward {
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
-  TwoLobes lobes;
+  TwoLobes two;
   float alpha_x, alpha_y;  ///< roughness along x and y, above 0
 
   template <class Parameters>
@@ -26,7 +26,7 @@ struct Ward {
   PT_HD bool is_delta() const { return false; }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
-    const bool glossy = u.z < lobes.glossy_probability();
+    const bool glossy = u.z < two.glossy_probability();
     Vec3 wi = TwoLobes::sample_diffuse(wo, u);
     if (glossy) {  // the slopes of the half vector are normal distributed
       const float radius = sqrtf(-logf(1.0f - u.x));
@@ -49,7 +49,7 @@ struct Ward {
     const float pdf =
         tangent2 < 80.0f ? dot(h, h) * expf(-tangent2) / (2.0f * pi * alpha_x * alpha_y * z * z * z)
                          : 0.0f;
-    return lobes.evaluate(wi, pdf, 2.0f * fabsf(wi.z) / z);
+    return two.evaluate(wi, pdf, 2.0f * fabsf(wi.z) / z);
   }
 };
 

@@ -5,8 +5,7 @@
 #include "common/math/frame.h"
 #include "common/sampling/random.h"
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/intersect.h"
-#include "common/transport/surface.h"
+#include "common/transport/shade_surface.h"
 
 namespace pt {
 
@@ -32,9 +31,11 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, const Surface& su
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
     return Color(0.0f);
   }
-  const Vec3 wo = make_frame(surface.shading_normal).to_local(-ray.direction);
+  const Vec3 wo =
+      shading_frame<Traits>(surface.shading_normal, surface.dp_du).to_local(-ray.direction);
   Color albedo(0.0f);
-  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+  const SurfaceParameters<Traits> parameters(scene, surface);
+  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const BsdfSample sample = bsdf.sample(wo, u);
     albedo = sample.outside * sample.weight;
   });
@@ -43,17 +44,21 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, const Surface& su
 
 /// `u` as for the path's first scattering.
 template <class Traits>
-PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec3& u) {
+PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec4& u) {
   FirstHit first;
   if (hit.is_miss()) return first;
-  const Surface surface = surface_at<Traits>(scene, ray, hit);
+  Surface surface = surface_at<Traits>(scene, ray, hit);
+  first.material = surface.material_number;
+  float choice = u.w;
+  if constexpr (Traits::lighting == Lighting::full) {
+    resolve_material(scene, -ray.direction, choice, surface);
+  }
   first.distance = hit.t;
   first.position = surface.point.position;
   first.normal = surface.point.normal;
   first.shading_normal = surface.shading_normal;
   first.uv = surface.uv;
-  first.albedo = sampled_albedo<Traits>(scene, ray, surface, u);
-  first.material = surface.material_number;
+  first.albedo = sampled_albedo<Traits>(scene, ray, surface, Vec3(u));
   first.instance = 0;
   const std::uint32_t primitives = scene.primitives.count();
   if (hit.primitive < primitives) {
@@ -79,8 +84,9 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   const Vec4 u = random.draw(scatter_block(0));
   is_negative = scene.filter.is_negative(u.x, u.y);
   const Ray ray = generate_camera_path(scene, id.pixel, u);
-  const Hit hit = intersect_closest<Traits>(scene, ray);
-  return first_hit<Traits>(scene, ray, hit, Vec3(random.draw(scatter_block(1))));
+  const Hit hit =
+      intersect_closest<Traits>(scene, ray, next_ray_key(mask_key<Traits>(scene, id), 0));
+  return first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
 }
 
 }  // namespace pt
