@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/scene/prepare_filter.h"
+#include "common/scene/prepare_scene.h"
 #include "film_cases.h"
 
 namespace pt {

@@ -16,6 +16,7 @@
 #include "common/device/stage_clock.h"
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
+#include "common/render/random_source.h"
 #include "common/scene/scene_data.h"
 
 namespace pt {

@@ -5,6 +5,7 @@
 
 #include "common/device/stage_clock.h"
 #include "common/film/film_planes.h"
+#include "common/sampling/sampler_source.h"
 
 namespace pt {
 

@@ -328,7 +328,7 @@ const std::string daylight =
 TEST(MitsubaLight, sunsky) {
   const LoadedScene loaded =
       load_xml("<sensor type=\"perspective\"/><emitter type=\"sunsky\">" + daylight);
-  EXPECT_EQ(loaded.reports.size(), 0u);
+  EXPECT_EQ(loaded.warnings.size(), 0u);
   const EnvironmentData& data = loaded.scene.environment;
   const EnvironmentMap map = make_environment(data.width, data.height, data.pixels, data.to_world);
   const auto expect_sky = [&](const Vec3& direction, const Color& expected) {
