@@ -19,7 +19,7 @@ namespace {
 int execute(const RenderCommand& command) { return render_command(command); }
 
 int execute(const CompareCommand& command) {
-  return compare_command(command.a, command.b, command.tolerance);
+  return compare_command(command.a, command.b, command.tolerance, command.difference);
 }
 
 int execute(const TraceCommand& command) { return trace_command(command); }

@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+#include <vector>
+
 #include "common/error.h"
 #include "common/image/compare.h"
+#include "common/image/difference_image.h"
+#include "common/image/flip.h"
 #include "common/image/image_io.h"
 
 namespace pt {
@@ -18,19 +23,29 @@ ImageDifference compare_files(const std::string& a, const Image& image_a, const 
   }
 }
 
+double mean_of(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
 }  // namespace
 
-int compare_command(const std::string& a, const std::string& b, double tolerance) {
+int compare_command(const std::string& a, const std::string& b, double tolerance,
+                    const std::string& difference_file) {
   if (!(tolerance >= 0)) {
     throw Error(fmt::format("tolerance {} of the comparison: expected 0 or more", tolerance));
   }
+  if (!difference_file.empty()) check_image_path(difference_file);
   const Image image_a = read_image(a);
   const Image image_b = read_image(b);
   const ImageDifference difference = compare_files(a, image_a, b, image_b, tolerance);
+  const bool is_hdr = image_ending(a) == ".exr" || image_ending(b) == ".exr";
+  const std::vector<float> flip = is_hdr ? hdr_flip(image_a, image_b) : ldr_flip(image_a, image_b);
+  if (!difference_file.empty()) write_difference(difference_file, image_a, image_b, flip);
   // {} prints a double with the digits that reproduce it.
   fmt::print("size                   {}x{}\n", image_b.width, image_b.height);
   fmt::print("RMSE                   {}\n", difference.rmse);
   fmt::print("relMSE                 {}\n", difference.relative_mse);
+  fmt::print("{}               {:.6f}\n", is_hdr ? "HDR-FLIP" : "LDR-FLIP", mean_of(flip));
   fmt::print("largest difference     {}\n", difference.largest);
   fmt::print("differing pixels       {}\n", difference.differing_pixels);
   fmt::print("pixels past tolerance  {}\n", difference.pixels_past_tolerance);

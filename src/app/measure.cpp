@@ -16,7 +16,9 @@ std::string label(const Options& options, int index) {
 Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
                     const std::function<bool()>& stop) {
   const RenderHooks hooks{
-      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); }, stop};
+      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); },
+      stop,
+      {options.time_limit, options.target_error, {}}};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {
@@ -27,7 +29,7 @@ Measurement measure(Renderer& renderer, const Options& options, Progress& progre
     }
     progress.begin(label(options, i));
     last = renderer.render(hooks);
-    if (last.samples_done < options.spp) {
+    if (is_cut_short(last, options.spp)) {
       measurement = {{last}, true};
       break;
     }

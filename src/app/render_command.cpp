@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -93,6 +94,12 @@ void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Op
   apply("spp", defaults.spp, &Options::spp);
   apply("max-depth", defaults.max_depth, &Options::max_depth);
   apply("rr", defaults.rr_depth, &Options::rr_depth);
+  if (!options.crop) options.crop = defaults.crop;
+  if (!options.filter) options.filter = defaults.filter;
+  check_crop(options);
+  // A stop is asked to decide: the number of samples does only where it is given.
+  const bool has_stop = options.time_limit > 0 || options.target_error > 0;
+  if (has_stop && !given.contains("spp")) options.spp = std::numeric_limits<int>::max();
 }
 
 void say_interrupted(const Options& options, const Measurement& measurement, bool has_image) {

@@ -41,16 +41,17 @@ class MegakernelCpu : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
-        dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
-          timer_.time("megakernel", [&] {
-            divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
-              PathRange work(first, end, step);
-              trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
+      dispatch_traits(
+          KindsWith<Source, CpuSceneKinds>{}, traits_, options_.integrator, [&](auto traits) {
+            dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+              timer_.time("megakernel", [&] {
+                divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
+                  PathRange work(first, end, step);
+                  trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
+                });
+              });
             });
           });
-        });
-      });
     });
   }
 

@@ -28,7 +28,7 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   // Only where brute force scans the spheres do they lie elsewhere than in global memory.
   using Kinds = std::conditional_t<memory == SceneMemory::global, KindsWith<Source, SceneKinds>,
                                    BruteSphereKinds>;
-  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+  dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
     dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;

@@ -19,6 +19,7 @@ namespace pt {
 template <class Traits, Branching branching, class Source, class Work>
 PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
                        const PathLimits& limits, Work& work) {
+  using Integrator = typename Traits::Integrator;
   PathState path;
   bool working = work.next(path.number, true);
   PathId id = samples.id_of(path.number);
@@ -37,7 +38,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         const Scattering scattering =
             branching == Branching::reduced
                 ? shade_any<Traits>(scene, ray, hit, path, limits, u, light)
-                : shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
+                : Integrator::template surface<Traits>(scene, ray, hit, path, limits, u, light);
         radiance = add_rounded(radiance, scattering.emitted);
         if constexpr (Traits::has_lights) {
           if (!is_black(scattering.shadow.radiance) &&
@@ -54,8 +55,8 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
                                         next_ray_key(mask_key<Traits>(scene, id), path.rays));
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          radiance =
-              add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
+          radiance = add_rounded(
+              radiance, Integrator::template miss<Traits::lighting>(scene, ray.direction, path));
           ended = true;
         }
       }

@@ -34,6 +34,7 @@ struct PathPool {
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
+  Receiver* receiver = nullptr;           ///< only where a tree of lights asks for it
   // Only with compaction over tags:
   StageId* tag = nullptr;
   StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
@@ -46,7 +47,7 @@ struct PathPool {
 
   /// What a pool for these scenes has: `tags` for compaction over tags.
   struct Parts {
-    bool lights, instances, tags;
+    bool lights, instances, tags, receivers;
   };
 
   /// Sets each array that a pool of `slot_count` slots needs to allocate(T*{}, bytes of a T): the
@@ -58,6 +59,7 @@ struct PathPool {
     };
     make(origin, true), make(direction, true), make(throughput, true), make(hit, true);
     make(hit_instance, parts.instances);
+    make(receiver, parts.receivers);
     make(tag, parts.tags);
     make(shadow_tag, parts.tags && parts.lights);
     make(shadow_origin, parts.lights), make(shadow_direction, parts.lights);
@@ -100,6 +102,7 @@ struct PathPool {
     PathState path = load_path(slot, ray.direction);
     ray.origin = vec(o);
     path.bsdf_pdf = bits_to_float(o.w);
+    if (receiver != nullptr) path.receiver = receiver[slot];
     return path;
   }
 
@@ -112,6 +115,7 @@ struct PathPool {
     store_wide(&origin[slot], pack(ray.origin, float_to_bits(path.bsdf_pdf)));
     store_wide(&direction[slot], pack(ray.direction, path.number));
     store_wide(&throughput[slot], pack(path.beta, path.packed_rays()));
+    if (receiver != nullptr) receiver[slot] = path.receiver;
   }
 
   /// The path's number and rays alone.

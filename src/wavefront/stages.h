@@ -128,7 +128,7 @@ struct SortHits {
 };
 
 /// Of Lighting::full, or of the others, which differ only in whether lights have added to a sample.
-template <Lighting lighting>
+template <class Integrator, Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -142,7 +142,8 @@ struct ShadeMiss {
     PathState path = lighting == Lighting::full ? pool.load_path(slot, ray)
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
-    end_path(samples, path, shade_miss<lighting>(scene, ray.direction, path), has_lights);
+    end_path(samples, path, Integrator::template miss<lighting>(scene, ray.direction, path),
+             has_lights);
     return {free_slot};
   }
 };

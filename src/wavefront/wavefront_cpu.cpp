@@ -64,7 +64,7 @@ class WavefrontCpu : public CpuRenderer {
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
     buffers_.compaction = compaction_info(options_.compaction);
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                   !buffers_.compaction.appends};
+                                   !buffers_.compaction.appends, scene_.light_selector.has_tree()};
     const std::uint64_t size_bytes =
         pool_size_ * (PathPool::bytes_per_slot(parts) + queue_count * sizeof(std::uint32_t));
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
@@ -95,11 +95,12 @@ class WavefrontCpu : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, [&](auto traits) {
-        dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
-          run_waves<decltype(traits), branching()>(source, batch);
-        });
-      });
+      dispatch_traits(
+          KindsWith<Source, CpuSceneKinds>{}, traits_, options_.integrator, [&](auto traits) {
+            dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+              run_waves<decltype(traits), branching()>(source, batch);
+            });
+          });
     });
   }
 

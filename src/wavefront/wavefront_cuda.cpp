@@ -41,7 +41,7 @@ void WavefrontCuda::allocate_pool() {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                 !appends};
+                                 !appends, scene_.light_selector.has_tree()};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts) + (queue_count + 1) * sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
@@ -124,7 +124,7 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
     } else if constexpr (draws_in_all_scenes<Source>) {
       function(TriangleSceneKinds{}, context_of(batch, source));
     } else {
-      throw_no_kernel(traits_);
+      throw_no_kernel(traits_, options_.integrator);
     }
   });
 }

@@ -39,7 +39,7 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
 
 template <class Kinds, class Source>
 void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool starts_paths) {
-  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+  dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
     dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
       run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
                                                              starts_paths);
@@ -49,7 +49,7 @@ void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool st
 
 template <class Kinds>
 void WavefrontCuda::enqueue_finish_of(const StageContext<AnySource<CurandState>>& context) {
-  dispatch_traits(Kinds{}, traits_,
+  dispatch_traits(Kinds{}, traits_, options_.integrator,
                   [&](auto traits) { run_finish<decltype(traits)>(*this, buffers_, context); });
 }
 

@@ -31,6 +31,7 @@ const std::map<std::string, std::string>& other_values() {
   static const std::map<std::string, std::string> values{
       {"width", "65535"},
       {"height", "1"},
+      {"integrator", "path"},
       {"spp", "2147483647"},
       {"max-depth", "65535"},
       {"rr", "5"},
@@ -102,7 +103,8 @@ TEST(CommandLine, EveryOptionIsParsedAndWrittenBack) {
   for (const OptionEntry& entry : option_list()) {
     ASSERT_TRUE(other_values().contains(entry.name)) << entry.name << " has no test value";
     const std::string value = other_values().at(entry.name);
-    EXPECT_NE(entry.text(Options()), value) << entry.name;
+    const bool has_others = entry.name != "integrator";  // one so far
+    EXPECT_EQ(entry.text(Options()) != value, has_others) << entry.name;
     const auto command = std::get<RenderCommand>(parse_command_line(arguments_for(entry, value)));
     EXPECT_EQ(entry.text(command.options), value) << entry.name;
     EXPECT_TRUE(command.given.contains(entry.name));

@@ -111,7 +111,7 @@ TEST(FarLights, NoLampShadowsItselfAndDensitiesAgree) {
           const SurfacePoint point = alone.receiver(random);
           const Vec3 from = spawn_origin(point, {0, 1, 0});
           const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-          const IncidentLight light = sample_light<FullTraits>(scene, from, u);
+          const IncidentLight light = sample_light<FullTraits>(scene, from, {}, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
           ++asked;
           const ShadowRay shadow = spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f));
@@ -121,7 +121,7 @@ TEST(FarLights, NoLampShadowsItselfAndDensitiesAgree) {
             ++missed;  // a lamp's rim
             continue;
           }
-          const float pdf = light_pdf<FullTraits>(scene, {from, light.wi}, hit);
+          const float pdf = light_pdf<FullTraits>(scene, {from, light.wi}, {}, hit);
           // An instance's rays are rounded in its own space, by coordinates over distances.
           unlike += std::abs(pdf / light.pdf - 1) > 1e-3f + 3e-5f * d / (hit.t / scale);
         }
@@ -146,7 +146,7 @@ TEST(FarLights, WhatLiesJustBelowALampBlocksIt) {
           const SurfacePoint point = alone.receiver(random);
           const Vec3 from = spawn_origin(point, {0, 1, 0});
           const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-          const IncidentLight light = sample_light<FullTraits>(scene, from, u);
+          const IncidentLight light = sample_light<FullTraits>(scene, from, {}, u);
           if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
           free += !intersect_shadow<FullTraits>(
               scene, spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f)));

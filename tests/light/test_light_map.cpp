@@ -43,9 +43,10 @@ TEST(LightMap, NamesTheLampThatWasSampled) {
   for (int i = 0; i < 20'000; ++i) {
     const Vec3 from(random.uniform(-5, 6), random.uniform(-2, 0.5), random.uniform(-1, 1));
     const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-    const LightChoice choice = scene.light_selector.sample(from, u.z, u.w);
-    ASSERT_EQ(choice.pmf, scene.light_selector.pmf(from, choice.light));
-    const IncidentLight light = sample_light<AllTraits>(scene, from, u);
+    const Receiver receiver = make_receiver(normalize(Vec3(random.direction())), true);
+    const LightChoice choice = scene.light_selector.sample(from, receiver, u.z, u.w);
+    ASSERT_EQ(choice.pmf, scene.light_selector.pmf(from, receiver, choice.light));
+    const IncidentLight light = sample_light<AllTraits>(scene, from, receiver, u);
     if (light.pdf <= 0) continue;
     const Ray ray{from, light.wi};
     const Hit hit = intersect_closest<AllTraits>(scene, ray);
@@ -53,7 +54,7 @@ TEST(LightMap, NamesTheLampThatWasSampled) {
     if (hit.is_miss() || std::abs(hit.t / glm::length(light.end) - 1) > 1e-3f) continue;
     ++compared;
     ++found[choice.light];
-    ASSERT_NEAR(light_pdf<AllTraits>(scene, ray, hit) / light.pdf, 1, 1e-3)
+    ASSERT_NEAR(light_pdf<AllTraits>(scene, ray, receiver, hit) / light.pdf, 1, 1e-3)
         << "light " << choice.light;
   }
   EXPECT_GT(compared, 10'000);

@@ -56,7 +56,7 @@ void ask(const ThinLamp& lamp, AccelKind kind, TestRandom random, Shadows& shado
     const SurfacePoint point = lamp.receiver(random);
     const Vec3 from = spawn_origin(point, point.normal);
     const Vec4 u(random.unit(), random.unit(), random.unit(), random.unit());
-    const IncidentLight light = sample_light<FullTraits>(scene, from, u);
+    const IncidentLight light = sample_light<FullTraits>(scene, from, {}, u);
     if (light.pdf <= 0 || glm::dot(light.wi, point.normal) <= 0) continue;
     ++shadows.asked;
     const ShadowRay shadow = spawn_shadow_ray<FullTraits>(point, from, light, Color(1.0f));

@@ -87,7 +87,8 @@ TEST(TriangleLight, SamplesLieOnTheTriangleAndDensitiesAgree) {
       ASSERT_NEAR(glm::dot(Vec3d(s.end) - p, unit), error, 1e-6 * (1 + distance));
       ASSERT_LT(glm::length(Vec3d(s.end) - p - error * unit), 2e-6 * (1 + distance));
       const auto d = static_cast<float>(distance);
-      ASSERT_NEAR(triangle_solid_angle_pdf(normal, s.wi, d), s.pdf, 1e-4 * s.pdf);
+      const TriangleSampler sampler(t[0], t[1] - t[0], t[2] - t[0]);
+      ASSERT_NEAR(sampler.pdf(s.wi, d), s.pdf, 1e-4 * s.pdf);
       angle.add(1 / s.pdf);
     }
     EXPECT_NEAR(angle.mean(), solid_angle(t), 5 * angle.sigma() + 1e-5 * angle.mean());

@@ -73,6 +73,9 @@ SPHERE = shape("sphere", '<scale value="0.5"/><translate x="1.6" y="0.6" z="1"/>
 ENVIRONMENT = """<emitter type="envmap"><string name="filename" value="sky.exr"/>
     <transform name="to_world"><rotate x="1" angle="90"/><rotate z="1" angle="50"/></transform>
     </emitter>"""
+SUNSKY = """<emitter type="sunsky"><vector name="sun_direction" value="0.5, -0.4, 0.6"/>
+    <float name="turbidity" value="4.5"/><rgb name="albedo" value="0.1 0.3 0.5"/>
+    <float name="sun_aperture" value="6"/><float name="sky_scale" value="3"/></emitter>"""
 GROUP = ('<shape type="shapegroup" id="group">'
          + shape("obj", "", '<string name="filename" value="round.obj"/>'
                  + TWO_SIDED.format(GREY.format("0.3 0.6 0.8")))
@@ -103,6 +106,11 @@ SCENES = {
                    '<translate x="0.8" y="0.5" z="0.5"/>')
         + instance('<scale x="-0.8" y="0.5" z="0.9"/><rotate z="1" angle="40"/>'
                    '<translate x="-0.8" y="-0.7" z="0.4"/>'),
+    "sun, sky and a pyramid": floor() + SUNSKY + shape(
+        "obj", '<scale x="1.2" y="0.7" z="1.4"/><translate z="0.01"/>',
+        '<string name="filename" value="round.obj"/><boolean name="face_normals" value="true"/>'
+        + TWO_SIDED.format(GREY.format("0.8 0.7 0.6"))),
+    "sun, sky and two lamps": floor() + SUNSKY + lamp(WIDE, "2 1 0.5") + lamp(SMALL, "2 9 4"),
     "glass and a lamp": floor() + lamp(WIDE, "4 3 2") + shape(
         "sphere", '<scale value="0.6"/><translate x="0.6" y="-0.3" z="0.7"/>',
         '<bsdf type="dielectric"><float name="int_ior" value="1.5"/>'

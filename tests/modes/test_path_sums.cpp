@@ -86,7 +86,8 @@ TEST(Film, WhatIsNotFiniteIsCountedAndLeftOut) {
   PathTally tally;
   for (int batch = 1; batch <= 2; ++batch) {
     int lengths = 0;
-    accumulate_pixel(film.data(), buffer, pixel, tally, [&](int bin) { lengths += bin == 1; });
+    accumulate_pixel(RadianceSum(film.data(), pixel), buffer, pixel, tally,
+                     [&](int bin) { lengths += bin == 1; });
     EXPECT_EQ(lengths, 10);
     EXPECT_EQ(film[pixel].samples, 5u * static_cast<unsigned>(batch));
     EXPECT_EQ(tally.nonfinite, 5u * static_cast<unsigned>(batch));
@@ -110,9 +111,10 @@ BatchList batches_of(int spp, int per_batch, std::uint64_t pixels = 10) {
                                progress.push_back(done);
                              },
                              {}};
-  const int done = for_each_batch(spp, per_batch, pixels, hooks,
-                                  [&](int first, int n) { batches.emplace_back(first, n); });
-  EXPECT_EQ(done, spp);
+  const BatchRun run = for_each_batch(spp, per_batch, pixels, hooks,
+                                      [&](int first, int n) { batches.emplace_back(first, n); });
+  EXPECT_EQ(run.samples, spp);
+  EXPECT_EQ(run.ended_by, RunEnd::samples);
   EXPECT_EQ(progress.size(), batches.size());
   EXPECT_EQ(progress.back(), pixels * static_cast<std::uint64_t>(spp));
   return batches;

@@ -35,9 +35,11 @@ inline Film render_windows(Renderer& renderer, const Options& options,
       EXPECT_EQ(renderer.render(part, samples, {}).samples_done, samples);
     }
     EXPECT_EQ(part.next_sample, static_cast<std::uint32_t>(options.spp));
-    const Image image =
-        develop(part.pixels, static_cast<int>(window.width), static_cast<int>(window.height));
-    EXPECT_EQ(differing_pixels(renderer.image(), image), 0u) << "the window's image";
+    if (part.pixels.size() == window.pixel_count()) {  // of one sign
+      const Image image =
+          develop(part.pixels, static_cast<int>(window.width), static_cast<int>(window.height));
+      EXPECT_EQ(differing_pixels(renderer.image(), image), 0u) << "the window's image";
+    }
     merge(whole, part);
   }
   EXPECT_TRUE(whole.is_complete());
@@ -51,12 +53,21 @@ inline std::size_t differing_sums(const Film& a, const Film& b) {
   for (std::size_t i = 0; i < a.pixels.size(); ++i) {
     count += std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(FilmPixel)) != 0;
   }
+  if (a.moments.size() != b.moments.size() || a.features.size() != b.features.size()) {
+    return ~std::size_t{0};
+  }
+  for (std::size_t i = 0; i < a.moments.size(); ++i) {
+    count += std::memcmp(&a.moments[i], &b.moments[i], sizeof(PixelMoments)) != 0;
+  }
+  for (std::size_t i = 0; i < a.features.size(); ++i) count += a.features[i] != b.features[i];
   return count;
 }
 
 inline void expect_film(const Film& film, const Rendered& expected) {
-  const Image image = develop(film.pixels, expected.image.width, expected.image.height);
-  EXPECT_EQ(differing_pixels(image, expected.image), 0u) << "pixels differ";
+  if (film.pixels.size() == film.window.pixel_count()) {  // of one sign
+    const Image image = develop(film.pixels, expected.image.width, expected.image.height);
+    EXPECT_EQ(differing_pixels(image, expected.image), 0u) << "pixels differ";
+  }
   expect_same_counts(summarize(film.tally), expected.counts);
 }
 

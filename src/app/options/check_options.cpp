@@ -10,6 +10,7 @@
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
 #include "common/error.h"
+#include "common/image/image_io.h"
 #include "common/render/option_names.h"
 
 namespace pt {
@@ -61,6 +62,18 @@ void check_files(const Options& o, const GivenOptions& given) {
                             exposure_text(o.exposure), o.output));
 }
 
+void check_film(const Options& o, const GivenOptions& given) {
+  if (o.aovs != 0 && image_ending(o.output) != ".exr")
+    throw Error(fmt::format("--aov {}: are layers of an .exr; {} has no place for them",
+                            aovs_text(o.aovs), o.output));
+  if (o.crop && given.contains("width") && given.contains("height")) check_crop(o);
+  if (o.time_limit > 0 && o.repeat > 1)
+    throw Error(
+        fmt::format("--time-limit {}: with --repeat {} each render would be of other samples; "
+                    "expected --repeat 1",
+                    number_text(o.time_limit), o.repeat));
+}
+
 void check_camera(const CameraOverrides& camera) {
   const auto& up = camera.up;
   const auto text = [](const char* name) { return find_option(name).text; };
@@ -94,10 +107,20 @@ void check_camera(const CameraOverrides& camera) {
 
 void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
+  check_film(options, given);
   check_camera(options.camera);
   if (given.contains("spheres") && options.scene != "spheres")
     throw Error(fmt::format("--spheres {}: has no effect on the scene '{}', only on 'spheres'",
                             options.spheres, options.scene));
+}
+
+void check_crop(const Options& options) {
+  if (!options.crop) return;
+  const CropWindow& crop = *options.crop;
+  if (crop.x0 < 0 || crop.y0 < 0 || crop.x0 >= crop.x1 || crop.y0 >= crop.y1 ||
+      crop.x1 > options.width || crop.y1 > options.height)
+    throw Error(fmt::format("--crop {}: expected pixels of the image of {}x{}",
+                            crop_text(options.crop), options.width, options.height));
 }
 
 void check_applicable(const Options& options, const GivenOptions& given,

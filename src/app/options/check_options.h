@@ -15,6 +15,9 @@ using GivenOptions = std::set<std::string>;
 /// Throws Error when two options contradict each other, whatever the device.
 void check_consistent(const Options& options, const GivenOptions& given);
 
+/// Throws Error when --crop, or a scene file's, is no part of the image.
+void check_crop(const Options& options);
+
 /// Throws Error when a given option has no effect in the chosen mode, or none on `device`. The
 /// device is checked only where it is known: pass choose_device's answer to check all.
 void check_applicable(const Options& options, const GivenOptions& given,

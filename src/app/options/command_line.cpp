@@ -21,7 +21,7 @@ constexpr const char* program_text =
     "ptexp renders one image in several ways, so that the ways can be compared.\n"
     "`ptexp --mode wavefront --spp 50` renders the paper's scene to image.exr.";
 constexpr const char* compare_text =
-    "Prints RMSE, relMSE, the largest difference and the number of differing pixels.\n"
+    "Prints RMSE, relMSE, FLIP, the largest difference and the number of differing pixels.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
@@ -41,7 +41,7 @@ struct Parser {
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   CLI::App* compare = nullptr;
-  CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr;
+  CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr, *difference = nullptr;
 
   Parser();
   void add_option(const OptionEntry& entry);
@@ -89,6 +89,9 @@ Parser::Parser() {
   image_b = add_text(*compare, "B", "Reference of the same size");
   tolerance = add_text(*compare, "--tolerance", "Largest |A - B| of a value that is accepted");
   tolerance->type_name("T [0]");
+  difference = add_text(*compare, "--difference",
+                        "Image to write: A - B in an .exr, else FLIP in false colours");
+  difference->type_name("FILE");
   compare->allow_extras();
   for (CLI::Option* image : {image_a, image_b})
     image->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
@@ -104,8 +107,11 @@ std::string only_value(CLI::Option& option, const std::string& name) {
 
 CompareCommand parse_compare(const Parser& parser) {
   if (parser.image_b->count() == 0)
-    throw Error("compare: expected two images, `ptexp compare A B [--tolerance T]`");
+    throw Error(
+        "compare: expected two images, `ptexp compare A B [--tolerance T] [--difference FILE]`");
   CompareCommand command{parser.image_a->results()[0], parser.image_b->results()[0]};
+  if (parser.difference->count() > 0)
+    command.difference = only_value(*parser.difference, "difference");
   if (parser.tolerance->count() == 0) return command;
   const std::string text = only_value(*parser.tolerance, "tolerance");
   const char* end = text.data() + text.size();

@@ -18,6 +18,7 @@ struct RenderCommand {
 struct CompareCommand {
   std::string a, b;
   double tolerance = 0;
+  std::string difference{};  ///< file for the difference picture; empty: none
 };
 struct ListScenesCommand {};
 struct ListDevicesCommand {};

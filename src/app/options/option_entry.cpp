@@ -52,6 +52,19 @@ OptionEntry number(std::string name, std::string placeholder,
   return entry;
 }
 
+OptionEntry number(std::string name, std::string placeholder, float Options::*field,
+                   const char* expected, bool (*holds)(float)) {
+  OptionEntry entry{
+      .name = name, .form = OptionForm::number, .placeholder = std::move(placeholder)};
+  entry.set = [=](Options& options, const std::string& value) {
+    options.*field = parse_number(name, value, expected, holds);
+  };
+  entry.text = [=](const Options& options) {
+    return options.*field == 0.0f ? "" : number_text(options.*field);
+  };
+  return entry;
+}
+
 OptionEntry custom(std::string name, OptionForm form, std::string placeholder, Set set,
                    Text get_text) {
   OptionEntry entry{.name = std::move(name), .form = form, .placeholder = std::move(placeholder)};

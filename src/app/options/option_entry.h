@@ -23,6 +23,9 @@ OptionEntry vector(std::string name, std::optional<std::array<float, 3>> CameraO
 OptionEntry number(std::string name, std::string placeholder,
                    std::optional<float> CameraOverrides::*field, const char* expected,
                    bool (*holds)(float));
+/// 0 is what it is where it is not given.
+OptionEntry number(std::string name, std::string placeholder, float Options::*field,
+                   const char* expected, bool (*holds)(float));
 OptionEntry custom(std::string name, OptionForm form, std::string placeholder, Set set,
                    Text get_text);
 

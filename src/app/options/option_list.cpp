@@ -53,6 +53,8 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(integer("width", &Options::width, 1, 65535), "Width in pixels, 1 to 65,535")
       .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
+      .add(choice("integrator", &Options::integrator),
+           "What a path computes, in all modes and on all devices")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
@@ -63,6 +65,11 @@ void add_image(std::vector<OptionEntry>& list) {
                [](const Options& o) { return o.nee ? "on" : "off"; }),
            "Next-event estimation: surfaces ask a light for its direct\n"
            "contribution; off: paths find the lights by chance")
+      .add(choice("light-selection", &Options::light_selection),
+           "Which light is asked: any lamp alike, by its power, or by\n"
+           "what it can do for the place, through a tree of lights;\n"
+           "auto: the tree, but uniform where all lights are quads and\n"
+           "spheres of a scene without triangles")
       .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {
@@ -78,7 +85,42 @@ void add_image(std::vector<OptionEntry>& list) {
                [](const Options& o) { return exposure_text(o.exposure); }),
            "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
            "is a middle grey. By default 0, but auto for a .png of a file\n"
-           "in photometric units or without lights. An .exr is linear");
+           "in photometric units or without lights. An .exr is linear")
+      .add(custom(
+               "crop", OptionForm::text, "X0,Y0,X1,Y1",
+               [](Options& o, const std::string& s) { o.crop = parse_crop("crop", s); },
+               [](const Options& o) { return crop_text(o.crop); }),
+           "Renders the pixels from X0,Y0 (upper left) up to X1,Y1, both\n"
+           "excluded: the same as in the whole image. An .exr keeps\n"
+           "their place, in its data window")
+      .add(custom(
+               "filter", OptionForm::text, "KIND[:A[:B]]",
+               [](Options& o, const std::string& s) { o.filter = parse_filter("filter", s); },
+               [](const Options& o) { return filter_text(o.filter); }),
+           "Reconstruction filter: box[:RADIUS], tent[:RADIUS],\n"
+           "gaussian[:DEVIATION], mitchell[:B:C] or lanczos[:LOBES].\n"
+           "By default the scene file's, else a box of one pixel")
+      .add(custom(
+               "aov", OptionForm::text, "NAME,...",
+               [](Options& o, const std::string& s) { o.aovs = parse_aovs("aov", s); },
+               [](const Options& o) { return aovs_text(o.aovs); }),
+           "Layers of the .exr besides the image, of what camera rays\n"
+           "meet: albedo, shading_normal, normal, depth, position, uv,\n"
+           "primitive, instance, material; and of the samples: variance,\n"
+           "samples, bounces, rays");
+}
+
+void add_stops(std::vector<OptionEntry>& list) {
+  Group(list,
+        "Stops (the render ends after the batch that reaches one; without --spp there\n"
+        "is no other limit)")
+      .add(number("time-limit", "SECONDS", &Options::time_limit, "seconds above 0",
+                  [](float x) { return x > 0; }),
+           "Seconds of rendering, the scene's preparation left out")
+      .add(number("target-error", "X", &Options::target_error, "a number above 0",
+                  [](float x) { return x > 0; }),
+           "Relative standard error of the image: root of the mean\n"
+           "variance of its pixels by their mean, of luminance");
 }
 
 void add_scene(std::vector<OptionEntry>& list) {
@@ -243,6 +285,7 @@ const std::vector<OptionEntry>& option_list() {
   static const std::vector<OptionEntry> list = [] {
     std::vector<OptionEntry> entries;
     add_image(entries);
+    add_stops(entries);
     add_scene(entries);
     add_camera(entries);
     add_execution(entries);

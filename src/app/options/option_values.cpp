@@ -26,6 +26,15 @@ std::optional<T> whole(std::string_view text) {
   return value;
 }
 
+int parse_stage_threads(const std::string& name, const std::string& text) {
+  const auto threads = whole<std::uint64_t>(text);
+  if (!threads || *threads < 1 || *threads > max_block_threads)
+    refuse_value(name, text, "expected a whole number of threads from 1 to 1,024");
+  return static_cast<int>(*threads);
+}
+
+}  // namespace
+
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts{""};
   for (const char c : text) {
@@ -36,15 +45,6 @@ std::vector<std::string> split(const std::string& text, char separator) {
   }
   return parts;
 }
-
-int parse_stage_threads(const std::string& name, const std::string& text) {
-  const auto threads = whole<std::uint64_t>(text);
-  if (!threads || *threads < 1 || *threads > max_block_threads)
-    refuse_value(name, text, "expected a whole number of threads from 1 to 1,024");
-  return static_cast<int>(*threads);
-}
-
-}  // namespace
 
 void refuse_value(const std::string& name, const std::string& value, const std::string& problem) {
   throw Error(fmt::format("--{} {}: {}", name, value.empty() ? "''" : value, problem));

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/render/option_names.h"
 #include "common/render/options.h"
@@ -14,6 +16,9 @@ namespace pt {
 /// Throws Error "--name value: problem".
 [[noreturn]] void refuse_value(const std::string& name, const std::string& value,
                                const std::string& problem);
+
+/// The parts between separators: one more than there are of these.
+std::vector<std::string> split(const std::string& text, char separator);
 
 std::uint64_t parse_integer(const std::string& name, const std::string& text, std::uint64_t lowest,
                             std::uint64_t highest);
@@ -44,6 +49,19 @@ std::string block_text(const BlockSize& block);
 std::string stage_blocks_text(const StageBlocks& blocks);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
+
+/// "x0,y0,x1,y1" in pixels, x0 < x1, y0 < y1.
+CropWindow parse_crop(const std::string& name, const std::string& text);
+std::string crop_text(const std::optional<CropWindow>& crop);
+
+/// "KIND", "KIND:A" or "KIND:A:B"; what is left out is the filter's default.
+FilterChoice parse_filter(const std::string& name, const std::string& text);
+std::string filter_text(const std::optional<FilterChoice>& filter);
+
+/// "albedo,depth": bits of Options::aovs.
+std::uint32_t parse_aovs(const std::string& name, const std::string& text);
+std::string aovs_text(std::uint32_t aovs);
+std::string aov_names(const char* separator);  ///< all of them
 
 /// "auto" or stops.
 ExposureChoice parse_exposure(const std::string& name, const std::string& text);

@@ -112,6 +112,10 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
     row.emplace_back(option_key(entry), entry.text(options));
   add_device(row, report);
   add_scene(row, report.scene);
+  row.emplace_back("samples_done", std::to_string(summary.samples_done));
+  row.emplace_back("ended_by", to_string(summary.ended_by));
+  row.emplace_back("relative_error",
+                   summary.relative_error ? fmt::format("{:.6g}", *summary.relative_error) : "");
   add_spread(row, "kernel", summary.kernel_ms);
   for (const std::string& stage : column_stages()) add_stage(row, stage, summary);
   add_stage(row, "other", summary);

@@ -4,6 +4,7 @@
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/build_info.h"
+#include "common/render/option_names.h"
 
 namespace pt {
 namespace {
@@ -50,6 +51,10 @@ Json stages_json(const RunSummary& summary) {
   return json;
 }
 
+Json number_or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json runs_json(const RenderReport& report) {
   Json json = Json::array();
   for (const RenderRun& run : report.runs) {
@@ -60,6 +65,8 @@ Json runs_json(const RenderReport& report) {
     json.push_back({{"kernel_ms", run.kernel_ms},
                     {"waves", run.waves},
                     {"samples_done", run.samples_done},
+                    {"ended_by", to_string(run.ended_by)},
+                    {"relative_error", number_or_null(run.relative_error)},
                     {"stages", stages}});
   }
   return json;
@@ -131,6 +138,8 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["scene"] = scene_json(report.scene);
   json["complete"] = is_complete(options, report);
   json["samples_done"] = summary.samples_done;
+  json["ended_by"] = to_string(summary.ended_by);
+  json["relative_error"] = number_or_null(summary.relative_error);
   json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},
                      {"scene", report.scene_ms},
                      {"setup", report.setup_ms},

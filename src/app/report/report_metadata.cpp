@@ -4,6 +4,7 @@
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/build_info.h"
+#include "common/render/option_names.h"
 
 namespace pt {
 
@@ -18,6 +19,7 @@ std::map<std::string, std::string> report_metadata(const Options& options,
                                   build.fast_math ? ", fast math" : "")},
       {"ptexp.device", report.device_name},
       {"ptexp.samples_done", std::to_string(summary.samples_done)},
+      {"ptexp.ended_by", to_string(summary.ended_by)},
       {"ptexp.paths", std::to_string(report.counts.paths)},
       {"ptexp.rays", std::to_string(report.counts.rays)},
       {"ptexp.kernel_ms", fmt::format("{:.6f}", summary.kernel_ms.median)},
@@ -25,6 +27,9 @@ std::map<std::string, std::string> report_metadata(const Options& options,
       {"ptexp.setup_ms", fmt::format("{:.6f}", report.setup_ms)},
       {"ptexp.load_ms", fmt::format("{:.6f}", report.load_ms)},
       {"ptexp.transfer_ms", fmt::format("{:.6f}", report.transfer_ms)}};
+  if (summary.relative_error) {
+    metadata["ptexp.relative_error"] = fmt::format("{:.6g}", *summary.relative_error);
+  }
   if (report.exposure) metadata["ptexp.exposure"] = fmt::format("{}", *report.exposure);
   // An option that the scene decides is left out: an empty attribute would look like a value.
   for (const OptionEntry& entry : option_list())

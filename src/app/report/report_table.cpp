@@ -43,12 +43,24 @@ std::string count_rows(const PathCounts& counts, const RunSummary& summary) {
   return text;
 }
 
+std::string stop_row(const RunSummary& summary) {
+  std::string text;
+  if (summary.ended_by != RunEnd::samples) {
+    text += fmt::format("{:<16}{:>18}\n", "ended by", to_string(summary.ended_by));
+  }
+  if (summary.relative_error) {
+    text += fmt::format("{:<16}{:>18.6f}  of the image's mean luminance\n", "standard error",
+                        *summary.relative_error);
+  }
+  return text;
+}
+
 }  // namespace
 
 bool is_complete(const Options& options, const RenderReport& report) {
   return static_cast<int>(report.runs.size()) == options.repeat &&
          std::ranges::all_of(report.runs,
-                             [&](const RenderRun& run) { return run.samples_done == options.spp; });
+                             [&](const RenderRun& run) { return !is_cut_short(run, options.spp); });
 }
 
 std::string report_table(const Options& options, const RenderReport& report) {
@@ -58,6 +70,7 @@ std::string report_table(const Options& options, const RenderReport& report) {
              options.scene, options.width, options.height, summary.samples_done, report.device_name,
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
          stage_rows(report, summary) + '\n' + count_rows(report.counts, summary) +
+         stop_row(summary) +
          fmt::format(
              "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",

@@ -54,6 +54,8 @@ RunSummary summarize(const RenderReport& report) {
     const RenderRun& last = report.runs.back();
     summary.waves = last.waves;
     summary.samples_done = last.samples_done;
+    summary.ended_by = last.ended_by;
+    summary.relative_error = last.relative_error;
     for (const StageTime& time : last.stages) summary.launches += time.launches;
   }
   const PathCounts& counts = report.counts;

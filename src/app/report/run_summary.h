@@ -31,8 +31,10 @@ struct RunSummary {
   std::uint64_t waves = 0;           ///< of the last repeat, as is what follows
   std::uint64_t launches = 0;        ///< of all stages
   int samples_done = 0;              ///< per pixel
-  double mpaths_per_s = 0;           ///< 10^6 paths / median kernel time; 0 where that is 0
-  double mrays_per_s = 0;            ///< 10^6 rays of all kinds / median kernel time
+  RunEnd ended_by = RunEnd::samples;
+  std::optional<double> relative_error;
+  double mpaths_per_s = 0;  ///< 10^6 paths / median kernel time; 0 where that is 0
+  double mrays_per_s = 0;   ///< 10^6 rays of all kinds / median kernel time
 };
 
 RunSummary summarize(const RenderReport& report);

@@ -60,25 +60,27 @@ Scene seeded_view(const SceneData& scene, const Options& options) {
 }  // namespace
 
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
-    : FilmRenderer(options),
+    : FilmRenderer(options, scene),
       traits_(scene.traits),
       scene_(seeded_view(scene, options)),
       threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
+  scene_.mask_seed = mask_seed(options.seed);
   const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
-  make_samples({"memory", free_host_memory(), sizeof(FilmPixel) + image_bytes,
+  make_samples({"memory", free_host_memory(), plan_.bytes_per_pixel() + image_bytes,
                 sizeof(Sample) + state_bytes, batch_paths_max},
                [&](std::uint64_t paths) {
                  sample_memory_.resize(paths);
                  if (state_bytes > 0) states_.resize(paths);
                  return sample_memory_.data();
                });
-  pixels_.resize(std::size_t(options.width) * std::size_t(options.height));
-  note_memory("film", pixels_.size() * sizeof(FilmPixel));
+  const std::uint64_t pixels = image_window().pixel_count();
+  sums_.reset(plan_, pixels);
+  note_memory("film", pixels * plan_.bytes_per_pixel());
   note_memory("samples", sample_memory_.size() * sizeof(Sample));
   if (state_bytes > 0) note_memory("random states", states_.size() * state_bytes);
   setup_ms_ =
@@ -89,18 +91,15 @@ void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
   memory_.push_back({name, size_bytes});
 }
 
-Image CpuRenderer::image() {
-  const Window& w = window();
-  return develop(std::span<const FilmPixel>(pixels_).first(w.pixel_count()),
-                 static_cast<int>(w.width), static_cast<int>(w.height));
-}
+Image CpuRenderer::image() { return develop_window(sums_); }
 
 void CpuRenderer::begin_render(const Film& film) {
   if (film.is_empty()) {
-    std::fill_n(pixels_.begin(), film.window.pixel_count(), FilmPixel{});
+    sums_.reset(plan_, film.window.pixel_count());
   } else {
-    std::copy(film.pixels.begin(), film.pixels.end(), pixels_.begin());
+    sums_ = film;
   }
+  first_sample_ = film.first_sample;
   tally_ = film.tally;
   timer_.reset();
   waves_ = 0;
@@ -110,6 +109,9 @@ void CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   const auto start = std::chrono::steady_clock::now();
   arena_.execute([&] {
     trace_batch(batch);
+    if (plan_.feature_planes() > 0) {
+      timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
+    }
     timer_.time("accumulate", [&] { accumulate(batch); });
   });
   const std::chrono::duration<double, std::milli> elapsed =
@@ -123,8 +125,7 @@ void CpuRenderer::end_render(RenderRun& run) {
 }
 
 void CpuRenderer::read_film(Film& film) {
-  film.pixels.assign(pixels_.begin(),
-                     pixels_.begin() + static_cast<std::ptrdiff_t>(film.window.pixel_count()));
+  static_cast<FilmSums&>(film) = sums_;
   film.tally = tally_;
 }
 
@@ -134,18 +135,48 @@ void CpuRenderer::init_random_states(const SampleBuffer& batch) {
   });
 }
 
+FilmView CpuRenderer::film_view() {
+  return {sums_.pixels.data(),    plan_.moments ? sums_.moments.data() : nullptr,
+          sums_.features.data(),  plan_.aovs,
+          plan_.feature_planes(), plan_.two_signs,
+          first_sample_};
+}
+
 void CpuRenderer::accumulate(const SampleBuffer& batch) {
+  const FilmView film = film_view();
+  if (plan_.is_radiance_alone()) {
+    accumulate_with(batch, [&](std::uint32_t i) { return RadianceSum(film.pixels, i); });
+    return;
+  }
+  const PhiloxSource source{options_.seed};
+  accumulate_with(batch, [&](std::uint32_t i) {
+    return PixelPlanes<PhiloxSource>(film, batch, scene_.filter, source, i);
+  });
+}
+
+template <class MakeSum>
+void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum) {
   const tbb::blocked_range<std::uint32_t> pixels(0, batch.pixel_count.divisor(), 4096);
   tally_ = tally_ + tbb::parallel_reduce(
                         pixels, PathTally{},
                         [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
                           for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                            accumulate_pixel(pixels_.data(), batch, i, sum,
+                            accumulate_pixel(make_sum(i), batch, i, sum,
                                              [&](int bin) { ++sum.lengths[bin]; });
                           }
                           return sum;
                         },
                         [](const PathTally& a, const PathTally& b) { return a + b; });
+}
+
+void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
+  const FilmView film = film_view();
+  const PhiloxSource source{options_.seed};
+  dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
+    tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
+      pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
+    });
+  });
 }
 
 void CpuRenderer::describe(RenderReport& report) const {

@@ -68,13 +68,18 @@ class CpuRenderer : public FilmRenderer {
   void read_film(Film& film) override;
   void init_random_states(const SampleBuffer& batch);
   void accumulate(const SampleBuffer& batch);
+  template <class MakeSum>
+  void accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum);
+  void accumulate_features(const SampleBuffer& batch);
+  FilmView film_view();
 
+  std::uint32_t first_sample_ = 0;  ///< of the film
   int threads_;
   tbb::task_arena arena_;
   std::uint64_t primitive_count_;
   double setup_ms_ = 0;
   std::vector<Sample> sample_memory_;
-  std::vector<FilmPixel> pixels_;  ///< of the film that is rendered, the first ones
+  FilmSums sums_;  ///< of the film that is rendered, the first of their elements
   std::vector<XorwowState> states_;
   PathTally tally_;
   std::vector<BufferSize> memory_;

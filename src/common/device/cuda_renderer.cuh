@@ -87,6 +87,7 @@ class CudaRenderer : public FilmRenderer {
  private:
   void upload(const SceneData& scene);
   void allocate_film();
+  void allocate_planes(std::uint64_t pixels);
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>
   class Pack {
@@ -115,6 +116,9 @@ class CudaRenderer : public FilmRenderer {
   void render_batch(const SampleBuffer& batch, RenderRun& run) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
+  template <class SomeFilm, class Function>
+  void for_each_film_array(SomeFilm& film, Function&& function) const;
+  void accumulate(const SampleBuffer& batch);
   PathTally read_tally() const;
   void read_clock(RenderRun& run);
 
@@ -126,7 +130,7 @@ class CudaRenderer : public FilmRenderer {
   SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
-  FilmPixel* pixels_ = nullptr;  ///< of the film that is rendered, the first ones
+  FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements
   PathTally* tally_ = nullptr;
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;

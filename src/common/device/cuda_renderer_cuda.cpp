@@ -7,6 +7,7 @@
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/device/cuda_renderer.cuh"
+#include "common/device/feature_kernels.cuh"
 #include "common/device/film_kernels.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
@@ -37,7 +38,7 @@ class Stopwatch {
 }  // namespace
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
-    : FilmRenderer(options),
+    : FilmRenderer(options, scene),
       traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
@@ -106,13 +107,23 @@ void CudaRenderer::upload(const SceneData& scene) {
   }
 }
 
+void CudaRenderer::allocate_planes(std::uint64_t pixels) {
+  const std::uint64_t count = plan_.signs() * pixels;
+  film_.aovs = plan_.aovs;
+  film_.planes = plan_.feature_planes();
+  film_.two_signs = plan_.two_signs;
+  film_.pixels = memory_.allocate<FilmPixel>("film", count);
+  if (plan_.moments) film_.moments = memory_.allocate<PixelMoments>("film", count);
+  if (film_.planes > 0) film_.features = memory_.allocate<double>("film", count * film_.planes);
+}
+
 void CudaRenderer::allocate_film() {
-  const std::uint64_t pixels = std::uint64_t(options_.width) * std::uint64_t(options_.height);
+  const std::uint64_t pixels = image_window().pixel_count();
   const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
-  make_samples({"device memory", CudaMemory::free_bytes(), sizeof(FilmPixel),
+  make_samples({"device memory", CudaMemory::free_bytes(), plan_.bytes_per_pixel(),
                 sizeof(Sample) + state_bytes, batch_paths_max},
                [&](std::uint64_t paths) {
-                 pixels_ = memory_.allocate<FilmPixel>("film", pixels);
+                 allocate_planes(pixels);
                  Sample* samples = memory_.allocate<Sample>("samples", paths);
                  if (state_bytes > 0) {
                    states_ = reinterpret_cast<CurandState*>(
@@ -122,7 +133,6 @@ void CudaRenderer::allocate_film() {
                });
   tally_ = memory_.allocate<PathTally>("counters", 1);
   clock_ = memory_.allocate<StageClock>("counters", 1);
-  check_cuda(cudaMemset(pixels_, 0, pixels * sizeof(FilmPixel)), "cudaMemset");
   check_cuda(cudaMemset(tally_, 0, sizeof(PathTally)), "cudaMemset");
 }
 
@@ -184,10 +194,7 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
            batch, options_.seed, clock_);
   }
   trace_batch(batch);
-  const int accumulate_block = options_.stage_block[static_cast<int>(StageId::accumulate)];
-  launch("accumulate", accumulate_film,
-         (batch.pixel_count.divisor() + accumulate_block - 1) / accumulate_block, accumulate_block,
-         0, pixels_, batch, tally_, clock_);
+  accumulate(batch);
   launch("stop_clock", stop_clock, 1, 1, 0, clock_);
   check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");
   check_cuda(cudaEventSynchronize(stop_), "rendering a batch");
@@ -196,30 +203,60 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   run.kernel_ms += elapsed_ms;
 }
 
+void CudaRenderer::accumulate(const SampleBuffer& batch) {
+  const int block = options_.stage_block[static_cast<int>(StageId::accumulate)];
+  const int grid = (batch.pixel_count.divisor() + block - 1) / block;
+  const PhiloxSource source{options_.seed};
+  if (film_.features != nullptr) {
+    constexpr int feature_block = 128;
+    launch("features", feature_kernel(traits_),
+           (batch.pixel_count.divisor() + feature_block - 1) / feature_block, feature_block, 0,
+           scene_, film_, batch, source, clock_);
+  }
+  if (plan_.is_radiance_alone()) {
+    launch("accumulate", accumulate_film, grid, block, 0, film_.pixels, batch, tally_, clock_);
+  } else {
+    launch("accumulate", accumulate_planes, grid, block, 0, film_, batch, scene_.filter, source,
+           tally_, clock_);
+  }
+}
+
 // CUDA loads a kernel when it is first asked for, which takes longer than most of them run. A batch
 // of a few pixels asks for all that the render will.
 void CudaRenderer::load_kernels() {
   const Stopwatch watch;
-  const Window window = {0, 0, static_cast<std::uint32_t>(std::min(options_.width, 8)),
-                         static_cast<std::uint32_t>(std::min(options_.height, 4))};
+  Window window = image_window();
+  window.width = std::min(window.width, 8u), window.height = std::min(window.height, 4u);
   RenderRun run;
   render_batch({samples(), window, 0, 1}, run);
   take_wave_count();
   load_ms_ = watch.ms();
 }
 
+/// function(device's array, film's array, planes of both) for those that the film has.
+template <class SomeFilm, class Function>
+void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) const {
+  const std::uint64_t signs = plan_.signs();
+  function(film_.pixels, film.pixels, signs);
+  if (plan_.moments) function(film_.moments, film.moments, signs);
+  if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
+}
+
 // The copies are in the stream: the kernels wait for them.
 void CudaRenderer::begin_render(const Film& film) {
   check_cuda(cudaSetDevice(device_), "cudaSetDevice");
   if (load_ms_ == 0) load_kernels();
-  const std::uint64_t film_bytes = film.window.pixel_count() * sizeof(FilmPixel);
-  if (film.is_empty()) {
-    check_cuda(cudaMemsetAsync(pixels_, 0, film_bytes, stream_), "cudaMemset");
-  } else {
-    check_cuda(
-        cudaMemcpyAsync(pixels_, film.pixels.data(), film_bytes, cudaMemcpyHostToDevice, stream_),
-        "uploading the film");
-  }
+  film_.first_sample = film.first_sample;
+  const auto upload_plane = [&](auto* place, const auto& values, std::uint64_t planes) {
+    const std::uint64_t bytes = planes * film.window.pixel_count() * sizeof *place;
+    if (film.is_empty()) {
+      check_cuda(cudaMemsetAsync(place, 0, bytes, stream_), "cudaMemset");
+    } else {
+      check_cuda(cudaMemcpyAsync(place, values.data(), bytes, cudaMemcpyHostToDevice, stream_),
+                 "uploading the film");
+    }
+  };
+  for_each_film_array(film, upload_plane);
   check_cuda(
       cudaMemcpyAsync(tally_, &film.tally, sizeof(PathTally), cudaMemcpyHostToDevice, stream_),
       "cudaMemcpyAsync");
@@ -233,10 +270,12 @@ void CudaRenderer::end_render(RenderRun& run) {
 
 void CudaRenderer::read_film(Film& film) {
   const Stopwatch transfer;
-  film.pixels.resize(film.window.pixel_count());
-  check_cuda(cudaMemcpy(film.pixels.data(), pixels_, film.pixels.size() * sizeof(FilmPixel),
-                        cudaMemcpyDeviceToHost),
-             "downloading the film");
+  for_each_film_array(film, [&](auto* place, auto& values, std::uint64_t planes) {
+    values.resize(planes * film.window.pixel_count());
+    check_cuda(
+        cudaMemcpy(values.data(), place, values.size() * sizeof *place, cudaMemcpyDeviceToHost),
+        "downloading the film");
+  });
   transfer_ms_ += transfer.ms();
   film.tally = read_tally();
 }

@@ -22,13 +22,10 @@ __device__ void add_to(std::uint64_t* sum, std::uint64_t value) {
   atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(value));
 }
 
-}  // namespace
-
 // All counts are added up per block first: one address that every thread adds to would be the
-// slowest part of the kernel by far.
-__global__ void __launch_bounds__(1024)
-    accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally, StageClock* clock) {
-  stamp_first_thread(clock, StageId::accumulate);
+// slowest part of the kernel by far. Called by all threads of a block, which has at most 1024.
+template <class MakeSum>
+__device__ void accumulate_block(const SampleBuffer& batch, PathTally* tally, MakeSum make_sum) {
   __shared__ std::uint64_t block_rays, block_shadow_rays, block_nonfinite;
   __shared__ std::uint32_t lengths[path_length_bins];
   for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) lengths[i] = 0;
@@ -37,7 +34,8 @@ __global__ void __launch_bounds__(1024)
   const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
   if (pixel < batch.pixel_count.divisor()) {
     PathTally mine;  // its lengths are not used: those of all threads go to shared memory
-    accumulate_pixel(film, batch, pixel, mine, [](int bin) { atomicAdd(&lengths[bin], 1u); });
+    accumulate_pixel(make_sum(pixel), batch, pixel, mine,
+                     [](int bin) { atomicAdd(&lengths[bin], 1u); });
     add_to(&block_rays, mine.rays);
     if (mine.shadow_rays > 0) add_to(&block_shadow_rays, mine.shadow_rays);
     if (mine.nonfinite > 0) add_to(&block_nonfinite, mine.nonfinite);
@@ -51,6 +49,25 @@ __global__ void __launch_bounds__(1024)
   for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) {
     if (lengths[i] > 0) add_to(&tally->lengths[i], lengths[i]);
   }
+}
+
+}  // namespace
+
+__global__ void __launch_bounds__(1024)
+    accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally, StageClock* clock) {
+  stamp_first_thread(clock, StageId::accumulate);
+  accumulate_block(batch, tally, [&](std::uint32_t i) { return RadianceSum(film, i); });
+}
+
+__global__ void __launch_bounds__(1024)
+    accumulate_planes(const __grid_constant__ FilmView film,
+                      const __grid_constant__ SampleBuffer batch,
+                      const __grid_constant__ PixelFilter filter, PhiloxSource source,
+                      PathTally* tally, StageClock* clock) {
+  stamp_first_thread(clock, StageId::accumulate);
+  accumulate_block(batch, tally, [&](std::uint32_t i) {
+    return PixelPlanes<PhiloxSource>(film, batch, filter, source, i);
+  });
 }
 
 __global__ void start_clock(StageClock* clock) {

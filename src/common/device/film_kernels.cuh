@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "common/device/stage_clock.h"
-#include "common/film/film.h"
+#include "common/film/film_planes.h"
 
 namespace pt {
 
@@ -18,6 +18,12 @@ __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64
 /// Adds the batch's samples to the film and to the tally: a thread per pixel.
 __global__ void accumulate_film(FilmPixel* film, SampleBuffer batch, PathTally* tally,
                                 StageClock* clock);
+
+/// The same with all that a film may sum (film_planes.h).
+__global__ void accumulate_planes(const __grid_constant__ FilmView film,
+                                  const __grid_constant__ SampleBuffer batch,
+                                  const __grid_constant__ PixelFilter filter, PhiloxSource source,
+                                  PathTally* tally, StageClock* clock);
 
 /// The stage clock runs between these two, of one thread each.
 __global__ void start_clock(StageClock* clock);

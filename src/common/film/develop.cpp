@@ -3,7 +3,44 @@
 #include <numeric>
 #include <span>
 
+#include "common/film/pixel_statistics.h"
+
 namespace pt {
+namespace {
+
+ImageLayer blank_layer(std::string_view name, std::string_view channels, std::uint64_t pixel_count,
+                       bool has_numbers) {
+  ImageLayer layer{std::string(name), std::string(channels), {}, {}};
+  const std::uint64_t count = pixel_count * channels.size();
+  has_numbers ? layer.numbers.resize(count) : layer.values.resize(count);
+  return layer;
+}
+
+/// `plane`: the AOV's first one.
+template <class Aov>
+ImageLayer make_layer(const PixelReader& reader, std::uint64_t pixel_count, std::uint64_t samples,
+                      std::uint32_t plane) {
+  const std::string_view channels = Aov::channels;
+  constexpr bool has_numbers = aov_source<Aov> == AovSource::number;
+  ImageLayer layer = blank_layer(Aov::name, channels, pixel_count, has_numbers);
+  for (std::uint64_t pixel = 0; pixel < pixel_count; ++pixel) {
+    if constexpr (aov_source<Aov> == AovSource::statistics) {
+      layer.values[pixel] = Aov::of(reader.statistics(pixel, samples));
+    } else {
+      for (std::uint32_t c = 0; c < channels.size(); ++c) {
+        const std::uint64_t place = pixel * channels.size() + c;
+        if constexpr (has_numbers) {
+          layer.numbers[place] = reader.number(pixel, plane + c);
+        } else {
+          layer.values[place] = static_cast<float>(reader.feature(pixel, plane + c));
+        }
+      }
+    }
+  }
+  return layer;
+}
+
+}  // namespace
 
 Image develop(std::span<const FilmPixel> film, int width, int height) {
   Image image{width, height, {}};
@@ -12,6 +49,27 @@ Image develop(std::span<const FilmPixel> film, int width, int height) {
     const double scale = pixel.samples == 0 ? 0.0 : 1.0 / static_cast<double>(pixel.samples);
     for (const double sum : pixel.sum) image.rgb.push_back(static_cast<float>(sum * scale));
   }
+  return image;
+}
+
+Image develop(const FilmSums& sums, const FilmPlan& plan, const PixelFilter& filter,
+              const Window& window, std::uint64_t samples) {
+  Image image{static_cast<int>(window.width), static_cast<int>(window.height), {}};
+  const std::uint64_t pixel_count = window.pixel_count();
+  const PixelReader reader(sums, plan, filter, pixel_count);
+  image.rgb.reserve(3 * pixel_count);
+  for (std::uint64_t pixel = 0; pixel < pixel_count; ++pixel) {
+    for (const double value : reader.value(pixel)) image.rgb.push_back(static_cast<float>(value));
+  }
+  std::uint32_t plane = 1;
+  for_each_type(Aovs{}, [&](auto type) {
+    using Aov = typename decltype(type)::type;
+    if ((plan.aovs & aov_bit<Aov>) == 0) return;
+    image.layers.push_back(make_layer<Aov>(reader, pixel_count, samples, plane));
+    if (aov_source<Aov> != AovSource::statistics) {
+      plane += static_cast<std::uint32_t>(image.layers.back().channels.size());
+    }
+  });
   return image;
 }
 

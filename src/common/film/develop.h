@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/film/film.h"
+#include "common/film/film_data.h"
 #include "common/image/image.h"
 #include "common/render/stats.h"
 
@@ -11,6 +11,11 @@ namespace pt {
 
 /// Mean of each pixel's samples; black where it has none.
 Image develop(std::span<const FilmPixel> film, int width, int height);
+
+/// The same of a window with a filter, and the layers of the plan's AOVs. `samples`: of each pixel.
+/// The sums may be larger than the window.
+Image develop(const FilmSums& sums, const FilmPlan& plan, const PixelFilter& filter,
+              const Window& window, std::uint64_t samples);
 
 PathCounts summarize(const PathTally& tally);
 

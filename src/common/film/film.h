@@ -107,15 +107,40 @@ PT_HD int length_bin(std::uint32_t rays) {
                                    : path_length_bins - 1;
 }
 
-/// Adds one pixel's samples of the batch to the film, in their order; `count(bin)` is called with
+/// What a film sums of a pixel beyond its radiance, where somebody asks for it.
+struct PixelMoments {
+  double luminance_squares = 0;  ///< of the finite samples
+  std::uint64_t rays = 0;        ///< of all samples, as are the shadow rays
+  std::uint64_t shadow_rays = 0;
+};
+
+/// A pixel's sum of radiance alone: what accumulate_pixel adds samples to. PixelPlanes
+/// (film_planes.h) is the other kind of sum.
+class RadianceSum {
+ public:
+  PT_HD RadianceSum(FilmPixel* film, std::uint32_t pixel) : place_(film + pixel), sum_(*place_) {}
+
+  /// `number` counts the samples of the batch; `is_finite` is what the tally says of it.
+  PT_HD void add(const Sample& sample, std::uint32_t /*number*/, bool is_finite) {
+    if (!is_finite) return;
+    for (int c = 0; c < 3; ++c) sum_.sum[c] += sample.radiance[c];
+    ++sum_.samples;
+  }
+  PT_HD void store() const { *place_ = sum_; }
+
+ private:
+  FilmPixel* place_;
+  FilmPixel sum_;
+};
+
+/// Adds one pixel's samples of the batch to its sum, in their order; `count(bin)` is called with
 /// the length bin of each path, and `tally` gets the other numbers. Several samples are loaded
 /// before the first is used, since nothing else hides the latency of a thread that walks through a
 /// batch.
-template <class CountLength>
-PT_HD void accumulate_pixel(FilmPixel* film, const SampleBuffer& buffer, std::uint32_t pixel,
+template <class Sum, class CountLength>
+PT_HD void accumulate_pixel(Sum sum, const SampleBuffer& buffer, std::uint32_t pixel,
                             PathTally& tally, CountLength&& count) {
   constexpr std::uint32_t ahead = 8;
-  FilmPixel sum = film[pixel];
   const std::uint32_t stride = buffer.pixel_count.divisor();
   const std::uint32_t sample_count = buffer.sample_count;
   for (std::uint32_t first = 0; first < sample_count; first += ahead) {
@@ -130,18 +155,15 @@ PT_HD void accumulate_pixel(FilmPixel* film, const SampleBuffer& buffer, std::ui
     for (std::uint32_t k = 0; k < ahead; ++k) {
       if (first + k >= sample_count) break;
       const Sample& sample = loaded[k];
+      const bool finite = is_finite(sample.radiance);
       tally.rays += sample.rays & 0xffffu;
       tally.shadow_rays += sample.rays >> 16;
+      if (!finite) ++tally.nonfinite;
       count(length_bin(sample.rays & 0xffffu));
-      if (is_finite(sample.radiance)) {
-        for (int c = 0; c < 3; ++c) sum.sum[c] += sample.radiance[c];
-        ++sum.samples;
-      } else {
-        ++tally.nonfinite;
-      }
+      sum.add(sample, first + k, finite);
     }
   }
-  film[pixel] = sum;
+  sum.store();
 }
 
 }  // namespace pt

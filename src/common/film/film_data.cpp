@@ -21,6 +21,14 @@ void check_merge(const Film& film, const Film& part) {
                     "samples of other pixels; more samples come from continuing a film",
                     film.first_sample, film.next_sample, part.first_sample, part.next_sample));
   }
+  const auto planes_differ = [&](const auto& own, const auto& others) {
+    return own.size() * part.window.pixel_count() != others.size() * film.window.pixel_count();
+  };
+  if (!film.is_empty() &&
+      (planes_differ(film.pixels, part.pixels) || planes_differ(film.moments, part.moments) ||
+       planes_differ(film.features, part.features))) {
+    throw Error("two films of different planes: expected the same --aov and --filter");
+  }
   for (const Window& window : part.parts) {
     if (!film.window.contains(window)) {
       throw Error(fmt::format("a film of the pixels {}: expected pixels of the film {}",
@@ -39,7 +47,35 @@ std::uint64_t place_of(const Film& film, std::uint32_t x, std::uint32_t y) {
   return std::uint64_t{y - film.window.y} * film.window.width + (x - film.window.x);
 }
 
+/// Copies the pixels of `w` in each plane; `to` gets as many planes as `from` has.
+template <class T>
+void copy_planes(const Film& film, std::vector<T>& to, const Film& part, const std::vector<T>& from,
+                 const Window& w) {
+  const std::uint64_t count = film.window.pixel_count(), part_count = part.window.pixel_count();
+  const std::uint64_t planes = from.size() / part_count;
+  to.resize(planes * count);
+  for (std::uint64_t plane = 0; plane < planes; ++plane) {
+    for (std::uint32_t y = w.y; y < w.y + w.height; ++y) {
+      const T* row = &from[plane * part_count + place_of(part, w.x, y)];
+      std::copy(row, row + w.width, &to[plane * count + place_of(film, w.x, y)]);
+    }
+  }
+}
+
 }  // namespace
+
+void FilmSums::reset(const FilmPlan& plan, std::uint64_t pixel_count) {
+  const std::uint64_t count = plan.signs() * pixel_count;
+  pixels.assign(count, {});
+  moments.assign(plan.moments ? count : 0, {});
+  features.assign(count * plan.feature_planes(), 0.0);
+}
+
+bool FilmSums::have(const FilmPlan& plan, std::uint64_t pixel_count) const {
+  const std::uint64_t count = plan.signs() * pixel_count;
+  return pixels.size() == count && moments.size() == (plan.moments ? count : 0) &&
+         features.size() == count * plan.feature_planes();
+}
 
 bool Film::is_complete() const {
   std::uint64_t pixel_count = 0;
@@ -58,12 +94,10 @@ void merge(Film& film, const Film& part) {
   check_merge(film, part);
   film.first_sample = part.first_sample;
   film.next_sample = part.next_sample;
-  film.pixels.resize(film.window.pixel_count());
   for (const Window& w : part.parts) {
-    for (std::uint32_t y = w.y; y < w.y + w.height; ++y) {
-      const FilmPixel* row = &part.pixels[place_of(part, w.x, y)];
-      std::copy(row, row + w.width, &film.pixels[place_of(film, w.x, y)]);
-    }
+    copy_planes(film, film.pixels, part, part.pixels, w);
+    copy_planes(film, film.moments, part, part.moments, w);
+    copy_planes(film, film.features, part, part.features, w);
     film.parts.push_back(w);
   }
   film.tally = film.tally + part.tally;

@@ -1,14 +1,34 @@
 // An image in memory: linear RGB, row by row from the top.
 #pragma once
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace pt {
 
+/// Further values of an image's pixels: a layer of an EXR. Of the two arrays it has one.
+struct ImageLayer {
+  std::string name;
+  std::string channels;                ///< a letter each
+  std::vector<float> values;           ///< [y][x][channel]
+  std::vector<std::uint32_t> numbers;  ///< the same, whole numbers
+};
+
+/// Where an image lies that is a part of a larger one.
+struct ImagePlace {
+  int x = 0, y = 0;           ///< its upper left pixel
+  int width = 0, height = 0;  ///< of the larger one; 0: the image is no part
+
+  bool operator==(const ImagePlace&) const = default;
+};
+
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<float> rgb;  ///< 3 * width * height linear radiance values
+  std::vector<float> rgb;            ///< 3 * width * height linear radiance values
+  std::vector<ImageLayer> layers{};  ///< for EXR alone
+  ImagePlace place{};                ///< an EXR's data window in its display window
 
   float* pixel(int x, int y) { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
   const float* pixel(int x, int y) const {

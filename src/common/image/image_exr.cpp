@@ -43,11 +43,37 @@ bool is_reserved(const std::string& name) {
   return standard.find(name) != standard.end() || std::ranges::count(optional, name) > 0;
 }
 
+Imf::Header header_of(const Image& image) {
+  const ImagePlace& place = image.place;
+  if (place.width == 0) return Imf::Header(image.width, image.height);
+  const Imath::V2i corner(place.x, place.y), size(image.width - 1, image.height - 1);
+  return Imf::Header(Imath::Box2i({0, 0}, {place.width - 1, place.height - 1}),
+                     Imath::Box2i(corner, corner + size));
+}
+
+/// A layer's channels are named LAYER.C.
+void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& buffer) {
+  const std::size_t count = layer.channels.size(), stride = 4 * count;  // both types have 4 bytes
+  const bool has_numbers = !layer.numbers.empty();
+  const Imf::PixelType type = has_numbers ? Imf::UINT : Imf::FLOAT;
+  const Imath::Box2i& window = header.dataWindow();
+  const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::string name = layer.name + '.' + layer.channels[c];
+    const void* first = has_numbers ? static_cast<const void*>(layer.numbers.data() + c)
+                                    : static_cast<const void*>(layer.values.data() + c);
+    header.channels().insert(name, Imf::Channel(type));
+    buffer.insert(name, Imf::Slice::Make(type, first, window, stride, stride * width));
+  }
+}
+
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
-  Imf::Header header(image.width, image.height);
+  Imf::Header header = header_of(image);
   header.compression() = Imf::ZIP_COMPRESSION;
   const Names rgb = {"R", "G", "B"};
   for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), header.dataWindow(), rgb);
+  for (const ImageLayer& layer : image.layers) add_layer(layer, header, buffer);
   for (const auto& [key, value] : metadata) {
     if (is_reserved(key)) throw Error(fmt::format("metadata key '{}' is taken by OpenEXR", key));
     header.insert(key, Imf::StringAttribute(value));
@@ -55,7 +81,7 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
   ExrWriter stream;
   {
     Imf::OutputFile file(stream, header, 0);
-    file.setFrameBuffer(frame_buffer(image.rgb.data(), header.dataWindow(), rgb));
+    file.setFrameBuffer(buffer);
     file.writePixels(image.height);
   }  // writes the table of offsets
   return std::move(stream.bytes);

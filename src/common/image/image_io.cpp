@@ -50,6 +50,14 @@ void check_image(const Image& image) {
     throw Error(fmt::format("image of {}x{} pixels with {} values; expected sides of 1 to {}",
                             image.width, image.height, image.rgb.size(), max_image_size));
   }
+  const std::size_t pixels = image.rgb.size() / 3;
+  for (const ImageLayer& layer : image.layers) {
+    const std::size_t values = layer.values.size() + layer.numbers.size();
+    if (layer.channels.empty() || values != pixels * layer.channels.size()) {
+      throw Error(fmt::format("layer {} of {} values in an image of {} pixels", layer.name, values,
+                              pixels));
+    }
+  }
 }
 
 std::string read_file(const std::string& path) {

@@ -26,8 +26,8 @@ std::string image_ending(const std::string& path);
 /// folder. Leaves nothing behind and touches no existing file: called before any work is done.
 void check_image_path(const std::string& path);
 
-/// Writes linear float RGB (.exr), sRGB 8-bit RGB (.png) or gamma-2 8-bit binary RGB (.ppm).
-/// The ending may be in capitals. Throws Error naming the file.
+/// Writes linear float RGB and the layers (.exr), sRGB 8-bit RGB (.png) or gamma-2 8-bit binary RGB
+/// (.ppm). The ending may be in capitals. Throws Error naming the file.
 void write_image(const std::string& path, const Image& image, const ImageMetadata& metadata,
                  const ToneMapping& tone_mapping = {});
 

@@ -12,12 +12,23 @@ enum class SpotFalloff : std::uint32_t {
   square_cosine,  ///< glTF's KHR_lights_punctual: square of linear in the cosine
 };
 
-/// Every kind of light but the environment; the delta lights come last. A turned triangle has its
-/// last two vertices exchanged: it belongs to an instance that mirrors, and mirroring would turn
-/// the side that shines away.
-enum class LightKind : std::uint8_t { triangle, turned_triangle, sphere, point, spot, directional };
+/// Every kind of light but the environment; the delta lights come last, the sun before them. A
+/// turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors, and
+/// mirroring would turn the side that shines away.
+enum class LightKind : std::uint8_t {
+  triangle,
+  turned_triangle,
+  sphere,
+  sun,
+  point,
+  spot,
+  directional
+};
 
 PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::turned_triangle; }
+PT_HD bool has_place(LightKind kind) {
+  return kind != LightKind::sun && kind != LightKind::directional;
+}
 PT_HD bool is_delta(LightKind kind) { return kind >= LightKind::point; }
 
 struct DeltaLight {

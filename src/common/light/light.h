@@ -34,10 +34,11 @@ struct alignas(16) Light {
   LightKind kind;
   std::uint8_t relative_error;   ///< triangle: see PackedLightError
   std::uint16_t absolute_error;  ///< triangle
-  Vec3 b;  ///< triangle: the edge to the second vertex; spot, directional: where the light goes
+  Vec3 b;  ///< triangle: the edge to the second vertex; spot, directional: where the light goes;
+           ///< sun: where it is
   float weight;
   Vec3 c;  ///< triangle: the edge to the third vertex; spot: cosines of both angles,
-           ///< falloff; sphere: square of the radius
+           ///< falloff; sphere: square of the radius; sun: see Sun::one_minus_cos
   std::uint32_t triangle;  ///< its id, where it has texture coordinates; else no_texture
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/light.h"
+#include "common/light/light_tree.h"
 #include "common/sampling/alias_table.h"
 
 namespace pt {
@@ -15,30 +16,68 @@ struct LightChoice {
   float pmf = 0.0f;  ///< probability of this choice
 };
 
-/// A view. By power, whatever the place: a light with a probability proportional to its weight; the
-/// environment, whose power depends on the size of the scene more than on what it does for it, with
-/// a fixed one. A selector that depends on the place has the same two functions.
+/// A view. Without a tree the place does not matter: a light is chosen with a probability
+/// proportional to its weight. With a tree, lights that have a place are chosen by what they can do
+/// for the receiver, and `table` has the others, which all together get a fixed probability. So
+/// does the environment, whose power depends on the size of the scene more than on what it does.
 struct LightSelector {
   const Light* lights = nullptr;
-  const AliasEntry* table = nullptr;  ///< [light]
-  std::uint32_t count = 0;
+  const AliasEntry* table = nullptr;  ///< [light - table_first]
+  std::uint32_t table_first = 0;      ///< with a tree: lights from here on have no place
+  LightTree tree;
+  std::uint32_t count = 0;  ///< of the table
   float total_weight = 0.0f;
   float environment_probability = 0.0f;  ///< 1 without other lights, 0 without an environment
+  float table_probability = 1.0f;        ///< if not the environment: below 1 with a tree
+
+  PT_HD bool has_tree() const { return table_probability < 1.0f; }
 
   /// For light that arrives at `point`; u uniform in [0, 1)^2. The one number that decides about
   /// the environment is used again for the light, together with the other: 47 bits are left.
-  PT_HD LightChoice sample(const Vec3& point, float u0, float u1) const {
+  PT_HD LightChoice sample(const Vec3& point, Receiver receiver, float u0, float u1) const {
+    if (has_tree()) return sample_with_tree(point, receiver, u0, u1);
     const float p = environment_probability;
     if (u0 < p) return {environment_light, p};
     if (count == 0) return {};
     const std::uint32_t light = sample_alias(table, count, (u0 - p) / (1.0f - p), u1).index;
-    return {light, pmf(point, light)};
+    return {light, listed_pmf(light)};
   }
 
-  /// The probability with which sample(point) names `light`.
-  PT_HD float pmf(const Vec3& /*point*/, std::uint32_t light) const {
+  /// The probability with which sample(point, receiver) names `light`.
+  PT_HD float pmf(const Vec3& point, Receiver receiver, std::uint32_t light) const {
     if (light == environment_light) return environment_probability;
+    if (!has_tree()) return listed_pmf(light);
+    const std::uint32_t trail = tree.trail[light];
+    if (trail == LightTree::outside) return distant_pmf(light);
+    return tree_probability() * light_tree_pmf(tree, LightReceiver(point, receiver), trail);
+  }
+
+  /// As pmf(), for a light without place, whoever asks it.
+  PT_HD float distant_pmf(std::uint32_t light) const {
+    return table_probability * listed_pmf(light);
+  }
+
+ private:
+  PT_HD float tree_probability() const {
+    return (1.0f - environment_probability) * (1.0f - table_probability);
+  }
+
+  PT_HD float listed_pmf(std::uint32_t light) const {
     return (1.0f - environment_probability) * lights[light].weight / total_weight;
+  }
+
+  PT_HD LightChoice sample_with_tree(const Vec3& point, Receiver receiver, float u0,
+                                     float u1) const {
+    Interval random(u0, u1);
+    if (random.choose(environment_probability)) return {environment_light, environment_probability};
+    if (random.choose(table_probability)) {
+      const std::uint32_t light = table_first + sample_alias(table, count, random.unit()).index;
+      return {light, distant_pmf(light)};
+    }
+    float pmf = 1.0f;
+    const std::uint32_t light =
+        sample_light_tree(tree, LightReceiver(point, receiver), random, pmf);
+    return {light, tree_probability() * pmf};
   }
 };
 

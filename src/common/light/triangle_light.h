@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/area_light.h"
+#include "common/light/spherical_triangle.h"
 
 namespace pt {
 
@@ -17,34 +18,84 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
                  : TrianglePoint{u0 - 0.5f * u1, 0.5f * u1};
 }
 
-/// Density per solid angle of sample_triangle at a point of the triangle `distance` away along
-/// `wi`; 0 from behind. `normal` is cross(v1 - v0, v2 - v0), whose length is twice the area.
-PT_HD float triangle_solid_angle_pdf(const Vec3& normal, const Vec3& wi, float distance) {
-  const float cosine_times_area = -0.5f * dot(normal, wi);
-  return cosine_times_area > 0.0f ? distance * distance / cosine_times_area : 0.0f;
-}
+/// What samples a triangle: its area, or where it looms large the solid angle under which it is
+/// seen. A function of the triangle and of who sees it, so that it can be asked for afterwards.
+struct TriangleSampler {
+  Vec3 v0;  ///< relative to who sees it
+  Vec3 edge1, edge2;
+  Vec3 normal;  ///< cross(edge1, edge2), whose length is twice the area
+
+  PT_HD TriangleSampler(const Vec3& relative_v0, const Vec3& e1, const Vec3& e2)
+      : v0(relative_v0), edge1(e1), edge2(e2), normal(cross_rounded(e1, e2)) {}
+
+  /// Area over the square of the distance above 1/10: beyond, densities differ little over it.
+  PT_HD bool looms() const {
+    const Vec3 middle = v0 + (edge1 + edge2) * (1.0f / 3.0f);
+    const float distance2 = dot(middle, middle);
+    return dot(normal, normal) > 0.04f * distance2 * distance2;
+  }
+
+  PT_HD SphericalTriangle seen() const { return {v0, v0 + edge1, v0 + edge2, normal}; }
+
+  /// Below, a triangle seen from its edge, directions are rounded too much. (False as well for one
+  /// whose corner is where it is seen from.)
+  static PT_HD bool has_solid_angle(const SphericalTriangle& seen) {
+    return seen.solid_angle > 1e-3f;
+  }
+
+  /// Density per solid angle at a point `distance` away along `wi`, from either side.
+  PT_HD float pdf(const Vec3& wi, float distance) const {
+    if (looms()) {
+      const SphericalTriangle s = seen();
+      if (has_solid_angle(s)) return 1.0f / s.solid_angle;
+    }
+    const float cosine_times_area = 0.5f * fabsf(dot(normal, wi));
+    return cosine_times_area > 0.0f ? distance * distance / cosine_times_area : 0.0f;
+  }
+
+  /// Where a ray along `wi` meets its plane, within the triangle but for rounding.
+  PT_HD TrianglePoint point_along(const Vec3& wi) const {
+    const Vec3 p = add_scaled(-v0, dot(v0, normal) / dot(wi, normal), wi);
+    const float scale = 1.0f / dot(normal, normal);
+    const auto share = [&](const Vec3& across) {
+      return fminf(fmaxf(dot(across, normal) * scale, 0.0f), 1.0f);
+    };
+    const float b1 = share(cross_rounded(p, edge2));
+    return {b1, fminf(share(cross_rounded(edge1, p)), 1.0f - b1)};
+  }
+
+  PT_HD TrianglePoint sample(float u0, float u1) const {
+    if (looms()) {
+      const SphericalTriangle s = seen();
+      if (has_solid_angle(s)) return point_along(s.sample(u0, u1));
+    }
+    return sample_triangle_point(u0, u1);
+  }
+};
 
 struct TriangleLightSample {
   LightSample light;
   TrianglePoint point = {0.0f, 0.0f};  ///< where, for a textured emission
 };
 
-/// Uniform over the area of the triangle v0, v0 + edge1, v0 + edge2, on the side to which
-/// cross(edge1, edge2) points.
+/// A point of the triangle v0, v0 + edge1, v0 + edge2, which shines to the side to which
+/// cross(edge1, edge2) points; no density from behind.
 PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, const Vec3& edge2,
                                           const LightError& error, const Vec3& from, float u0,
                                           float u1) {
-  const TrianglePoint point = sample_triangle_point(u0, u1);
   // Relative to `from` before the sum: the nearer the light, the smaller the rounding error.
-  const Vec3 to_light = add_scaled(add_scaled(v0 - from, point.b1, edge1), point.b2, edge2);
+  const TriangleSampler sampler(v0 - from, edge1, edge2);
+  if (dot(sampler.v0, sampler.normal) >= 0.0f) return {};
+  const TrianglePoint point = sampler.sample(u0, u1);
+  const Vec3 to_light = add_scaled(add_scaled(sampler.v0, point.b1, edge1), point.b2, edge2);
   const float distance2 = dot(to_light, to_light);
   if (distance2 == 0.0f) return {};
   const float inverse_distance = inverse_sqrt(distance2), distance = distance2 * inverse_distance;
   const Vec3 wi = inverse_distance * to_light;
-  const Vec3 normal = cross_rounded(edge1, edge2);
-  const float inverse_length = inverse_sqrt(fmaxf(dot(normal, normal), 1e-37f));
-  const Vec3 end = add_scaled(to_light, error.bound(distance) * inverse_length, normal);
-  return {{wi, triangle_solid_angle_pdf(normal, wi, distance), end}, point};
+  if (dot(sampler.normal, wi) >= 0.0f) return {};
+  const float inverse_length = inverse_sqrt(fmaxf(dot(sampler.normal, sampler.normal), 1e-37f));
+  const Vec3 end = add_scaled(to_light, error.bound(distance) * inverse_length, sampler.normal);
+  return {{wi, sampler.pdf(wi, distance), end}, point};
 }
 
 }  // namespace pt

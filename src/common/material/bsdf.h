@@ -4,6 +4,7 @@
 // A BSDF is a small value:
 //   static constexpr const char* name      what it is called in messages and statistics
 //   static constexpr int parameter_count   of its material's parameters, below parameters_max
+//   static constexpr bool reflects_only    optional: true where nothing goes through (material.h)
 //   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
 //   static constexpr bool uses_tangent     where it is true, x is the direction in which the
 //   surface's

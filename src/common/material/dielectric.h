@@ -2,20 +2,9 @@
 #pragma once
 
 #include "common/material/bsdf.h"
+#include "common/material/fresnel.h"
 
 namespace pt {
-
-/// Reflectance of unpolarised light at a smooth boundary. `cos_i` in [0, 1] on the incident side,
-/// `eta` = transmitted / incident index of refraction.
-PT_HD float fresnel_dielectric(float cos_i, float eta) {
-  const float sin2_t = (1.0f - cos_i * cos_i) / (eta * eta);
-  if (sin2_t >= 1.0f) return 1.0f;
-  const float cos_t = sqrtf(1.0f - sin2_t);
-  const float parallel = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  const float perpendicular = (cos_i - eta * cos_t) / (cos_i + eta * cos_t);
-  return 0.5f *
-         fused_multiply_add(parallel, parallel, multiply_rounded(perpendicular, perpendicular));
-}
 
 struct Dielectric {
   static constexpr const char* name = "dielectric";

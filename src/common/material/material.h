@@ -1,16 +1,30 @@
 // Materials: the closed list of BSDFs, a record that names one, and its dispatch.
 #pragma once
 
+#include "common/material/conductor.h"
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/oren_nayar.h"
+#include "common/material/phong.h"
+#include "common/material/plastic.h"
+#include "common/material/principled.h"
+#include "common/material/principled_thin.h"
+#include "common/material/rough_dielectric.h"
+#include "common/material/rough_plastic.h"
+#include "common/material/thin_dielectric.h"
+#include "common/material/ward.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward,
+                       Conductor, RoughDielectric, ThinDielectric, Principled, PrincipledThin>;
+
+/// The first ones, those of the paper's scenes: no others are in kernels without triangles.
+using PaperBsdfs = TypeList<Diffuse, Metal, Dielectric>;
 
 enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
@@ -58,21 +72,44 @@ struct alignas(16) Material {
   PT_HD bool is(std::uint8_t flag) const { return (flags & flag) != 0; }
 };
 
+/// Whether all that a BSDF scatters stays on the side from which it came. One that does not say so
+/// (`static constexpr bool reflects_only = true`) is asked for light from both sides.
+template <class Bsdf>
+inline constexpr bool is_reflective = requires {
+  requires Bsdf::reflects_only;
+};
+
 namespace detail {
-template <int index, class Parameters, class Function>
+template <class... Types>
+constexpr std::uint64_t reflective_kinds(TypeList<Types...>) {
+  std::uint64_t kinds = 0;
+  ((kinds |= std::uint64_t{is_reflective<Types>} << static_cast<int>(kind_of<Types>)), ...);
+  return kinds;
+}
+}  // namespace detail
+
+PT_HD bool reflects_only(MaterialKind kind) {
+  constexpr std::uint64_t kinds = detail::reflective_kinds(Bsdfs{});
+  static_assert(Bsdfs::size <= 64);
+  return (kinds >> static_cast<int>(kind) & 1u) != 0;
+}
+
+namespace detail {
+template <class List, int index, class Parameters, class Function>
 PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  using Bsdf = TypeAt<index, Bsdfs>;
-  if constexpr (index + 1 < Bsdfs::size) {
-    if (kind != kind_of<Bsdf>) return visit_from<index + 1>(kind, parameters, function);
+  using Bsdf = TypeAt<index, List>;
+  if constexpr (index + 1 < List::size) {
+    if (kind != kind_of<Bsdf>) return visit_from<List, index + 1>(kind, parameters, function);
   }
   return function(Bsdf::make(parameters));
 }
 }  // namespace detail
 
 /// Calls `function` with the BSDF as a value of its own type, made of parameters (see bsdf.h).
-template <class Parameters, class Function>
+/// `List` is Bsdfs or a list with which it begins, if `kind` is one of it.
+template <class List = Bsdfs, class Parameters, class Function>
 PT_HD auto visit(MaterialKind kind, const Parameters& parameters, Function&& function) {
-  return detail::visit_from<0>(kind, parameters, function);
+  return detail::visit_from<List, 0>(kind, parameters, function);
 }
 
 }  // namespace pt

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/memory_error.h"
+#include "common/render/stop_clock.h"
 
 namespace pt {
 namespace {
@@ -13,13 +14,21 @@ constexpr std::uint64_t paths_end = std::uint64_t{1} << 31;  // a path's number 
 
 }  // namespace
 
+Window window_of(const Options& options) {
+  const CropWindow crop = options.crop.value_or(CropWindow{0, 0, options.width, options.height});
+  return {static_cast<std::uint32_t>(crop.x0), static_cast<std::uint32_t>(crop.y0),
+          static_cast<std::uint32_t>(crop.x1 - crop.x0),
+          static_cast<std::uint32_t>(crop.y1 - crop.y0)};
+}
+
 std::uint64_t plan_batches(const Options& options, const FilmMemory& memory) {
-  const std::uint64_t pixels = std::uint64_t(options.width) * std::uint64_t(options.height);
+  const Window window = window_of(options);
+  const std::uint64_t pixels = window.pixel_count();
   const std::uint64_t film_bytes = pixels * memory.bytes_per_pixel;
   const std::uint64_t least = film_bytes + pixels * memory.bytes_per_path;
   if (least > memory.free_bytes) {
     throw memory_error(memory.name,
-                       fmt::format("an image of {} x {} pixels", options.width, options.height),
+                       fmt::format("an image of {} x {} pixels", window.width, window.height),
                        least, memory.free_bytes);
   }
   if (pixels >= paths_end) {
@@ -39,18 +48,27 @@ int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max) {
   return static_cast<int>((wanted + batches - 1) / batches);
 }
 
-int for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
-                   const std::function<void(int first_sample, int samples)>& run_batch) {
+BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
+                        const std::function<void(int first_sample, int samples)>& run_batch,
+                        const std::function<double()>& error) {
   const std::uint64_t total = pixels * static_cast<std::uint64_t>(spp);
-  int done = 0;
-  while (done < spp) {
-    const int samples = std::min(per_batch, spp - done);
-    run_batch(done, samples);
-    done += samples;
-    if (hooks.progress) hooks.progress(pixels * static_cast<std::uint64_t>(done), total);
-    if (hooks.stop && hooks.stop()) break;
+  StopClock clock(hooks.stops);
+  BatchRun run;
+  while (run.samples < spp) {
+    const int samples = std::min({per_batch, spp - run.samples, clock.next(run.samples)});
+    run_batch(run.samples, samples);
+    run.samples += samples;
+    if (clock.wants_error(run.samples)) run.relative_error = error();
+    const std::uint64_t paths = pixels * static_cast<std::uint64_t>(run.samples);
+    if (hooks.progress) hooks.progress(paths, clock.expected(paths, total, run.relative_error));
+    if (run.samples < spp) run.ended_by = clock.ends(run.samples, run.relative_error);
+    if (run.ended_by != RunEnd::samples) break;
+    if (hooks.stop && hooks.stop()) {
+      if (run.samples < spp) run.ended_by = RunEnd::interrupted;
+      break;
+    }
   }
-  return done;
+  return run;
 }
 
 }  // namespace pt

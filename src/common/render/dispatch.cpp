@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "common/render/option_names.h"
 
 namespace pt {
 namespace {
@@ -33,12 +34,12 @@ const char* name_of(Lighting lighting) {
 
 }  // namespace
 
-void throw_no_kernel(const SceneTraits& traits) {
+void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator) {
   throw Error(
-      fmt::format("no kernel for a scene with --accel {}, geometry: {}, lights: {}{}; expected one "
-                  "of the kinds that this mode, device and --rng have",
-                  accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting),
-                  traits.has_masks ? ", masks" : ""));
+      fmt::format("no kernel of --integrator {} for a scene with --accel {}, geometry: {}, lights: "
+                  "{}{}; expected one of the kinds that this mode, device and --rng have",
+                  to_string(integrator), accel_name(traits.accel), name_of(traits.geometry),
+                  name_of(traits.lighting), traits.has_masks ? ", masks" : ""));
 }
 
 }  // namespace pt

@@ -7,9 +7,13 @@
 #include "common/render/options.h"
 #include "common/sampling/random.h"
 #include "common/scene/scene.h"
+#include "common/transport/path_integrator.h"
 #include "common/type_list.h"
 
 namespace pt {
+
+/// Every integrator, in the order of IntegratorKind.
+using Integrators = TypeList<PathIntegrator>;
 
 // The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
 // whatever a file can hold shares the rest.
@@ -39,14 +43,23 @@ inline constexpr bool draws_in_all_scenes = std::is_same_v<Source, PhiloxSource>
 template <class Source, class All>
 using KindsWith = std::conditional_t<draws_in_all_scenes<Source>, All, SphereSceneKinds>;
 
-/// Throws Error, which names the traits.
-[[noreturn]] void throw_no_kernel(const SceneTraits& traits);
+/// Throws Error, which names them.
+[[noreturn]] void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator);
 
-/// function(Traits<...>{}) for the member of the list that has these traits. Throws Error when none
-/// has.
+/// function(Traits<...>{}) for the member of the list that has these traits and this integrator.
+/// Throws Error when none has.
 template <class Function, class... T>
-void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
-  if (!((T::value() == traits && (function(T{}), true)) || ...)) throw_no_kernel(traits);
+void dispatch_traits(TypeList<T...>, SceneTraits traits, IntegratorKind integrator,
+                     Function&& function) {
+  const auto called = [&](auto kind) {
+    using Kind = decltype(kind);
+    const bool is_it =
+        Kind::value() == traits &&
+        IntegratorKind{index_in<typename Kind::Integrator>(Integrators{})} == integrator;
+    if (is_it) function(kind);
+    return is_it;
+  };
+  if (!(called(T{}) || ...)) throw_no_kernel(traits, integrator);
 }
 
 /// function(Constant<branching>). Branches are reduced in the paper's scenes only.

@@ -4,16 +4,43 @@
 
 #include "common/error.h"
 #include "common/film/develop.h"
+#include "common/film/pixel_statistics.h"
+#include "common/render/option_names.h"
 
 namespace pt {
+namespace {
 
-FilmRenderer::FilmRenderer(const Options& options)
+FilmPlan make_plan(const Options& options, const PixelFilter& filter) {
+  return {options.aovs, needs_moments(options.aovs) || options.target_error > 0.0f,
+          filter.has_negative()};
+}
+
+// Features and signs are found from the numbers that begin a path, drawn a second time.
+void check_random(const Options& options, const FilmPlan& plan) {
+  if (options.rng == RngKind::philox) return;
+  if (plan.feature_planes() == 0 && !plan.two_signs) return;
+  throw Error(fmt::format(
+      "--rng {}: its numbers cannot be drawn twice, which {} needs; expected "
+      "--rng philox",
+      to_string(options.rng), plan.two_signs ? "a --filter with negative parts" : "--aov"));
+}
+
+}  // namespace
+
+FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene)
     : options_(options),
       limits_(path_limits_of(options)),
-      window_(blank_film(options.width, options.height).window) {}
+      plan_(make_plan(options, scene.filter)),
+      filter_(scene.filter),
+      image_window_(window_of(options)),
+      window_(image_window_) {
+  check_random(options, plan_);
+}
 
 RenderRun FilmRenderer::render(const RenderHooks& hooks) {
-  return add_samples(blank_film(options_.width, options_.height), options_.spp, hooks);
+  Film film;
+  film.window = image_window_;
+  return add_samples(film, options_.spp, hooks);
 }
 
 RenderRun FilmRenderer::render(Film& film, int samples, const RenderHooks& hooks) {
@@ -27,16 +54,23 @@ RenderRun FilmRenderer::render(Film& film, int samples, const RenderHooks& hooks
 
 void FilmRenderer::check(const Film& film, int samples) const {
   const Window& w = film.window;
-  if (w.pixel_count() == 0 || !blank_film(options_.width, options_.height).window.contains(w)) {
+  if (w.pixel_count() == 0 || !image_window_.contains(w)) {
     throw Error(
         fmt::format("a film of {}x{} pixels at {},{}: expected a part of the image of "
-                    "{}x{} pixels",
-                    w.width, w.height, w.x, w.y, options_.width, options_.height));
+                    "{}x{} pixels{}",
+                    w.width, w.height, w.x, w.y, options_.width, options_.height,
+                    options_.crop ? ", within --crop" : ""));
   }
   if (!film.is_empty() && !film.is_complete()) {
     throw Error(
         fmt::format("a film of {}x{} pixels: some lack samples; expected all or none to "
                     "have them",
+                    w.width, w.height));
+  }
+  if (!film.is_empty() && !film.have(plan_, w.pixel_count())) {
+    throw Error(
+        fmt::format("a film of {}x{} pixels: expected the planes that --aov, --filter and "
+                    "--target-error ask for",
                     w.width, w.height));
   }
   if (samples < 1 || ~film.next_sample < static_cast<std::uint32_t>(samples)) {
@@ -48,24 +82,45 @@ void FilmRenderer::check(const Film& film, int samples) const {
 RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderHooks& hooks) {
   window_ = film.window;
   const std::uint64_t pixels = window_.pixel_count();
-  const auto render_samples = [&](RenderRun& run, int first, int count) {
-    const std::uint32_t first_sample = film.next_sample + static_cast<std::uint32_t>(first);
-    render_batch({samples_, window_, first_sample, static_cast<std::uint32_t>(count)}, run);
-  };
+  const std::uint32_t before = film.next_sample - film.first_sample;
+  const int largest = batch_samples(samples, pixels, batch_paths_);
   begin_render(film);
   RenderRun run;
-  run.samples_done =
-      for_each_batch(samples, batch_samples(samples, pixels, batch_paths_), pixels, hooks,
-                     [&](int first, int count) { render_samples(run, first, count); });
+  const BatchRun batches = for_each_batch(
+      samples, largest, pixels, hooks,
+      [&](int first, int count) {
+        const std::uint32_t first_sample = film.next_sample + static_cast<std::uint32_t>(first);
+        render_batch({samples_, window_, first_sample, static_cast<std::uint32_t>(count)}, run);
+        pixel_samples_ = before + static_cast<std::uint32_t>(first + count);
+      },
+      [&] { return estimate_error(); });
+  run.samples_done = batches.samples;
+  run.ended_by = batches.ended_by;
+  run.relative_error = batches.relative_error;
   end_render(run);
   return run;
+}
+
+Image FilmRenderer::develop_window(const FilmSums& sums) const {
+  Image image = develop(sums, plan_, filter_, window_, pixel_samples_);
+  image.place = {static_cast<int>(window_.x), static_cast<int>(window_.y), options_.width,
+                 options_.height};
+  return image;
 }
 
 Image FilmRenderer::image() {
   Film film;
   film.window = window_;
   read_film(film);
-  return develop(film.pixels, static_cast<int>(window_.width), static_cast<int>(window_.height));
+  return develop_window(film);
+}
+
+double FilmRenderer::estimate_error() {
+  Film film;
+  film.window = window_;
+  read_film(film);
+  const std::uint64_t pixels = window_.pixel_count();
+  return relative_error(PixelReader(film, plan_, filter_, pixels), pixels, pixel_samples_);
 }
 
 }  // namespace pt

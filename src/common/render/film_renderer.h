@@ -5,6 +5,7 @@
 #include "common/render/batches.h"
 #include "common/render/path_limits_of.h"
 #include "common/render/renderer.h"
+#include "common/scene/scene_data.h"
 
 namespace pt {
 
@@ -16,7 +17,7 @@ class FilmRenderer : public Renderer {
   Image image() override;
 
  protected:
-  explicit FilmRenderer(const Options& options);
+  FilmRenderer(const Options& options, const SceneData& scene);
 
   /// To be called once, before a render: `make(paths)` makes a sample buffer for the largest batch.
   template <class Make>
@@ -27,6 +28,12 @@ class FilmRenderer : public Renderer {
 
   /// Of the last render.
   const Window& window() const { return window_; }
+  /// The samples that each pixel has.
+  std::uint64_t pixel_samples() const { return pixel_samples_; }
+  /// What films there are: parts of the crop window, or of the whole image.
+  const Window& image_window() const { return image_window_; }
+  /// `sums` as an image, of the window of the last render.
+  Image develop_window(const FilmSums& sums) const;
   /// Paths of the largest batch.
   std::uint64_t batch_paths() const { return batch_paths_; }
   Sample* samples() const { return samples_; }
@@ -42,12 +49,17 @@ class FilmRenderer : public Renderer {
 
   const Options options_;
   const PathLimits limits_;
+  const FilmPlan plan_;       ///< what is summed
+  const PixelFilter filter_;  ///< without its table
 
  private:
   void check(const Film& film, int samples) const;
   RenderRun add_samples(const Film& film, int samples, const RenderHooks& hooks);
+  double estimate_error();
 
+  Window image_window_;
   Window window_;
+  std::uint64_t pixel_samples_ = 0;
   std::uint64_t batch_paths_ = 0;
   Sample* samples_ = nullptr;
 };

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/render/options.h"
+#include "common/render/stats.h"
 
 namespace pt {
 
@@ -24,6 +25,9 @@ inline constexpr std::array<EnumName<E>, 0> enum_names{};
 template <>
 inline constexpr auto enum_names<Mode> = std::to_array<EnumName<Mode>>(
     {{Mode::serial, "serial"}, {Mode::megakernel, "megakernel"}, {Mode::wavefront, "wavefront"}});
+template <>
+inline constexpr auto enum_names<IntegratorKind> =
+    std::to_array<EnumName<IntegratorKind>>({{IntegratorKind::path, "path"}});
 template <>
 inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
     {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});
@@ -64,6 +68,25 @@ inline constexpr auto enum_names<TreeBuilder> =
                                           {TreeBuilder::sbvh, "sbvh"},
                                           {TreeBuilder::lbvh, "lbvh"},
                                           {TreeBuilder::hploc, "hploc"}});
+template <>
+inline constexpr auto enum_names<LightSelection> =
+    std::to_array<EnumName<LightSelection>>({{LightSelection::automatic, "auto"},
+                                             {LightSelection::uniform, "uniform"},
+                                             {LightSelection::power, "power"},
+                                             {LightSelection::tree, "tree"}});
+template <>
+inline constexpr auto enum_names<FilterKind> =
+    std::to_array<EnumName<FilterKind>>({{FilterKind::box, "box"},
+                                         {FilterKind::tent, "tent"},
+                                         {FilterKind::gaussian, "gaussian"},
+                                         {FilterKind::mitchell, "mitchell"},
+                                         {FilterKind::lanczos, "lanczos"}});
+template <>
+inline constexpr auto enum_names<RunEnd> =
+    std::to_array<EnumName<RunEnd>>({{RunEnd::samples, "samples"},
+                                     {RunEnd::time_limit, "time_limit"},
+                                     {RunEnd::target_error, "target_error"},
+                                     {RunEnd::interrupted, "interrupted"}});
 template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});

@@ -17,10 +17,12 @@ enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class Schedule { automatic, host, graph };
 enum class SceneMemory { automatic, global, shared, constant };
+enum class IntegratorKind { path };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
 enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
 enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
+enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };
 
 using StageBlocks = std::array<int, stage_count>;  ///< threads per block, by StageId
@@ -54,17 +56,45 @@ struct CameraOverrides {
   std::optional<float> vertical_fov_degrees, aperture, focus_distance;
 };
 
+/// How samples become pixels (scene/prepare_filter.h).
+enum class FilterKind { box, tent, gaussian, mitchell, lanczos };
+
+/// A reconstruction filter, centred on the pixel and separable; lengths in pixels.
+struct FilterChoice {
+  FilterKind kind = FilterKind::box;
+  float a = 0.5f;  ///< box, tent: radius; gaussian: standard deviation; mitchell: B; lanczos: lobes
+  float b = 0.0f;  ///< mitchell: C
+
+  bool operator==(const FilterChoice&) const = default;
+};
+
+/// Pixels [x0, x1) x [y0, y1) of the image.
+struct CropWindow {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  bool operator==(const CropWindow&) const = default;
+};
+
 struct Options {
   // Image
-  int width = 600;     ///< pixels, 1..65535
-  int height = 300;    ///< pixels, 1..65535
+  int width = 600;   ///< pixels, 1..65535
+  int height = 300;  ///< pixels, 1..65535
+  IntegratorKind integrator = IntegratorKind::path;
   int spp = 50;        ///< samples per pixel, >= 1
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
   bool nee = true;     ///< next-event estimation: ask the lights
+  LightSelection light_selection = LightSelection::automatic;
   std::uint64_t seed = 1;
-  std::string output = "image.exr";  ///< .exr, .png or .ppm
-  ExposureChoice exposure;           ///< for PNG and PPM only
+  std::string output = "image.exr";    ///< .exr, .png or .ppm
+  ExposureChoice exposure;             ///< for PNG and PPM only
+  std::optional<CropWindow> crop;      ///< none: the scene file's, or the whole image
+  std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel
+  std::uint32_t aovs = 0;              ///< a bit for each layer of aov.h, in its order
+
+  // Stops: the render ends with the first of them that is reached
+  float time_limit = 0.0f;    ///< seconds of rendering, 0: none
+  float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
 
   // Scene
   std::string scene = "spheres";

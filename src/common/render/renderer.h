@@ -12,12 +12,21 @@
 
 namespace pt {
 
+/// Ends a render before all of its samples are taken. 0: no such limit.
+struct StopRule {
+  double seconds = 0;         ///< of rendering
+  double relative_error = 0;  ///< see relative_error()
+  /// The steady clock in seconds, or a test's. May be empty.
+  std::function<double()> clock;
+};
+
 struct RenderHooks {
   /// Called between batches with the samples done and wanted (pixels x spp) of this render. May be
   /// empty.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
   /// Polled between batches; true ends the render early with the samples that it has. May be empty.
   std::function<bool()> stop;
+  StopRule stops{};
 };
 
 class Renderer {

@@ -21,6 +21,7 @@ namespace pt {
   STAGE(shade_surface, shade_surface, true) \
   STAGE(shadow, shadow, true)               \
   STAGE(finish, intersect, true)            \
+  STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \
   STAGE(compact, idle, false)               \
   STAGE(begin_wave, idle, false)            \

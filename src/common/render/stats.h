@@ -14,13 +14,24 @@ struct StageTime {
   std::uint64_t launches = 0;  ///< kernel launches (CUDA), parallel loops (CPU)
 };
 
+/// Why a render has the samples that it has.
+enum class RunEnd { samples, time_limit, target_error, interrupted };
+
 /// One render of the whole image.
 struct RenderRun {
   double kernel_ms = 0;  ///< from the first stage's start to the last one's end, all batches
   std::vector<StageTime> stages;
   std::uint64_t waves = 0;  ///< turns of the wavefront's loop; 0 in other modes
-  int samples_done = 0;     ///< per pixel; less than asked for after an interruption
+  int samples_done = 0;     ///< per pixel; less than asked for where something ended it before
+  RunEnd ended_by = RunEnd::samples;
+  std::optional<double> relative_error;  ///< of the image (image_error.h), where it was estimated
 };
+
+/// Neither all samples were taken nor did a stop that was asked for end the render.
+inline bool is_cut_short(const RenderRun& run, int samples) {
+  return run.samples_done < samples && run.ended_by != RunEnd::time_limit &&
+         run.ended_by != RunEnd::target_error;
+}
 
 /// What was traced: equal for every mode, device and --schedule that renders the same image.
 struct PathCounts {

@@ -17,7 +17,8 @@ constexpr std::size_t lights_max = std::size_t{1} << 24;
 
 class Lister {
  public:
-  Lister(const SceneData& scene, const Bounds& bounds) : scene_(scene) {
+  Lister(const SceneData& scene, const Bounds& bounds, LightSelection selection)
+      : scene_(scene), selection_(selection) {
     radius_ = bounds.is_empty() ? 1.0f : 0.5f * glm::length(bounds.max - bounds.min);
   }
 
@@ -26,23 +27,67 @@ class Lister {
     for (const Instance& instance : scene_.instances) add_group(instance.group, &instance.to_world);
     add_group(0, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
-    for (const DeltaLight& light : scene_.delta_lights) add_delta(light);
-    std::vector<float> weights;
-    double total = 0;
-    for (const Light& light : data_.lights) {
-      weights.push_back(light.weight);
-      total += light.weight;
+    for (const DeltaLight& light : scene_.delta_lights) {
+      if (has_place(light.kind)) add_delta(light);
     }
-    data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
-    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
-    if (total > 0) data_.selection = build_alias_table(weights);
-    if (scene_.environment.width > 0) {
-      data_.environment_probability = data_.selection.empty() ? 1.0f : 0.5f;
+    const std::size_t first_distant = data_.lights.size();
+    for (const DeltaLight& light : scene_.delta_lights) {
+      if (!has_place(light.kind)) add_delta(light);
+    }
+    if (scene_.sun.one_minus_cos > 0.0f) add_sun();
+    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
+    if (data_.tree.pairs.empty()) {
+      make_table(0);
+      share_with_environment(data_.selection.empty() ? 0 : lamps_done_);
+    } else {
+      make_table(first_distant);
+      share_with_tree();
     }
     return std::move(data_);
   }
 
  private:
+  /// Of lights from `first` on.
+  void make_table(std::size_t first) {
+    std::vector<float> weights;
+    double total = 0;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) {
+      weights.push_back(data_.lights[i].weight);
+      total += data_.lights[i].weight;
+    }
+    data_.table_first = static_cast<std::uint32_t>(first);
+    data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
+    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
+    if (total > 0) data_.selection = build_alias_table(weights);
+  }
+
+  void share_with_environment(std::size_t lamps) {
+    if (scene_.environment.width == 0) return;
+    const bool uniform = selection_ == LightSelection::uniform;
+    data_.environment_probability = lamps == 0 ? 1.0f
+                                    : uniform  ? 1.0f / static_cast<float>(lamps + 1)
+                                               : 0.5f;
+  }
+
+  /// The environment, what else has no place, and the tree: as often each.
+  void share_with_tree() {
+    const bool has_table = !data_.selection.empty(), has_map = scene_.environment.width > 0;
+    data_.table_probability = has_table ? 0.5f : 0.0f;
+    data_.environment_probability = !has_map ? 0.0f : has_table ? 1.0f / 3.0f : 0.5f;
+  }
+
+  /// The lights from `first` on are one lamp.
+  void finish_lamp(std::size_t first) {
+    double total = 0;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) total += data_.lights[i].weight;
+    if (!(total > 0)) return;
+    ++lamps_done_;
+    if (selection_ != LightSelection::uniform) return;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) {
+      data_.lights[i].weight = static_cast<float>(data_.lights[i].weight / total);
+    }
+  }
+
   bool shines(const Mesh& mesh) const {
     return !is_black(scene_.materials[mesh.material].emission.radiance);
   }
@@ -106,6 +151,7 @@ class Lister {
       light.emission_texture = emission.texture;
       data_.lights.push_back(light);
     }
+    finish_lamp(data_.lights.size() - mesh.triangles.size());
   }
 
   void add_sphere(std::size_t i) {
@@ -121,6 +167,7 @@ class Lister {
     light.radiance = radiance;
     light.triangle = light.emission_texture = no_texture;
     data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
   }
 
   void add_delta(const DeltaLight& delta) {
@@ -134,18 +181,37 @@ class Lister {
     light.kind = delta.kind;
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
     data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
+  }
+
+  void add_sun() {
+    data_.sun = static_cast<std::uint32_t>(data_.lights.size());
+    const Sun& sun = scene_.sun;
+    Light light{};
+    light.kind = LightKind::sun;
+    light.b = sun.direction;
+    light.c.x = sun.one_minus_cos;
+    light.radiance = sun.radiance;
+    light.triangle = light.emission_texture = no_texture;
+    // As a directional light of its irradiance.
+    light.weight = 2 * pi * sun.one_minus_cos * radius_ * radius_ * luminance(sun.radiance);
+    data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
   }
 
   const SceneData& scene_;
+  LightSelection selection_;
   float radius_;
+  std::size_t lamps_done_ = 0;                        ///< that give any light
   std::map<std::uint32_t, std::vector<Lamp>> lamps_;  ///< by group
   LightListData data_;
 };
 
 }  // namespace
 
-LightListData list_lights(const SceneData& scene, const Bounds& bounds) {
-  return Lister(scene, bounds).list();
+LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection) {
+  if (selection == LightSelection::automatic) selection = LightSelection::tree;
+  return Lister(scene, bounds, selection).list();
 }
 
 }  // namespace pt

@@ -8,7 +8,7 @@
 
 namespace pt {
 
-inline constexpr int parameters_max = 8;  ///< of one material
+inline constexpr int parameters_max = 12;  ///< of one material
 
 struct MaterialDescription {
   MaterialKind kind = kind_of<Diffuse>;
@@ -45,6 +45,17 @@ PT_HD MaterialDescription describe(const Color& color, float number = 0.0f) {
   m.kind = kind_of<Bsdf>;
   m.parameters[0].value = color;
   m.parameters[1].value = Color(number);
+  return m;
+}
+
+/// Of a BSDF with these parameters; the others are 0.
+template <class Bsdf, class... Parameters>
+PT_HD MaterialDescription describe_all(const Parameters&... parameters) {
+  static_assert(sizeof...(Parameters) <= parameters_max);
+  MaterialDescription m;
+  m.kind = kind_of<Bsdf>;
+  int i = 0;
+  ((m.parameters[i++].value = Color(parameters)), ...);
   return m;
 }
 

@@ -1,6 +1,7 @@
 #include "common/scene/prepare_primitives.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "common/accel/build/build_bvh2.h"
 #include "common/accel/traverse_brute.h"
@@ -42,6 +43,7 @@ void build_structure(SceneData& scene, const Bounds& others) {
   scene.sphere_material = permuted(scene.sphere_material, sphere_order, 0);
   scene.quads = permuted(scene.quads, quad_order, sphere_count);
   scene.quad_material = permuted(scene.quad_material, quad_order, sphere_count);
+  scene.primitive_numbers = permuted(scene.primitive_numbers, order, 0);
   scene.bvh_nodes = std::move(bvh.nodes);
   // The lights keep their order, and with it the image.
   std::vector<std::uint32_t> place(order.size());
@@ -111,6 +113,8 @@ void prepare_primitives(SceneData& scene, bool tree, const Bounds& others) {
   join_materials(scene);
   list_emitters(scene);
   scene.bvh_nodes.clear();
+  scene.primitive_numbers.resize(scene.primitive_count());
+  std::iota(scene.primitive_numbers.begin(), scene.primitive_numbers.end(), 0u);
   if (tree) {
     build_structure(scene, others);
     join_materials(scene);

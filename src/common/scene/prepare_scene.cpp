@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/scene/prepare_camera.h"
+#include "common/scene/prepare_filter.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
@@ -35,6 +36,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   prepare_materials(scene);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
+  prepare_filter(scene, filter_of(options, scene));
   if (has_primitives_only(scene)) {
     prepare_primitives_only(scene, options);
   } else {
@@ -46,7 +48,10 @@ Scene host_view(const SceneData& scene, int width, int height) {
   const auto count = [](const auto& values) { return static_cast<std::uint32_t>(values.size()); };
   Scene view;
   view.camera = make_camera(scene.camera, width, height);
+  view.filter = scene.filter;
   view.sky = scene.sky;
+  view.sun = scene.sun;
+  view.sun.light = scene.light_list.sun;
   view.primitives.sphere_count = count(scene.spheres);
   view.primitives.quad_count = count(scene.quads);
   view.primitives.scan_count = count(scene.scan_spheres);
@@ -55,6 +60,9 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();
   view.light_selector.count = count(scene.light_list.selection);
+  view.light_selector.table_first = scene.light_list.table_first;
+  view.light_selector.table_probability = scene.light_list.table_probability;
+  view.light_selector.tree.root = scene.light_list.tree.root;
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();

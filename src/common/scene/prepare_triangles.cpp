@@ -109,7 +109,7 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   }
   scene.attributes = join_attributes(scene.meshes);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
-  scene.light_list = list_lights(scene, bounds);
+  scene.light_list = list_lights(scene, bounds, options.light_selection);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
                                              scene.environment.pixels, scene.environment.to_world);

@@ -9,23 +9,28 @@
 #include "common/light/environment.h"
 #include "common/light/light_selector.h"
 #include "common/light/sky.h"
+#include "common/light/sun.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
+#include "common/sampling/pixel_filter.h"
 #include "common/scene/camera.h"
 
 namespace pt {
 
 struct Scene {
   Camera camera;
+  PixelFilter filter;
   Sky sky;
+  Sun sun;  ///< Lighting::full
   Primitives primitives;
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;
-  const Parameter* parameters = nullptr;          ///< see Material
-  const Emission* emissions = nullptr;            ///< of those that shine
-  const std::uint32_t* material_of = nullptr;     ///< [primitive]
-  const std::uint32_t* lights = nullptr;          ///< primitives that emit (Lighting::emitters)
-  const std::uint32_t* light_emission = nullptr;  ///< what they do
+  const Parameter* parameters = nullptr;             ///< see Material
+  const Emission* emissions = nullptr;               ///< of those that shine
+  const std::uint32_t* material_of = nullptr;        ///< [primitive]
+  const std::uint32_t* primitive_numbers = nullptr;  ///< [primitive], as the scene's maker had it
+  const std::uint32_t* lights = nullptr;             ///< primitives that emit (Lighting::emitters)
+  const std::uint32_t* light_emission = nullptr;     ///< what they do
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
@@ -64,11 +69,14 @@ struct SceneTraits {
   bool has_lights() const { return lighting != Lighting::sky; }
 };
 
-/// The same as a type. (A value as template argument, new in C++20, is refused by nvcc's host
-/// pass.)
+struct PathIntegrator;  // transport/path_integrator.h
+
+/// The same as a type, and the integrator, for all that is known of a path before its kernels are
+/// chosen. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
-          bool has_masks_value = false>
+          bool has_masks_value = false, class IntegratorType = PathIntegrator>
 struct Traits {
+  using Integrator = IntegratorType;
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
@@ -78,8 +86,12 @@ struct Traits {
   static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
 };
 
+/// The BSDFs of a scene's kernels.
+template <class T>
+using BsdfsOf = std::conditional_t<T::lighting == Lighting::full, Bsdfs, PaperBsdfs>;
+
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
-using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting>;
+using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
 
 }  // namespace pt

@@ -13,10 +13,12 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.primitives.spheres, scene.spheres, "scene");
   function(view.primitives.scan, scene.scan_spheres, "scene");
   function(view.primitives.quads, scene.quads, "scene");
+  function(view.filter.quantiles, scene.filter_quantiles, "scene");
   function(view.materials, scene.material_records, "scene");
   function(view.parameters, scene.parameters, "scene");
   function(view.emissions, scene.emissions, "scene");
   function(view.material_of, scene.material_of, "scene");
+  function(view.primitive_numbers, scene.primitive_numbers, "scene");
   function(view.lights, scene.lights, "scene");
   function(view.light_emission, scene.light_emission, "scene");
   function(view.bvh_nodes, scene.bvh_nodes, "acceleration structure");
@@ -26,6 +28,8 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.attributes.uvs, scene.attributes.uvs, "vertex attributes");
   function(view.light_selector.lights, scene.light_list.lights, "lights");
   function(view.light_selector.table, scene.light_list.selection, "lights");
+  function(view.light_selector.tree.pairs, scene.light_list.tree.pairs, "lights");
+  function(view.light_selector.tree.trail, scene.light_list.tree.trail, "lights");
   function(view.light_map.first, scene.light_list.first, "lights");
   function(view.light_map.rank, scene.light_list.rank, "lights");
   function(view.light_map.spheres, scene.light_list.spheres, "lights");

@@ -10,8 +10,10 @@
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
+#include "common/light/build_light_tree.h"
 #include "common/light/delta_light.h"
 #include "common/math/transform.h"
+#include "common/render/options.h"
 #include "common/scene/material_description.h"
 #include "common/scene/scene.h"
 
@@ -28,6 +30,8 @@ struct EnvironmentData {
 /// What a scene file asks for where the command line does not.
 struct SceneDefaults {
   std::optional<int> width, height, spp, max_depth, rr_depth;
+  std::optional<CropWindow> crop;
+  std::optional<FilterChoice> filter;
   /// The file's radiance has no relation to a display's white: photometric units, or a light that
   /// it does not bring.
   bool measure_exposure = false;
@@ -44,9 +48,12 @@ struct MeshAttributes {
 struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
+  LightTreeData tree;                               ///< empty unless lights are chosen by it
+  std::uint32_t sun = 0;                            ///< its number
+  std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
   float total_weight = 0.0f;
-  float environment_probability = 0.0f;
+  float environment_probability = 0.0f, table_probability = 1.0f;
 };
 
 struct SceneData {
@@ -55,6 +62,7 @@ struct SceneData {
   CameraParameters camera;
   Sky sky;
   EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
+  Sun sun;                      ///< likewise
   std::vector<DeltaLight> delta_lights;
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;
@@ -66,15 +74,18 @@ struct SceneData {
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   // Made from the above by prepare_scene():
   SceneTraits traits;
+  PixelFilter filter;                      ///< without its table
+  std::vector<float> filter_quantiles;     ///< empty: a box of one pixel
   std::vector<Material> material_records;  ///< by material
   std::vector<Parameter> parameters;
   std::vector<Emission> emissions;
-  std::vector<Opacity> opacities;             ///< by material; empty: there are no masks
-  std::vector<Bvh2Node> bvh_nodes;            ///< over spheres and quads; empty: they are scanned
-  std::vector<std::uint32_t> material_of;     ///< by primitive
-  std::vector<std::uint32_t> lights;          ///< primitives that emit
-  std::vector<std::uint32_t> light_emission;  ///< by light
-  std::vector<Sphere> scan_spheres;           ///< Primitives::scan
+  std::vector<Opacity> opacities;          ///< by material; empty: there are no masks
+  std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
+  std::vector<std::uint32_t> material_of;  ///< by primitive
+  std::vector<std::uint32_t> primitive_numbers;  ///< by primitive: as they were before
+  std::vector<std::uint32_t> lights;             ///< primitives that emit
+  std::vector<std::uint32_t> light_emission;     ///< by light
+  std::vector<Sphere> scan_spheres;              ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
   // In scenes with triangles:
   TriangleTreeData tree;                     ///< empty where --builder leaves it to the device

@@ -66,7 +66,8 @@ void describe_scene(const SceneData& scene, SceneFacts& facts) {
       {"acceleration structure", scene.tree.size_bytes() + bytes(scene.bvh_nodes)},
       {"textures", bytes(scene.texels)},
       {"environment", bytes(scene.environment_map.texels) + bytes(scene.environment_map.alias)},
-      {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection)}};
+      {"lights", bytes(scene.light_list.lights) + bytes(scene.light_list.selection) +
+                     bytes(scene.light_list.tree.pairs) + bytes(scene.light_list.tree.trail)}};
   std::erase_if(facts.memory, [](const BufferSize& buffer) { return buffer.size_bytes == 0; });
   facts.tree = tree_facts(summarize(scene.tree), facts.triangles);
 }

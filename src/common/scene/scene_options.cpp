@@ -39,6 +39,13 @@ constexpr SceneRule rules[] = {
      "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
     {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
      SceneKind::triangles, "builds trees over triangles; scene '{}' has none"},
+    {"light-selection",
+     [](const Options& o) {
+       return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
+     },
+     SceneKind::triangles,
+     "needs triangles, textures, an environment or lights without extent; scene '{}' has spheres "
+     "and quads only, expected uniform"},
     {"scene-memory",
      [](const Options& o) {
        return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
@@ -51,15 +58,18 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
+/// Kernels without triangles know the paper's materials alone.
 bool needs_triangles(const MaterialDescription& material) {
-  return material.node != MaterialNode::none || !material.opacity.is_opaque();
+  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+         static_cast<int>(material.kind) >= PaperBsdfs::size;
 }
 
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.textures.empty() && std::ranges::none_of(scene.materials, needs_triangles);
+         scene.sun.one_minus_cos == 0.0f && scene.textures.empty() &&
+         std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {

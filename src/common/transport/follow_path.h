@@ -6,15 +6,15 @@
 
 namespace pt {
 
-/// shade_surface with the random numbers that decide this ray of the path; shade_any where the hit
-/// may be a miss.
+/// The integrator's surface() with the random numbers that decide this ray of the path; shade_any
+/// where the hit may be a miss.
 template <class Traits, bool may_miss = false, class Stream>
 PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                               const PathLimits& limits, Stream& random) {
   const Vec4 u = random.draw(scatter_block(path.rays));
   const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
   if constexpr (may_miss) return shade_any<Traits>(scene, ray, hit, path, limits, u, light);
-  return shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
+  return Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, u, light);
 }
 
 /// Traces `ray` and what follows it. Returns the path's radiance: `radiance`, which it brings
@@ -26,7 +26,8 @@ PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radi
     const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(path_key, path.rays));
     ++path.rays;
     if (hit.is_miss()) {
-      return add_rounded(radiance, shade_miss<Traits::lighting>(scene, ray.direction, path));
+      return add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
+                                       scene, ray.direction, path));
     }
     const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
     radiance = add_rounded(radiance, scattering.emitted);

@@ -6,11 +6,12 @@
 
 namespace pt {
 
-/// The camera ray of a new path through a uniformly chosen point of its pixel (x | y << 16).
-/// `u`: block 0 of the path's random numbers; x, y for the pixel, z, w for the lens.
+/// The camera ray of a new path through a point of its pixel (x | y << 16), or near it, chosen by
+/// the reconstruction filter: uniformly, for a box. `u`: block 0 of the path's random numbers;
+/// x, y for the point, z, w for the lens.
 PT_HD Ray generate_camera_path(const Scene& scene, std::uint32_t pixel, const Vec4& u) {
-  return camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + u.x,
-                    static_cast<float>(pixel_y(pixel)) + u.y, u.z, u.w);
+  return camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + scene.filter.offset(u.x),
+                    static_cast<float>(pixel_y(pixel)) + scene.filter.offset(u.y), u.z, u.w);
 }
 
 }  // namespace pt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/geometry/ray.h"
+#include "common/light/receiver.h"
 
 namespace pt {
 
@@ -15,6 +16,8 @@ struct PathState {
   std::uint16_t rays = 0;    ///< traced so far, the camera ray included
   std::uint16_t shadow_rays = 0;
   float bsdf_pdf = delta_distribution;  ///< density that chose the current ray, for MIS
+
+  Receiver receiver;  ///< where the current ray begins; kept only where lights are chosen by it
 
   static constexpr float delta_distribution = HUGE_VALF;  ///< no light sampling could have found it
 

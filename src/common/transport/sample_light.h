@@ -54,13 +54,18 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
     return {s.wi, s.end, light.radiance, s.pdf};
   }
+  if (light.kind == LightKind::sun) {
+    const LightSample s = sample_sun(light.b, light.c.x, u0, u1);
+    return {s.wi, s.end, light.radiance, s.pdf};
+  }
   const DeltaLightSample s = sample_delta_light(light.delta(), from);
   return {s.wi, s.end, s.irradiance, 1.0f, true};
 }
 
 /// Any light (Lighting::full), chosen by the selector.
-PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, const Vec4& u) {
-  const LightChoice choice = scene.light_selector.sample(from, u.z, u.w);
+PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, Receiver receiver,
+                                          const Vec4& u) {
+  const LightChoice choice = scene.light_selector.sample(from, receiver, u.z, u.w);
   if (choice.light == environment_light) {
     const EnvironmentSample s = sample_environment(scene.environment, u.x, u.y, u.w);
     return {s.wi, beyond_scene * s.wi, s.radiance, choice.pmf * s.pdf};
@@ -73,43 +78,33 @@ PT_HD IncidentLight sample_selected_light(const Scene& scene, const Vec3& from, 
 }
 
 template <class Traits>
-PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, const Vec4& u) {
+PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver receiver,
+                                 const Vec4& u) {
   if constexpr (Traits::lighting == Lighting::emitters) return sample_emitter(scene, from, u);
-  return sample_selected_light(scene, from, u);
-}
-
-/// Twice the area of a triangle times its normal, in the world: from its edges as list_lights() has
-/// them, which do not know where the instance lies.
-PT_HD Vec3 world_normal(const Triangle& triangle, const Affine* to_world) {
-  Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
-  if (to_world != nullptr) {
-    const Affine map = load_wide(to_world);
-    edge1 = map.vector(edge1), edge2 = map.vector(edge2);
-  }
-  return cross_rounded(edge1, edge2);
+  return sample_selected_light(scene, from, receiver, u);
 }
 
 /// The density with which sample_light would have found the lamp that a ray hit.
 template <class Traits>
-PT_HD float light_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
+PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit) {
   if constexpr (Traits::lighting == Lighting::emitters) {
     return emitter_pdf(scene, ray, hit);
   } else {
     const LightSelector& selector = scene.light_selector;
     if (hit.primitive < scene.primitives.count()) {
       const Sphere sphere = load_wide(&scene.primitives.spheres[hit.primitive]);
-      return selector.pmf(ray.origin, scene.light_map.spheres[hit.primitive]) *
+      return selector.pmf(ray.origin, receiver, scene.light_map.spheres[hit.primitive]) *
              sphere_solid_angle_pdf(sphere, ray.origin);
     }
-    const Triangle t =
-        load_wide(&scene.triangles.triangles[hit.primitive - scene.primitives.count()]);
-    const bool placed = is_placed<Traits>(scene);
-    const std::uint32_t instance = placed ? scene.triangles.instances[hit.instance].number : 0;
-    const Vec3 normal = world_normal(t, placed ? &scene.to_world[instance] : nullptr);
-    // The side is the caller's affair: in an instance that mirrors, this normal is turned.
-    const float side = dot(normal, ray.direction) > 0.0f ? -1.0f : 1.0f;
-    return selector.pmf(ray.origin, scene.light_map.of_triangle(t.id, instance)) *
-           triangle_solid_angle_pdf(side * normal, ray.direction, hit.t);
+    const Triangle& hit_triangle =
+        scene.triangles.triangles[hit.primitive - scene.primitives.count()];
+    const std::uint32_t instance =
+        is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].number : 0;
+    const std::uint32_t number = scene.light_map.of_triangle(hit_triangle.id, instance);
+    // As it was sampled: in the world, relative to its own first corner.
+    const Light light = load_wide(&selector.lights[number]);
+    return selector.pmf(ray.origin, receiver, number) *
+           TriangleSampler(light.a - ray.origin, light.b, light.c).pdf(ray.direction, hit.t);
   }
 }
 

@@ -2,21 +2,21 @@
 // and reflects nothing, so that all threads of a warp take the same way through the code.
 #pragma once
 
-#include "common/transport/shade_miss.h"
-#include "common/transport/shade_surface.h"
+#include "common/transport/path_integrator.h"
 
 namespace pt {
 
-/// As shade_surface, for a hit or a miss. The scene must have a primitive, whose data a miss loads
-/// and then discards.
+/// The integrator's surface(), for a hit or a miss. The scene must have a primitive, whose data a
+/// miss loads and then discards.
 template <class Traits>
 PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                            const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
+  using Integrator = typename Traits::Integrator;
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
-  const Color sky = shade_miss<Traits::lighting>(scene, ray.direction, path);
-  Scattering result =
-      shade_surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, limits, scatter, light);
+  const Color sky = Integrator::template miss<Traits::lighting>(scene, ray.direction, path);
+  Scattering result = Integrator::template surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit,
+                                                           path, limits, scatter, light);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;

@@ -7,8 +7,8 @@
 
 namespace pt {
 
-/// The radiance that the sky adds to the path's sample. The path ends. That of an environment is
-/// weighted against light sampling, which could have chosen the same direction.
+/// The radiance that the sky adds to the path's sample. The path ends. That of an environment and
+/// of the sun is weighted against light sampling, which could have chosen the same direction.
 template <Lighting lighting>
 PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path) {
   Color radiance = sky_radiance(scene.sky, ray_direction);
@@ -21,6 +21,13 @@ PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const Path
       radiance = {fused_multiply_add(environment.x, weight, radiance.x),
                   fused_multiply_add(environment.y, weight, radiance.y),
                   fused_multiply_add(environment.z, weight, radiance.z)};
+    }
+  }
+  if constexpr (lighting == Lighting::full) {
+    if (is_in_sun(scene.sun, ray_direction)) {
+      const float pdf =
+          scene.light_selector.distant_pmf(scene.sun.light) * sun_pdf(scene.sun.one_minus_cos);
+      radiance = add_scaled(radiance, power_heuristic(path.bsdf_pdf, pdf), scene.sun.radiance);
     }
   }
   return path.beta * radiance;

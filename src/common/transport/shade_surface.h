@@ -20,6 +20,15 @@ struct Scattering {
   ShadowRay shadow;             ///< to be traced unless its radiance is black
 };
 
+/// For whom the lights are asked.
+template <class Traits>
+PT_HD Receiver receiver_of(const Surface& surface, const Ray& ray) {
+  if constexpr (Traits::lighting != Lighting::full) return {};
+  const Vec3& n = surface.shading_normal;
+  return make_receiver(dot(ray.direction, n) > 0.0f ? -n : n,
+                       !reflects_only(surface.material.kind));
+}
+
 /// beta * Le, weighted against light sampling, which could have found the same point.
 template <class Traits>
 PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
@@ -33,7 +42,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   if constexpr (Traits::lighting == Lighting::full) {
     Le = textured(scene, Le, emission.texture, surface.uv);
   }
-  const float pdf = light_pdf<Traits>(scene, ray, hit);
+  const float pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
   return path.beta * Le * power_heuristic(path.bsdf_pdf, pdf);
 }
 
@@ -96,11 +105,15 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const bool asks = has_lights && limits.ask_lights && !surface.material.is(Material::delta);
   const Vec3 from = spawn_origin(surface.point, -ray.direction);
   IncidentLight incident;
-  if (asks) incident = sample_light<Traits>(scene, from, light);
+  if (asks) {
+    path.receiver = receiver_of<Traits>(surface, ray);
+    incident = sample_light<Traits>(scene, from, path.receiver, light);
+  }
   const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);
   BsdfSample next;
   BsdfValue value;
-  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+  const SurfaceParameters<Traits> parameters(scene, surface);
+  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
     if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
     next = bsdf.sample(wo, Vec3(scatter));
@@ -115,7 +128,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     next.weight *= map_visibility(surface, wi, next.wi.z);
   }
   if constexpr (has_lights) {
-    path.bsdf_pdf = asks ? next.pdf : PathState::delta_distribution;
+    path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
     result.shadow = ask_light<Traits>(path, surface, from, incident, value);
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }

@@ -26,6 +26,13 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
   return c * sample_texture(scene.textures[texture], scene.texels, uv);
 }
 
+/// The same, not inlined: BSDFs have dozens of parameters together, and a lookup's code is long.
+template <class Traits>
+PT_NOINLINE Color textured_apart(const Texture* texture, const std::byte* texels, float r, float g,
+                                 float b, float u, float v) {
+  return Color(r, g, b) * sample_texture(*texture, texels, {u, v});
+}
+
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
 /// read ahead of the dispatch, for nearly all BSDFs have a colour there: so its texture is looked
 /// up by one piece of code, whatever the BSDF.
@@ -42,7 +49,10 @@ class SurfaceParameters {
 
  private:
   PT_HD Color read(int i) const {
-    return value_of(load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]));
+    const Parameter p = load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]);
+    if (Traits::lighting != Lighting::full || p.texture == no_texture) return p.value;
+    return textured_apart<Traits>(&scene_.textures[p.texture], scene_.texels, p.value.x, p.value.y,
+                                  p.value.z, surface_.uv.x, surface_.uv.y);
   }
 
   PT_HD Color value_of(const Parameter& p) const {
@@ -86,6 +96,25 @@ PT_HD void set_derivatives(const Scene& scene, const Triangle& triangle, const A
   surface.dp_dv = combine(-uv2.x, uv1.x);
 }
 
+/// Where a ray in the triangle's space, which hit it, meets it.
+PT_HD Vec3 barycentric_at(const Ray& local, const Triangle& triangle) {
+  const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
+                                                triangle.v0, triangle.v1, triangle.v2);
+  return {1.0f - inside.b1 - inside.b2, inside.b1, inside.b2};
+}
+
+/// Where a ray that hit the triangle lies in textures, whether its material has one or not.
+template <class Traits>
+PT_HD Vec2 triangle_uv(const Scene& scene, const Ray& ray, const Hit& hit,
+                       const Triangle& triangle) {
+  const Ray local = is_placed<Traits>(scene)
+                        ? object_ray(load_wide(&scene.triangles.instances[hit.instance]), ray)
+                        : ray;
+  const Vec3 b = barycentric_at(local, triangle);
+  const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
+  return texture_coordinates(scene, triangle.id, has_uvs, b);
+}
+
 /// The triangle once more, from its slot: the hit itself keeps only the distance, for the wavefront
 /// has to store it. The error bound of the position is that of pbrt-v4, section 6.8.5, doubled, and
 /// what the intersection of the ray that leaves may round: on an axis-parallel plane through 0 the
@@ -101,9 +130,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
     instance = load_wide(&scene.triangles.instances[hit.instance]);
     local = object_ray(instance, ray);
   }
-  const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
-                                                triangle.v0, triangle.v1, triangle.v2);
-  const Vec3 b(1.0f - inside.b1 - inside.b2, inside.b1, inside.b2);
+  const Vec3 b = barycentric_at(local, triangle);
   Vec3 position = weighted_sum(b, triangle.v0, triangle.v1, triangle.v2);
   Vec3 extent = weighted_sum(glm::abs(b), glm::abs(triangle.v0), glm::abs(triangle.v1),
                              glm::abs(triangle.v2));

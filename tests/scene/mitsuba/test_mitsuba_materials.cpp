@@ -313,11 +313,54 @@ TEST(MitsubaLight, deltaLights) {
 TEST(MitsubaLight, skies) {
   const LoadedScene loaded = load_xml(
       "<sensor type=\"perspective\"/><emitter type=\"constant\">"
-      "<rgb name=\"radiance\" value=\"1 2 3\"/></emitter><emitter type=\"sunsky\"/>");
-  expect_near(loaded.scene.sky.zenith, {1.0709f, 2.107f, 3.1654f});
+      "<rgb name=\"radiance\" value=\"1 2 3\"/></emitter>");
+  expect_near(loaded.scene.sky.zenith, {1, 2, 3});
   EXPECT_EQ(loaded.scene.sky.nadir, loaded.scene.sky.zenith);
-  EXPECT_EQ(loaded.count("emitter 'sunsky'"), 1);
   expect_error([] { load_xml("<emitter type=\"envmap\"/>"); }, "no filename");
+}
+
+/// `to_world` turns up to +y and what was +y to -z.
+const std::string daylight =
+    "<vector name=\"sun_direction\" x=\"0\" y=\"0.8\" z=\"-0.6\"/>"
+    "<transform name=\"to_world\"><rotate x=\"1\" angle=\"-90\"/></transform></emitter>";
+
+// What Mitsuba 3.9.1 shows, in the map that shines: between its texels within 1 %.
+TEST(MitsubaLight, sunsky) {
+  const LoadedScene loaded =
+      load_xml("<sensor type=\"perspective\"/><emitter type=\"sunsky\">" + daylight);
+  EXPECT_EQ(loaded.reports.size(), 0u);
+  const EnvironmentData& data = loaded.scene.environment;
+  const EnvironmentMap map = make_environment(data.width, data.height, data.pixels, data.to_world);
+  const auto expect_sky = [&](const Vec3& direction, const Color& expected) {
+    const Color found = environment_radiance(map.view(), glm::normalize(direction));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.01f * expected[c]);
+  };
+  expect_sky({0, 1, 0}, {0.02908008f, 0.04823563f, 0.0955867f});
+  expect_sky({0.7f, 0.714f, 0}, {0.03221959f, 0.05856199f, 0.11576091f});
+  expect_sky({0.9998f, 0.02f, 0}, {0.14153433f, 0.18154782f, 0.20749627f});
+  EXPECT_TRUE(is_black(environment_radiance(map.view(), {0.9998f, -0.02f, 0})));
+  const Sun& sun = loaded.scene.sun;
+  expect_near(sun.direction, {0, 0.8f, -0.6f});
+  EXPECT_NEAR(sun.radiance.x / 21689.34f, 1, 2e-3);
+  EXPECT_NEAR(sun.radiance.z / 13663.243f, 1, 2e-3);
+}
+
+TEST(MitsubaLight, sunOrSkyAlone) {
+  const LoadedScene sky =
+      load_xml("<sensor type=\"perspective\"/><emitter type=\"sky\">" + daylight);
+  EXPECT_EQ(sky.scene.sun.one_minus_cos, 0.0f);
+  EXPECT_GT(sky.scene.environment.width, 0);
+  const LoadedScene sun = load_xml(
+      "<sensor type=\"perspective\"/><emitter type=\"sun\"><float name=\"sun_scale\" value=\"2\"/>"
+      "<float name=\"sun_aperture\" value=\"5\"/>" +
+      daylight);
+  EXPECT_EQ(sun.scene.environment.width, 0);
+  EXPECT_NEAR(sun.scene.sun.radiance.y / (2 * 206.68303f), 1, 2e-3);
+  expect_error(
+      [] {
+        load_xml("<emitter type=\"sunsky\"><float name=\"turbidity\" value=\"11\"/></emitter>");
+      },
+      "expected 1 to 10");
 }
 
 TEST(MitsubaLight, environmentBeginsBehindTheCamera) {

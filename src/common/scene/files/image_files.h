@@ -33,6 +33,10 @@ TextureImage read_texture_image(const std::filesystem::path& path,
 TextureImage decode_texture_image(std::string_view bytes, const std::string& name,
                                   TextureFormat integers = TextureFormat::srgb8);
 
+/// The image with the weighted sum of its linear R, G and B in all of them; itself where that is
+/// the same. One component alone keeps its 8 bits.
+TextureImage grey_image(TextureImage image, const Color& weights);
+
 /// Linear RGB of any of the formats, integers decoded with the sRGB curve: for environment maps.
 Image read_radiance_image(const std::filesystem::path& path);
 Image decode_radiance_image(std::string_view bytes, const std::string& name);

@@ -1,7 +1,11 @@
 #include "common/scene/files/texture_store.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstring>
+#include <utility>
+
+#include "common/texture/sample_texture.h"
 
 #include "common/texture/sample_texture.h"
 
@@ -17,9 +21,16 @@ bool same(const Texture& a, const Texture& b) {
          std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 && a.color1 == b.color1;
 }
 
-/// The same file as linear8 and as srgb8 is two images.
-std::string key_of(const std::string& name, const Texture& look) {
-  return (look.format == TextureFormat::linear8 ? "linear " : "srgb ") + name;
+/// The same file as linear8 and as srgb8, or grey, is two images.
+std::string key_of(const std::string& name, const Texture& look,
+                   const std::optional<Color>& weights) {
+  const std::string grey =
+      weights ? fmt::format("grey {} {} {} ", weights->x, weights->y, weights->z) : "";
+  return grey + (look.format == TextureFormat::linear8 ? "linear " : "srgb ") + name;
+}
+
+TextureImage in_grey(TextureImage image, const std::optional<Color>& weights) {
+  return weights ? grey_image(std::move(image), *weights) : image;
 }
 
 TextureFormat integers_of(const Texture& look) {
@@ -28,24 +39,26 @@ TextureFormat integers_of(const Texture& look) {
 
 }  // namespace
 
-std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Texture& look) {
+std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Texture& look,
+                                     const std::optional<Color>& weights) {
   std::error_code ignored;  // where there is no such file, reading it says so
   const std::filesystem::path file = std::filesystem::weakly_canonical(path, ignored);
-  const std::string key = key_of(ignored ? path.string() : file.string(), look);
+  const std::string key = key_of(ignored ? path.string() : file.string(), look, weights);
   auto found = stored_.find(key);
   if (found == stored_.end()) {
-    const TextureImage image = read_texture_image(path, integers_of(look));
+    const TextureImage image = in_grey(read_texture_image(path, integers_of(look)), weights);
     found = stored_.emplace(key, store(image)).first;
   }
   return add_stored(found->second, look);
 }
 
 std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string& name,
-                                       const Texture& look) {
-  const std::string key = key_of("memory " + name, look);
+                                       const Texture& look, const std::optional<Color>& weights) {
+  const std::string key = key_of("memory " + name, look, weights);
   auto found = stored_.find(key);
   if (found == stored_.end()) {
-    const TextureImage image = decode_texture_image(bytes, name, integers_of(look));
+    const TextureImage image =
+        in_grey(decode_texture_image(bytes, name, integers_of(look)), weights);
     found = stored_.emplace(key, store(image)).first;
   }
   return add_stored(found->second, look);

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,12 +22,14 @@ class TextureStore {
 
   /// `look` says all but the image: wrap, filter, transform, color0, and in `format` whether
   /// integers are srgb8 or linear8. Throws Error as read_texture_image does.
-  std::uint32_t add_file(const std::filesystem::path& path, const Texture& look = {});
+  /// With `weights` it is grey (grey_image).
+  std::uint32_t add_file(const std::filesystem::path& path, const Texture& look = {},
+                         const std::optional<Color>& weights = {});
 
   /// The same of a file's content. `name` stands for it in errors and must be its own: the same
   /// name is the same image.
   std::uint32_t add_memory(std::string_view bytes, const std::string& name,
-                           const Texture& look = {});
+                           const Texture& look = {}, const std::optional<Color>& weights = {});
 
   /// An image made by the caller.
   std::uint32_t add_image(const TextureImage& image, const Texture& look = {});

@@ -69,19 +69,6 @@ void add_constant(Context& context, const Object& emitter) {
   add_sky(context, radiance_of(context, emitter, "radiance"));
 }
 
-/// The mean radiance of the upper half of Mitsuba 3.9.1's `sunsky` with its default parameters and
-/// without the sun's disk, measured by us.
-constexpr Color mean_sky{0.0709f, 0.1070f, 0.1654f};
-
-void add_daylight(Context& context, const Object& emitter) {
-  context.warn_once("emitter " + emitter.type(), emitter.element(),
-                    fmt::format("emitter '{}' is not supported: a constant sky of its mean "
-                                "radiance is used, without a sun",
-                                emitter.type()));
-  if (emitter.type() == "sun") return;
-  add_sky(context, emitter.number("sky_scale", emitter.number("scale", 1.0f)) * mean_sky);
-}
-
 using Adder = void (*)(Context&, const Object&);
 
 const std::map<std::string_view, Adder>& adders() {
@@ -94,7 +81,7 @@ const std::map<std::string_view, Adder>& adders() {
 }
 
 std::string why_left_out(const std::string& type) {
-  if (type == "envmap") return "more than one 'envmap': the first is used";
+  if (type == "envmap") return "more than one environment: the first is used";
   if (type == "area") return "an emitter 'area' that is in no shape: it is left out";
   return fmt::format("emitter '{}' is not supported: it is left out", type);
 }
@@ -113,7 +100,7 @@ void add_emitter(Context& context, const Object& emitter) {
     return context.add_left_out(emitter);
   }
   adder->second(context, emitter);
-  type == "sun" ? context.add_left_out(emitter) : context.add_lit();
+  context.add_lit();
 }
 
 }  // namespace pt::mitsuba

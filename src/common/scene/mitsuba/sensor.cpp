@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/scene/mitsuba/values.h"
+#include "common/scene/prepare_filter.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -90,6 +91,7 @@ void read_sensor(Context& context, const Object& sensor) {
   SceneDefaults& defaults = context.scene.defaults;
   defaults.width = 768;
   defaults.height = 576;
+  defaults.filter = default_filter(FilterKind::gaussian);
   if (const Object* film = sensor.child("film")) read_film(context, *film);
   if (const Object* sampler = sensor.child("sampler")) read_sampler(context, *sampler);
   if (type != "perspective" && type != "thinlens") {

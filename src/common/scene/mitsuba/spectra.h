@@ -6,8 +6,9 @@
 
 namespace pt::mitsuba {
 
-/// What a colour is for: it decides the white point of spectra and what is out of range.
-enum class Quantity { reflectance, emission, index_of_refraction, plain };
+/// What a colour is for: it decides the white point of spectra and what is out of range. A
+/// `number` is read from the first component; of a texture it is the luminance.
+enum class Quantity { reflectance, emission, index_of_refraction, plain, number };
 
 /// <rgb>, <srgb>, <spectrum>, <blackbody> or <float> as linear sRGB. Reflectances above 1 become 1
 /// and indices of refraction below 0 become 0 with a warning; other negative numbers are an Error.

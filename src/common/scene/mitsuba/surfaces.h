@@ -15,11 +15,10 @@ struct Surface {
 /// surfaces.cpp.
 Surface read_surface(Context& context, const Object& bsdf);
 
-/// The reflectance at normal incidence of a conductor that Mitsuba knows by name (Al, Cu, ...), or
-/// of the complex index of refraction in its properties.
-Color conductor_reflectance(Context& context, const Object& bsdf);
-
 /// int_ior / ext_ior, numbers or names (bk7, air, ...).
 float relative_ior(const Object& bsdf);
+
+/// ext_eta of conductors in 0.x, likewise; 1 where there is none.
+float outside_ior(const Object& bsdf);
 
 }  // namespace pt::mitsuba

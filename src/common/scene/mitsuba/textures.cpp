@@ -75,7 +75,10 @@ bool is_linear(Context& context, const Object& object) {
   return raw || gamma == 1.0f;
 }
 
-ColorTexture read_bitmap(Context& context, const Object& object) {
+/// Mitsuba's, of which a texture makes a number.
+constexpr Color luminance_weights(0.212671f, 0.715160f, 0.072169f);
+
+ColorTexture read_bitmap(Context& context, const Object& object, Quantity quantity) {
   Texture look;
   look.format = is_linear(context, object) ? TextureFormat::linear8 : TextureFormat::srgb8;
   read_filter(context, object, look);
@@ -84,21 +87,27 @@ ColorTexture read_bitmap(Context& context, const Object& object) {
   look.wrap_v = wrap_of(context, object, object.text("wrap_mode_v", wrap));
   set_uv_map(look, read_uv_map(object));
   object.ignore({"cache", "max_anisotropy", "accel", "format"});
+  std::optional<Color> weights;
+  if (quantity == Quantity::number) weights = luminance_weights;
   const Element* filename = object.find("filename");
   if (!filename) fail(object.element(), "texture 'bitmap' has no filename");
   const auto path = context.resolve(*filename, filename->required("value"));
   try {
-    return {Color(1.0f), context.textures.add_file(path, look)};
+    return {Color(1.0f), context.textures.add_file(path, look, weights)};
   } catch (const Error& error) {
     fail(*filename, error.what());
   }
 }
 
-ColorTexture read_checkerboard(Context& context, const Object& object) {
+ColorTexture read_checkerboard(Context& context, const Object& object, Quantity quantity) {
   Texture texture;
   texture.kind = TextureKind::checkerboard;
   texture.color0 = read_plain_color(context, object, "color0", Color(0.4f), Quantity::reflectance);
   texture.color1 = read_plain_color(context, object, "color1", Color(0.2f), Quantity::reflectance);
+  if (quantity == Quantity::number) {
+    texture.color0 = Color(dot(texture.color0, luminance_weights));
+    texture.color1 = Color(dot(texture.color1, luminance_weights));
+  }
   set_uv_map(texture, read_uv_map(object));
   return {Color(1.0f), context.textures.add_plain(texture)};
 }
@@ -127,9 +136,9 @@ ColorTexture read_texture(Context& context, const Object& object, Quantity quant
   }
   const std::string type = object.type();
   if (type == "bitmap" || type == "ldrtexture" || type == "exrtexture") {
-    return read_bitmap(context, object);
+    return read_bitmap(context, object, quantity);
   }
-  if (type == "checkerboard") return read_checkerboard(context, object);
+  if (type == "checkerboard") return read_checkerboard(context, object, quantity);
   if (type == "scale") return read_scale(context, object, quantity);
   const Color grey(quantity == Quantity::reflectance ? 0.5f : 1.0f);
   context.warn_once("texture " + type, object.element(),
@@ -146,6 +155,13 @@ ColorTexture read_color_texture(Context& context, const Object& owner, std::stri
     return read_texture(context, *texture, quantity);
   }
   return {fallback, no_texture};
+}
+
+ColorTexture read_number_texture(Context& context, const Object& owner, std::string_view name,
+                                 float fallback) {
+  ColorTexture result = read_color_texture(context, owner, name, Color(fallback), Quantity::number);
+  result.color = Color((result.color.x + result.color.y + result.color.z) / 3.0f);
+  return result;
 }
 
 Color read_plain_color(Context& context, const Object& owner, std::string_view name,

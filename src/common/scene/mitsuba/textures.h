@@ -18,6 +18,10 @@ ColorTexture read_texture(Context& context, const Object& object, Quantity quant
 ColorTexture read_color_texture(Context& context, const Object& owner, std::string_view name,
                                 const Color& fallback, Quantity quantity = Quantity::reflectance);
 
+/// A number that may be a texture, as a colour of three equal components.
+ColorTexture read_number_texture(Context& context, const Object& owner, std::string_view name,
+                                 float fallback);
+
 /// A property that we only have as one number: a texture becomes `fallback` with a warning.
 float read_plain_number(Context& context, const Object& owner, std::string_view name,
                         float fallback);

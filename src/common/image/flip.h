@@ -1,0 +1,34 @@
+// FLIP, how different two images look when one alternates between them: from 0, the same, to 1.
+// LDR: Andersson, Nilsson, Akenine-Moeller, Oskarsson, Astroem and Fairchild, FLIP: A Difference
+// Evaluator for Alternating Images, 2020. HDR: Andersson, Nilsson, Shirley and Akenine-Moeller,
+// Visualizing Errors in Rendered High Dynamic Range Images, 2021.
+#pragma once
+
+#include <vector>
+
+#include "common/image/image.h"
+
+namespace pt {
+
+/// Pixels per degree of the papers' viewer: 0.7 m before a display 0.7 m wide of 3840 pixels.
+inline constexpr double flip_pixels_per_degree = 0.7 * 3840 / 0.7 * 3.14159265358979323846 / 180;
+
+/// The exposures, in stops, at which HDR images are looked at.
+struct FlipExposures {
+  double start = 0, stop = 0;
+  int count = 2;
+};
+
+/// From the luminance of the reference.
+FlipExposures flip_exposures(const Image& reference);
+
+/// [y][x], of two images of one size. Values are linear and clamped to [0, 1].
+std::vector<float> ldr_flip(const Image& test, const Image& reference,
+                            double pixels_per_degree = flip_pixels_per_degree);
+
+/// Of linear radiance: the largest LDR-FLIP of all exposures, tone mapped by the ACES curve. What
+/// is negative or not a number counts as 0.
+std::vector<float> hdr_flip(const Image& test, const Image& reference,
+                            double pixels_per_degree = flip_pixels_per_degree);
+
+}  // namespace pt

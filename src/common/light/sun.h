@@ -1,0 +1,36 @@
+// The sun: a disk infinitely far away, of one radiance.
+#pragma once
+
+#include "common/light/light_sample.h"
+#include "common/math/frame.h"
+#include "common/math/sincos.h"
+
+namespace pt {
+
+/// By value in the scene, for rays that leave it.
+struct Sun {
+  Vec3 direction{0, 0, 1};     ///< to it, of unit length
+  float one_minus_cos = 0.0f;  ///< of the angle under which its radius is seen; 0: no sun
+  Color radiance = Color(0.0f);
+  std::uint32_t light = 0;  ///< its number among the lights
+};
+
+PT_HD float sun_pdf(float one_minus_cos) { return 0.5f * inverse_pi / one_minus_cos; }
+
+/// Whether it is seen in a direction of unit length. By a difference: of so small an angle a
+/// cosine knows little.
+PT_HD bool is_in_sun(const Sun& sun, const Vec3& direction) {
+  const Vec3 apart = direction - sun.direction;
+  return dot(apart, apart) < 2.0f * sun.one_minus_cos;
+}
+
+/// Uniform over the disk. `end` as of all that is infinitely far.
+PT_HD LightSample sample_sun(const Vec3& direction, float one_minus_cos, float u0, float u1) {
+  const float h = u0 * one_minus_cos, sin_theta = fast_sqrt(h * (2.0f - h));
+  const SinCos phi = sincos_2pi(u1);
+  const Frame frame = make_frame(direction);
+  const Vec3 wi = normalize(frame.to_world({sin_theta * phi.cos, sin_theta * phi.sin, 1.0f - h}));
+  return {wi, sun_pdf(one_minus_cos), beyond_scene * wi};
+}
+
+}  // namespace pt

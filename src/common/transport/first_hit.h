@@ -1,0 +1,91 @@
+// What a camera ray finds where it meets the scene first: what AOVs are made of. It costs paths
+// nothing, for it is a pass of its own over their camera rays.
+#pragma once
+
+#include "common/math/frame.h"
+#include "common/sampling/random.h"
+#include "common/transport/generate_camera_path.h"
+#include "common/transport/intersect.h"
+#include "common/transport/resolve_material.h"
+#include "common/transport/surface.h"
+
+namespace pt {
+
+struct FirstHit {
+  float distance = 0.0f;  ///< along the ray, in scene units
+  Vec3 position = Vec3(0.0f);
+  Vec3 normal = Vec3(0.0f);  ///< geometric, outward
+  Vec3 shading_normal = Vec3(0.0f);
+  Vec2 uv = Vec2(0.0f);
+  Color albedo = Color(0.0f);
+  std::uint32_t primitive = no_primitive;  ///< spheres, then quads, then triangles, as loaded
+  std::uint32_t instance = no_primitive;
+  std::uint32_t material = no_primitive;
+};
+
+/// The weight of a direction that the BSDF samples, f |cos| / pdf: its mean is the share of the
+/// light that the surface sends back, as seen from the ray (the directional albedo). For a diffuse
+/// surface that is its colour. What radiance loses or gains by refraction is left out.
+template <class Traits>
+PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, const Vec4& u) {
+  float choice = u.w;
+  if constexpr (Traits::lighting == Lighting::full) {
+    resolve_material(scene, -ray.direction, choice, surface);
+  }
+  if (Traits::lighting == Lighting::full && surface.material.is(Material::one_sided) &&
+      dot(ray.direction, surface.shading_normal) >= 0.0f) {
+    return Color(0.0f);
+  }
+  const Vec3 wo = make_frame(surface.shading_normal, surface.dp_du).to_local(-ray.direction);
+  Color albedo(0.0f);
+  visit(surface.material.kind, SurfaceParameters<Traits>(scene, surface), [&](const auto& bsdf) {
+    const BsdfSample sample = bsdf.sample(wo, Vec3(u));
+    albedo = sample.outside * sample.weight;
+  });
+  return albedo;
+}
+
+/// `u` as for the path's first scattering.
+template <class Traits>
+PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec4& u) {
+  FirstHit first;
+  if (hit.is_miss()) return first;
+  const Surface surface = surface_at<Traits>(scene, ray, hit);
+  first.distance = hit.t;
+  first.position = surface.point.position;
+  first.normal = surface.point.normal;
+  first.shading_normal = surface.shading_normal;
+  first.uv = surface.uv;
+  first.albedo = sampled_albedo<Traits>(scene, ray, surface, u);
+  first.material = surface.material_number;
+  first.instance = 0;
+  const std::uint32_t primitives = scene.primitives.count();
+  if (hit.primitive < primitives) {
+    first.primitive = scene.primitive_numbers[hit.primitive];
+    return first;
+  }
+  if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
+    const Triangle triangle = load_wide(&scene.triangles.triangles[hit.primitive - primitives]);
+    first.primitive = primitives + triangle.id;
+    if (is_placed<Traits>(scene)) first.instance = scene.triangles.instances[hit.instance].number;
+    if (!surface.material.is(Material::textured)) {
+      first.uv = triangle_uv<Traits>(scene, ray, hit, triangle);
+    }
+  }
+  return first;
+}
+
+/// The first hit of the camera ray that the path `id` has.
+template <class Traits, class Source>
+PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const PathId& id,
+                                 bool& is_negative) {
+  auto random = source.open(id);
+  const Vec4 u = random.draw(scatter_block(0));
+  is_negative = scene.filter.is_negative(u.x, u.y);
+  const Ray ray = generate_camera_path(scene, id.pixel, u);
+  const Hit hit =
+      intersect_closest<Traits>(scene, ray, next_ray_key(mask_key<Traits>(scene, id), 0));
+  return first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
+}
+
+}  // namespace pt

@@ -1,0 +1,34 @@
+// The contract of an integrator: what a path is worth where it leaves the scene, and what a surface
+// does with it. The modes call nothing else of an integrator, so it does not know how it is run:
+//   Color miss<lighting>(scene, direction, path)           added to the sample; the path ends
+//   Scattering surface<Traits>(scene, ray, hit, path, limits, scatter, light)
+//                                                          see shade_surface.h
+// `path` may change in surface(), but not in miss(). The blocks of random numbers `scatter` and
+// `light` are those of the ray that hit.
+//
+// Adding one: a file here, its name among the IntegratorKinds, and its type with the kinds of
+// scenes for which it has kernels in render/dispatch.h. tests/transport/test_integrators.cpp has a
+// second one.
+#pragma once
+
+#include "common/transport/shade_miss.h"
+#include "common/transport/shade_surface.h"
+
+namespace pt {
+
+/// Unidirectional path tracing with multiple importance sampling (pbrt-v4, section 13.2.2).
+struct PathIntegrator {
+  template <Lighting lighting>
+  PT_HD static Color miss(const Scene& scene, const Vec3& direction, const PathState& path) {
+    return shade_miss<lighting>(scene, direction, path);
+  }
+
+  template <class Traits>
+  PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathLimits& limits, const Vec4& scatter,
+                                  const Vec4& light) {
+    return shade_surface<Traits>(scene, ray, hit, path, limits, scatter, light);
+  }
+};
+
+}  // namespace pt

@@ -1,0 +1,145 @@
+"""What the film does, against Mitsuba 3: reconstruction filters, crop windows and AOVs.
+
+PTEXP names the program; skips without the Python package `mitsuba`.
+"""
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from mitsuba_package import mi, np
+
+ROOT = Path(__file__).resolve().parents[2]
+PROGRAM = os.environ.get("PTEXP", str(ROOT / "build" / "dev" / "src" / "ptexp"))
+WIDTH, HEIGHT = 32, 24
+SEEDS = 8  # renders of Mitsuba's, whose spread tells its variance
+
+SHAPES = """
+  <shape type="rectangle"><transform name="to_world"><scale value="3"/>
+      <rotate x="1" angle="-60"/><translate y="-1"/></transform>
+    <bsdf type="twosided"><bsdf type="diffuse"><rgb name="reflectance" value="0.2,0.5,0.7"/></bsdf>
+    </bsdf></shape>
+  <shape type="sphere"><point name="center" x="-0.9" y="0.3" z="0.5"/>
+    <float name="radius" value="0.8"/>
+    <bsdf type="diffuse"><rgb name="reflectance" value="0.6,0.3,0.1"/></bsdf></shape>
+  <shape type="cube"><transform name="to_world"><scale value="0.5"/><rotate y="1" angle="30"/>
+      <translate x="1" y="0.2" z="0.6"/></transform>
+    <bsdf type="diffuse"><rgb name="reflectance" value="0.4"/></bsdf></shape>"""
+
+
+def scene(integrator, film):
+    return f"""<scene version="3.0.0">{integrator}
+  <sensor type="perspective"><float name="fov" value="45"/>
+    <transform name="to_world"><lookat origin="0.3,1,5" target="0,0,0" up="0,1,0"/></transform>
+    <film type="hdrfilm"><integer name="width" value="{WIDTH}"/>
+      <integer name="height" value="{HEIGHT}"/>
+      <string name="pixel_format" value="rgb"/>{film}</film></sensor>{SHAPES}
+  <emitter type="constant"><float name="radiance" value="0.8"/></emitter>
+</scene>"""
+
+
+PATH = '<integrator type="path"><integer name="max_depth" value="2"/></integrator>'
+AOVS = {"albedo": ("albedo", "RGB"), "sh_normal": ("shading_normal", "XYZ"),
+        "geo_normal": ("normal", "XYZ"), "depth": ("depth", "Z"), "position": ("position", "XYZ"),
+        "uv": ("uv", "UV")}
+
+
+@unittest.skipIf(mi is None, "the Python package mitsuba is not installed")
+class FilmAgainstMitsuba(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def render(self, text, *options):
+        """ptexp's image as a bitmap."""
+        folder = Path(self.folder.name)
+        (folder / "scene.xml").write_text(text)
+        subprocess.run([PROGRAM, "--quiet", "--scene", str(folder / "scene.xml"), "--device", "cpu",
+                        "--output", str(folder / "a.exr"), *options], check=True)
+        return mi.Bitmap(str(folder / "a.exr"))
+
+    def reference(self, text, spp):
+        """Mean and variance of Mitsuba's image of SEEDS * spp samples."""
+        loaded = mi.load_string(text)
+        images = np.array([np.array(mi.render(loaded, spp=spp, seed=s)) for s in range(SEEDS)])
+        return images.mean(axis=0), images.var(axis=0, ddof=1) / SEEDS
+
+    def check(self, found, expected, variance, floor):
+        """`found` has as many samples as one of Mitsuba's renders. z of at most 6, but for a floor
+        and for a few pixels in which the variance, of SEEDS values, came out too small."""
+        z = np.abs(found - expected) / np.sqrt((SEEDS + 1) * variance + floor ** 2)
+        self.assertLess(np.mean(z > 6), 0.005, f"worst: {np.max(z)}")
+        # Signed, over all pixels: a shift or a wrong width would not hide in the noise.
+        error = np.mean(found - expected, axis=(0, 1))
+        spread = np.sqrt(np.mean((SEEDS + 1) * variance, axis=(0, 1)) / found[..., 0].size)
+        self.assertTrue(np.all(np.abs(error) < 6 * spread + floor), (error, spread))
+
+    def test_filters(self):
+        filters = {"box": "", "tent": "", "gaussian": "", "mitchell": "", "lanczos": "",
+                   "catmullrom": "", "default": ""}
+        filters["gaussian wide"] = '<float name="stddev" value="0.9"/>'
+        filters["tent wide"] = '<float name="radius" value="1.6"/>'
+        filters["mitchell other"] = ('<float name="B" value="0.1"/><float name="C" value="0.6"/>')
+        filters["lanczos two"] = '<integer name="lobes" value="2"/>'
+        for name, parameters in filters.items():
+            with self.subTest(filter=name):
+                kind = name.split()[0]
+                film = "" if kind == "default" else (
+                    f'<rfilter type="{kind}">{parameters}</rfilter>')
+                text = scene(PATH, film)
+                mean, variance = self.reference(text, 64)
+                found = np.array(self.render(text, "--spp", "64"))
+                # Mitsuba divides by the sum of the weights within the image: not near its border.
+                inner = np.s_[3:-3, 3:-3]
+                self.check(found[inner], mean[inner], variance[inner], 2e-3)
+
+    def test_another_filter_is_seen(self):
+        """The test above tells the filters apart."""
+        film = '<rfilter type="{}"/>'
+        mean, variance = self.reference(scene(PATH, film.format("mitchell")), 64)
+        found = np.array(self.render(scene(PATH, film.format("tent")), "--spp", "64"))
+        with self.assertRaises(AssertionError):
+            self.check(found[3:-3, 3:-3], mean[3:-3, 3:-3], variance[3:-3, 3:-3], 2e-3)
+
+    def test_crop(self):
+        crop = "".join(f'<integer name="crop_{name}" value="{value}"/>' for name, value in
+                       [("offset_x", 5), ("offset_y", 3), ("width", 20), ("height", 15)])
+        text = scene(PATH, crop + '<rfilter type="box"/>')
+        mean, variance = self.reference(text, 64)
+        cropped = np.array(self.render(text, "--spp", "64"))
+        self.assertEqual(cropped.shape, (15, 20, 3))
+        self.check(cropped, mean, variance, 1e-3)
+        whole = np.array(self.render(scene(PATH, '<rfilter type="box"/>'), "--spp", "64"))
+        self.assertTrue(np.array_equal(cropped, whole[3:18, 5:25]))
+        by_option = np.array(self.render(text, "--spp", "64", "--crop", "1,2,30,23"))
+        self.assertTrue(np.array_equal(by_option, whole[2:23, 1:30]))
+
+    def check_aovs(self, film):
+        names = ",".join(f"a{i}:{name}" for i, name in enumerate(AOVS))
+        integrator = (f'<integrator type="aov"><string name="aovs" value="{names}"/>{PATH}'
+                      '</integrator>')
+        mean, variance = self.reference(scene(integrator, film), 64)
+        bitmap = self.render(scene(PATH, film), "--spp", "64", "--aov",
+                             ",".join(name for name, _ in AOVS.values()))
+        values = dict(zip([field.name for field in bitmap.struct_()],
+                          np.moveaxis(np.array(bitmap), 2, 0)))
+        first = 3
+        for name, channels in AOVS.values():
+            found = np.stack([values[f"{name}.{c}"] for c in channels], axis=-1)
+            end = first + len(channels)
+            with self.subTest(aov=name, film=film):
+                inner = np.s_[3:-3, 3:-3]
+                self.check(found[inner], mean[..., first:end][inner],
+                           variance[..., first:end][inner], 2e-3)
+            first = end
+
+    def test_aovs(self):
+        self.check_aovs('<rfilter type="box"/>')
+
+    def test_aovs_are_filtered(self):
+        self.check_aovs('<rfilter type="mitchell"/>')
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,177 @@
+// An integrator is a type that the modes are handed: a second one, ambient occlusion, runs in all
+// three without a line of theirs, gives the same bits in each, and the value that is known.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "common/scene/prepare_scene.h"
+#include "megakernel/trace_path.h"
+#include "wavefront/run_stage_cpu.h"
+
+namespace pt {
+namespace {
+
+/// pbrt's AmbientOcclusionIntegrator: how much of the cosine-weighted hemisphere is free.
+struct AmbientOcclusion {
+  static constexpr float radius = 1e4f;
+
+  template <Lighting>
+  PT_HD static Color miss(const Scene&, const Vec3&, const PathState&) {
+    return Color(0.0f);
+  }
+
+  template <class Traits>
+  PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathLimits&, const Vec4& u, const Vec4&) {
+    const Surface surface = surface_at<Traits>(scene, ray, hit);
+    const bool front = dot(surface.point.normal, ray.direction) < 0.0f;
+    const Frame frame = make_frame(front ? surface.point.normal : -surface.point.normal);
+    const Vec3 wi = normalize(frame.to_world(sample_cosine_hemisphere(u.x, u.y)));
+    Scattering result;
+    result.shadow = {spawn_ray(surface.point, wi), radius, Color(1.0f)};
+    ++path.shadow_rays;
+    return result;
+  }
+};
+
+using Kind =
+    Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters, false, AmbientOcclusion>;
+
+constexpr std::uint32_t width = 8, height = 8, sample_count = 256;
+constexpr PhiloxSource source{7};
+constexpr PathLimits limits;
+
+/// A floor, seen from above at a distance of 1 from an endless wall of height 2. The lamp far below
+/// the floor makes it a scene with lights.
+SceneData floor_and_wall() {
+  SceneData scene;
+  scene.materials = {make_diffuse(Color(0.5f)), make_diffuse(Color(0.5f), Color(1.0f))};
+  scene.add_quad({-1e3f, 0, -1e3f}, {0, 0, 2e3f}, {2e3f, 0, 0}, 0);
+  scene.add_quad({1, 0, -1e3f}, {0, 2, 0}, {0, 0, 2e3f}, 0);
+  scene.add_sphere({0, -100, 0}, 1, 1);
+  scene.camera.look_from = {0, 1, 0};
+  scene.camera.look_at = {0, 0, 0};
+  scene.camera.up = {0, 0, 1};
+  scene.camera.fov_degrees = 0.5f;
+  prepare_scene(scene, {});
+  return scene;
+}
+
+class Integrators : public testing::Test {
+ protected:
+  using Samples = std::vector<Sample>;
+
+  SampleBuffer buffer(Samples& samples) const {
+    samples.assign(std::size_t{width} * height * sample_count, {});
+    return {samples.data(), {0, 0, width, height}, 0, sample_count};
+  }
+
+  Samples serial() const {
+    Samples result;
+    const SampleBuffer batch = buffer(result);
+    for (std::uint32_t i = 0; i < batch.path_count; ++i) {
+      auto random = source.open(batch.id_of(i));
+      PathState path;
+      path.number = i;
+      const Ray ray = generate_camera_path(view_, batch.id_of(i).pixel, random.draw(0));
+      batch.store(path, follow_path<Kind>(view_, ray, path, Color(0.0f), limits, random, 0));
+    }
+    return result;
+  }
+
+  Samples megakernel() const {
+    struct Work {
+      std::uint32_t end, given = 0;
+      bool any(bool value) const { return value; }
+      bool next(std::uint32_t& number, bool wanted) {
+        if (!wanted) return true;
+        number = given;
+        return given++ < end;
+      }
+    };
+    Samples result;
+    const SampleBuffer batch = buffer(result);
+    Work work{batch.path_count};
+    trace_paths<Kind, Branching::divergent>(view_, source, batch, limits, work);
+    return result;
+  }
+
+  Samples wavefront(std::uint32_t finish_paths) const;
+
+  const SceneData data_ = floor_and_wall();
+  const Scene view_ = host_view(data_, width, height);
+};
+
+/// What the waves need of a device.
+struct Executor {
+  const Scene& scene;
+  WaveCounters& counters;
+  std::uint32_t path_count, finish_paths;
+  bool more = true;
+
+  template <class>
+  static constexpr bool traces_queues = false;
+
+  void compact(const CompactionRequest&) {}
+  void begin_wave() { more = pt::begin_wave(counters, path_count, true, finish_paths); }
+  template <class Stage>
+  void run(const Stage& stage, const StageQueues& queues) {
+    run_stage_cpu(stage, scene, queues);
+  }
+};
+
+Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
+  constexpr std::uint32_t slots = 1000;
+  Samples result;
+  const SampleBuffer batch = buffer(result);
+  WaveCounters counters{};
+  WaveBuffers b;
+  b.compaction = compaction_info(Compaction::atomic);
+  b.counters = &counters;
+  b.pool.slot_count = slots;
+  b.slot_count = &b.pool.slot_count;
+  std::vector<std::shared_ptr<void>> arrays;
+  const auto array = [&](auto* p) {
+    using T = std::remove_pointer_t<decltype(p)>;
+    const auto memory = std::make_shared<std::vector<T>>(slots);
+    arrays.push_back(memory);
+    return memory->data();
+  };
+  b.pool.allocate_arrays({true, false, false}, array);
+  b.for_each_queue(true, [&](std::uint32_t*& queue) { queue = array(queue); });
+  std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
+  *b.waiting(free_slot) = slots;
+
+  Executor execute{view_, counters, batch.path_count, finish_paths};
+  const StageContext<PhiloxSource> context{
+      b.pool, batch, source, &counters, b.queue(StageId::intersect), limits};
+  while (execute.more) run_wave<Kind, Branching::divergent>(execute, b, context);
+  run_finish<Kind>(execute, b, context);
+  return result;
+}
+
+TEST_F(Integrators, AnotherOneGivesTheSameBitsInAllModes) {
+  const Samples expected = serial();
+  for (const Samples& samples : {megakernel(), wavefront(0), wavefront(1u << 20)}) {
+    ASSERT_EQ(samples.size(), expected.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      ASSERT_EQ(samples[i].radiance, expected[i].radiance) << "path " << i;
+      ASSERT_EQ(samples[i].rays, expected[i].rays) << "path " << i;
+    }
+  }
+}
+
+// The wall's form factor as seen from the floor is (1 - d / sqrt(d^2 + h^2)) / 2.
+TEST_F(Integrators, AmbientOcclusionBesideAWallIsKnown) {
+  const Samples samples = serial();
+  double sum = 0;
+  for (const Sample& sample : samples) sum += sample.radiance.x;
+  const double n = static_cast<double>(samples.size());
+  const double free = 1.0 - 0.5 * (1.0 - 1.0 / std::sqrt(5.0));
+  const double standard_error = std::sqrt(free * (1.0 - free) / n);
+  // 0.002: the pixels lie within 0.004 of the point.
+  EXPECT_NEAR(sum / n, free, 4.0 * standard_error + 0.002);
+}
+
+}  // namespace
+}  // namespace pt
