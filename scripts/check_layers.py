@@ -13,7 +13,7 @@ from pathlib import Path
 
 # Who may include whom: layer, the files in it (the first pattern that fits counts; * spans
 # folders), and the layers that it may include besides itself.
-PLAIN = ["platform"]
+PLAIN = ["platform", "choices"]
 MATHS = ["math", *PLAIN]
 SAMPLING = ["sampling", *MATHS]
 SHAPES = ["geometry", *SAMPLING]
@@ -38,7 +38,8 @@ LAYERS = [
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stage_info.h", "common/render/compaction_info.h",
-                 "common/render/stats.h"], []),
+                 "common/render/stats.h"], ["choices"]),
+    ("choices", ["common/sampling/choices.h"], ["platform"]),
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
                "common/build_info.h"], []),
     # Around the physics: renderers and batches; what becomes of the samples.

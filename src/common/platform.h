@@ -259,4 +259,17 @@ __device__ inline std::uint32_t warp_max(std::uint32_t x) {
 }
 #endif
 
+/// The lowest bit becomes the highest.
+PT_HD std::uint32_t reverse_bits(std::uint32_t x) {
+#ifdef __CUDA_ARCH__
+  return __brev(x);
+#else
+  x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+  x = (x & 0x00ff00ffu) << 8 | (x >> 8 & 0x00ff00ffu);
+  return x << 16 | x >> 16;
+#endif
+}
+
 }  // namespace pt

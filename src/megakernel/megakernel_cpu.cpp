@@ -42,7 +42,8 @@ class MegakernelCpu : public CpuRenderer {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
       dispatch_traits(
-          KindsWith<Source, CpuSceneKinds>{}, traits_, options_.integrator, [&](auto traits) {
+          KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
+          [&](auto traits) {
             dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {

@@ -1,4 +1,4 @@
-// All kinds of scenes.
+// The paper's scenes, in global memory.
 #include "megakernel/megakernel_launch.cuh"
 
 namespace pt {

@@ -55,8 +55,8 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
                                         next_ray_key(mask_key<Traits>(scene, id), path.rays));
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          radiance = add_rounded(
-              radiance, Integrator::template miss<Traits::lighting>(scene, ray.direction, path));
+          radiance = add_rounded(radiance, Integrator::template miss<Traits::lighting>(
+                                               scene, ray.direction, path, limits));
           ended = true;
         }
       }

@@ -15,7 +15,7 @@ class SerialRenderer : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(KindsWith<Source, CpuSceneKinds>{}, traits_, options_.integrator,
+      dispatch_traits(KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
                       [&](auto traits) {
                         timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
                       });

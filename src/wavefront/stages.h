@@ -135,6 +135,7 @@ struct ShadeMiss {
   static constexpr StageOutcomes outcomes = {{free_slot, free_slot}, true, false};
   PathPool pool;
   SampleBuffer samples;
+  PathLimits limits;
   bool has_lights;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -142,7 +143,7 @@ struct ShadeMiss {
     PathState path = lighting == Lighting::full ? pool.load_path(slot, ray)
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
-    end_path(samples, path, Integrator::template miss<lighting>(scene, ray.direction, path),
+    end_path(samples, path, Integrator::template miss<lighting>(scene, ray.direction, path, limits),
              has_lights);
     return {free_slot};
   }

@@ -145,9 +145,9 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   execute.compact(b.request<shade_miss, shade_surface>(tags));
   if constexpr (parts_misses) {
     constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
-    execute.run(
-        ShadeMiss<typename Traits::Integrator, sky>{b.pool, context.samples, Traits::has_lights},
-        b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
+    execute.run(ShadeMiss<typename Traits::Integrator, sky>{b.pool, context.samples, context.limits,
+                                                            Traits::has_lights},
+                b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
   execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context},
               b.stage_queues(shade_surface, b.waiting(shade_surface), tags));

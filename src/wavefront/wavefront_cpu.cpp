@@ -95,12 +95,13 @@ class WavefrontCpu : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(
-          KindsWith<Source, CpuSceneKinds>{}, traits_, options_.integrator, [&](auto traits) {
-            dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
-              run_waves<decltype(traits), branching()>(source, batch);
-            });
-          });
+      dispatch_traits(KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
+                      [&](auto traits) {
+                        dispatch_branching<decltype(traits)>(
+                            options_.branching, [&](auto branching) {
+                              run_waves<decltype(traits), branching()>(source, batch);
+                            });
+                      });
     });
   }
 

@@ -119,13 +119,7 @@ template <class Function>
 void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
-    if (traits_.geometry == Geometry::spheres_and_quads) {
-      function(SphereSceneKinds{}, context_of(batch, source));
-    } else if constexpr (draws_in_all_scenes<Source>) {
-      function(TriangleSceneKinds{}, context_of(batch, source));
-    } else {
-      throw_no_kernel(traits_, options_.integrator);
-    }
+    function(KindsWith<Source, TriangleSceneKinds>{}, context_of(batch, source));
   });
 }
 
@@ -140,7 +134,11 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
 
 void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
   with_context(batch, [&](auto kinds, const auto& context) {
-    enqueue_finish_of<decltype(kinds)>(context_of(batch, AnySource<CurandState>(context.source)));
+    if constexpr (std::is_same_v<decltype(kinds), SphereSceneKinds>) {
+      enqueue_finish_of<decltype(kinds)>(context_of(batch, AnySource<CurandState>(context.source)));
+    } else {
+      enqueue_finish_of<decltype(kinds)>(context);
+    }
   });
 }
 

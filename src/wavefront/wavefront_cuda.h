@@ -47,8 +47,8 @@ class WavefrontCuda : public CudaRenderer {
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
-  template <class Kinds>
-  void enqueue_finish_of(const StageContext<AnySource<CurandState>>& context);
+  template <class Kinds, class Source>
+  void enqueue_finish_of(const StageContext<Source>& context);
   void allocate_pool();
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();

@@ -47,13 +47,10 @@ void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool st
   });
 }
 
-template <class Kinds>
-void WavefrontCuda::enqueue_finish_of(const StageContext<AnySource<CurandState>>& context) {
+template <class Kinds, class Source>
+void WavefrontCuda::enqueue_finish_of(const StageContext<Source>& context) {
   dispatch_traits(Kinds{}, traits_, options_.integrator,
                   [&](auto traits) { run_finish<decltype(traits)>(*this, buffers_, context); });
 }
-
-// Needed in the files of all kinds of scenes, compiled in one.
-extern template void WavefrontCuda::run(const GeneratePaths<PhiloxSource>&, const StageQueues&);
 
 }  // namespace pt

@@ -10,6 +10,5 @@ template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const PhiloxConte
 template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const XorwowContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(
     const StageContext<AnySource<CurandState>>&);
-template void WavefrontCuda::run(const GeneratePaths<PhiloxSource>&, const StageQueues&);
 
 }  // namespace pt

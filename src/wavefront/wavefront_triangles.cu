@@ -24,10 +24,9 @@ void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBu
       StageId::shadow);
 }
 
-using PhiloxContext = StageContext<PhiloxSource>;
+using SamplerContext = StageContext<SamplerSource>;
 
-template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const PhiloxContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(
-    const StageContext<AnySource<CurandState>>&);
+template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const SamplerContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(const SamplerContext&);
 
 }  // namespace pt

@@ -43,7 +43,7 @@ Color follow_path(const Scene& scene, std::uint32_t pixel, const PathLimits& lim
     sum.count_ray(path.rays++);
     const Hit hit = intersect_closest<Traits>(scene, ray);
     if (hit.is_miss()) {
-      return radiance + shade_miss<Traits::lighting>(scene, ray.direction, path);
+      return radiance + shade_miss<Traits::lighting>(scene, ray.direction, path, limits.mis);
     }
     const Vec4 u = draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);

@@ -16,7 +16,7 @@ struct AmbientOcclusion {
   static constexpr float radius = 1e4f;
 
   template <Lighting>
-  PT_HD static Color miss(const Scene&, const Vec3&, const PathState&) {
+  PT_HD static Color miss(const Scene&, const Vec3&, const PathState&, const PathLimits&) {
     return Color(0.0f);
   }
 

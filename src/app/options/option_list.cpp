@@ -70,6 +70,16 @@ void add_image(std::vector<OptionEntry>& list) {
            "what it can do for the place, through a tree of lights;\n"
            "auto: the tree, but uniform where all lights are quads and\n"
            "spheres of a scene without triangles")
+      .add(choice("mis", &Options::mis),
+           "How next-event estimation and the path's own directions share\n"
+           "a lamp: by the power or the balance heuristic; none: only\n"
+           "mirrors' rays find what can be asked")
+      .add(choice("sampling", &Options::sampling),
+           "Where a surface sends a path: anywhere, by the cosine, or as\n"
+           "its BSDF scatters")
+      .add(choice("sampler", &Options::sampler),
+           "A pixel's samples: independent, in the cells of a grid, or\n"
+           "scrambled Sobol points (best if --spp is a power of two)")
       .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {

@@ -8,6 +8,7 @@
 
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
+#include "common/render/random_source.h"
 #include "common/scene/scene_data.h"
 
 namespace pt {
@@ -45,12 +46,10 @@ class CpuRenderer : public FilmRenderer {
   /// Calls function(source) with the options' random source, its states initialised for `batch`.
   template <class Function>
   void with_random_source(const SampleBuffer& batch, Function&& function) {
-    if (options_.rng == RngKind::philox) {
-      function(PhiloxSource{options_.seed});
-    } else {
+    if (options_.rng == RngKind::xorwow) {
       timer_.time("render_init", [&] { init_random_states(batch); });
-      function(XorwowSource<XorwowState>{states_.data()});
     }
+    pt::with_random_source(options_, traits_, states_.data(), function);
   }
 
   void note_memory(const char* name, std::uint64_t size_bytes);

@@ -67,11 +67,7 @@ class CudaRenderer : public FilmRenderer {
   /// Calls function(source) with the options' random source.
   template <class Function>
   void with_random_source(Function&& function) const {
-    if (options_.rng == RngKind::philox) {
-      function(PhiloxSource{options_.seed});
-    } else {
-      function(XorwowSource<CurandState>{states_});
-    }
+    pt::with_random_source(options_, traits_, states_, function);
   }
 
   cudaStream_t stream() const { return stream_; }

@@ -4,11 +4,11 @@
 // A BSDF is a small value:
 //   static constexpr const char* name      what it is called in messages and statistics
 //   static constexpr int parameter_count   of its material's parameters, below parameters_max
-//   static constexpr bool reflects_only    optional: true where nothing goes through (material.h)
 //   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
-//   static constexpr bool uses_tangent     where it is true, x is the direction in which the
-//   surface's
-//                                          u grows; else, or without it, any
+//   static constexpr std::uint8_t lobes    of Lobe: all that sample() may return, but where it
+//                                          is_delta(), which sides alone
+//   static constexpr bool uses_tangent     optional; true: x is the direction in which the
+//                                          surface's u grows, else any
 //   bool is_delta()                        whether it scatters into discrete directions only
 //   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
 //   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once

@@ -11,6 +11,7 @@ namespace pt {
 struct Conductor {
   static constexpr const char* name = "conductor";
   static constexpr int parameter_count = 6;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
   Color tint;              ///< multiplies what is reflected; white for real metals

@@ -9,6 +9,7 @@ namespace pt {
 struct Dielectric {
   static constexpr const char* name = "dielectric";
   static constexpr int parameter_count = 2;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
 
   Color tint;  ///< multiplies what passes or is reflected; white for real glass
   float eta;   ///< index of refraction inside over outside, > 0

@@ -9,7 +9,7 @@ namespace pt {
 struct Diffuse {
   static constexpr const char* name = "diffuse";
   static constexpr int parameter_count = 1;
-  static constexpr bool reflects_only = true;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse;
 
   Color albedo;
 

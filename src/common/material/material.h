@@ -72,22 +72,18 @@ struct alignas(16) Material {
   PT_HD bool is(std::uint8_t flag) const { return (flags & flag) != 0; }
 };
 
-/// Whether all that a BSDF scatters stays on the side from which it came. One that does not say so
-/// (`static constexpr bool reflects_only = true`) is asked for light from both sides.
-template <class Bsdf>
-inline constexpr bool is_reflective = requires {
-  requires Bsdf::reflects_only;
-};
-
 namespace detail {
 template <class... Types>
 constexpr std::uint64_t reflective_kinds(TypeList<Types...>) {
   std::uint64_t kinds = 0;
-  ((kinds |= std::uint64_t{is_reflective<Types>} << static_cast<int>(kind_of<Types>)), ...);
+  ((kinds |= std::uint64_t{(Types::lobes & Lobe::transmission) == 0}
+             << static_cast<int>(kind_of<Types>)),
+   ...);
   return kinds;
 }
 }  // namespace detail
 
+/// Whether all that a BSDF scatters stays on the side from which it came.
 PT_HD bool reflects_only(MaterialKind kind) {
   constexpr std::uint64_t kinds = detail::reflective_kinds(Bsdfs{});
   static_assert(Bsdfs::size <= 64);

@@ -11,7 +11,7 @@ namespace pt {
 struct Metal {
   static constexpr const char* name = "metal";
   static constexpr int parameter_count = 2;
-  static constexpr bool reflects_only = true;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
 
   Color albedo;
   float fuzz;  ///< in [0, 1]; 0: a perfect mirror

@@ -11,6 +11,7 @@ namespace pt {
 struct OrenNayar {
   static constexpr const char* name = "oren-nayar";
   static constexpr int parameter_count = 2;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse;
 
   Color albedo;  ///< of the facets
   float sigma;   ///< standard deviation of their angle, in radians; 0: Lambertian

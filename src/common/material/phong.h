@@ -11,6 +11,7 @@ namespace pt {
 struct Phong {
   static constexpr const char* name = "phong";
   static constexpr int parameter_count = 3;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
 
   TwoLobes lobes;
   float exponent;  ///< >= 0

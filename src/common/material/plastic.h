@@ -38,6 +38,7 @@ struct CoatedBody {
 struct Plastic {
   static constexpr const char* name = "plastic";
   static constexpr int parameter_count = 3;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::delta;
 
   CoatedBody body;
 

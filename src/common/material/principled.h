@@ -12,6 +12,8 @@ namespace pt {
 struct Principled {
   static constexpr const char* name = "principled";
   static constexpr int parameter_count = 12;
+  static constexpr std::uint8_t lobes =
+      Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
   PrincipledBase base;

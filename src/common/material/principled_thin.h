@@ -10,6 +10,8 @@ namespace pt {
 struct PrincipledThin {
   static constexpr const char* name = "thin principled";
   static constexpr int parameter_count = 10;
+  static constexpr std::uint8_t lobes =
+      Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
   PrincipledBase base;

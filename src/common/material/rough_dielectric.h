@@ -12,6 +12,7 @@ namespace pt {
 struct RoughDielectric {
   static constexpr const char* name = "rough dielectric";
   static constexpr int parameter_count = 6;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
   Color reflected, passed;  ///< tints; white for real glass

@@ -12,6 +12,7 @@ namespace pt {
 struct RoughPlastic {
   static constexpr const char* name = "rough plastic";
   static constexpr int parameter_count = 8;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
   static constexpr int terms = 9;
 
   CoatedBody body;

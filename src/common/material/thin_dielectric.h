@@ -10,6 +10,7 @@ namespace pt {
 struct ThinDielectric {
   static constexpr const char* name = "thin dielectric";
   static constexpr int parameter_count = 3;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
 
   Color reflected, passed;  ///< tints; white for real glass
   float eta;                ///< index of refraction inside over outside, > 0

@@ -10,6 +10,7 @@ namespace pt {
 struct Ward {
   static constexpr const char* name = "ward";
   static constexpr int parameter_count = 4;
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
   static constexpr bool uses_tangent = true;
 
   TwoLobes lobes;

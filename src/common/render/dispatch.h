@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/render/options.h"
-#include "common/sampling/random.h"
+#include "common/sampling/sampler_source.h"
 #include "common/scene/scene.h"
 #include "common/transport/path_integrator.h"
 #include "common/type_list.h"
@@ -32,16 +32,16 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
                                     Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
                                     Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
 using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
-using CpuSceneKinds = decltype(concatenate(
-    SceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>,
-                           Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
+using CpuTriangleSceneKinds = decltype(concatenate(
+    TriangleSceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>,
+                                   Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
+using CpuSceneKinds = decltype(concatenate(SphereSceneKinds{}, CpuTriangleSceneKinds{}));
 
-/// Random numbers with a stored state are the paper's, and kept for its scenes.
-template <class Source>
-inline constexpr bool draws_in_all_scenes = std::is_same_v<Source, PhiloxSource>;
-/// Of the list `All`, the kinds of scenes that have kernels with this source.
-template <class Source, class All>
-using KindsWith = std::conditional_t<draws_in_all_scenes<Source>, All, SphereSceneKinds>;
+/// The kinds of scenes that have kernels with this source: samplers are for all but the paper's
+/// scenes, which keep its generators.
+template <class Source, class OtherKinds>
+using KindsWith =
+    std::conditional_t<std::is_same_v<Source, SamplerSource>, OtherKinds, SphereSceneKinds>;
 
 /// Throws Error, which names them.
 [[noreturn]] void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator);

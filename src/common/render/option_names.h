@@ -55,6 +55,21 @@ template <>
 inline constexpr auto enum_names<RngKind> =
     std::to_array<EnumName<RngKind>>({{RngKind::philox, "philox"}, {RngKind::xorwow, "xorwow"}});
 template <>
+inline constexpr auto enum_names<SamplerKind> =
+    std::to_array<EnumName<SamplerKind>>({{SamplerKind::independent, "independent"},
+                                          {SamplerKind::stratified, "stratified"},
+                                          {SamplerKind::sobol, "sobol"}});
+template <>
+inline constexpr auto enum_names<DirectionSampling> =
+    std::to_array<EnumName<DirectionSampling>>({{DirectionSampling::uniform, "uniform"},
+                                                {DirectionSampling::cosine, "cosine"},
+                                                {DirectionSampling::bsdf, "bsdf"}});
+template <>
+inline constexpr auto enum_names<MisHeuristic> =
+    std::to_array<EnumName<MisHeuristic>>({{MisHeuristic::none, "none"},
+                                           {MisHeuristic::balance, "balance"},
+                                           {MisHeuristic::power, "power"}});
+template <>
 inline constexpr auto enum_names<AccelKind> =
     std::to_array<EnumName<AccelKind>>({{AccelKind::automatic, "auto"},
                                         {AccelKind::brute, "brute"},

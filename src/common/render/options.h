@@ -10,6 +10,7 @@
 
 #include "common/render/compaction_info.h"
 #include "common/render/stage_info.h"
+#include "common/sampling/choices.h"
 
 namespace pt {
 
@@ -85,6 +86,9 @@ struct Options {
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
   bool nee = true;     ///< next-event estimation: ask the lights
   LightSelection light_selection = LightSelection::automatic;
+  DirectionSampling sampling = DirectionSampling::bsdf;
+  MisHeuristic mis = MisHeuristic::power;
+  SamplerKind sampler = SamplerKind::independent;
   std::uint64_t seed = 1;
   std::string output = "image.exr";    ///< .exr, .png or .ppm
   ExposureChoice exposure;             ///< for PNG and PPM only

@@ -8,7 +8,7 @@ namespace pt {
 
 inline PathLimits path_limits_of(const Options& options) {
   return {static_cast<std::uint32_t>(options.max_depth),
-          static_cast<std::uint32_t>(options.rr_depth), options.nee};
+          static_cast<std::uint32_t>(options.rr_depth), options.nee, options.sampling, options.mis};
 }
 
 }  // namespace pt

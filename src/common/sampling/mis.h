@@ -1,7 +1,8 @@
-// Multiple importance sampling (Veach 1997, section 9.2).
+// Multiple importance sampling (Veach 1997, section 9.2): a light and a direction of the BSDF are
+// two ways to the same lamp, one sample of each.
 #pragma once
 
-#include "common/platform.h"
+#include "common/sampling/choices.h"
 
 namespace pt {
 
@@ -12,6 +13,27 @@ PT_HD float power_heuristic(float chosen, float other) {
   if (chosen <= 0.0f) return 0.0f;
   const float ratio = other / chosen;  // squared by itself, a density could leave float's range
   return 1.0f / (1.0f + multiply_rounded(ratio, ratio));
+}
+
+PT_HD float balance_heuristic(float chosen, float other) {
+  if (chosen == HUGE_VALF) return 1.0f;
+  if (chosen <= 0.0f) return 0.0f;
+  return 1.0f / (1.0f + other / chosen);
+}
+
+/// Of light that a sampled light sends, where `direction` is the density with which the path's own
+/// direction could have found it. With MisHeuristic::none light sampling alone finds lamps.
+PT_HD float light_weight(MisHeuristic heuristic, float light, float direction) {
+  if (heuristic == MisHeuristic::power) return power_heuristic(light, direction);
+  return heuristic == MisHeuristic::balance ? balance_heuristic(light, direction) : 1.0f;
+}
+
+/// Of a lamp that a path met, where `light` is the density with which light sampling could have
+/// found it; `direction` is infinite where lights were not asked.
+PT_HD float direction_weight(MisHeuristic heuristic, float direction, float light) {
+  if (heuristic == MisHeuristic::power) return power_heuristic(direction, light);
+  if (heuristic == MisHeuristic::balance) return balance_heuristic(direction, light);
+  return direction == HUGE_VALF ? 1.0f : 0.0f;
 }
 
 }  // namespace pt

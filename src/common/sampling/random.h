@@ -28,11 +28,15 @@ struct PhiloxSource {
     std::uint64_t seed;
     std::uint32_t pixel, sample;
 
+    /// `purpose` 0 is draw()'s.
+    PT_HD Uint4 bits(std::uint32_t block, std::uint32_t purpose) const {
+      return philox4x32_10({block, purpose, pixel, sample}, static_cast<std::uint32_t>(seed),
+                           static_cast<std::uint32_t>(seed >> 32));
+    }
+
     PT_HD Vec4 draw(std::uint32_t block) {
-      const Uint4 bits = philox4x32_10({block, 0, pixel, sample}, static_cast<std::uint32_t>(seed),
-                                       static_cast<std::uint32_t>(seed >> 32));
-      return {to_unit_float(bits.x), to_unit_float(bits.y), to_unit_float(bits.z),
-              to_unit_float(bits.w)};
+      const Uint4 b = bits(block, 0);
+      return {to_unit_float(b.x), to_unit_float(b.y), to_unit_float(b.z), to_unit_float(b.w)};
     }
   };
 

@@ -19,8 +19,9 @@ PT_HD Vec3 sample_unit_sphere(float u0, float u1) {
   return {r * phi.cos, r * phi.sin, z};
 }
 
-/// Density of sample_unit_sphere per solid angle.
-inline constexpr float unit_sphere_pdf = 0.25f * inverse_pi;
+/// Densities of sample_unit_sphere, and of its half, per solid angle.
+inline constexpr float unit_sphere_pdf = 0.25f * inverse_pi,
+                       unit_hemisphere_pdf = 0.5f * inverse_pi;
 
 /// Uniform in the unit ball; density 3 / (4 pi) per volume.
 PT_HD Vec3 sample_unit_ball(float u0, float u1, float u2) {

@@ -37,7 +37,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
   prepare_filter(scene, filter_of(options, scene));
-  if (has_primitives_only(scene)) {
+  if (is_lean(scene, options)) {
     prepare_primitives_only(scene, options);
   } else {
     prepare_triangles(scene, options);

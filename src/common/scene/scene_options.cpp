@@ -27,7 +27,9 @@ std::string unless(E value, Usual... usual) {
   return ((value == usual) || ...) ? "" : to_string(value);
 }
 
-constexpr const char* paper = "is for scenes of spheres and quads alone; '{}' is none";
+constexpr const char* paper =
+    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power and --sampler "
+    "independent; expected such a scene instead of '{}', or other options";
 
 /// The whole policy. What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {
@@ -66,6 +68,11 @@ bool needs_triangles(const MaterialDescription& material) {
 
 }  // namespace
 
+bool is_lean(const SceneData& scene, const Options& o) {
+  return has_primitives_only(scene) && o.sampling == DirectionSampling::bsdf &&
+         o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent;
+}
+
 bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
          scene.sun.one_minus_cos == 0.0f && scene.textures.empty() &&
@@ -73,7 +80,7 @@ bool has_primitives_only(const SceneData& scene) {
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {
-  const SceneKind kind = has_primitives_only(scene) ? SceneKind::primitives : SceneKind::triangles;
+  const SceneKind kind = is_lean(scene, options) ? SceneKind::primitives : SceneKind::triangles;
   for (const SceneRule& rule : rules) {
     const std::string value = rule.limited(options);
     if (value.empty() || rule.scene == kind) continue;

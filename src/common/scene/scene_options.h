@@ -6,8 +6,12 @@
 
 namespace pt {
 
-/// Whether the lean kernels of the paper's scenes can render it.
+/// Whether the scene has nothing that the paper's have not.
 bool has_primitives_only(const SceneData& scene);
+
+/// Whether the lean kernels of the paper's scenes can render it as the options say; else those of
+/// all other scenes do, which have more ways to sample.
+bool is_lean(const SceneData& scene, const Options& options);
 
 /// Throws Error when the options ask for what this scene cannot have.
 void check_scene_options(const Options& options, const SceneData& scene);

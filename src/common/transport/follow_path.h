@@ -27,7 +27,7 @@ PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radi
     ++path.rays;
     if (hit.is_miss()) {
       return add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
-                                       scene, ray.direction, path));
+                                       scene, ray.direction, path, limits));
     }
     const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
     radiance = add_rounded(radiance, scattering.emitted);

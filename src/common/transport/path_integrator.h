@@ -1,6 +1,6 @@
 // The contract of an integrator: what a path is worth where it leaves the scene, and what a surface
 // does with it. The modes call nothing else of an integrator, so it does not know how it is run:
-//   Color miss<lighting>(scene, direction, path)           added to the sample; the path ends
+//   Color miss<lighting>(scene, direction, path, limits)   added to the sample; the path ends
 //   Scattering surface<Traits>(scene, ray, hit, path, limits, scatter, light)
 //                                                          see shade_surface.h
 // `path` may change in surface(), but not in miss(). The blocks of random numbers `scatter` and
@@ -19,8 +19,9 @@ namespace pt {
 /// Unidirectional path tracing with multiple importance sampling (pbrt-v4, section 13.2.2).
 struct PathIntegrator {
   template <Lighting lighting>
-  PT_HD static Color miss(const Scene& scene, const Vec3& direction, const PathState& path) {
-    return shade_miss<lighting>(scene, direction, path);
+  PT_HD static Color miss(const Scene& scene, const Vec3& direction, const PathState& path,
+                          const PathLimits& limits) {
+    return shade_miss<lighting>(scene, direction, path, limits.mis);
   }
 
   template <class Traits>

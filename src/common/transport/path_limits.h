@@ -1,7 +1,8 @@
-// When a path ends, and whether it asks the lights.
+// When a path ends, and how it finds light.
 #pragma once
 
 #include "common/math/vec.h"
+#include "common/sampling/choices.h"
 
 namespace pt {
 
@@ -9,6 +10,8 @@ struct PathLimits {
   std::uint32_t max_depth = 50;      ///< rays of a path, the camera ray included
   std::uint32_t roulette_depth = 0;  ///< from so many rays on Russian roulette decides; 0: never
   bool ask_lights = true;            ///< next-event estimation
+  DirectionSampling directions = DirectionSampling::bsdf;
+  MisHeuristic mis = MisHeuristic::power;
 
   /// Whether a path that has traced `rays` takes part in the roulette.
   PT_HD bool is_roulette(std::uint32_t rays) const {

@@ -72,7 +72,8 @@ PT_HD void apply_map(const Scene& scene, const Vec3& wo, bool turned, Surface& s
 /// One of the two materials of a blend, and a random number that is again uniform in [0, 1).
 PT_HD std::uint32_t choose_blended(const Scene& scene, const Surface& surface, float& u) {
   const Parameter p = load_wide(&scene.parameters[surface.material_number]);
-  const float weight = fminf(fmaxf(grey_of(textured(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
+  const float weight =
+      fminf(fmaxf(grey_of(textured(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
   const bool second = u < weight;
   u = fminf(second ? u / weight : (u - weight) / (1.0f - weight), one_minus_ulp);
   return second ? surface.material.second : surface.material.first();

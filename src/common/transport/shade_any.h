@@ -14,7 +14,7 @@ PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, P
   using Integrator = typename Traits::Integrator;
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
-  const Color sky = Integrator::template miss<Traits::lighting>(scene, ray.direction, path);
+  const Color sky = Integrator::template miss<Traits::lighting>(scene, ray.direction, path, limits);
   Scattering result = Integrator::template surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit,
                                                            path, limits, scatter, light);
   result.alive = result.alive && !miss;

@@ -10,14 +10,15 @@ namespace pt {
 /// The radiance that the sky adds to the path's sample. The path ends. That of an environment and
 /// of the sun is weighted against light sampling, which could have chosen the same direction.
 template <Lighting lighting>
-PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path) {
+PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path,
+                       MisHeuristic mis) {
   Color radiance = sky_radiance(scene.sky, ray_direction);
   if constexpr (lighting == Lighting::full) {
     if (scene.light_selector.environment_probability > 0.0f) {
       const float pdf = scene.light_selector.environment_probability *
                         environment_pdf(scene.environment, ray_direction);
       const Color environment = environment_radiance(scene.environment, ray_direction);
-      const float weight = power_heuristic(path.bsdf_pdf, pdf);
+      const float weight = direction_weight(mis, path.bsdf_pdf, pdf);
       radiance = {fused_multiply_add(environment.x, weight, radiance.x),
                   fused_multiply_add(environment.y, weight, radiance.y),
                   fused_multiply_add(environment.z, weight, radiance.z)};

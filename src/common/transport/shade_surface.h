@@ -8,6 +8,7 @@
 #include "common/transport/path.h"
 #include "common/transport/path_limits.h"
 #include "common/transport/resolve_material.h"
+#include "common/transport/sample_direction.h"
 #include "common/transport/sample_light.h"
 
 namespace pt {
@@ -32,7 +33,7 @@ PT_HD Receiver receiver_of(const Surface& surface, const Ray& ray) {
 /// beta * Le, weighted against light sampling, which could have found the same point.
 template <class Traits>
 PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
-                             const PathState& path, const Surface& surface) {
+                             const PathState& path, const Surface& surface, MisHeuristic mis) {
   if (surface.material.emission == no_emission ||
       dot(ray.direction, surface.point.normal) >= 0.0f) {
     return Color(0.0f);
@@ -43,7 +44,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
     Le = textured(scene, Le, emission.texture, surface.uv);
   }
   const float pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
-  return path.beta * Le * power_heuristic(path.bsdf_pdf, pdf);
+  return path.beta * Le * direction_weight(mis, path.bsdf_pdf, pdf);
 }
 
 /// The ray from a surface to where `light`, sampled as seen from `from`, wants it to end. Where a
@@ -66,9 +67,9 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
 /// what the BSDF says of its direction.
 template <class Traits>
 PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const Vec3& from,
-                          const IncidentLight& light, const BsdfValue& value) {
+                          const IncidentLight& light, const BsdfValue& value, MisHeuristic mis) {
   if (light.pdf <= 0.0f || is_black(value.f)) return {};
-  const float weight = light.is_delta ? 1.0f : power_heuristic(light.pdf, value.pdf);
+  const float weight = light.is_delta ? 1.0f : light_weight(mis, light.pdf, value.pdf);
   return spawn_shadow_ray<Traits>(surface.point, from, light,
                                   path.beta * value.f * light.radiance * (weight / light.pdf));
 }
@@ -88,10 +89,13 @@ template <class Traits>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                                const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
   constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
+  // The paper's kernels stay lean: what they cannot do is done by the others (scene_options.h).
+  const MisHeuristic mis = full ? limits.mis : MisHeuristic::power;
+  const DirectionSampling directions = full ? limits.directions : DirectionSampling::bsdf;
   Surface surface = surface_at<Traits>(scene, ray, hit);
   Scattering result;
   if constexpr (has_lights) {
-    result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface);
+    result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface, mis);
   }
   if (path.rays >= limits.max_depth) return result;
   float choice = scatter.w;
@@ -115,8 +119,12 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
-    if (asks) value = bsdf.evaluate(wo, frame.to_local(incident.wi));
-    next = bsdf.sample(wo, Vec3(scatter));
+    if (asks) {
+      const Vec3 wi = frame.to_local(incident.wi);
+      value = bsdf.evaluate(wo, wi);
+      value.pdf = direction_pdf(bsdf, directions, wo, wi, value.pdf);
+    }
+    next = sample_direction(bsdf, directions, wo, Vec3(scatter));
   });
   // The same frame, made anew where registers are scarce.
   const Vec3 normal = has_lights ? anew(surface.shading_normal) : surface.shading_normal;
@@ -129,7 +137,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   }
   if constexpr (has_lights) {
     path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
-    result.shadow = ask_light<Traits>(path, surface, from, incident, value);
+    result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);

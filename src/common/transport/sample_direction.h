@@ -1,0 +1,61 @@
+// In which direction a path goes on: as the BSDF would have it, or, to see what that is worth, in a
+// direction that does not know it (--sampling).
+#pragma once
+
+#include "common/material/bsdf.h"
+#include "common/sampling/choices.h"
+#include "common/sampling/warp.h"
+
+namespace pt {
+
+/// Densities of directions that know only on which sides a BSDF scatters, and its mirrors: those
+/// cannot be found but by the BSDF, which gets half of the samples where it has other lobes, too.
+template <class Bsdf>
+struct PlainDirections {
+  static constexpr bool transmits = (Bsdf::lobes & Lobe::transmission) != 0;
+  static constexpr bool mirrors = (Bsdf::lobes & Lobe::delta) != 0;
+  static constexpr float share = (mirrors ? 0.5f : 1.0f) * (transmits ? 0.5f : 1.0f);
+
+  PT_HD static float pdf(DirectionSampling how, const Vec3& wo, const Vec3& wi) {
+    if (!transmits && !same_side(wo, wi)) return 0.0f;
+    const float density =
+        how == DirectionSampling::cosine ? cosine_hemisphere_pdf(fabsf(wi.z)) : unit_hemisphere_pdf;
+    return multiply_rounded(density, share);
+  }
+
+  PT_HD static Vec3 sample(DirectionSampling how, const Vec3& wo, const Vec3& u) {
+    Vec3 wi = how == DirectionSampling::cosine ? sample_cosine_hemisphere(u.x, u.y)
+                                               : sample_unit_sphere(u.x, u.y);
+    wi.z = fabsf(wi.z);
+    const bool below = transmits ? u.z < 0.5f : wo.z < 0.0f;
+    return {wi.x, wi.y, below ? -wi.z : wi.z};
+  }
+};
+
+/// `u` uniform in [0, 1)^3.
+template <class Bsdf>
+PT_HD BsdfSample sample_direction(const Bsdf& bsdf, DirectionSampling how, const Vec3& wo, Vec3 u) {
+  using Plain = PlainDirections<Bsdf>;
+  if (how == DirectionSampling::bsdf || bsdf.is_delta()) return bsdf.sample(wo, u);
+  if constexpr (Plain::mirrors) {
+    if (u.z < 0.5f) {
+      BsdfSample mirror = bsdf.sample(wo, {u.x, u.y, 2.0f * u.z});
+      mirror.weight = mirror.is_delta() ? 2.0f * mirror.weight : Color(0.0f);
+      return mirror;
+    }
+    u.z = 2.0f * u.z - 1.0f;
+  }
+  const Vec3 wi = Plain::sample(how, wo, u);
+  const float pdf = Plain::pdf(how, wo, wi);
+  if (!(pdf > 0.0f)) return {};
+  return {wi, bsdf.evaluate(wo, wi).f / pdf, pdf, Lobe::glossy};
+}
+
+/// The density of the above, given that of the BSDF's own sample().
+template <class Bsdf>
+PT_HD float direction_pdf(const Bsdf&, DirectionSampling how, const Vec3& wo, const Vec3& wi,
+                          float bsdf_pdf) {
+  return how == DirectionSampling::bsdf ? bsdf_pdf : PlainDirections<Bsdf>::pdf(how, wo, wi);
+}
+
+}  // namespace pt
