@@ -1,7 +1,11 @@
 // Materials made of materials, against analytic radiances.
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "bsdf_cases.h"
 #include "common/error.h"
+#include "common/scene/prepare_materials.h"
 #include "common/transport/resolve_material.h"
 #include "nested_scenes.h"
 #include "render_serial.h"
@@ -207,6 +211,23 @@ TEST(Maps, NoLightLeaksThroughTheSurface) {
   const std::uint32_t map =
       scene.add_material(make_mapped(MaterialNode::normal_map, {{1, 1, 0}, picture}, mirror));
   expect_color(mean_of(render_wall(scene, map).image), Color(0.0f), 0.0f);
+}
+
+// What needs no tangent need not be a mesh with coordinates.
+TEST(Tangents, AreForAnisotropicMaterialsAlone) {
+  const std::set<std::string> anisotropic{"ward, 0.1 0.4",
+                                          "GGX copper 0.05, 0.6",
+                                          "Beckmann copper 0.5, 0.1",
+                                          "GGX glass 0.5, 0.2",
+                                          "Beckmann glass of two tints 0.4, 0.7",
+                                          "principled metal",
+                                          "principled half glass",
+                                          "thin principled, half of all"};
+  std::set<std::string> found;
+  for (const BsdfCase& c : all_bsdf_cases()) {
+    if (uses_tangent(c.material)) found.insert(c.name);
+  }
+  EXPECT_EQ(found, anisotropic);
 }
 
 }  // namespace

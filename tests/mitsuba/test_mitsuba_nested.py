@@ -132,7 +132,7 @@ class Nested(unittest.TestCase):
     def compare(self, inside, depth):
         with tempfile.TemporaryDirectory() as name_of_folder:
             folder = Path(name_of_folder)
-            pairs.DEPTH = depth
+            pairs.DEPTH, pairs.SPP = depth, min(pairs.SPP, 128)
             path = pairs.write_scene(folder, inside + STAGE)
             write_textures(folder)
             pairs.Pairs.check(self, pairs.our_images(path, folder, "on"), pairs.their_images(path))

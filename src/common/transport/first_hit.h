@@ -25,8 +25,11 @@ struct FirstHit {
 /// light that the surface sends back, as seen from the ray (the directional albedo). For a diffuse
 /// surface that is its colour. What radiance loses or gains by refraction is left out.
 template <class Traits>
-PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, const Surface& surface,
-                           const Vec3& u) {
+PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, const Vec4& u) {
+  float choice = u.w;
+  if constexpr (Traits::lighting == Lighting::full) {
+    resolve_material(scene, -ray.direction, choice, surface);
+  }
   if (Traits::lighting == Lighting::full && surface.material.is(Material::one_sided) &&
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
     return Color(0.0f);
@@ -36,7 +39,7 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, const Surface& su
   Color albedo(0.0f);
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
-    const BsdfSample sample = bsdf.sample(wo, u);
+    const BsdfSample sample = bsdf.sample(wo, Vec3(u));
     albedo = sample.outside * sample.weight;
   });
   return albedo;
@@ -47,18 +50,14 @@ template <class Traits>
 PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, const Vec4& u) {
   FirstHit first;
   if (hit.is_miss()) return first;
-  Surface surface = surface_at<Traits>(scene, ray, hit);
+  const Surface surface = surface_at<Traits>(scene, ray, hit);
   first.material = surface.material_number;
-  float choice = u.w;
-  if constexpr (Traits::lighting == Lighting::full) {
-    resolve_material(scene, -ray.direction, choice, surface);
-  }
   first.distance = hit.t;
   first.position = surface.point.position;
   first.normal = surface.point.normal;
   first.shading_normal = surface.shading_normal;
   first.uv = surface.uv;
-  first.albedo = sampled_albedo<Traits>(scene, ray, surface, Vec3(u));
+  first.albedo = sampled_albedo<Traits>(scene, ray, surface, u);
   first.instance = 0;
   const std::uint32_t primitives = scene.primitives.count();
   if (hit.primitive < primitives) {

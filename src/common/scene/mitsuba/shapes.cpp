@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/scene/mitsuba/shape_kinds.h"
+#include "common/scene/prepare_materials.h"
 
 namespace pt::mitsuba {
 namespace {
