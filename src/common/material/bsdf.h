@@ -5,9 +5,8 @@
 //   static constexpr const char* name      what it is called in messages and statistics
 //   static constexpr int parameter_count   of its material's parameters, below parameters_max
 //   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
-//   static constexpr bool uses_tangent     where it is true, x is the direction in which the
-//   surface's
-//                                          u grows; else, or without it, any
+//   static bool uses_tangent(const Parameter* p)   where there is one: whether x must be the
+//                                          direction in which the surface's u grows; else any
 //   bool is_delta()                        whether it scatters into discrete directions only
 //   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
 //   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once

@@ -12,7 +12,6 @@ namespace pt {
 struct Principled {
   static constexpr const char* name = "principled";
   static constexpr int parameter_count = 12;
-  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float metallic, spec_trans;
@@ -29,6 +28,11 @@ struct Principled {
             p.scalar(6),
             p.scalar(10),
             p.scalar(11)};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return !is_black(p[5].value);
   }
 
   PT_HD bool is_delta() const { return false; }
@@ -141,7 +145,7 @@ struct Principled {
     const float lobe = 0.25f * seen;
     Color f(0.0f);
     // Mitsuba's metal, too, ends where a dielectric would reflect nothing.
-    if (fresnel > 0.0f) f = reflectance(view, cos_o, fresnel) * (lobe * shown);
+    if (eta != 1.0f) f = reflectance(view, cos_o, fresnel) * (lobe * shown);
     float pdf = multiply_rounded(choice.specular * (1.0f - passing(view, fresnel)), lobe);
     if (!view.inside) {
       if (opaque() > 0.0f) {

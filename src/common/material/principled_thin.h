@@ -10,7 +10,6 @@ namespace pt {
 struct PrincipledThin {
   static constexpr const char* name = "thin principled";
   static constexpr int parameter_count = 10;
-  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float spec_trans;
@@ -26,6 +25,11 @@ struct PrincipledThin {
             p.scalar(4),
             p.scalar(5),
             0.5f * p.scalar(9)};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return !is_black(p[4].value);
   }
 
   PT_HD bool is_delta() const { return false; }

@@ -32,8 +32,10 @@ struct MaterialDescription {
 
 /// Whether the BSDF depends on the direction in which u grows.
 inline bool uses_tangent(const MaterialDescription& material) {
-  return visit(material.kind, material, [](const auto& bsdf) {
-    if constexpr (requires { bsdf.uses_tangent; }) return bsdf.uses_tangent;
+  return visit(material.kind, material, [&](const auto& bsdf) {
+    if constexpr (requires { bsdf.uses_tangent(material.parameters); }) {
+      return bsdf.uses_tangent(material.parameters);
+    }
     return false;
   });
 }
