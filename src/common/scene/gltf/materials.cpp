@@ -1,6 +1,7 @@
 #include "common/scene/gltf/materials.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/scene/gltf/values.h"
@@ -17,6 +18,18 @@ Color clamped(const Color& c) {
 
 Color to_color(const std::vector<double>& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+/// Within [0, 1]; NaN becomes 0.
+float unit(double x) { return x > 0.0 ? static_cast<float>(std::min(x, 1.0)) : 0.0f; }
+
+/// What the components of textures are weighted by.
+constexpr Color red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
+
+/// `bsdf`, with the opacity that was read already.
+MaterialDescription with_surface_of(const MaterialDescription& before, MaterialDescription bsdf) {
+  bsdf.opacity = before.opacity;
+  return bsdf;
 }
 
 float extension_number(const tinygltf::Material& source, const char* extension, const char* key,
@@ -59,11 +72,12 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
   const auto* glossiness = find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
   if (glossiness) {
     set_specular_glossiness(*glossiness, place, result);
-  } else if (!set_transmission(source, place, result)) {
+  } else {
     set_metallic_roughness(source, place, result);
   }
   set_emission(source, place, result);
-  result.one_sided = result.kind == kind_of<Diffuse> && !source.doubleSided;
+  const bool passes = result.kind == kind_of<Principled> && !is_black(result.parameters[3].value);
+  result.one_sided = !passes && !source.doubleSided;
   return result;
 }
 
@@ -77,30 +91,27 @@ void Materials::set_base(const tinygltf::Material& source, const std::string& pl
   }
 }
 
+Parameter Materials::number_of(float factor, const TextureUse& use, const std::string& place,
+                               const Color& weights) {
+  Parameter result{Color(factor), no_texture};
+  if (use) result.texture = textures_.add_number(use, place, weights);
+  return result;
+}
+
 void Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
                                        MaterialDescription& result) {
+  result = with_surface_of(result, describe_all<Principled>(0));
   set_base(source, place, result);
   const auto& pbr = source.pbrMetallicRoughness;
-  auto metallic = static_cast<float>(pbr.metallicFactor);
-  auto roughness = static_cast<float>(pbr.roughnessFactor);
-  if (const TextureUse use = texture_use(pbr.metallicRoughnessTexture)) {
-    const std::string texture_place = place + ".pbrMetallicRoughness.metallicRoughnessTexture";
-    file_.report(texture_place, "textures of metallic and roughness: their means are used");
-    const Color mean = textures_.mean(use, texture_place);
-    roughness *= mean.y;
-    metallic *= mean.z;
-  }
-  if (metallic >= 0.5f) {
-    file_.report(place,
-                 "metallic >= 0.5: metal in the base colour is used, its fuzz is roughness "
-                 "squared");
-    result.kind = kind_of<Metal>;
-    result.parameters[1].value = Color(std::clamp(roughness * roughness, 0.0f, 1.0f));
-  } else {
-    file_.report(place,
-                 "metallic < 0.5: diffuse in the base colour is used, without a specular "
-                 "coat");
-  }
+  const TextureUse use = texture_use(pbr.metallicRoughnessTexture);
+  const std::string at = place + ".pbrMetallicRoughness.metallicRoughnessTexture";
+  Parameter* p = result.parameters;
+  p[1] = number_of(unit(pbr.roughnessFactor), use, at, green);
+  p[2] = number_of(unit(pbr.metallicFactor), use, at, blue);
+  set_transmission(source, place, result);
+  set_index(source, place, result);
+  set_sheen(source, place, result);
+  set_clearcoat(source, place, result);
 }
 
 void Materials::set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
@@ -113,30 +124,73 @@ void Materials::set_specular_glossiness(const tinygltf::Value& source, const std
   }
 }
 
-bool Materials::set_transmission(const tinygltf::Material& source, const std::string& place,
+void Materials::set_transmission(const tinygltf::Material& source, const std::string& place,
                                  MaterialDescription& result) {
   const auto* extension = find_extension(source.extensions, "KHR_materials_transmission");
-  float transmission = extension ? number_or(*extension, "transmissionFactor", 0.0f) : 0.0f;
-  if (!(transmission > 0.0f)) return false;
-  if (const TextureUse use = texture_use(member(*extension, "transmissionTexture"))) {
-    const std::string texture_place =
-        place + ".extensions.KHR_materials_transmission.transmissionTexture";
-    file_.report(texture_place, "textures of transmission: their means are used");
-    transmission *= textures_.mean(use, texture_place).x;
-  }
-  if (!(transmission > 0.5f)) {
-    file_.report(place, "transmission <= 0.5 is ignored");
-    return false;
-  }
-  file_.report(place, "transmission > 0.5: smooth, solid glass in the base colour is used");
-  set_base(source, place, result);
-  const float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
+  if (!extension) return;
+  const float transmission = unit(number_or(*extension, "transmissionFactor", 0.0f));
+  if (transmission == 0.0f) return;
+  file_.report(place, "KHR_materials_transmission: solid glass is used");
+  result.parameters[3] =
+      number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
+                place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
+}
+
+/// KHR_materials_ior, and KHR_materials_specular as another index with the reflectance that it
+/// asks for.
+void Materials::set_index(const tinygltf::Material& source, const std::string& place,
+                          MaterialDescription& result) {
+  float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
   if (!std::isfinite(ior) || ior < 1.0f) {
     file_.fail(place + ".extensions.KHR_materials_ior.ior", fmt::format("{}: expected >= 1", ior));
   }
-  result.kind = kind_of<Dielectric>;
-  result.parameters[1].value = Color(ior);
-  return true;
+  const bool passes = !is_black(result.parameters[3].value);
+  if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
+    const Color tint = vector_or(*specular, "specularColorFactor", Color(1.0f));
+    if (passes || texture_use(member(*specular, "specularTexture")) ||
+        texture_use(member(*specular, "specularColorTexture")) || tint != Color(tint.x)) {
+      file_.report(place,
+                   "KHR_materials_specular: its factor times the largest component of its colour "
+                   "is used, without textures and not on what light passes");
+    }
+    const float factor = unit(number_or(*specular, "specularFactor", 1.0f)) * max_abs(tint);
+    const float root = std::sqrt(std::min(normal_reflectance(ior) * factor, 0.99f));
+    if (!passes) ior = (1.0f + root) / (1.0f - root);
+  }
+  // At 1 nothing would be reflected by metals, too, and nothing bent.
+  result.parameters[4].value = Color(std::max(ior, 1.001f));
+}
+
+void Materials::set_sheen(const tinygltf::Material& source, const std::string& place,
+                          MaterialDescription& result) {
+  const auto* sheen = find_extension(source.extensions, "KHR_materials_sheen");
+  if (!sheen) return;
+  const Color color = clamped(vector_or(*sheen, "sheenColorFactor", Color(0.0f)));
+  if (is_black(color)) return;
+  file_.report(place,
+               "KHR_materials_sheen: that of the principled BSDF is used, white and without "
+               "roughness");
+  result.parameters[7] =
+      number_of(max_abs(color), texture_use(member(*sheen, "sheenColorTexture")),
+                place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
+}
+
+/// The gloss of the principled BSDF's coat goes from a roughness, alpha, of 0.1 to 0.001.
+void Materials::set_clearcoat(const tinygltf::Material& source, const std::string& place,
+                              MaterialDescription& result) {
+  const auto* coat = find_extension(source.extensions, "KHR_materials_clearcoat");
+  if (!coat) return;
+  const float factor = unit(number_or(*coat, "clearcoatFactor", 0.0f));
+  if (factor == 0.0f) return;
+  file_.report(place, "KHR_materials_clearcoat: the coat of the principled BSDF is used");
+  const std::string at = place + ".extensions.KHR_materials_clearcoat.";
+  float roughness = unit(number_or(*coat, "clearcoatRoughnessFactor", 0.0f));
+  if (const TextureUse use = texture_use(member(*coat, "clearcoatRoughnessTexture"))) {
+    roughness *= textures_.mean(use, at + "clearcoatRoughnessTexture").y;
+  }
+  result.parameters[10] = number_of(factor, texture_use(member(*coat, "clearcoatTexture")),
+                                    at + "clearcoatTexture", red);
+  result.parameters[11].value = Color(unit((0.1f - roughness * roughness) / 0.099f));
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,

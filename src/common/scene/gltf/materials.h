@@ -1,4 +1,4 @@
-// Materials: the nearest of ours to metallic-roughness and its extensions.
+// Materials: metallic-roughness and its extensions as the principled BSDF.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,17 @@ class Materials {
                               MaterialDescription& result);
   void set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
                                MaterialDescription& result);
-  bool set_transmission(const tinygltf::Material& source, const std::string& place,
+  void set_transmission(const tinygltf::Material& source, const std::string& place,
                         MaterialDescription& result);
+  void set_index(const tinygltf::Material& source, const std::string& place,
+                 MaterialDescription& result);
+  void set_sheen(const tinygltf::Material& source, const std::string& place,
+                 MaterialDescription& result);
+  void set_clearcoat(const tinygltf::Material& source, const std::string& place,
+                     MaterialDescription& result);
+  /// A number, times a texture's components with these weights where there is one.
+  Parameter number_of(float factor, const TextureUse& use, const std::string& place,
+                      const Color& weights);
   void set_emission(const tinygltf::Material& source, const std::string& place,
                     MaterialDescription& result);
   void set_opacity(const tinygltf::Material& source, const std::string& place,

@@ -98,7 +98,8 @@ TextureImage Textures::integers(const TextureUse& use, const std::string& place)
   return image;
 }
 
-std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format) {
+std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,
+                            const std::optional<Color>& weights) {
   const Encoded image = encoded_image(use, place);
   if (use.tex_coord != 0) {
     file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
@@ -107,7 +108,18 @@ std::uint32_t Textures::add(const TextureUse& use, const std::string& place, Tex
   look.format = format;
   apply_sampler(file_, texture(use, place), fmt::format("textures[{}]", use.texture), look);
   if (use.transform.IsObject()) apply_transform(use.transform, look);
-  return store_.add_memory(image.bytes, image.name, look);
+  return store_.add_memory(image.bytes, image.name, look, weights);
+}
+
+std::uint32_t Textures::add_number(const TextureUse& use, const std::string& place,
+                                   const Color& weights) {
+  texture(use, place);  // a wrong number is an Error, a picture that we lack is not
+  try {
+    return add(use, place, TextureFormat::linear8, weights);
+  } catch (const Error& error) {
+    file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
+    return no_texture;
+  }
 }
 
 Color Textures::mean(const TextureUse& use, const std::string& place) {

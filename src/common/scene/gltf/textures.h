@@ -1,6 +1,7 @@
 // Textures: images, samplers and KHR_texture_transform.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/math/vec.h"
@@ -36,6 +37,9 @@ class Textures {
   std::uint32_t add_linear(const TextureUse& use, const std::string& place) {
     return add(use, place, TextureFormat::linear8);
   }
+  /// One of numbers: the weighted sum of its components, in all of them. no_texture, and a
+  /// warning, where the image cannot be decoded: a factor is then used alone.
+  std::uint32_t add_number(const TextureUse& use, const std::string& place, const Color& weights);
   /// The alpha of a colour texture; no_texture where it is 1 everywhere.
   std::uint32_t add_alpha(const TextureUse& use, const std::string& place) {
     return store_.add_alpha_of(add_color(use, place));
@@ -51,7 +55,8 @@ class Textures {
     std::string name;
   };
 
-  std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format);
+  std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format,
+                    const std::optional<Color>& weights = {});
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
   TextureImage integers(const TextureUse& use, const std::string& place) const;
