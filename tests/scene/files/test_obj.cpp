@@ -162,7 +162,18 @@ TEST_F(ObjMaterials, WhatIsLostIsSaid) {
                             "newmtl m\nKd 0.5 0.5 0.5\nKs 1 1 1\nd 0.7\nmap_bump b.png\n");
   ASSERT_EQ(file.warnings.size(), 2u);
   EXPECT_EQ(file.warnings[0], "missing.mtl: No such file or directory");
-  EXPECT_EQ(file.warnings[1], "material m: no highlights (Ks), partial transparency (d), bumps");
+  EXPECT_EQ(file.warnings[1], "material m: no highlights (Ks)");
+}
+
+TEST_F(ObjMaterials, MasksAndBumps) {
+  const ObjMaterial thin = read_material("Kd 1 1 1\nd 0.7\n");
+  EXPECT_FLOAT_EQ(thin.material.opacity.offset, 0.7f);
+  const ObjMaterial leaf =
+      read_material("Kd 1 1 1\nd 0.1\nmap_d leaf.png\nmap_bump -bm 0.3 b.png\n");
+  EXPECT_EQ(leaf.material.kind, kind_of<Diffuse>);
+  EXPECT_EQ(leaf.opacity_map.filename(), "leaf.png");
+  EXPECT_EQ(leaf.bump_map.filename(), "b.png");
+  EXPECT_FLOAT_EQ(leaf.bump_scale, 0.3f);
 }
 
 }  // namespace
