@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/scene/material_description.h"
+#include "common/scene/plastic_material.h"
 
 namespace pt {
 
@@ -12,6 +12,10 @@ struct BsdfCase {
   const char* name;
   MaterialDescription material;
   bool is_reciprocal = true;
+  bool is_lossless = false;  ///< all light leaves again
+  bool is_complete = false;  ///< no sample is absorbed: the densities' integral is 1
+  bool is_sharp = false;     ///< too sharp for quadrature: only finite values are expected
+  double albedo_max = 1;     ///< energy that leaves, at most
 };
 
 /// White ones and coloured ones.
@@ -22,25 +26,100 @@ inline const Color white_case(1.0f), coloured_case(0.25f, 0.5f, 0.75f);
 
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Diffuse>() {
-  return {{"diffuse, white", make_diffuse(white_case)}, {"diffuse", make_diffuse(coloured_case)}};
+  return {{"diffuse, white", make_diffuse(white_case), true, true, true},
+          {"diffuse", make_diffuse(coloured_case), true, false, true},
+          {"diffuse, black", make_diffuse(Color(0.0f))}};
 }
 
 /// Not reciprocal when fuzzy: its lobe is absorbed below the surface.
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Metal>() {
-  return {{"mirror, white", make_metal(white_case, 0)},
+  return {{"mirror, white", make_metal(white_case, 0), true, true, true},
           {"mirror", make_metal(coloured_case, 0)},
           {"metal, fuzz 0.05", make_metal(white_case, 0.05f), false},
           {"metal, fuzz 0.3", make_metal(coloured_case, 0.3f), false},
-          {"metal, fuzz 1", make_metal(white_case, 1), false}};
+          {"metal, fuzz 1", make_metal(white_case, 1), false},
+          {"metal, fuzz 1e-6", make_metal(white_case, 1e-6f), false, false, false, true}};
 }
 
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Dielectric>() {
-  return {{"glass", make_dielectric(white_case, 1.5f)},
+  return {{"glass", make_dielectric(white_case, 1.5f), true, true, true},
           {"tinted diamond", make_dielectric(coloured_case, 2.4f)},
-          {"air in glass", make_dielectric(white_case, 1 / 1.5f)},
-          {"nothing", make_dielectric(white_case, 1)}};
+          {"air in glass", make_dielectric(white_case, 1 / 1.5f), true, true, true},
+          {"nothing", make_dielectric(white_case, 1), true, true, true}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<OrenNayar>() {
+  const auto rough = [](const Color& albedo, float sigma) {
+    return describe_all<OrenNayar>(albedo, sigma);
+  };
+  return {{"oren-nayar, sigma 0", rough(white_case, 0), true, true, true},
+          {"oren-nayar, sigma 0.2, white", rough(white_case, 0.2f), true, false, true},
+          {"oren-nayar, sigma 0.5", rough(coloured_case, 0.5f), true, false, true},
+          {"oren-nayar, sigma 1, white", rough(white_case, 1), true, false, true}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<Plastic>() {
+  const Color white = white_case, black(0.0f);
+  return {
+      {"plastic, white", make_plastic(white, white, {1.5f}), true, true, true},
+      {"plastic, nonlinear, white", make_plastic(white, white, {1.9f, true}), true, true, true},
+      {"plastic", make_plastic(coloured_case, {0.9f, 0.5f, 0.7f}, {1.4f}), true, false, true},
+      {"plastic, nonlinear", make_plastic(coloured_case, white, {1.33f, true}), true, false, true},
+      {"plastic without coat", make_plastic(white, white, {1.0f}), true, true, true},
+      {"plastic, no highlight", make_plastic(coloured_case, black, {1.5f}), true, false, true},
+      {"plastic, black", make_plastic(black, white, {1.5f}), true, false, true},
+      {"plastic, all black", make_plastic(black, black, {1.5f})}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<RoughPlastic>() {
+  const Color white = white_case, black(0.0f);
+  const auto rough = [](const Color& diffuse, const Color& specular, PlasticCoat coat, float alpha,
+                        bool is_beckmann) {
+    return make_rough_plastic(diffuse, specular, coat, alpha, is_beckmann);
+  };
+  return {{"rough plastic, white, 0.05", rough(white, white, {1.5f}, 0.05f, false)},
+          {"rough plastic, white, 0.5", rough(white, white, {1.5f, true}, 0.5f, false)},
+          {"rough plastic, 1", rough(coloured_case, white, {1.9f, true}, 1, false)},
+          {"rough plastic, Beckmann, white, 0.1", rough(white, white, {1.3f}, 0.1f, true)},
+          {"rough plastic, Beckmann, 0.4",
+           rough(coloured_case, {0.9f, 0.5f, 0.7f}, {1.5f}, 0.4f, true)},
+          {"rough plastic, no highlight", rough(coloured_case, black, {1.5f}, 0.3f, false)},
+          {"rough plastic, all black", rough(black, black, {1.5f}, 0.3f, true)},
+          {"rough plastic, 0", rough(white, white, {1.5f}, 0, false), true, false, false, true},
+          {"rough plastic, Beckmann, 0", rough(white, white, {1.5f}, 0, true), true, false, false,
+           true}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<Phong>() {
+  const auto phong = [](const Color& diffuse, const Color& specular, float exponent) {
+    return describe_all<Phong>(diffuse, specular, exponent);
+  };
+  const Color white = white_case, black(0.0f);
+  return {{"phong, diffuse", phong(white, black, 10), true, true, true},
+          {"phong, 0", phong(black, white, 0)},
+          {"phong, 5", phong(coloured_case, {0.7f, 0.4f, 0.1f}, 5)},
+          {"phong, 30, above 1", phong(white, white, 30)},
+          {"phong, 2000", phong(black, coloured_case, 2000)},
+          {"phong, 1e7", phong(coloured_case, white, 1e7f), true, false, false, true}};
+}
+
+template <>
+inline std::vector<BsdfCase> bsdf_cases<Ward>() {
+  const auto ward = [](const Color& diffuse, const Color& specular, float x, float y) {
+    return describe_all<Ward>(diffuse, specular, x, y);
+  };
+  const Color white = white_case, black(0.0f);
+  return {{"ward, diffuse", ward(white, black, 0.1f, 0.1f), true, true, true},
+          {"ward, 0.05", ward(black, white, 0.05f, 0.05f)},
+          {"ward, 0.1 0.4", ward(coloured_case, {0.7f, 0.4f, 0.1f}, 0.1f, 0.4f)},
+          {"ward, 1, above 1", ward(white, white, 1, 1)},
+          {"ward, 0", ward(coloured_case, white, 0, 0), true, false, false, true}};
 }
 
 /// Copper, and a mirror of all colours as Mitsuba's "none".
@@ -94,14 +173,15 @@ inline std::vector<BsdfCase> bsdf_cases<Principled>() {
     return describe_all<Principled>(parameters...);
   };
   const Color c = coloured_case;
-  return {{"principled, all 0", all(c, 0, 0, 0, 1.5f)},
-          {"principled", all(c, 0.5f, 0, 0, 1.5f)},
-          {"principled metal", all(c, 0.4f, 1, 0, 1.5f, 0.8f)},
-          {"principled glass", all(c, 0.5f, 0, 1, 1.5f), false},
-          {"principled half glass",
-           all(c, 0.6f, 0.3f, 0.5f, 1.33f, 0.5f, 0.4f, 0.3f, 0.7f, 0.5f, 0.8f, 0.5f), false},
-          {"principled cloth", all(c, 1, 0, 0, 1.5f, 0, 0, 1, 1, 1)},
-          {"principled paint", all(c, 0.6f, 0.2f, 0, 1.5f, 0, 1, 0, 0, 0, 1, 0.2f)}};
+  return {
+      {"principled, all 0", all(c, 0, 0, 0, 1.5f), true, false, false, true},
+      {"principled", all(c, 0.5f, 0, 0, 1.5f)},
+      {"principled metal", all(c, 0.4f, 1, 0, 1.5f, 0.8f)},
+      {"principled glass", all(c, 0.5f, 0, 1, 1.5f), false},
+      {"principled half glass",
+       all(c, 0.6f, 0.3f, 0.5f, 1.33f, 0.5f, 0.4f, 0.3f, 0.7f, 0.5f, 0.8f, 0.5f), false},
+      {"principled cloth", all(c, 1, 0, 0, 1.5f, 0, 0, 1, 1, 1), true, false, false, false, 1.35},
+      {"principled paint", all(c, 0.6f, 0.2f, 0, 1.5f, 0, 1, 0, 0, 0, 1, 0.2f)}};
 }
 
 template <>
@@ -117,8 +197,9 @@ inline std::vector<BsdfCase> bsdf_cases<PrincipledThin>() {
            all(c, 0.6f, 0.5f, 1.4f, 0.7f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f), false}};
 }
 
-inline std::vector<BsdfCase> all_bsdf_cases() {
-  std::vector<BsdfCase> all;
+inline const std::vector<BsdfCase>& all_bsdf_cases() {
+  static std::vector<BsdfCase> all;
+  if (!all.empty()) return all;
   for_each_type(Bsdfs{}, [&](auto type) {
     const auto cases = bsdf_cases<typename decltype(type)::type>();
     all.insert(all.end(), cases.begin(), cases.end());

@@ -50,10 +50,22 @@ class MeanEstimate {
   double n_ = 0, sum_ = 0, sum2_ = 0;
 };
 
+/// The limit, in standard deviations, that one of `tests` independent results exceeds with
+/// probability `total` though all is well (Sidak 1967).
+inline double sidak_sigmas(std::size_t tests, double total = 1e-3) {
+  const double each = -std::expm1(std::log1p(-total) / static_cast<double>(tests));
+  double low = 0, high = 10;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(middle / std::sqrt(2.0)) > each ? low : high) = middle;
+  }
+  return high;
+}
+
 /// Pearson's chi-square test of counts against expected counts; cells with too few expected are
-/// pooled. The limit is Wilson and Hilferty's (1931) for five standard deviations.
+/// pooled. The limit is Wilson and Hilferty's (1931) for `sigmas` standard deviations.
 inline void expect_counts(const std::vector<double>& counts, const std::vector<double>& expected,
-                          const std::string& what) {
+                          const std::string& what, double sigmas = 5) {
   ASSERT_EQ(counts.size(), expected.size());
   double chi2 = 0, cells = 0, pooled_count = 0, pooled_expected = 0;
   const auto add = [&](double count, double mean) {
@@ -74,7 +86,8 @@ inline void expect_counts(const std::vector<double>& counts, const std::vector<d
   }
   if (cells < 2) return;
   const double dof = cells - 1, a = 2 / (9 * dof);
-  EXPECT_LE(chi2, dof * std::pow(1 - a + 5 * std::sqrt(a), 3)) << what << ", " << dof << " dof";
+  EXPECT_LE(chi2, dof * std::pow(1 - a + sigmas * std::sqrt(a), 3))
+      << what << ", " << dof << " dof";
 }
 
 /// As expect_counts, for a uniform distribution.

@@ -67,7 +67,6 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
-  scene_.mask_seed = mask_seed(options.seed);
   const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);

@@ -5,18 +5,23 @@
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
 #include "common/material/metal.h"
+#include "common/material/oren_nayar.h"
+#include "common/material/phong.h"
+#include "common/material/plastic.h"
 #include "common/material/principled.h"
 #include "common/material/principled_thin.h"
 #include "common/material/rough_dielectric.h"
+#include "common/material/rough_plastic.h"
 #include "common/material/thin_dielectric.h"
+#include "common/material/ward.h"
 #include "common/texture/texture.h"
 #include "common/type_list.h"
 
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric, Conductor, RoughDielectric, ThinDielectric,
-                       Principled, PrincipledThin>;
+using Bsdfs = TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward,
+                       Conductor, RoughDielectric, ThinDielectric, Principled, PrincipledThin>;
 
 /// The first ones, those of the paper's scenes: no others are in kernels without triangles.
 using PaperBsdfs = TypeList<Diffuse, Metal, Dielectric>;

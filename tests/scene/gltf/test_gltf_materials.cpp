@@ -1,4 +1,5 @@
 // The glTF loader: materials.
+#include "common/texture/sample_texture.h"
 #include "gltf_files.h"
 
 namespace pt {
@@ -84,17 +85,76 @@ TEST(GltfMaterials, EmissionHasAStrength) {
 }
 
 TEST(GltfMaterials, EachKindOfApproximationIsReportedOnce) {
-  GltfMaker maker = with_material({{"alphaMode", "BLEND"}});
-  maker.root["materials"].push_back({{"alphaMode", "MASK"}, {"name", "other"}});
+  GltfMaker maker = with_material(Json::object());
+  maker.root["materials"].push_back({{"name", "other"}});
   auto& primitives = maker.root["meshes"][0]["primitives"];
   primitives.push_back(primitives[0]);
   primitives[1]["material"] = 1;
   const Loaded loaded(maker);
   EXPECT_EQ(loaded.scene.materials.size(), 2u);
-  EXPECT_EQ(loaded.count("alphaMode"), 1u);
   EXPECT_EQ(loaded.count("metallic >= 0.5"), 1u);
-  EXPECT_EQ(loaded.count("materials[0]"), 2u);
-  expect_error([&] { Loaded strict(maker, true); }, "scene.gltf: materials[0]: alphaMode");
+  EXPECT_EQ(loaded.count("materials[0]"), 1u);
+  expect_error([&] { Loaded strict(maker, true); }, "scene.gltf: materials[0]: metallic >= 0.5");
+}
+
+/// A material whose base colour is a picture of two texels, of which the second has this alpha.
+GltfMaker with_alpha(const Json& material, unsigned char alpha) {
+  GltfMaker maker = with_material(material);
+  std::string tga(18, '\0');  // true colour, 32 bits, from the foot
+  tga[2] = 2, tga[12] = 2, tga[14] = 1, tga[16] = 32, tga[17] = 8;
+  tga += std::string{10, 20, 30, char(255), 10, 20, 30, static_cast<char>(alpha)};
+  const int view = maker.view(tga);
+  maker.push("images", {{"bufferView", view}, {"mimeType", "image/png"}});
+  maker.push("textures", {{"source", 0}});
+  maker.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  return maker;
+}
+
+TEST(GltfMaterials, AlphaIsOpacityByItsMode) {
+  const Json factor = {{"baseColorFactor", {1, 1, 1, 0.4}}};
+  const auto opacity = [&](const char* mode, double cutoff) {
+    return material_of(with_material({{"alphaMode", mode},
+                                      {"alphaCutoff", cutoff},
+                                      {"pbrMetallicRoughness", factor}}))
+        .opacity;
+  };
+  EXPECT_TRUE(opacity("OPAQUE", 0.5).is_opaque());
+  EXPECT_FLOAT_EQ(opacity("BLEND", 0.5).offset, 0.4f);
+  EXPECT_EQ(opacity("MASK", 0.5).offset, 0.0f);
+  EXPECT_TRUE(opacity("MASK", 0.3).is_opaque());
+}
+
+TEST(GltfMaterials, AlphaMayBeATexture) {
+  const Json factor = {{"baseColorFactor", {1, 1, 1, 0.5}}};
+  const Loaded cut(with_alpha({{"alphaMode", "MASK"}, {"pbrMetallicRoughness", factor}}, 51));
+  const Opacity& opacity = cut.scene.materials.at(0).opacity;
+  EXPECT_EQ(opacity.cutoff, 0.5f);
+  EXPECT_EQ(opacity.scale, 0.5f);
+  const Texture& alpha = cut.scene.textures.at(opacity.texture);
+  EXPECT_EQ(alpha.format, TextureFormat::alpha8);
+  EXPECT_EQ(load_texel(alpha, cut.scene.texels.data(), 0, 0), Color(1.0f));
+  EXPECT_NEAR(load_texel(alpha, cut.scene.texels.data(), 1, 0).x, 0.2f, 1e-6f);
+  EXPECT_EQ(cut.scene.texels.size(), 8u) << "the picture is there twice";
+  EXPECT_TRUE(material_of(with_alpha({{"alphaMode", "BLEND"}}, 255)).opacity.is_opaque());
+}
+
+TEST(GltfMaterials, ANormalTextureIsAMapOverTheMaterial) {
+  const Loaded loaded(with_alpha({{"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+                                  {"emissiveFactor", {1, 0, 0}},
+                                  {"alphaMode", "BLEND"}},
+                                 128));
+  const auto& materials = loaded.scene.materials;
+  ASSERT_EQ(materials.size(), 2u);
+  const MaterialDescription& map = materials.at(loaded.scene.meshes.at(0).material);
+  EXPECT_EQ(map.node, MaterialNode::gltf_normal_map);
+  EXPECT_EQ(map.scalar(0), 0.5f);
+  EXPECT_EQ(loaded.scene.textures.at(map.parameters[0].texture).format, TextureFormat::linear8);
+  EXPECT_EQ(map.emission.radiance, Color(1, 0, 0));
+  EXPECT_FALSE(map.opacity.is_opaque());
+  const MaterialDescription& inside = materials.at(map.children[0]);
+  EXPECT_EQ(inside.node, MaterialNode::none);
+  EXPECT_TRUE(is_black(inside.emission.radiance));
+  EXPECT_TRUE(inside.opacity.is_opaque());
 }
 
 }  // namespace

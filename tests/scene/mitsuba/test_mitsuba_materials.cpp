@@ -75,7 +75,7 @@ TEST(MitsubaSurface, nearestMaterials) {
       "<bsdf type=\"twosided\"><bsdf type=\"roughplastic\">"
       "<rgb name=\"diffuse_reflectance\" value=\"0.3\"/></bsdf></bsdf>");
   EXPECT_FALSE(both.one_sided);
-  EXPECT_EQ(both.kind, kind_of<Diffuse>);
+  EXPECT_EQ(both.kind, kind_of<RoughPlastic>);
   EXPECT_EQ(both.color(0), Color(0.3f));
   const MaterialDescription glass = material_with("<bsdf type=\"dielectric\"/>");
   EXPECT_EQ(glass.kind, kind_of<Dielectric>);
@@ -117,21 +117,73 @@ TEST(MitsubaSurface, principledByItsWeights) {
 
 TEST(MitsubaSurface, everyReplacementIsReportedOnce) {
   std::string xml = "<sensor type=\"perspective\"/><emitter type=\"constant\"/>\n";
-  for (const char* type : {"roughplastic", "roughconductor", "roughdielectric", "roughdiffuse"}) {
+  for (const char* type : {"hair", "measured"}) {
     for (int i = 0; i < 3; ++i) {
       xml += std::string("<shape type=\"rectangle\"><bsdf type=\"") + type + "\"/></shape>\n";
     }
   }
-  xml +=
-      "<shape type=\"rectangle\"><bsdf type=\"bumpmap\"><texture type=\"bitmap\"/>"
-      "<bsdf type=\"diffuse\"/></bsdf></shape>\n"
-      "<shape type=\"rectangle\"><bsdf type=\"mask\"><float name=\"opacity\" value=\"0.3\"/>"
-      "<bsdf type=\"diffuse\"/></bsdf></shape>\n";
   const LoadedScene loaded = load_xml(xml);
-  EXPECT_EQ(loaded.warnings.size(), 6u);
-  EXPECT_EQ(loaded.count("scene.xml:3: bsdf 'roughplastic' is not supported: diffuse"), 1);
-  EXPECT_EQ(loaded.count("bsdf 'mask' is not supported: the bsdf inside is used, opaque"), 1);
+  EXPECT_EQ(loaded.warnings.size(), 2u);
+  EXPECT_EQ(loaded.count("scene.xml:3: bsdf 'hair' is not supported: diffuse grey is used"), 1);
   expect_error([] { material_with("<bsdf type=\"twosided\"/>"); }, "has no bsdf inside");
+}
+
+/// The materials of a shape with this bsdf; the last one is the shape's.
+std::vector<MaterialDescription> materials_of(const std::string& bsdf) {
+  const LoadedScene loaded = load_xml(
+      "<sensor type=\"perspective\"/><emitter type=\"constant\"/>\n<shape type=\"rectangle\">" +
+      bsdf + "</shape>");
+  EXPECT_EQ(loaded.warnings.size(), 0u);
+  return loaded.scene.materials;
+}
+
+std::string grey_bsdf(double value) {
+  return "<bsdf type=\"diffuse\"><rgb name=\"reflectance\" value=\"" + std::to_string(value) +
+         "\"/></bsdf>";
+}
+
+TEST(MitsubaSurface, mixturesAreBlends) {
+  const auto m = materials_of(
+      "<bsdf type=\"mixturebsdf\"><string name=\"weights\" "
+      "value=\"0.2, 0.5\"/>" +
+      grey_bsdf(0.4) + grey_bsdf(0.8) + "</bsdf>");
+  // ((black, first), second): 0.3 black and 0.2 of 0.4, together a half, and 0.5 of 0.8.
+  ASSERT_EQ(m.size(), 5u);
+  EXPECT_EQ(m.back().node, MaterialNode::blend);
+  EXPECT_NEAR(m.back().scalar(0), 0.5f, 1e-6f);
+  EXPECT_EQ(m[m.back().children[1]].color(0), Color(0.8f));
+  const MaterialDescription& rest = m[m.back().children[0]];
+  EXPECT_NEAR(rest.scalar(0), 0.2f / 0.5f, 1e-6f);
+  EXPECT_EQ(m[rest.children[0]].color(0), Color(0.0f));
+  EXPECT_EQ(m[rest.children[1]].color(0), Color(0.4f));
+  expect_error(
+      [] {
+        materials_of("<bsdf type=\"mixturebsdf\"><string name=\"weights\" value=\"1\"/>" +
+                     grey_bsdf(0.4) + grey_bsdf(0.8) + "</bsdf>");
+      },
+      "'mixturebsdf' has 1 weights for 2 bsdfs");
+}
+
+TEST(MitsubaSurface, masksInsideMoveOutwards) {
+  const std::string mask =
+      "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/>" + grey_bsdf(0.4) + "</bsdf>";
+  const auto blend = materials_of(
+      "<bsdf type=\"blendbsdf\"><float name=\"weight\" "
+      "value=\"0.2\"/>" +
+      mask + grey_bsdf(0.8) + "</bsdf>");
+  EXPECT_FLOAT_EQ(blend.back().opacity.offset, 0.8f * 0.5f + 0.2f);
+  EXPECT_FLOAT_EQ(blend.back().scalar(0), 0.2f / (0.8f * 0.5f + 0.2f));
+  const auto half = materials_of("<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.5\"/>" +
+                                 mask + "</bsdf>");
+  EXPECT_FLOAT_EQ(half.back().opacity.offset, 0.25f);
+  const auto absent = materials_of(
+      "<bsdf type=\"blendbsdf\"><float name=\"weight\" "
+      "value=\"0.25\"/>" +
+      grey_bsdf(0.4) + "<bsdf type=\"null\"/></bsdf>");
+  ASSERT_EQ(absent.size(), 1u);
+  EXPECT_EQ(absent[0].node, MaterialNode::none);
+  EXPECT_FLOAT_EQ(absent[0].opacity.offset, 0.75f);
+  EXPECT_TRUE(materials_of("<bsdf type=\"null\"/>").empty());
 }
 
 TEST(MitsubaTexture, checkerboardsKeepTheirSquares) {

@@ -1,7 +1,8 @@
-// Diffuse and plastic.
+// Diffuse surfaces, smooth and rough.
 #include "common/scene/mitsuba/surface_kinds.h"
 
 namespace pt::mitsuba {
+
 Surface diffuse_of(const ColorTexture& reflectance) {
   Surface surface;
   surface.material.parameters[0] = {reflectance.color, reflectance.texture};
@@ -16,19 +17,16 @@ Surface read_diffuse(Context& context, const Object& bsdf) {
   return diffuse_of(read_color_texture(context, bsdf, name, Color(0.5f)));
 }
 
+/// Mitsuba 0.x alone has it. There alpha is the root mean square slope, as Beckmann's, of which the
+/// angle's deviation is 1 / sqrt(2).
 Surface read_rough_diffuse(Context& context, const Object& bsdf) {
-  report_replaced(context, bsdf, "diffuse with its reflectance is used");
-  bsdf.ignore({"alpha", "use_fast_approx"});
-  return read_diffuse(context, bsdf);
-}
-
-Surface read_plastic(Context& context, const Object& bsdf) {
-  report_replaced(context, bsdf,
-                  "diffuse with its diffuse_reflectance is used, without the coating");
-  bsdf.ignore({"alpha", "distribution", "int_ior", "ext_ior", "nonlinear", "specular_reflectance",
-               "sample_visible"});
-  bsdf.child_named("specular_reflectance");
-  return diffuse_of(read_color_texture(context, bsdf, "diffuse_reflectance", Color(0.5f)));
+  Surface surface = read_diffuse(context, bsdf);
+  surface.material.kind = kind_of<OrenNayar>;
+  Parameter& sigma = surface.material.parameters[1];
+  sigma = parameter_of(read_number_texture(context, bsdf, "alpha", 0.2f));
+  sigma.value *= std::sqrt(0.5f);
+  bsdf.ignore({"use_fast_approx"});
+  return surface;
 }
 
 }  // namespace pt::mitsuba
