@@ -65,7 +65,7 @@ void for_each_of_mitsuba(const Test& test) {
     SCOPED_TRACE(one.name);
     const LoadedScene loaded = load_xml(
         "<sensor type=\"perspective\"/><emitter type=\"constant\"/>"
-        "<shape type=\"sphere\">" +
+        "<shape type=\"rectangle\">" +
         one.xml + "</shape>");
     EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();
     test(one, loaded.scene.materials.at(0));

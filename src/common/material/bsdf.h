@@ -7,8 +7,8 @@
 //   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
 //   static constexpr std::uint8_t lobes    of Lobe: all that sample() may return, but where it
 //                                          is_delta(), which sides alone
-//   static constexpr bool uses_tangent     optional; true: x is the direction in which the
-//                                          surface's u grows, else any
+//   static bool uses_tangent(const Parameter* p)   where there is one: whether x must be the
+//                                          direction in which the surface's u grows; else any
 //   bool is_delta()                        whether it scatters into discrete directions only
 //   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
 //   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once

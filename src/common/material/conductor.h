@@ -12,7 +12,6 @@ struct Conductor {
   static constexpr const char* name = "conductor";
   static constexpr int parameter_count = 6;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
-  static constexpr bool uses_tangent = true;
 
   Color tint;              ///< multiplies what is reflected; white for real metals
   Color eta, k;            ///< complex index of refraction over that of what is outside
@@ -22,6 +21,11 @@ struct Conductor {
   template <class Parameters>
   PT_HD static Conductor make(const Parameters& p) {
     return {p.color(0), p.color(1), p.color(2), p.scalar(3), p.scalar(4), p.scalar(5) != 0.0f};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return p[3].value != p[4].value || p[3].texture != p[4].texture;
   }
 
   PT_HD bool is_delta() const { return alpha_x <= 0.0f && alpha_y <= 0.0f; }

@@ -14,7 +14,6 @@ struct Principled {
   static constexpr int parameter_count = 12;
   static constexpr std::uint8_t lobes =
       Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
-  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float metallic, spec_trans;
@@ -31,6 +30,11 @@ struct Principled {
             p.scalar(6),
             p.scalar(10),
             p.scalar(11)};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return !is_black(p[5].value);
   }
 
   PT_HD bool is_delta() const { return false; }
@@ -143,7 +147,7 @@ struct Principled {
     const float lobe = 0.25f * seen;
     Color f(0.0f);
     // Mitsuba's metal, too, ends where a dielectric would reflect nothing.
-    if (fresnel > 0.0f) f = reflectance(view, cos_o, fresnel) * (lobe * shown);
+    if (eta != 1.0f) f = reflectance(view, cos_o, fresnel) * (lobe * shown);
     float pdf = multiply_rounded(choice.specular * (1.0f - passing(view, fresnel)), lobe);
     if (!view.inside) {
       if (opaque() > 0.0f) {

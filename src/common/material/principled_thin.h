@@ -12,7 +12,6 @@ struct PrincipledThin {
   static constexpr int parameter_count = 10;
   static constexpr std::uint8_t lobes =
       Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
-  static constexpr bool uses_tangent = true;
 
   PrincipledBase base;
   float spec_trans;
@@ -28,6 +27,11 @@ struct PrincipledThin {
             p.scalar(4),
             p.scalar(5),
             0.5f * p.scalar(9)};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return !is_black(p[4].value);
   }
 
   PT_HD bool is_delta() const { return false; }

@@ -13,7 +13,6 @@ struct RoughDielectric {
   static constexpr const char* name = "rough dielectric";
   static constexpr int parameter_count = 6;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission | Lobe::glossy;
-  static constexpr bool uses_tangent = true;
 
   Color reflected, passed;  ///< tints; white for real glass
   float eta;                ///< index of refraction inside over outside, > 0
@@ -23,6 +22,11 @@ struct RoughDielectric {
   template <class Parameters>
   PT_HD static RoughDielectric make(const Parameters& p) {
     return {p.color(0), p.color(1), p.scalar(2), p.scalar(3), p.scalar(4), p.scalar(5) != 0.0f};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return p[3].value != p[4].value || p[3].texture != p[4].texture;
   }
 
   /// Without a change of index nothing is bent, whatever the facets.

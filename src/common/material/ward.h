@@ -11,7 +11,6 @@ struct Ward {
   static constexpr const char* name = "ward";
   static constexpr int parameter_count = 4;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
-  static constexpr bool uses_tangent = true;
 
   TwoLobes two;
   float alpha_x, alpha_y;  ///< roughness along x and y, above 0
@@ -21,6 +20,11 @@ struct Ward {
     constexpr float alpha_min = 1e-4f;
     return {TwoLobes::make(p.color(0), p.color(1)), fmaxf(p.scalar(2), alpha_min),
             fmaxf(p.scalar(3), alpha_min)};
+  }
+
+  template <class Parameter>
+  static bool uses_tangent(const Parameter* p) {
+    return p[2].value != p[3].value || p[2].texture != p[3].texture;
   }
 
   PT_HD bool is_delta() const { return false; }

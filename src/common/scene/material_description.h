@@ -30,6 +30,16 @@ struct MaterialDescription {
   }
 };
 
+/// Whether the BSDF depends on the direction in which u grows.
+inline bool uses_tangent(const MaterialDescription& material) {
+  return visit(material.kind, material, [&](const auto& bsdf) {
+    if constexpr (requires { bsdf.uses_tangent(material.parameters); }) {
+      return bsdf.uses_tangent(material.parameters);
+    }
+    return false;
+  });
+}
+
 /// Of a BSDF whose parameters are a colour and, perhaps, a number.
 template <class Bsdf>
 PT_HD MaterialDescription describe(const Color& color, float number = 0.0f) {

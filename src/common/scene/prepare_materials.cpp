@@ -83,33 +83,7 @@ void list_opacities(SceneData& scene) {
   }
 }
 
-/// Whether highlights of any width change when all turns by a right angle about the normal.
-template <class Bsdf>
-bool is_anisotropic(const Bsdf& bsdf) {
-  const auto turned = [](const Vec3& v) { return Vec3(-v.y, v.x, v.z); };
-  const Vec3 wo = glm::normalize(Vec3(0.3f, 0.1f, 1.0f));
-  for (float slope = 0.5f; slope > 1e-4f; slope *= 0.5f) {
-    const Vec3 half = glm::normalize(Vec3(slope, 0.0f, 1.0f));
-    const Vec3 wi = 2.0f * glm::dot(wo, half) * half - wo;
-    const float a = bsdf.evaluate(wo, wi).f.y, b = bsdf.evaluate(turned(wo), turned(wi)).f.y;
-    if (std::abs(a - b) > 1e-3f * std::max(std::abs(a), std::abs(b))) return true;
-  }
-  return false;
-}
-
 }  // namespace
-
-bool uses_tangent(const MaterialDescription& material) {
-  return visit(material.kind, material, [&](const auto& bsdf) {
-    if constexpr (requires { bsdf.uses_tangent; }) {
-      for (const Parameter& p : material.parameters) {
-        if (p.texture != no_texture) return true;
-      }
-      return is_anisotropic(bsdf);
-    }
-    return false;
-  });
-}
 
 void prepare_materials(SceneData& scene) {
   weigh_emission_textures(scene);

@@ -5,9 +5,6 @@
 
 namespace pt {
 
-/// Whether the BSDF depends on the direction in which the surface's u grows.
-bool uses_tangent(const MaterialDescription& material);
-
 /// Fills material_records, parameters and emissions from the materials: the first parameters by
 /// material and then the others, emissions only of what shines, textures' means measured.
 void prepare_materials(SceneData& scene);

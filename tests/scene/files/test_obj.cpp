@@ -157,6 +157,31 @@ TEST_F(ObjMaterials, NearestOfOurs) {
   EXPECT_EQ(read_material("Kd 7 -1 0.5\n").material.color(0), Color(1, 0, 0.5f));
 }
 
+// A highlight where the file asks for one (illum 2); its lobe is as wide as the half vector's.
+TEST_F(ObjMaterials, Highlights) {
+  const ObjMaterial glossy =
+      read_material("Kd 0.1 0.2 0.3\nKs 0.4 0.5 0.6\nNs 80\nillum 2\nmap_Ks shine.png\n");
+  EXPECT_EQ(glossy.material.kind, kind_of<Phong>);
+  EXPECT_EQ(glossy.material.color(0), Color(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(glossy.material.color(1), Color(0.4f, 0.5f, 0.6f));
+  EXPECT_EQ(glossy.material.scalar(2), 20.0f);
+  EXPECT_EQ(glossy.specular_map.filename(), "shine.png");
+  EXPECT_EQ(read_material("Kd 1 1 1\nKs 1 1 1\nillum 1\n").material.kind, kind_of<Diffuse>);
+  EXPECT_EQ(read_material("Kd 1 1 1\nKs 0 0 0\nillum 2\n").material.kind, kind_of<Diffuse>);
+  for (const double angle : {0.05, 0.1}) {  // of the mirrored ray: the exponents agree
+    EXPECT_NEAR(std::pow(std::cos(angle), 20), std::pow(std::cos(angle / 2), 80), 1e-3);
+  }
+}
+
+TEST_F(ObjMaterials, GlassHasAFilter) {
+  const ObjMaterial green = read_material("Ni 1.4\nTf 0.2 0.9 0.3\nillum 6\n");
+  EXPECT_EQ(green.material.kind, kind_of<RoughDielectric>);
+  EXPECT_EQ(green.material.color(0), Color(1.0f));
+  EXPECT_EQ(green.material.color(1), Color(0.2f, 0.9f, 0.3f));
+  EXPECT_EQ(green.material.scalar(2), 1.4f);
+  EXPECT_EQ(read_material("Tf 1 1 1\nillum 6\n").material.kind, kind_of<Dielectric>);
+}
+
 TEST_F(ObjMaterials, WhatIsLostIsSaid) {
   const ObjFile file = read("mtllib missing.mtl\nmtllib a.mtl\nf 1 2 3\n",
                             "newmtl m\nKd 0.5 0.5 0.5\nKs 1 1 1\nd 0.7\nmap_bump b.png\n");

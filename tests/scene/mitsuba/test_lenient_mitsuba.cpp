@@ -29,8 +29,8 @@ TEST(LenientMitsuba, AnIndexOfRefractionBelowZeroIsZero) {
   const LoadedScene loaded =
       load_xml(sphere("<bsdf type=\"conductor\"><rgb name=\"eta\" value=\"-0.5 1 2\"/>"
                       "<rgb name=\"k\" value=\"3 -1 0\"/></bsdf>"));
-  // ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2) with eta = 0, 1, 2 and k = 3, 0, 0
-  expect_near(material_of(loaded).color(0), {1.0f, 0.0f, 1.0f / 9.0f}, 1e-6f);
+  EXPECT_EQ(material_of(loaded).color(1), Color(0, 1, 2));
+  EXPECT_EQ(material_of(loaded).color(2), Color(3, 0, 0));
   EXPECT_EQ(loaded.count("negative component"), 1);
   expect_error(
       [&] {

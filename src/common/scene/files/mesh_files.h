@@ -39,7 +39,7 @@ struct ObjMaterial {
   std::string name;
   MaterialDescription material;
   std::filesystem::path albedo_map, emission_map;  ///< beside the MTL file; empty: none
-  std::filesystem::path opacity_map = {}, bump_map = {};
+  std::filesystem::path opacity_map = {}, bump_map = {}, specular_map = {};
   float bump_scale = 1.0f;
 };
 
