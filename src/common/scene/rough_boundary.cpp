@@ -5,14 +5,14 @@
 #include <map>
 #include <mutex>
 #include <tuple>
-#include <utility>
 #include <vector>
+
+#include "common/scene/fit_polynomial.h"
 
 namespace pt {
 namespace {
 
 constexpr int nodes = 64;  // cosines
-constexpr std::size_t terms = RoughPlastic::terms;
 
 float cosine_of(int node) { return std::max(1e-6f, static_cast<float>(node) / (nodes - 1)); }
 
@@ -51,65 +51,6 @@ double reflectance(const Microfacets& facets, float eta, const Vec3& wi) {
   });
 }
 
-using Coefficients = std::array<double, terms>;
-
-double value_at(const Coefficients& c, double x) {
-  double sum = 0;
-  for (std::size_t i = terms; i-- > 0;) sum = sum * x + c[i];
-  return sum;
-}
-
-/// Solves the symmetric system in place (Gauss, with pivots).
-Coefficients solve(std::array<std::array<double, terms + 1>, terms>& rows) {
-  for (std::size_t i = 0; i < terms; ++i) {
-    std::size_t pivot = i;
-    for (std::size_t r = i + 1; r < terms; ++r) {
-      if (std::abs(rows[r][i]) > std::abs(rows[pivot][i])) pivot = r;
-    }
-    std::swap(rows[i], rows[pivot]);
-    for (std::size_t r = 0; r < terms; ++r) {
-      if (r == i) continue;
-      const double factor = rows[r][i] / rows[i][i];
-      for (std::size_t k = i; k <= terms; ++k) rows[r][k] -= factor * rows[i][k];
-    }
-  }
-  Coefficients c;
-  for (std::size_t i = 0; i < terms; ++i) c[i] = rows[i][terms] / rows[i][i];
-  return c;
-}
-
-Coefficients fit(const std::vector<double>& x, const std::vector<double>& y,
-                 const std::vector<double>& weight) {
-  std::array<std::array<double, terms + 1>, terms> rows{};
-  for (std::size_t n = 0; n < x.size(); ++n) {
-    std::array<double, terms + 1> powers{1};
-    for (std::size_t i = 1; i < terms; ++i) powers[i] = powers[i - 1] * x[n];
-    powers[terms] = y[n];
-    for (std::size_t i = 0; i < terms; ++i) {
-      for (std::size_t k = 0; k <= terms; ++k) rows[i][k] += weight[n] * powers[i] * powers[k];
-    }
-  }
-  return solve(rows);
-}
-
-/// Least squares whose weights grow where the relative error is large (Lawson 1961), so that its
-/// largest value becomes small.
-Coefficients fit_relative(const std::vector<double>& x, const std::vector<double>& y) {
-  std::vector<double> weight(x.size()), error(x.size()), importance(x.size(), 1.0);
-  Coefficients best{};
-  for (int iteration = 0; iteration < 40; ++iteration) {
-    const auto scale = [&](std::size_t n) { return 1.0 / std::max(y[n], 0.05); };
-    for (std::size_t n = 0; n < x.size(); ++n) weight[n] = importance[n] * scale(n) * scale(n);
-    best = fit(x, y, weight);
-    for (std::size_t n = 0; n < x.size(); ++n) {
-      error[n] = std::abs(value_at(best, x[n]) - y[n]) * scale(n);
-    }
-    const double largest = std::max(*std::max_element(error.begin(), error.end()), 1e-12);
-    for (std::size_t n = 0; n < x.size(); ++n) importance[n] *= error[n] / largest + 0.02;
-  }
-  return best;
-}
-
 RoughBoundary measure(float eta, float alpha, bool is_beckmann) {
   const Microfacets facets = Microfacets::make(alpha, alpha, is_beckmann);
   std::vector<double> x, passed;
@@ -121,9 +62,10 @@ RoughBoundary measure(float eta, float alpha, bool is_beckmann) {
     passed.push_back(transmittance(facets, eta, wi));
     reflected += 2.0 / nodes * static_cast<double>(cosine) * reflectance(facets, 1.0f / eta, wi);
   }
-  const Coefficients c = fit_relative(x, passed);
+  const Polynomial c = fit_polynomial(x, passed);
   RoughBoundary result;
-  for (std::size_t i = 0; i < terms; ++i) result.transmittance[i] = static_cast<float>(c[i]);
+  for (std::size_t i = 0; i < polynomial_terms; ++i)
+    result.transmittance[i] = static_cast<float>(c[i]);
   result.internal_reflectance = static_cast<float>(std::min(reflected, 0.999));
   return result;
 }

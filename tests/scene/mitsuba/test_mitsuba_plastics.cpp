@@ -50,8 +50,8 @@ TEST(MitsubaPlastic, SmoothAndRough) {
 // As Mitsuba 3.9.1 prints them.
 TEST(MitsubaPlastic, Defaults) {
   const MaterialDescription material = load_bsdf("roughplastic", "").scene.materials[0];
-  expect_same(material,
-              make_rough_plastic(Color(0.5f), Color(1.0f), {1.49f / 1.000277f}, 0.1f, true));
+  expect_same(material, make_rough_plastic(Color(0.5f), Color(1.0f),
+                                           {static_cast<float>(1.49 / 1.000277)}, 0.1f, true));
 }
 
 TEST(MitsubaPlastic, TexturesOnEveryParameter) {

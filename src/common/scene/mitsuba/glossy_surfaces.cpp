@@ -21,7 +21,7 @@ Surface glossy_of(Context& context, const Object& bsdf, const MaterialDescriptio
 }
 
 PlasticCoat read_coat(const Object& bsdf) {
-  return {relative_ior(bsdf), bsdf.boolean("nonlinear", false)};
+  return {relative_ior(bsdf, "polypropylene"), bsdf.boolean("nonlinear", false)};
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ double ior_of(const Object& bsdf, std::string_view name, double fallback) {
 
 }  // namespace
 
-float relative_ior(const Object& bsdf) {
-  return static_cast<float>(ior_of(bsdf, "int_ior", dielectrics().at("bk7")) /
+float relative_ior(const Object& bsdf, std::string_view inside) {
+  return static_cast<float>(ior_of(bsdf, "int_ior", dielectrics().at(inside)) /
                             ior_of(bsdf, "ext_ior", dielectrics().at("air")));
 }
 

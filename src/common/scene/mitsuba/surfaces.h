@@ -15,8 +15,8 @@ struct Surface {
 /// surfaces.cpp.
 Surface read_surface(Context& context, const Object& bsdf);
 
-/// int_ior / ext_ior, numbers or names (bk7, air, ...).
-float relative_ior(const Object& bsdf);
+/// int_ior / ext_ior, numbers or names (bk7, air, ...); `inside` where the file says nothing.
+float relative_ior(const Object& bsdf, std::string_view inside = "bk7");
 
 /// ext_eta of conductors in 0.x, likewise; 1 where there is none.
 float outside_ior(const Object& bsdf);
