@@ -276,7 +276,7 @@ const std::string daylight =
 TEST(MitsubaLight, sunsky) {
   const LoadedScene loaded =
       load_xml("<sensor type=\"perspective\"/><emitter type=\"sunsky\">" + daylight);
-  EXPECT_EQ(loaded.reports.size(), 0u);
+  EXPECT_EQ(loaded.warnings.size(), 0u);
   const EnvironmentData& data = loaded.scene.environment;
   const EnvironmentMap map = make_environment(data.width, data.height, data.pixels, data.to_world);
   const auto expect_sky = [&](const Vec3& direction, const Color& expected) {
@@ -303,7 +303,8 @@ TEST(MitsubaLight, sunOrSkyAlone) {
       "<float name=\"sun_aperture\" value=\"5\"/>" +
       daylight);
   EXPECT_EQ(sun.scene.environment.width, 0);
-  EXPECT_NEAR(sun.scene.sun.radiance.y / (2 * 206.68303f), 1, 2e-3);
+  // Mitsuba takes 1 minus a float cosine of the real sun: 0.2 % off.
+  EXPECT_NEAR(sun.scene.sun.radiance.y / (2 * 206.68303f), 1, 3e-3);
   expect_error(
       [] {
         load_xml("<emitter type=\"sunsky\"><float name=\"turbidity\" value=\"11\"/></emitter>");
