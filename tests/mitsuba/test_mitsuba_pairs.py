@@ -75,7 +75,7 @@ ENVIRONMENT = """<emitter type="envmap"><string name="filename" value="sky.exr"/
     </emitter>"""
 SUNSKY = """<emitter type="sunsky"><vector name="sun_direction" value="0.5, -0.4, 0.6"/>
     <float name="turbidity" value="4.5"/><rgb name="albedo" value="0.1 0.3 0.5"/>
-    <float name="sun_aperture" value="6"/><float name="sky_scale" value="3"/></emitter>"""
+    <float name="sun_aperture" value="40"/><float name="sky_scale" value="3"/></emitter>"""
 GROUP = ('<shape type="shapegroup" id="group">'
          + shape("obj", "", '<string name="filename" value="round.obj"/>'
                  + TWO_SIDED.format(GREY.format("0.3 0.6 0.8")))

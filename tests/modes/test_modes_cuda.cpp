@@ -108,6 +108,16 @@ const std::vector<ImageKind> triangle_kinds = [] {
                     {"spp", spp},
                     {"accel", "cwbvh"},
                     {"rr", "3"}}});
+  for (const std::string selection : {"uniform", "power"}) {
+    kinds.push_back({"lights_by_" + selection,
+                     {{"scene", "boxes"},
+                      {"width", width},
+                      {"height", height},
+                      {"spp", spp},
+                      {"accel", "cwbvh"},
+                      {"light-selection", selection},
+                      {"max-depth", "6"}}});
+  }
   kinds.push_back({"no_light_sampling",
                    {{"scene", "boxes"},
                     {"width", width},

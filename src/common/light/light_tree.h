@@ -61,31 +61,41 @@ struct LightReceiver {
 /// Two of them can be added.
 inline constexpr float importance_max = 1e37f;
 
+/// The cosines that lights of a ball may have are bounded by the best place in it and guessed by
+/// its middle. The bound alone makes large lights near by too important (measured: 1.3 times the
+/// variance in rooms), the guess alone is 0 for some that give light.
+PT_HD float blend_cosine(float bound, float middle) {
+  return fused_multiply_add(0.25f, bound, multiply_rounded(0.75f, fmaxf(middle, 0.0f)));
+}
+
 /// About the irradiance that the lights of a node give, if nothing lies between; never below 0.
 PT_HD float light_importance(const LightNode& node, const LightReceiver& receiver) {
   const Vec3 way = node.center - receiver.point;
   const float distance2 = dot(way, way), radius2 = multiply_rounded(node.radius, node.radius);
-  if (!(distance2 > radius2)) return fminf(node.intensity / radius2, importance_max);
-  const float inverse = inverse_sqrt(distance2);
-  const float sin_ball = node.radius * inverse, cos_ball = sine_of(sin_ball);
-  // The angle at the light, less the cone of its normals and the angle under which it is seen.
+  const bool inside = !(distance2 > radius2);
+  const float inverse = inverse_sqrt(fmaxf(distance2, 1e-30f));
+  const float sin_ball = fminf(node.radius * inverse, 1.0f), cos_ball = sine_of(sin_ball);
+  // The angle at the light, less the cone of its normals, and less the ball's angle as well: both
+  // together may be more than half a turn.
   const float cos_light = -dot(unpack_direction(node.axis), way) * inverse;
+  const float sin_light = sine_of(cos_light);
   const float cos_cone = unpack_cosine(node.cos_cone), sin_cone = sine_of(cos_cone);
   const float cos_slack =
       fused_multiply_add(cos_cone, cos_ball, -multiply_rounded(sin_cone, sin_ball));
   const float sin_slack =
       fused_multiply_add(sin_cone, cos_ball, multiply_rounded(cos_cone, sin_ball));
-  // Both together may be more than half a turn.
-  const float cos_emitted =
-      sin_slack <= 0.0f ? 1.0f
-                        : cos_difference(cos_light, sine_of(cos_light), cos_slack, sin_slack);
-  if (cos_emitted <= unpack_cosine(node.cos_emission)) return 0.0f;
-  float importance = node.intensity * cos_emitted / distance2;
+  const float bound = inside || sin_slack <= 0.0f
+                          ? 1.0f
+                          : cos_difference(cos_light, sin_light, cos_slack, sin_slack);
+  if (bound <= unpack_cosine(node.cos_emission)) return 0.0f;
+  const float emitted =
+      blend_cosine(bound, cos_difference(cos_light, sin_light, cos_cone, sin_cone));
+  float importance = node.intensity * emitted / fmaxf(distance2, radius2);
   if (receiver.has_normal) {
     const float cosine = dot(receiver.normal, way) * inverse;
-    const float cos_received = receiver.both_sides ? fabsf(cosine) : cosine;
-    // 1e-4: the normal has been packed.
-    importance *= cos_difference(cos_received, sine_of(cos_received), cos_ball, sin_ball) + 1e-4f;
+    const float middle = receiver.both_sides ? fabsf(cosine) : cosine;
+    const float best = inside ? 1.0f : cos_difference(middle, sine_of(middle), cos_ball, sin_ball);
+    importance *= blend_cosine(best, middle) + 1e-4f;  // the normal has been packed
   }
   return fminf(fmaxf(importance, 0.0f), importance_max);
 }

@@ -9,7 +9,7 @@ namespace pt {
 /// A unit vector in an octahedron (Cigolla et al. 2014): two numbers of 16 bits. Within 1e-4 rad.
 PT_HD std::uint32_t pack_direction(const Vec3& v) {
   const float scale = 1.0f / (fabsf(v.x) + fabsf(v.y) + fabsf(v.z));
-  float x = v.x * scale, y = v.y * scale;
+  float x = multiply_rounded(v.x, scale), y = multiply_rounded(v.y, scale);
   if (v.z < 0.0f) {
     const float folded = copysignf(1.0f - fabsf(y), x);
     y = copysignf(1.0f - fabsf(x), y), x = folded;

@@ -37,7 +37,7 @@ struct SphericalTriangle {
     const Vec3 moved = add_scaled(-a, turn, middle);
     // On the arc from b to it, uniform in the cosine of the angle to b.
     const Vec3 apart = moved - b;
-    const float h = 0.5f * u1 * dot(apart, apart);  // 1 - cos
+    const float h = multiply_rounded(0.5f * u1, dot(apart, apart));  // 1 - cos
     const Vec3 across = add_scaled(moved, -dot(moved, b), b);
     const float sine = sqrtf(fmaxf(0.0f, h * (2.0f - h)));
     const float scale = sine * inverse_sqrt(fmaxf(dot(across, across), 1e-30f));

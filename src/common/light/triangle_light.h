@@ -30,7 +30,7 @@ struct TriangleSampler {
 
   /// Area over the square of the distance above 1/10: beyond, densities differ little over it.
   PT_HD bool looms() const {
-    const Vec3 middle = v0 + (edge1 + edge2) * (1.0f / 3.0f);
+    const Vec3 middle = add_scaled(v0, 1.0f / 3.0f, edge1 + edge2);
     const float distance2 = dot(middle, middle);
     return dot(normal, normal) > 0.04f * distance2 * distance2;
   }

@@ -393,7 +393,8 @@ TEST(MitsubaLight, sunOrSkyAlone) {
       "<float name=\"sun_aperture\" value=\"5\"/>" +
       daylight);
   EXPECT_EQ(sun.scene.environment.width, 0);
-  EXPECT_NEAR(sun.scene.sun.radiance.y / (2 * 206.68303f), 1, 2e-3);
+  // Mitsuba takes 1 minus a float cosine of the real sun: 0.2 % off.
+  EXPECT_NEAR(sun.scene.sun.radiance.y / (2 * 206.68303f), 1, 3e-3);
   expect_error(
       [] {
         load_xml("<emitter type=\"sunsky\"><float name=\"turbidity\" value=\"11\"/></emitter>");

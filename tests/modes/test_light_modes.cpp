@@ -1,0 +1,89 @@
+// However lights are chosen, all modes give one image, bit for bit; and the choice changes an
+// image's noise alone.
+#include "common/scene/prepare_scene.h"
+#include "lit_room.h"
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+Rendered render_room(const Settings& settings) {
+  const Options options = with(Options(), settings);
+  SceneData scene = lit_room();
+  prepare_scene(scene, options);
+  return take_image(*make_renderer(options, scene, choose_device(options.device)));
+}
+
+Settings joined(Settings settings, const Settings& more) {
+  settings.insert(settings.end(), more.begin(), more.end());
+  return settings;
+}
+
+class LightModesOf : public testing::TestWithParam<const char*> {
+ protected:
+  static Settings settings(const Settings& more) {
+    return joined({{"device", "cpu"},
+                   {"light-selection", GetParam()},
+                   {"width", "32"},
+                   {"height", "24"},
+                   {"max-depth", "7"}},
+                  more);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Selections, LightModesOf, testing::Values("uniform", "power", "tree"),
+                         [](const auto& selection) { return selection.param; });
+
+TEST_P(LightModesOf, EqualSerial) {
+  const Settings few = settings({{"spp", "3"}});
+  const Rendered serial = render_room(joined(few, {{"mode", "serial"}}));
+  expect_same(render_room(joined(few, {{"mode", "megakernel"}})), serial);
+  for (const char* compaction : {"atomic", "cub", "none"}) {
+    for (const char* finish : {"0", "100"}) {
+      SCOPED_TRACE(testing::Message() << compaction << ", finish-paths " << finish);
+      expect_same(render_room(joined(few, {{"mode", "wavefront"},
+                                           {"compaction", compaction},
+                                           {"pool-size", "333"},
+                                           {"finish-paths", finish}})),
+                  serial);
+    }
+  }
+}
+
+/// Of 8 x 6 tiles: the means over some seeds.
+std::vector<MeanEstimate> tile_means(const Settings& settings, int first_seed, int seeds) {
+  std::vector<MeanEstimate> tiles(48);
+  for (int seed = first_seed; seed < first_seed + seeds; ++seed) {
+    const Image image =
+        render_room(joined(settings, {{"spp", "64"}, {"seed", std::to_string(seed)}})).image;
+    std::vector<double> sums(48);
+    for (int y = 0; y < 24; ++y) {
+      for (int x = 0; x < 32; ++x) {
+        const float* p = image.pixel(x, y);
+        sums[static_cast<std::size_t>(y / 4 * 8 + x / 4)] += double{p[0]} + p[1] + p[2];
+      }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) tiles[i].add(sums[i]);
+  }
+  return tiles;
+}
+
+// Welch's t-test for each tile (Jung et al. 2020, 'Detecting Bias in Monte Carlo Renderers using
+// Welch's t-test'): with 16 seeds |t| > 5.5 comes once in 10^5, so of 48 tiles once in 2,000 runs,
+// and the seeds are fixed.
+TEST_P(LightModesOf, ConvergeToOneImage) {
+  const auto found = tile_means(settings({{"mode", "megakernel"}}), 1, 16);
+  const auto expected = tile_means(
+      settings({{"mode", "megakernel"}, {"light-selection", "power"}, {"rr", "3"}}), 101, 16);
+  int noisy = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double t =
+        (found[i].mean() - expected[i].mean()) / std::hypot(found[i].sigma(), expected[i].sigma());
+    EXPECT_LT(std::abs(t), 5.5) << "tile " << i << ": " << found[i].mean() << " and "
+                                << expected[i].mean();
+    noisy += found[i].sigma() > 0.04 * found[i].mean();
+  }
+  EXPECT_LE(noisy, 3) << "tiles that cannot tell, where the ball of glass gathers the sun";
+}
+
+}  // namespace
+}  // namespace pt
