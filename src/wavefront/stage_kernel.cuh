@@ -93,9 +93,16 @@ __device__ void append_next(Appender& appender, const StageQueues& queues, bool 
   }
 }
 
+/// Most threads of a block of a stage.
+template <class Stage>
+constexpr int block_max() {
+  if constexpr (requires { Stage::block_max; }) return Stage::block_max;
+  return 1024;
+}
+
 /// The queue's length is read on the device, so the grid has a fixed size and loops.
 template <class Stage, SceneMemory memory>
-__global__ void __launch_bounds__(1024)
+__global__ void __launch_bounds__(block_max<Stage>())
     stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
                  const __grid_constant__ Stage stage, const __grid_constant__ StageQueues queues,
                  StageClock* clock) {

@@ -32,6 +32,11 @@ enum class SphereAccess {
   last_scan,  ///< likewise, by a kernel too short to be copied for shared memory
 };
 
+/// Most threads of a block on CUDA. Many kinds of materials and lights want registers more than
+/// they want threads (results/ has the measurement): with 768 they get 80.
+template <class Traits>
+inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 768 : 1024;
+
 /// Only brute force scans.
 template <class Traits, SphereAccess access>
 inline constexpr SphereAccess sphere_access =
@@ -174,6 +179,7 @@ struct ShadeSurface {
   static constexpr StageId id = StageId::shade_surface;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr int block_max = shading_block_max<Traits>;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -225,6 +231,7 @@ struct FinishPaths {
   static constexpr StageId id = StageId::finish;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::last_scan>;
+  static constexpr int block_max = shading_block_max<Traits>;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "common/scene/mitsuba/shape_kinds.h"
-#include "common/scene/prepare_materials.h"
 
 namespace pt::mitsuba {
 namespace {
