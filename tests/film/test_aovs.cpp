@@ -1,6 +1,7 @@
 // AOVs: planes of a film, found by a pass of their own, and layers of an EXR.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
 #include <ImfInputFile.h>
 
 #include <functional>
