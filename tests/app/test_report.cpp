@@ -19,7 +19,9 @@ RenderRun make_run(double kernel_ms, double intersect_ms) {
   return {kernel_ms,
           {{"generate", 0.5, 2}, {"intersect", intersect_ms, 40}, {"denoise", 0.25, 1}},
           20,
-          50};
+          50,
+          RunEnd::samples,
+          {}};
 }
 
 /// Three repeats with kernel times 4, 2 and 3 ms.

@@ -100,7 +100,7 @@ TEST_F(CompareCommand, PrintsTheDifferences) {
             "size                   2x1\n"
             "RMSE                   1.241638702145945\n"
             "relMSE                 0.13494556826076112\n"
-            "HDR-FLIP               0.486231\n"
+            "HDR-FLIP               0.649748\n"
             "largest difference     3\n"
             "differing pixels       2\n"
             "pixels past tolerance  1\n");

@@ -103,7 +103,9 @@ TEST(Stops, LeaveTheImageOfSoManySamples) {
       EXPECT_LT(stopped.run.samples_done, 1 << 20);
       const bool by_error = options.target_error > 0;
       EXPECT_EQ(stopped.run.ended_by, by_error ? RunEnd::target_error : RunEnd::time_limit);
-      if (by_error && samples > 0) EXPECT_EQ(stopped.run.samples_done, samples) << mode;
+      if (by_error && samples > 0) {
+        EXPECT_EQ(stopped.run.samples_done, samples) << mode;
+      }
       samples = stopped.run.samples_done;
       Options whole = options_of({});
       whole.filter = options.filter;

@@ -21,7 +21,7 @@ constexpr const char* program_text =
     "ptexp renders one image in several ways, so that the ways can be compared.\n"
     "`ptexp --mode wavefront --spp 50` renders the paper's scene to image.exr.";
 constexpr const char* compare_text =
-    "Prints RMSE, relMSE, FLIP, the largest difference and the number of differing pixels.\n"
+    "Prints RMSE, relMSE, FLIP, the largest difference, how many pixels differ.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"

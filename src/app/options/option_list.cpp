@@ -121,9 +121,7 @@ void add_image(std::vector<OptionEntry>& list) {
 }
 
 void add_stops(std::vector<OptionEntry>& list) {
-  Group(list,
-        "Stops (the render ends after the batch that reaches one; without --spp there\n"
-        "is no other limit)")
+  Group(list, "Stops (the first that is reached ends the render; without --spp they alone do)")
       .add(number("time-limit", "SECONDS", &Options::time_limit, "seconds above 0",
                   [](float x) { return x > 0; }),
            "Seconds of rendering, the scene's preparation left out")

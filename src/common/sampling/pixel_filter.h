@@ -16,8 +16,9 @@ struct PixelFilter {
   /// [k]: half of |f|'s integral times k / cells lies within this distance of the centre, in
   /// pixels.
   const float* quantiles = nullptr;
-  std::uint32_t has_table = 0;           ///< 0: a box of one pixel
-  float sign_changes[changes_max] = {};  ///< |x| where f changes its sign, ascending
+  std::uint32_t has_table = 0;  ///< 0: a box of one pixel
+  /// Shares of half of |f|'s integral, ascending: f changes its sign where so much lies within.
+  float sign_changes[changes_max] = {};
   std::uint32_t change_count = 0;
   /// The image is positive_weight * mean of the samples where f(x) f(y) > 0, minus negative_weight
   /// * mean of the others. The difference of the two is 1.
@@ -30,8 +31,7 @@ struct PixelFilter {
 
   /// Whether the sample that these two numbers place is of a negative part.
   PT_HD bool is_negative(float u0, float u1) const {
-    return has_negative() &&
-           (changes_before(from_centre(u0)) ^ changes_before(from_centre(u1))) & 1;
+    return ((changes_within(u0) ^ changes_within(u1)) & 1u) != 0;
   }
 
  private:
@@ -45,9 +45,13 @@ struct PixelFilter {
     return v < 0.0f ? -x : x;
   }
 
-  PT_HD std::uint32_t changes_before(float x) const {
+  // By the number itself, not by the place that a cell of the table gives it: so each sign has the
+  // samples that it should have, and those of a cell with both signs are a little displaced.
+  PT_HD std::uint32_t changes_within(float u) const {
     std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < change_count; ++i) count += fabsf(x) > sign_changes[i];
+    for (std::uint32_t i = 0; i < change_count; ++i) {
+      count += fabsf(2.0f * u - 1.0f) > sign_changes[i] ? 1u : 0u;
+    }
     return count;
   }
 };

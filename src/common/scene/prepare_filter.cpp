@@ -32,7 +32,7 @@ double mitchell(double x, double b, double c) {
 struct Integral {
   std::vector<double> absolute = {0};  ///< [k]: of |f| over [0, k / steps * radius]
   double sum = 0;                      ///< of f
-  std::vector<double> changes;         ///< |x| where its sign changes
+  std::vector<double> changes;         ///< of |f|, up to where f changes its sign
 };
 
 /// By the midpoint rule: its error is below 1e-9 of the whole for all filters here.
@@ -46,7 +46,7 @@ Integral integrate(const FilterChoice& filter) {
     integral.absolute.push_back(integral.absolute.back() + std::abs(f));
     if (f != 0 && (f < 0) != negative) {
       negative = !negative;
-      integral.changes.push_back(i * step);
+      integral.changes.push_back(*(integral.absolute.end() - 2));
     }
   }
   return integral;
@@ -128,7 +128,8 @@ void prepare_filter(SceneData& scene, const FilterChoice& filter) {
   }
   scene.filter.has_table = 1;
   scene.filter.change_count = static_cast<std::uint32_t>(side.changes.size());
-  std::copy(side.changes.begin(), side.changes.end(), scene.filter.sign_changes);
+  std::transform(side.changes.begin(), side.changes.end(), scene.filter.sign_changes,
+                 [&](double x) { return static_cast<float>(x / side.absolute.back()); });
   scene.filter.positive_weight = static_cast<float>(0.5 * (all + sum) / sum);
   scene.filter.negative_weight = static_cast<float>(0.5 * (all - sum) / sum);
   scene.filter_quantiles = quantiles_of(side.absolute, filter_radius(filter));
