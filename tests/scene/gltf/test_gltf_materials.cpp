@@ -89,15 +89,17 @@ TEST(GltfMaterials, EmissionHasAStrength) {
 }
 
 TEST(GltfMaterials, EachKindOfApproximationIsReportedOnce) {
-  GltfMaker maker = with_material(Json::object());
-  maker.root["materials"].push_back({{"name", "other"}});
+  const Json coat = {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}}};
+  GltfMaker maker = with_material({{"extensions", coat}});
+  maker.root["materials"].push_back({{"name", "other"}, {"extensions", coat}});
   auto& primitives = maker.root["meshes"][0]["primitives"];
   primitives.push_back(primitives[0]);
   primitives[1]["material"] = 1;
   const Loaded loaded(maker);
   EXPECT_EQ(loaded.scene.materials.size(), 2u);
   EXPECT_EQ(loaded.count("materials[0]"), 1u);
-  expect_error([&] { Loaded strict(maker, true); }, "scene.gltf: materials[0]: metallic >= 0.5");
+  expect_error([&] { Loaded strict(maker, true); },
+               "scene.gltf: materials[0]: KHR_materials_clearcoat");
 }
 
 /// A material whose base colour is a picture of two texels, of which the second has this alpha.

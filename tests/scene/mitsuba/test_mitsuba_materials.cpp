@@ -96,7 +96,7 @@ TEST(MitsubaSurface, conductorsByNameAndByIndex) {
   EXPECT_EQ(mirror.color(1), Color(0.0f));  // k and no eta: all is reflected
   EXPECT_EQ(mirror.color(2), Color(1.0f));
   // Golden: what Mitsuba's conductor with material Cu has. 0.x takes copper where none is named.
-  const Color copper_eta(0.200438f, 0.924033f, 1.102212f);
+  const Color copper_eta(0.201005f, 0.92375f, 1.10222f);
   expect_near(material_with("<bsdf type=\"conductor\"/>", "0.6.0").color(1), copper_eta, 1e-5f);
   // The numbers of aluminium as modern-hall gives them.
   const MaterialDescription metal = material_with(
@@ -149,7 +149,7 @@ TEST(MitsubaSurface, principledWithAllItsParameters) {
   const MaterialDescription glass =
       principled("<float name=\"spec_trans\" value=\"0.9\"/><float name=\"eta\" value=\"1\"/>");
   EXPECT_FALSE(glass.one_sided);
-  EXPECT_EQ(glass.scalar(3), 0.9f);
+  EXPECT_FLOAT_EQ(glass.scalar(3), 0.9f);
   EXPECT_EQ(glass.scalar(4), 1.001f);
 }
 
