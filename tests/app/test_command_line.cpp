@@ -36,6 +36,7 @@ const std::map<std::string, std::string>& other_values() {
       {"max-depth", "65535"},
       {"rr", "5"},
       {"nee", "off"},
+      {"light-selection", "power"},
       {"mis", "balance"},
       {"sampling", "cosine"},
       {"sampler", "sobol"},

@@ -7,6 +7,7 @@
 
 #include "mitsuba_scene.h"
 #include "statistics.h"
+#include "test_data.h"
 
 namespace pt {
 namespace {
@@ -33,8 +34,7 @@ std::istream& operator>>(std::istream& in, Vector& v) requires requires {
 { return in >> v.x >> v.y >> v.z; }
 
 std::vector<MitsubaBsdf> read_values() {
-  const auto tests = std::filesystem::path(__FILE__).parent_path().parent_path();
-  std::ifstream file(tests / "data" / "mitsuba_bsdfs.txt");
+  std::ifstream file(test_data("mitsuba_bsdfs.txt"));
   std::vector<MitsubaBsdf> all;
   for (std::string line, kind; std::getline(file, line);) {
     std::istringstream in(line);
@@ -98,7 +98,9 @@ TEST(MitsubaBsdfs, ValuesAreTheSame) {
                      [&](const auto& bsdf) { return bsdf.evaluate(v.wo, v.wi); });
       }
       for (int c = 0; c < 3; ++c) EXPECT_NEAR(ours.f[c], v.f[c], tolerance * v.f[c] + 1e-6);
-      if (same_density) EXPECT_NEAR(ours.pdf, v.pdf, tolerance * v.pdf + 1e-6);
+      if (same_density) {
+        EXPECT_NEAR(ours.pdf, v.pdf, tolerance * v.pdf + 1e-6);
+      }
     }
   });
 }

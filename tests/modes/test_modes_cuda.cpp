@@ -2,6 +2,7 @@
 // options that say how. CPU and GPU round differently, so between them the image is only close.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <optional>
@@ -108,15 +109,22 @@ const std::vector<ImageKind> triangle_kinds = [] {
                     {"spp", spp},
                     {"accel", "cwbvh"},
                     {"rr", "3"}}});
-  for (const std::string selection : {"uniform", "power"}) {
-    kinds.push_back({"lights_by_" + selection,
-                     {{"scene", "boxes"},
-                      {"width", width},
-                      {"height", height},
-                      {"spp", spp},
-                      {"accel", "cwbvh"},
-                      {"light-selection", selection},
-                      {"max-depth", "6"}}});
+  const Settings boxes{{"scene", "boxes"}, {"width", width},   {"height", height},
+                       {"spp", spp},       {"accel", "cwbvh"}, {"max-depth", "6"}};
+  const std::vector<std::pair<std::string, std::string>> ways{{"light-selection", "uniform"},
+                                                              {"light-selection", "power"},
+                                                              {"mis", "balance"},
+                                                              {"mis", "none"},
+                                                              {"sampling", "cosine"},
+                                                              {"sampling", "uniform"},
+                                                              {"sampler", "stratified"},
+                                                              {"sampler", "sobol"},
+                                                              {"filter", "mitchell"}};
+  for (const auto& [option, value] : ways) {
+    std::string name = option + "_" + value;
+    std::ranges::replace(name, '-', '_');
+    kinds.push_back({name, boxes});
+    kinds.back().settings.emplace_back(option, value);
   }
   kinds.push_back({"no_light_sampling",
                    {{"scene", "boxes"},

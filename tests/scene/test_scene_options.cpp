@@ -45,10 +45,14 @@ TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
 }
 
 TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
-  EXPECT_EQ(refusal("boxes", "rng", "xorwow"),
-            "--rng xorwow: is for scenes of spheres and quads alone; 'boxes' is none");
+  EXPECT_EQ(
+      refusal("boxes", "rng", "xorwow"),
+      "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power "
+      "and --sampler independent; expected such a scene instead of 'boxes', or other options");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
-            "--branching reduced: is for scenes of spheres and quads alone; 'boxes' is none");
+            "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
+            "--mis power and --sampler independent; expected such a scene instead of 'boxes', or "
+            "other options");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),
               "--scene-memory " + value +

@@ -137,7 +137,7 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
     arrays.push_back(memory);
     return memory->data();
   };
-  b.pool.allocate_arrays({true, false, false}, array);
+  b.pool.allocate_arrays({true, false, false, false}, array);
   b.for_each_queue(true, [&](std::uint32_t*& queue) { queue = array(queue); });
   std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;

@@ -5,8 +5,8 @@
 
 #include "common/device/stage_clock.h"
 #include "common/film/film_planes.h"
-#include "common/sampling/sampler_source.h"
 #include "common/render/dispatch.h"
+#include "common/sampling/sampler_source.h"
 
 namespace pt {
 

@@ -7,8 +7,6 @@
 
 #include "common/texture/sample_texture.h"
 
-#include "common/texture/sample_texture.h"
-
 namespace pt {
 namespace {
 

@@ -5,8 +5,8 @@
 
 namespace pt::mitsuba {
 
-/// Adds point, spot, directional, constant, envmap or sunsky to the scene; others are reported. Adding a
-/// kind is adding a line to the table in emitters.cpp.
+/// Adds point, spot, directional, constant, envmap or sunsky to the scene; others are reported.
+/// Adding a kind is adding a line to the table in emitters.cpp.
 void add_emitter(Context& context, const Object& emitter);
 
 /// Fills the scene's environment with an `envmap`.

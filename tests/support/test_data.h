@@ -1,0 +1,21 @@
+// Files of tests/data.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace pt {
+
+/// In the folder $PTEXP_TEST_DATA, which ctest sets, or below the current folder's nearest parent
+/// that has tests/data.
+inline std::string test_data(const std::string& name) {
+  if (const char* folder = std::getenv("PTEXP_TEST_DATA")) return folder + ("/" + name);
+  std::filesystem::path folder = std::filesystem::current_path();
+  while (!exists(folder / "tests" / "data") && folder != folder.root_path()) {
+    folder = folder.parent_path();
+  }
+  return (folder / "tests" / "data" / name).string();
+}
+
+}  // namespace pt
