@@ -1,0 +1,31 @@
+// Every BSDF, with and without masks: all modes of the CPU give one image, bit for bit.
+#include "common/scene/prepare_scene.h"
+#include "material_room.h"
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+class MaterialModes : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Masked, MaterialModes, testing::Bool());
+
+TEST_P(MaterialModes, EqualSerial) {
+  const auto render = [](const Settings& settings) {
+    Options options = with(
+        Options(),
+        {{"device", "cpu"}, {"width", "45"}, {"height", "41"}, {"spp", "4"}, {"max-depth", "6"}});
+    apply(options, settings);
+    SceneData scene = material_room(GetParam());
+    prepare_scene(scene, options);
+    return take_image(*make_renderer(options, scene, choose_device(options.device)));
+  };
+  const Rendered serial = render({{"mode", "serial"}});
+  EXPECT_EQ(serial.counts.nonfinite_samples, 0u);
+  expect_same(render({{"mode", "megakernel"}}), serial);
+  for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
+    expect_same(render({{"mode", "wavefront"}, {"accel", accel}, {"finish-paths", "0"}}), serial);
+  }
+}
+
+}  // namespace
+}  // namespace pt
