@@ -20,8 +20,15 @@ MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, i
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
   check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, stream()), "cudaMemsetAsync");
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
-    with_random_source(
-        [&](const auto& source) { launch_megakernel(storage, shared_bytes, source, batch); });
+    with_random_source([&](const auto& source) {
+      constexpr bool in_global =
+          std::remove_cvref_t<decltype(storage)>::memory == SceneMemory::global;
+      if constexpr (in_global || !std::is_same_v<decltype(source), const SamplerSource&>) {
+        launch_megakernel(storage, shared_bytes, source, batch);
+      } else {  // samplers are for scenes that brute force does not scan
+        throw_no_kernel(traits_, options_.integrator);
+      }
+    });
   };
   const bool scans_spheres =
       traits_.accel == Accel::brute && traits_.geometry == Geometry::spheres_and_quads;
