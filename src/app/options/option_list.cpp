@@ -68,8 +68,8 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(choice("light-selection", &Options::light_selection),
            "Which light is asked: any lamp alike, by its power, or by\n"
            "what it can do for the place, through a tree of lights;\n"
-           "auto: the tree, but uniform where all lights are quads and\n"
-           "spheres of a scene without triangles")
+           "auto: the tree for more than 16 lamps, else by power; uniform\n"
+           "in scenes of quads and spheres alone")
       .add(choice("mis", &Options::mis),
            "How next-event estimation and the path's own directions share\n"
            "a lamp: by the power or the balance heuristic; none: only\n"

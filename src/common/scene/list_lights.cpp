@@ -35,7 +35,7 @@ class Lister {
       if (!has_place(light.kind)) add_delta(light);
     }
     if (scene_.sun.one_minus_cos > 0.0f) add_sun();
-    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
+    if (wants_tree()) data_.tree = build_light_tree(data_.lights);
     if (data_.tree.pairs.empty()) {
       make_table(0);
       share_with_environment(data_.selection.empty() ? 0 : lamps_done_);
@@ -47,6 +47,14 @@ class Lister {
   }
 
  private:
+  /// On a GPU a tree's descents can take as long as all other shading (results/README.md), which
+  /// few lamps are not worth.
+  bool wants_tree() const {
+    constexpr std::size_t few_lamps = 16;
+    return selection_ == LightSelection::tree ||
+           (selection_ == LightSelection::automatic && lamps_done_ > few_lamps);
+  }
+
   /// Of lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;
@@ -210,7 +218,6 @@ class Lister {
 }  // namespace
 
 LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection) {
-  if (selection == LightSelection::automatic) selection = LightSelection::tree;
   return Lister(scene, bounds, selection).list();
 }
 

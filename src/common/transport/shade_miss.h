@@ -28,7 +28,8 @@ PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const Path
     if (is_in_sun(scene.sun, ray_direction)) {
       const float pdf =
           scene.light_selector.distant_pmf(scene.sun.light) * sun_pdf(scene.sun.one_minus_cos);
-      radiance = add_scaled(radiance, direction_weight(mis, path.bsdf_pdf, pdf), scene.sun.radiance);
+      radiance =
+          add_scaled(radiance, direction_weight(mis, path.bsdf_pdf, pdf), scene.sun.radiance);
     }
   }
   return path.beta * radiance;
