@@ -13,7 +13,7 @@ PROGRAM = os.environ.get("PTEXP", str(ROOT / "build" / "dev" / "src" / "ptexp"))
 
 
 def gltf(lux):
-    """A grey square that fills the image, and a sun of so many lux, or none."""
+    """A grey square without highlights that fills the image, and a sun of so many lux, or none."""
     corners = struct.pack("<12f", -1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0)
     data = corners + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
     root = {"asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1]}],
@@ -21,7 +21,8 @@ def gltf(lux):
             "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1,
                                         "material": 0}]}],
             "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0,
-                                                    "baseColorFactor": [0.5, 0.5, 0.5, 1]}}],
+                                                    "baseColorFactor": [0.5, 0.5, 0.5, 1]},
+                           "extensions": {"KHR_materials_specular": {"specularFactor": 0}}}],
             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3",
                            "min": [-1, -1, 0], "max": [1, 1, 0]},
                           {"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}],
