@@ -158,20 +158,12 @@ TEST(Aovs, NumbersDoNotDependOnTheStructure) {
 }
 
 TEST(Aovs, AreRefusedWhereTheyCannotBe) {
-  const auto refusal = [](const Settings& settings) -> std::string {
-    try {
-      render_options(with(Options(), settings));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  };
-  EXPECT_NE(refusal({{"device", "cpu"}, {"aov", "depth"}, {"rng", "xorwow"}})
+  EXPECT_NE(refusal_of({{"device", "cpu"}, {"aov", "depth"}, {"rng", "xorwow"}})
                 .find("--rng xorwow: its numbers cannot be drawn twice, which --aov needs"),
             std::string::npos);
-  EXPECT_NE(refusal({{"aov", "deep"}}).find("--aov deep: expected a list of albedo, "),
+  EXPECT_NE(refusal_of({{"aov", "deep"}}).find("--aov deep: expected a list of albedo, "),
             std::string::npos);
-  EXPECT_NE(refusal({{"aov", "depth,depth"}}).find("names depth twice"), std::string::npos);
+  EXPECT_NE(refusal_of({{"aov", "depth,depth"}}).find("names depth twice"), std::string::npos);
 }
 
 std::vector<std::uint32_t> read_channel(const std::string& path, const std::string& name,

@@ -126,22 +126,16 @@ TEST(Filters, ABoxOfOnePixelIsNoFilter) {
 }
 
 TEST(Filters, AreRefusedWithBadParameters) {
-  const auto refusal = [](const Settings& settings) -> std::string {
-    try {
-      render_options(with(Options(), settings));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
-  };
-  EXPECT_NE(refusal({{"filter", "sinc"}}).find("--filter sinc: expected one of box, tent"),
+  EXPECT_NE(refusal_of({{"filter", "sinc"}}).find("--filter sinc: expected one of box, tent"),
             std::string::npos);
-  EXPECT_NE(refusal({{"filter", "lanczos:2.5"}}).find("expected lanczos:LOBES"), std::string::npos);
-  EXPECT_NE(refusal({{"filter", "tent:1:2"}}).find("expected tent:RADIUS"), std::string::npos);
-  EXPECT_NE(refusal({{"filter", "gaussian:0"}}).find("expected gaussian:DEV"), std::string::npos);
+  EXPECT_NE(refusal_of({{"filter", "lanczos:2.5"}}).find("expected lanczos:LOBES"),
+            std::string::npos);
+  EXPECT_NE(refusal_of({{"filter", "tent:1:2"}}).find("expected tent:RADIUS"), std::string::npos);
+  EXPECT_NE(refusal_of({{"filter", "gaussian:0"}}).find("expected gaussian:DEV"),
+            std::string::npos);
   SceneData scene;
   EXPECT_THROW(prepare_filter(scene, {FilterKind::mitchell, 100.0f, 100.0f}), Error);
-  EXPECT_NE(refusal({{"filter", "lanczos"}, {"rng", "xorwow"}, {"device", "cpu"}, {"spp", "1"}})
+  EXPECT_NE(refusal_of({{"filter", "lanczos"}, {"rng", "xorwow"}, {"device", "cpu"}, {"spp", "1"}})
                 .find("--rng xorwow: its numbers cannot be drawn twice"),
             std::string::npos);
 }

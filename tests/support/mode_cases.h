@@ -11,6 +11,7 @@
 
 #include "app/make_renderer.h"
 #include "app/options/option_list.h"
+#include "common/error.h"
 #include "statistics.h"
 
 namespace pt {
@@ -63,6 +64,16 @@ inline Rendered render_options(const Options& options, const RenderHooks& hooks 
   const DeviceInfo device = choose_device(options.device);
   const SceneData scene = make_scene_for(options, device);
   return take_image(*make_renderer(options, scene, device), hooks);
+}
+
+/// What an option's or a scene's error says.
+inline std::string refusal_of(const Settings& settings) {
+  try {
+    render_options(with(Options(), settings));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
 }
 
 inline void expect_same_counts(const PathCounts& found, const PathCounts& expected) {

@@ -8,8 +8,6 @@
 
 namespace pt {
 
-PT_HD float interpolate(float a, float b, float t) { return fused_multiply_add(t, b - a, a); }
-
 /// The colour at luminance 1; white for black.
 PT_HD Color hue(const Color& c) {
   const float luminance = dot(c, Vec3(0.212671f, 0.715160f, 0.072169f));

@@ -59,9 +59,9 @@ PT_HD Color add_rounded(const Color& a, const Color& b) {
 }
 
 /// a + t (b - a), rounded alike in every kernel.
+PT_HD float interpolate(float a, float b, float t) { return fused_multiply_add(t, b - a, a); }
 PT_HD Color interpolate(const Color& a, const Color& b, float t) {
-  return {fused_multiply_add(t, b.x - a.x, a.x), fused_multiply_add(t, b.y - a.y, a.y),
-          fused_multiply_add(t, b.z - a.z, a.z)};
+  return {interpolate(a.x, b.x, t), interpolate(a.y, b.y, t), interpolate(a.z, b.z, t)};
 }
 
 /// The cross product without fused operations: where its two products are equal, a component is 0

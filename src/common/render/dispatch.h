@@ -31,7 +31,6 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
                                     Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
                                     Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
                                     Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
-using SceneKinds = decltype(concatenate(SphereSceneKinds{}, TriangleSceneKinds{}));
 using CpuTriangleSceneKinds = decltype(concatenate(
     TriangleSceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>,
                                    Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));

@@ -46,9 +46,9 @@ PT_HD Vec2 stratify(const Vec2& u, const StrataGrid& grid, std::uint32_t sample,
                     std::uint32_t seed) {
   const std::uint32_t cell = permute(sample, grid.cells(), seed);
   const std::uint32_t row = cell / grid.columns, column = cell - row * grid.columns;
-  constexpr float below_one = 0.99999994f;
-  return {fminf((static_cast<float>(column) + u.x) / static_cast<float>(grid.columns), below_one),
-          fminf((static_cast<float>(row) + u.y) / static_cast<float>(grid.rows), below_one)};
+  return {
+      fminf((static_cast<float>(column) + u.x) / static_cast<float>(grid.columns), one_minus_ulp),
+      fminf((static_cast<float>(row) + u.y) / static_cast<float>(grid.rows), one_minus_ulp)};
 }
 
 /// The four numbers of a block: `u`, independent for each sample, in the cells that `seeds` (the
