@@ -21,6 +21,7 @@ class WavefrontCuda : public CudaRenderer {
 
   // The Executor of run_wave (wavefront.h):
   void compact(const CompactionRequest& request);
+  void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
@@ -49,7 +50,7 @@ class WavefrontCuda : public CudaRenderer {
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
   template <class Kinds, class Source>
   void enqueue_finish_of(const StageContext<Source>& context);
-  void allocate_pool();
+  void allocate_pool(const SceneData& scene);
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();
   void read_counters();

@@ -83,15 +83,19 @@ struct Traits {
   static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
+  /// The BSDFs that a kernel shades.
+  using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
   static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
 };
-
-/// The BSDFs of a scene's kernels.
-template <class T>
-using BsdfsOf = std::conditional_t<T::lighting == Lighting::full, Bsdfs, PaperBsdfs>;
 
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
+
+/// Of surfaces whose materials are all of one kind.
+template <class T, class Bsdf>
+struct OneKind : T {
+  using BsdfList = TypeList<Bsdf>;
+};
 
 }  // namespace pt
