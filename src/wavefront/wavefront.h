@@ -111,8 +111,10 @@ struct WaveBuffers {
 //   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
-//   traces_queues<Traits>    whether persistent warps can trace such scenes' queues of rays, and
-//   trace_queue(queues)      does so: the next hit of each path is stored
+//   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
+//                            kinds, and
+//   traces_queues_here()     in this very one;
+//   trace_queue(queues, samples)          does so: the next hit of each path is stored
 //   trace_shadow_queue(queues, samples)   likewise: light that arrives is added
 
 /// What every ray meets. Where warps persist they trace the whole queue and store the hits, and a
@@ -122,8 +124,8 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
                 bool parts_misses) {
   const StageQueues rays = b.stage_queues(StageId::intersect, &b.counters->intersect, b.pool.tag);
   if constexpr (Executor::template traces_queues<Traits>) {
-    if (rays.appends) {
-      execute.trace_queue(rays);
+    if (rays.appends && execute.traces_queues_here()) {
+      execute.trace_queue(rays, samples);
       execute.run(SortHits{b.pool}, rays);
       return;
     }
@@ -137,7 +139,9 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   const StageQueues rays =
       b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
   if constexpr (Executor::template traces_queues<Traits>) {
-    if (rays.appends) return execute.trace_shadow_queue(rays, samples);
+    if (rays.appends && execute.traces_queues_here()) {
+      return execute.trace_shadow_queue(rays, samples);
+    }
   }
   execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, samples}, rays);
 }

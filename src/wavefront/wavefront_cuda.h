@@ -25,11 +25,17 @@ class WavefrontCuda : public CudaRenderer {
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
-  /// Wide trees, where a thread per ray would wait for the slowest of its warp.
+  /// Wide trees, where a thread per ray would wait for the slowest of its warp. Masked scenes are
+  /// of one kind, with spheres and instances or without.
   template <class Traits>
-  static constexpr bool traces_queues =
-      Traits::accel == Accel::cwbvh&& Traits::geometry == Geometry::triangles;
-  void trace_queue(const StageQueues& queues);
+  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh &&
+                                        (Traits::geometry == Geometry::triangles ||
+                                         Traits::has_masks);
+  bool traces_queues_here() const {
+    return scene_.primitives.count() == 0 && scene_.triangles.instance_count == 0 &&
+           scene_.triangles.triangle_count > 0;
+  }
+  void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
 
  protected:
@@ -44,6 +50,8 @@ class WavefrontCuda : public CudaRenderer {
   void with_context(const SampleBuffer& batch, Function&& function);
   template <class Source>
   StageContext<Source> context_of(const SampleBuffer& batch, const Source& source) const;
+  template <class Rays>
+  void trace_persistently(const Rays& rays, const SampleBuffer& samples, StageId stage);
   template <class Rays>
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>

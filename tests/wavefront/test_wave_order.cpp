@@ -37,11 +37,15 @@ class Notes {
     }
     for (const StageId to : Stage::outcomes.to) EXPECT_TRUE(stage_info(to).has_own_queue());
   }
-  void trace_queue(const StageQueues&) { traced.push_back(StageId::intersect), note_traced(); }
+  bool traces_queues_here() const { return here; }
+  void trace_queue(const StageQueues&, const SampleBuffer&) {
+    traced.push_back(StageId::intersect), note_traced();
+  }
   void trace_shadow_queue(const StageQueues&, const SampleBuffer&) {
     traced.push_back(StageId::shadow), note_traced();
   }
 
+  bool here = true;  ///< the scene is one that they can trace
   std::vector<StageId> ran, traced, wanted;
   std::vector<StageInput> inputs;
   SurfaceOrder order;
@@ -52,7 +56,8 @@ class Notes {
 };
 
 template <class Traits, Branching branching, bool persistent>
-Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true) {
+Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true,
+                           bool here = true) {
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
@@ -62,6 +67,7 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   buffers.reuses_slots = reuses_slots;
   const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
   Notes<persistent> notes;
+  notes.here = here;
   run_wave<Traits, branching>(notes, buffers, context);
   run_finish<Traits>(notes, buffers, context);
   return notes;
@@ -116,6 +122,13 @@ TEST(WaveOrder, PersistentWarpsTraceAndSortHitsSendsOn) {
     if (strategy.orders) expected.insert(expected.begin() + 7, order_surfaces);
     EXPECT_EQ(notes.ran, expected);
   }
+}
+
+TEST(WaveOrder, AThreadPerRayTracesScenesThatPersistentWarpsCannot) {
+  const CompactionInfo& strategy = compaction_info(Compaction::atomic);
+  const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy, true, false);
+  EXPECT_TRUE(notes.traced.empty());
+  EXPECT_EQ(notes.ran, (notes_of<TriangleScene, Branching::divergent, false>(strategy).ran));
 }
 
 TEST(WaveOrder, ReducedBranchingHasNoStageForMisses) {
