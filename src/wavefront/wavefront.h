@@ -38,7 +38,8 @@ struct WaveBuffers {
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
-  bool reuses_slots = true;  ///< false: the pool holds the whole batch, a free slot stays free
+  bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
+  bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
   // Where surfaces are ordered:
   bool shades_by_kind = false;            ///< --shade material
   std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
@@ -164,7 +165,7 @@ void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext
   shade(std::type_identity<Shading>{}, several_kinds);
 }
 
-template <class Traits, Branching branching, class Source, class Executor>
+template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   constexpr StageId id = StageId::shade_surface;
   StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
@@ -173,12 +174,10 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
                                         b.ordered, &b.counters->kinds});
     surfaces.slots = b.ordered;
   }
-  if constexpr (Traits::lighting == Lighting::full) {
-    if (b.shades_by_kind) {
-      return shade_each_kind<ShadingTraits<Traits>>(execute, b, context, surfaces);
-    }
+  if constexpr (Shading::lighting == Lighting::full) {
+    if (b.shades_by_kind) return shade_each_kind<Shading>(execute, b, context, surfaces);
   }
-  execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context}, surfaces);
+  execute.run(ShadeSurface<Shading, branching, Source>{context}, surfaces);
 }
 
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
@@ -205,7 +204,13 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
                                                             Traits::has_lights},
                 b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
-  shade_surfaces<Traits, branching>(execute, b, context);
+  using Shading = ShadingTraits<Traits>;
+  if (Traits::has_masks && b.only_triangles) {
+    // Masks make a scene `mixed` for its rays, but not for its surfaces.
+    shade_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
+  } else {
+    shade_surfaces<Shading, branching>(execute, b, context);
+  }
 
   if constexpr (Traits::has_lights) {
     execute.compact(b.request<shadow>(b.pool.shadow_tag));

@@ -43,6 +43,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
+  buffers_.only_triangles = scene_.has_only_triangles();
   const bool one_kind = std::has_single_bit(buffers_.kinds);
   buffers_.shades_by_kind = options_.shade == Shade::material ||
                             (options_.shade == Shade::automatic && !one_kind &&

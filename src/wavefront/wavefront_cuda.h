@@ -32,8 +32,7 @@ class WavefrontCuda : public CudaRenderer {
                                         (Traits::geometry == Geometry::triangles ||
                                          Traits::has_masks);
   bool traces_queues_here() const {
-    return scene_.primitives.count() == 0 && scene_.triangles.instance_count == 0 &&
-           scene_.triangles.triangle_count > 0;
+    return scene_.has_only_triangles() && scene_.triangles.triangle_count > 0;
   }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);

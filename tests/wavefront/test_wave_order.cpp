@@ -23,9 +23,9 @@ class Notes {
     ran.push_back(StageId::compact);
     for (int c = 0; c < request.queues_wanted; ++c) wanted.push_back(request.wanted[c]);
   }
-  void order_surfaces(const SurfaceOrder& order) {
+  void order_surfaces(const SurfaceOrder& how) {
     ran.push_back(StageId::order_surfaces);
-    this->order = order;
+    order = how;
   }
   void begin_wave() { ran.push_back(StageId::begin_wave); }
   template <class Stage>

@@ -44,6 +44,9 @@ struct Scene {
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
 
+  bool has_only_triangles() const {
+    return primitives.count() == 0 && triangles.instance_count == 0;
+  }
   PT_HD Material material(std::uint32_t number) const { return load_wide(&materials[number]); }
   /// `material` shines.
   PT_HD Emission emission(const Material& material) const {
@@ -91,6 +94,12 @@ struct Traits {
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
+
+/// The same of scenes that have triangles and nothing else.
+template <class T>
+using TrianglesAlone = std::conditional_t<
+    T::geometry == Geometry::mixed,
+    Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks, typename T::Integrator>, T>;
 
 /// Of surfaces whose materials are all of one kind.
 template <class T, class Bsdf>
