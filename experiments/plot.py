@@ -16,6 +16,7 @@ from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-impor
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+COLUMNS = 3  # panels side by side
 
 
 def in_groups(rows, label):
@@ -67,6 +68,8 @@ def draw_lines(axes, rows, style):
     if style["log_y"]:
         axes.set_yscale("log")
         label_times(axes.yaxis)
+    if style.get("mark") is not None:
+        axes.axhline(style["mark"], color=COLOURS[4], linestyle="--", linewidth=1)
     axes.legend(fontsize="small")
 
 
@@ -103,9 +106,13 @@ def draw(path):
     style = facts["plot"]
     panels = in_groups(rows, "panel")
     bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0
-    figure, all_axes = pyplot.subplots(1, len(panels), squeeze=False, layout="constrained",
-                                       figsize=(6.4 * len(panels), max(4.8, 0.3 * bars)))
-    for axes, (panel, members) in zip(all_axes[0], panels.items()):
+    columns = min(len(panels), COLUMNS)
+    lines = -(-len(panels) // columns)
+    figure, all_axes = pyplot.subplots(lines, columns, squeeze=False, layout="constrained",
+                                       figsize=(6.4 * columns, lines * max(4.8, 0.3 * bars)))
+    for axes in all_axes.flat[len(panels):]:
+        axes.set_visible(False)
+    for axes, (panel, members) in zip(all_axes.flat, panels.items()):
         {"lines": draw_lines, "bars": draw_bars}[style["kind"]](axes, members, style)
         axes.set_title(panel, fontsize="medium")
         axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)

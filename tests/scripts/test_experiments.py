@@ -7,12 +7,15 @@ import csv
 import importlib
 import io
 import json
+import math
 import os
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
@@ -178,6 +181,52 @@ class Experiments(unittest.TestCase):
         for script in SCRIPTS:
             self.assertIn(f"`{script}.py`", readme)
             self.assertTrue(os.access(ROOT / "experiments" / f"{script}.py", os.X_OK), script)
+
+
+class Dial(unittest.TestCase):
+    def setUp(self):
+        self.dial = importlib.import_module("dial")
+
+    def test_crossings(self):
+        crossing = self.dial.crossing
+        self.assertEqual(crossing([(1, 1.1), (2, 1.0), (4, 1.3)]), 0)
+        self.assertEqual(crossing([(1, 1.1), (2, 1.2), (4, 0.9)]), math.inf)
+        self.assertAlmostEqual(crossing([(1, 0.5), (2, 0.8), (8, 1.2), (16, 1.4)]), 4)
+        # What falls below once more has not crossed before.
+        self.assertAlmostEqual(crossing([(1, 0.8), (2, 1.2), (4, 0.9), (8, 1.1)]), 4 * 2**0.5)
+
+    def rows(self, **changes):
+        counts = {"paths": "9", "rays": "30", "shadow_rays": "20", **changes}
+        return [{"name": f"{variant} {materials}", "figure": "open", "materials": str(materials),
+                 "coherence": "0", "series": "coherence 0", "variant": variant,
+                 "kernel_ms_min": str(ms - 1), "kernel_ms_median": str(ms),
+                 "kernel_ms_max": str(ms + 2),
+                 **(counts if variant != self.dial.BASE else {**counts, "rays": "30"})}
+                for variant, times in ((self.dial.BASE, (10, 20)), ("wavefront", (20, 10)))
+                for materials, ms in zip((1, 4), times)]
+
+    def test_ratios_and_conclusions(self):
+        rows = self.rows()
+        self.dial.finish(rows, None)
+        self.assertEqual([row["ratio_median"] for row in rows],
+                         ["1.0000", "1.0000", "0.5000", "2.0000"])
+        self.assertEqual((rows[2]["ratio_min"], rows[2]["ratio_max"]), ("0.4091", "0.6316"))
+        sentence, = self.dial.conclude(rows, None)
+        self.assertEqual(sentence, "open, coherence 0, wavefront: crossover at about 1.6 materials,"
+                         " 2.00 times as fast with 4")
+
+    def test_other_paths_are_an_error(self):
+        with self.assertRaisesRegex(harness.HarnessError, "31 rays"):
+            self.dial.finish(self.rows(rays="31"), None)
+
+    def test_other_images_are_an_error(self):
+        device = harness.find_device(PTEXP, "cpu")
+        arguments = types.SimpleNamespace(quick=True, accel="bvh2")
+        self.dial.check_images(PTEXP, device, arguments)
+        other = {"wavefront": "--mode wavefront --seed 9"}
+        with mock.patch.dict(self.dial.VARIANTS, other), \
+                self.assertRaisesRegex(harness.HarnessError, "wavefront and megakernel differ"):
+            self.dial.check_images(PTEXP, device, arguments)
 
 
 class SpeedTargets(unittest.TestCase):
