@@ -52,6 +52,7 @@ class Configuration:
     device: str = ""  # "": the experiment's device
     repeat: int = 0  # 0: as the command line says; then warmup is the command line's too
     warmup: int = 0
+    image: str = ""  # a whole path, where `finish` needs it; else no image is kept
 
 
 @dataclass
@@ -92,11 +93,12 @@ class Experiment:
     configurations: Callable  # (arguments, device) -> list of Configuration; None: see main()
     plot: Plot  # None: a table without a picture
     add_arguments: Callable = no_arguments
-    check: Callable = no_check  # raises HarnessError before the measurement: (program, device,
-    # arguments)
     finish: Callable = no_columns  # fills in labels of measured rows: (rows, arguments)
-    conclude: Callable = no_conclusions  # sentences for below the table: (rows, arguments)
     table: tuple = ()  # labels to print besides name and time
+    # Raises HarnessError before the measurement, if images are not as they should be: (program,
+    # device, arguments).
+    check: Callable = no_check
+    conclude: Callable = no_conclusions  # sentences for below the table: (rows, arguments)
 
 
 def find_program(named):
@@ -169,7 +171,7 @@ def command_line(program, configuration, device, arguments):
     return [str(program), *shlex.split(configuration.arguments),
             "--device", configuration.device or device.choice,
             "--repeat", str(repeat), "--warmup", str(warmup),
-            "--output", "image.ppm", "--csv", "row.csv", "--quiet"]
+            "--output", configuration.image or "image.ppm", "--csv", "row.csv", "--quiet"]
 
 
 def measure(command, timeout_s):
