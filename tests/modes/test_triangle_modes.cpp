@@ -14,7 +14,8 @@ class TriangleModesOf : public testing::TestWithParam<const char*> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, TriangleModesOf,
-                         testing::Values("boxes", "instances:20", "statue:3K"),
+                         testing::Values("boxes", "instances:20", "statue:3K",
+                                         "dial:16:0.5:closed"),
                          [](const auto& scene) {
                            const std::string name = scene.param;
                            return name.substr(0, name.find(':'));
