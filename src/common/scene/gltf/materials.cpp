@@ -134,6 +134,10 @@ void Materials::set_transmission(const tinygltf::Material& source, const std::st
   result.parameters[3] =
       number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
                 place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
+  const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
+  if (volume && vector_or(*volume, "attenuationColor", Color(1.0f)) != Color(1.0f)) {
+    file_.report(place, "KHR_materials_volume: media are not supported: glass is clear inside");
+  }
 }
 
 /// KHR_materials_ior, and KHR_materials_specular as another index with the reflectance that it

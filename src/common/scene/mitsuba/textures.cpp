@@ -57,11 +57,11 @@ TextureWrap wrap_of(Context& context, const Object& texture, const std::string& 
 void read_filter(Context& context, const Object& object, Texture& texture) {
   const std::string filter = object.text("filter_type", context.modern ? "bilinear" : "ewa");
   if (filter == "nearest") texture.filter = TextureFilter::nearest;
-  if (filter != "nearest" && filter != "bilinear" && object.find("filter_type")) {
-    context.warn_once("filter " + filter, object.element(),
-                      fmt::format("texture filter '{}' is not supported: bilinear is used, "
-                                  "without mip maps",
-                                  filter));
+  // 0.x's `trilinear` and `ewa` are bilinear but for what they do about aliasing, which samples do.
+  if (filter != "nearest" && filter != "bilinear" && filter != "trilinear" && filter != "ewa") {
+    context.warn_once(
+        "filter " + filter, object.element(),
+        fmt::format("texture filter '{}' is not supported: bilinear is used", filter));
   }
 }
 
