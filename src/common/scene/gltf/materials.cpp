@@ -56,6 +56,12 @@ std::uint32_t Materials::number(int index, const std::string& place) {
   return result;
 }
 
+bool Materials::is_unlit(int index) const {
+  return index >= 0 &&
+         find_extension(file_.model.materials[static_cast<std::size_t>(index)].extensions,
+                        "KHR_materials_unlit");
+}
+
 MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place) {
   MaterialDescription result;
   set_opacity(source, place, result);
