@@ -29,6 +29,10 @@ class HarnessError(Exception):
     """Ends the experiment; its text is one line for the user."""
 
 
+class Refused(HarnessError):
+    """ptexp took offence at an option, or at what the option needs."""
+
+
 @dataclass
 class Device:
     choice: str  # as --device takes it
@@ -48,6 +52,7 @@ class Configuration:
     device: str = ""  # "": the experiment's device
     repeat: int = 0  # 0: as the command line says; then warmup is the command line's too
     warmup: int = 0
+    image: str = ""  # a whole path, where `finish` needs it; else no image is kept
 
 
 @dataclass
@@ -61,6 +66,7 @@ class Plot:
     y_label: str = "kernel time [ms]"
     y: str = "kernel_ms"  # the columns y_median, y_min, y_max
     log_y: bool = True
+    mark: float = None  # a value of y that a line marks
 
 
 def no_arguments(_parser):
@@ -69,6 +75,15 @@ def no_arguments(_parser):
 
 def no_columns(_rows, _arguments):
     """For experiments whose labels are known before the measurement."""
+
+
+def no_check(_program, _device, _arguments):
+    """For experiments that take the images as they come."""
+
+
+def no_conclusions(_rows, _arguments):
+    """For experiments whose table says it all."""
+    return []
 
 
 @dataclass
@@ -80,6 +95,10 @@ class Experiment:
     add_arguments: Callable = no_arguments
     finish: Callable = no_columns  # fills in labels of measured rows: (rows, arguments)
     table: tuple = ()  # labels to print besides name and time
+    # Raises HarnessError before the measurement, if images are not as they should be: (program,
+    # device, arguments).
+    check: Callable = no_check
+    conclude: Callable = no_conclusions  # sentences for below the table: (rows, arguments)
 
 
 def find_program(named):
@@ -100,6 +119,16 @@ def output_of(*command):
     except (OSError, subprocess.SubprocessError):
         return ""
     return run.stdout.strip()
+
+
+def run_ptexp(program, *arguments):
+    """What ptexp prints. 1 is no failure: `compare` has found a difference."""
+    run = subprocess.run([program, *arguments], capture_output=True, text=True, check=False,
+                         stdin=subprocess.DEVNULL)
+    if run.returncode not in (0, 1):
+        kind = Refused if run.returncode == 2 else HarnessError
+        raise kind(f"{shlex.join(map(str, arguments))}: {run.stderr.strip()}")
+    return run.stdout
 
 
 def find_device(program, wanted):
@@ -142,7 +171,7 @@ def command_line(program, configuration, device, arguments):
     return [str(program), *shlex.split(configuration.arguments),
             "--device", configuration.device or device.choice,
             "--repeat", str(repeat), "--warmup", str(warmup),
-            "--output", "image.ppm", "--csv", "row.csv", "--quiet"]
+            "--output", configuration.image or "image.ppm", "--csv", "row.csv", "--quiet"]
 
 
 def measure(command, timeout_s):
@@ -320,11 +349,16 @@ def run(experiment, arguments):
         return
     print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
     path = table_path(experiment, device, arguments)
+    experiment.check(program, device, arguments)
     rows = measure_all(experiment, configurations, program, device, arguments)
-    experiment.finish([row for row in rows if row["status"] == "measured"], arguments)
+    measured = [row for row in rows if row["status"] == "measured"]
+    experiment.finish(measured, arguments)
+    facts = origin(experiment, configurations, program, device, arguments)
+    facts["conclusions"] = experiment.conclude(measured, arguments)
 
-    write_table(path, rows, origin(experiment, configurations, program, device, arguments))
-    print(f"\n{table_text(rows, experiment.table)}\n\nwrote {path}\n{draw(path)}")
+    write_table(path, rows, facts)
+    print("\n".join(["", table_text(rows, experiment.table), "", *facts["conclusions"],
+                     f"wrote {path}", draw(path)]))
 
 
 def main(experiment, command=None, runner=run):

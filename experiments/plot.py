@@ -16,6 +16,8 @@ from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-impor
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
+COLUMNS = 3  # panels side by side
+TICKS = 12  # more places on the axis than these, measured times say, have no ticks of their own
 
 
 def in_groups(rows, label):
@@ -27,7 +29,9 @@ def in_groups(rows, label):
 
 
 def spread(rows, column):
-    """Medians, and the lengths of the bars below and above them."""
+    """Medians, and the lengths of the bars below and above them: none for a single value."""
+    if f"{column}_median" not in rows[0]:
+        return [float(row[column]) for row in rows], None
     low, middle, high = ([float(row[f"{column}_{part}"]) for row in rows]
                          for part in ("min", "median", "max"))
     return middle, [[m - l for m, l in zip(middle, low)], [h - m for m, h in zip(middle, high)]]
@@ -41,8 +45,10 @@ def label_times(axis):
 
 
 def draw_lines(axes, rows, style):
-    for number, (series, members) in enumerate(in_groups(rows, "series").items()):
-        look = {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)]}
+    for series, members in in_groups(rows, "series").items():
+        number = style["series"].index(series)
+        colour, marker = number % len(COLOURS), (number + number // len(COLOURS)) % len(MARKERS)
+        look = {"color": COLOURS[colour], "marker": MARKERS[marker]}
         measured = sorted((row for row in members if row["status"] == "measured"),
                           key=lambda row: float(row["x"]))
         if measured:
@@ -61,13 +67,21 @@ def draw_lines(axes, rows, style):
     axes.set_xscale("log")
     axes.set_xlabel(style["x_label"])
     ticks = sorted({float(row["x"]) for row in rows})
-    axes.set_xticks(ticks, [f"{tick:,.0f}" for tick in ticks], rotation=30, ha="right")
-    axes.xaxis.set_minor_locator(ticker.NullLocator())
+    if len(ticks) <= TICKS:
+        axes.set_xticks(ticks, [f"{tick:,.0f}" for tick in ticks], rotation=30, ha="right")
+        axes.xaxis.set_minor_locator(ticker.NullLocator())
+    else:
+        label_times(axes.xaxis)
     axes.set_ylabel(style["y_label"])
     if style["log_y"]:
         axes.set_yscale("log")
         label_times(axes.yaxis)
-    axes.legend(fontsize="small")
+    if style.get("mark") is not None:
+        axes.axhline(style["mark"], color=COLOURS[4], linestyle="--", linewidth=1)
+    if len(style["series"]) <= len(COLOURS):
+        axes.legend(fontsize="small")
+    else:
+        axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
 def draw_bars(axes, rows, style):
@@ -100,12 +114,19 @@ def draw(path):
     facts = read_facts(path)
     with open(path, newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if row["x"]]  # without x: not for the picture
-    style = facts["plot"]
+    style = {**facts["plot"], "series": list(in_groups(rows, "series"))}
     panels = in_groups(rows, "panel")
     bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0
-    figure, all_axes = pyplot.subplots(1, len(panels), squeeze=False, layout="constrained",
-                                       figsize=(6.4 * len(panels), max(4.8, 0.3 * bars)))
-    for axes, (panel, members) in zip(all_axes[0], panels.items()):
+    height = max(4.8, 0.3 * bars)
+    if style["kind"] == "lines" and len(style["series"]) > len(COLOURS):
+        height += 0.11 * len(style["series"])  # the legend is below
+    columns = min(len(panels), COLUMNS)
+    lines = -(-len(panels) // columns)
+    figure, all_axes = pyplot.subplots(lines, columns, squeeze=False, layout="constrained",
+                                       figsize=(6.4 * columns, lines * height))
+    for axes in all_axes.flat[len(panels):]:
+        axes.set_visible(False)
+    for axes, (panel, members) in zip(all_axes.flat, panels.items()):
         {"lines": draw_lines, "bars": draw_bars}[style["kind"]](axes, members, style)
         axes.set_title(panel, fontsize="medium")
         axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)

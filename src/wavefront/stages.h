@@ -37,6 +37,13 @@ enum class SphereAccess {
 template <class Traits>
 inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 768 : 1024;
 
+/// Of a kernel that shades one kind of BSDF: they need fewer.
+#ifndef PT_KIND_BLOCK
+#define PT_KIND_BLOCK 768
+#endif
+template <class Traits, class Bsdf>
+inline constexpr int shading_block_max<OneKind<Traits, Bsdf>> = PT_KIND_BLOCK;
+
 /// Only brute force scans.
 template <class Traits, SphereAccess access>
 inline constexpr SphereAccess sphere_access =
@@ -180,6 +187,9 @@ struct ShadeSurface {
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr int block_max = shading_block_max<Traits>;
+  /// The only BSDF that it knows; null: it knows several.
+  static constexpr const char* kind =
+      Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {

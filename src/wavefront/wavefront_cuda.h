@@ -21,6 +21,7 @@ class WavefrontCuda : public CudaRenderer {
 
   // The Executor of run_wave (wavefront.h):
   void compact(const CompactionRequest& request);
+  void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
@@ -31,8 +32,7 @@ class WavefrontCuda : public CudaRenderer {
                                         (Traits::geometry == Geometry::triangles ||
                                          Traits::has_masks);
   bool traces_queues_here() const {
-    return scene_.primitives.count() == 0 && scene_.triangles.instance_count == 0 &&
-           scene_.triangles.triangle_count > 0;
+    return scene_.has_only_triangles() && scene_.triangles.triangle_count > 0;
   }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
@@ -57,7 +57,7 @@ class WavefrontCuda : public CudaRenderer {
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
   template <class Kinds, class Source>
   void enqueue_finish_of(const StageContext<Source>& context);
-  void allocate_pool();
+  void allocate_pool(const SceneData& scene);
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();
   void read_counters();

@@ -28,6 +28,13 @@ TEST_P(MaterialModes, EqualSerial) {
   for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
     expect_same(render({{"mode", "wavefront"}, {"accel", accel}, {"finish-paths", "0"}}), serial);
   }
+  for (const Settings& ordered :
+       {Settings{{"shade", "material"}}, Settings{{"shade", "uber"}, {"compaction", "sort"}},
+        Settings{{"shade", "material"}, {"compaction", "cub"}}}) {
+    Settings wavefront{{"mode", "wavefront"}, {"finish-paths", "0"}, {"pool-size", "1000"}};
+    wavefront.insert(wavefront.end(), ordered.begin(), ordered.end());
+    expect_same(render(wavefront), serial);
+  }
 }
 
 }  // namespace

@@ -60,6 +60,25 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   }
 }
 
+// By default a scene of several kinds is shaded by kind.
+TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
+  const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
+  for (const char* shade : {"uber", "material", "auto"}) {
+    for (const char* compaction : {"atomic", "cub", "sort"}) {
+      for (const char* pool : {"1000", "auto"}) {
+        SCOPED_TRACE(testing::Message() << shade << ", " << compaction << ", " << pool);
+        expect_same(render({{"device", "cuda"},
+                            {"mode", "wavefront"},
+                            {"shade", shade},
+                            {"compaction", compaction},
+                            {"pool-size", pool},
+                            {"finish-paths", "0"}}),
+                    expected);
+      }
+    }
+  }
+}
+
 TEST_P(GpuRoomsOf, AreCloseToTheCpu) {
   const Settings many{{"spp", "64"}};
   Settings cuda = many, cpu = many;

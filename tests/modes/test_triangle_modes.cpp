@@ -14,7 +14,8 @@ class TriangleModesOf : public testing::TestWithParam<const char*> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, TriangleModesOf,
-                         testing::Values("boxes", "instances:20", "statue:3K"),
+                         testing::Values("boxes", "instances:20", "statue:3K",
+                                         "dial:16:0.5:closed"),
                          [](const auto& scene) {
                            const std::string name = scene.param;
                            return name.substr(0, name.find(':'));
@@ -26,7 +27,7 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
                   variations({{"accel", {"cwbvh", "bvh2"}}, {"threads", {"2", "1"}}}, 0, 1),
                   serial);
   const std::vector<Choice> choices{{"accel", {"cwbvh", "bvh2"}},
-                                    {"compaction", {"atomic", "cub", "none"}},
+                                    {"compaction", {"atomic", "cub", "none", "sort"}},
                                     {"pool-size", {"333", "auto", "3600"}},
                                     {"regenerate", {"on", "off"}},
                                     {"finish-paths", {"0", "100"}}};

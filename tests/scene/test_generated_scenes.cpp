@@ -15,6 +15,7 @@
 #include "common/scene/builtin/generate_terrain.h"
 #include "common/scene/builtin/mesh_shapes.h"
 #include "common/scene/builtin/noise.h"
+#include "small_scenes.h"
 #include "statistics.h"
 #include "temp_folder.h"
 
@@ -140,8 +141,8 @@ TEST(GeneratedScenes, HaveWhatTheirDataRefersTo) {
   for (const SceneInfo& info : scene_list()) {
     if (info.parameter.empty()) continue;
     SCOPED_TRACE(info.name);
-    const SceneData scene = build(info.name + ":1K");
-    EXPECT_EQ(scene.name, info.name + ":1K");
+    const SceneData scene = build(small_scene(info));
+    EXPECT_EQ(scene.name, small_scene(info));
     EXPECT_FALSE(scene.meshes.empty());
     std::uint32_t groups = 0;
     for (const Mesh& mesh : scene.meshes) {
@@ -174,7 +175,7 @@ TEST(GeneratedScenes, AreTheSameForAnyNumberOfThreads) {
     if (info.parameter.empty()) continue;
     SCOPED_TRACE(info.name);
     const auto with_threads = [&](int threads) {
-      return tbb::task_arena(threads).execute([&] { return build(info.name + ":5K"); });
+      return tbb::task_arena(threads).execute([&] { return build(small_scene(info)); });
     };
     const SceneData one = with_threads(1), many = with_threads(2);
     ASSERT_EQ(one.meshes.size(), many.meshes.size());

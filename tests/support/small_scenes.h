@@ -8,13 +8,15 @@
 
 namespace pt {
 
-/// Names as --scene takes them: generated scenes with a thousand of what they are made of.
+/// Its name as --scene takes it: generated scenes with a thousand of what they are made of.
+inline std::string small_scene(const SceneInfo& info) {
+  if (info.name == "dial") return "dial:3:0.5:open";
+  return info.parameter == "N" ? info.name + ":1K" : info.name;
+}
+
 inline std::vector<std::string> small_scenes() {
   std::vector<std::string> names;
-  for (const SceneInfo& info : scene_list()) {
-    const bool scaled = info.parameter == "N";
-    names.push_back(scaled ? info.name + ":1K" : info.name);
-  }
+  for (const SceneInfo& info : scene_list()) names.push_back(small_scene(info));
   return names;
 }
 

@@ -28,8 +28,8 @@ std::string unless(E value, Usual... usual) {
 }
 
 constexpr const char* paper =
-    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power and --sampler "
-    "independent; expected such a scene instead of '{}', or other options";
+    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
+    "independent and not --shade material; expected such a scene instead of '{}', or other options";
 
 /// The whole policy. What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {
@@ -70,7 +70,8 @@ bool needs_triangles(const MaterialDescription& material) {
 
 bool is_lean(const SceneData& scene, const Options& o) {
   return has_primitives_only(scene) && o.sampling == DirectionSampling::bsdf &&
-         o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent;
+         o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent &&
+         o.shade != Shade::material;
 }
 
 bool has_primitives_only(const SceneData& scene) {

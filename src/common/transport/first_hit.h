@@ -38,7 +38,7 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, 
       shading_frame<Traits>(surface.shading_normal, surface.dp_du).to_local(-ray.direction);
   Color albedo(0.0f);
   const SurfaceParameters<Traits> parameters(scene, surface);
-  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
+  visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const BsdfSample sample = bsdf.sample(wo, Vec3(u));
     albedo = sample.outside * sample.weight;
   });

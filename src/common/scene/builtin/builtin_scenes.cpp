@@ -4,6 +4,7 @@
 
 #include "common/error.h"
 #include "common/scene/builtin/generate_boxes.h"
+#include "common/scene/builtin/generate_dial.h"
 #include "common/scene/builtin/generate_forest.h"
 #include "common/scene/builtin/generate_statue.h"
 #include "common/scene/builtin/generate_terrain.h"
@@ -79,6 +80,9 @@ const std::vector<SceneInfo>& scene_list() {
        make_instances},
       {"boxes", "SCALE", "512 boxes in a closed room, lit by a lamp; all lengths times SCALE",
        [](const SceneRequest& request) { return make_boxes_scene(parse_scale(request.name)); }},
+      {"dial", "K:C:F",
+       "cells of K materials (1 to 32), coherent by C (0 noise, 1 stripes), F open or closed",
+       [](const SceneRequest& request) { return make_dial_scene(parse_dial(request.name)); }},
   };
   return list;
 }

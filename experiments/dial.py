@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Dial: from how many materials on is the wavefront faster than the megakernel?
+
+The scene `dial:K:C:F` has K materials with coherence C (0 noise, 1 stripes), open or closed
+(docs/scenes.md). Each variant of the wavefront is compared with the megakernel, which keeps its
+default work and block; `ratio` is the megakernel's time divided by the variant's, so the crossover
+is where it passes 1. All trace the same structure (--accel), so that shading makes the difference.
+First, images of all variants are compared: they must be equal bit for bit.
+"""
+import contextlib
+import math
+import re
+import shlex
+import sys
+import tempfile
+from pathlib import Path
+
+import harness
+from harness import Configuration, Experiment, HarnessError, Plot, Refused
+
+FIGURES = ["open", "closed"]
+MATERIALS = [1, 2, 4, 8, 16, 32]
+COHERENCES = ["0", "0.5", "1"]
+BASE = "megakernel"
+VARIANTS = {
+    BASE: "--mode megakernel",
+    "wavefront": "--mode wavefront",
+    "wavefront, shade material": "--mode wavefront --shade material",
+    "wavefront, compaction sort": "--mode wavefront --compaction sort",
+}
+DEPTH = 8
+
+
+def add_arguments(parser):
+    parser.set_defaults(repeat=5, warmup=1)  # 128 processes: two minutes on a GPU
+    parser.add_argument("--size", type=int, default=1024, metavar="N",
+                        help="width and height in pixels [%(default)s]")
+    parser.add_argument("--spp", type=int, default=16, metavar="N",
+                        help="samples per pixel [%(default)s]")
+    parser.add_argument("--accel", default="bvh2", metavar="NAME",
+                        help="the structure that all variants trace [%(default)s]")
+
+
+def image_of(scene, size, spp, arguments):
+    return (f"--scene {scene} --width {size} --height {size} --spp {spp} --max-depth {DEPTH} "
+            f"--accel {arguments.accel}")
+
+
+def scenes_of(arguments):
+    """(figure, materials, coherence) of each scene: one material lies in one way only."""
+    materials = [1, 3] if arguments.quick else MATERIALS
+    coherences = COHERENCES[:1] if arguments.quick else COHERENCES
+    return [(figure, count, coherence) for figure in FIGURES for count in materials
+            for coherence in (coherences if count > 1 else coherences[:1])]
+
+
+def configurations(arguments, _device):
+    size, spp = (24, 1) if arguments.quick else (arguments.size, arguments.spp)
+    rows = []
+    for figure, materials, coherence in scenes_of(arguments):
+        scene = f"dial:{materials}:{coherence}:{figure}"
+        image = image_of(scene, size, spp, arguments)
+        for variant, options in VARIANTS.items():
+            is_base = variant == BASE  # in no plot: the others are drawn relative to it
+            rows.append(Configuration(
+                f"{scene}: {variant}", f"{image} {options}",
+                {"panel": f"{figure}: {variant}", "series": f"coherence {coherence}",
+                 "x": "" if is_base else materials, "figure": figure, "materials": materials,
+                 "coherence": coherence, "variant": variant, "ratio_median": "", "ratio_min": "",
+                 "ratio_max": ""}))
+    return rows
+
+
+def check_images(program, device, arguments):
+    """Raises HarnessError unless all variants render equal images; a refused one has its rows."""
+    for figure in FIGURES:
+        image = image_of(f"dial:32:0:{figure}", 16 if arguments.quick else 128, 2, arguments)
+        with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+            def render(variant, file):
+                path = str(Path(folder, file))
+                harness.run_ptexp(program, *shlex.split(f"{image} {VARIANTS[variant]}"),
+                                  "--device", device.choice, "--quiet", "--output", path)
+                return path
+            expected = render(BASE, "expected.exr")
+            for variant in list(VARIANTS)[1:]:
+                with contextlib.suppress(Refused):
+                    expect_equal(program, render(variant, "image.exr"), expected,
+                                 f"{figure}: images of {variant} and {BASE}")
+
+
+def expect_equal(program, image, expected, which):
+    found = harness.run_ptexp(program, "compare", image, expected)
+    differing = re.search(r"(?m)^differing pixels\s+(\d+)$", found).group(1)
+    if differing != "0":
+        raise HarnessError(f"{which} differ in {differing} pixels, expected equal bits")
+
+
+def finish(rows, _arguments):
+    def scene(row):
+        return row["figure"], row["materials"], row["coherence"]
+    bases = {scene(row): row for row in rows if row["variant"] == BASE}
+    for row in rows:
+        base = bases.get(scene(row))
+        if base is None:
+            continue
+        for column in ("paths", "rays", "shadow_rays"):
+            if row[column] != base[column]:
+                raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
+                                   f"{base[column]}; expected equal numbers")
+        for part, mine in (("median", "median"), ("min", "max"), ("max", "min")):
+            ratio = float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{mine}"])
+            row[f"ratio_{part}"] = f"{ratio:.4f}"
+
+
+def crossing(points):
+    """Where the ratio passes 1 for good, by a line over the logarithm of the materials: a number, 0
+    if it is never below 1, infinite if it ends below. `points`: (materials, ratio), ascending."""
+    below = [i for i, (_, ratio) in enumerate(points) if ratio < 1]
+    if not below:
+        return 0
+    last = below[-1]
+    if last + 1 == len(points):
+        return math.inf
+    (k0, r0), (k1, r1) = points[last:last + 2]
+    return k0 * (k1 / k0) ** ((1 - r0) / (r1 - r0))
+
+
+def describe(points):
+    crossover, least, most = crossing(points), points[0][0], points[-1][0]
+    end = f"{points[-1][1]:.2f} times as fast with {most}"
+    if crossover == 0:
+        return f"faster from {least} on, {end}"
+    if math.isinf(crossover):
+        return f"slower with {most} still: {points[-1][1]:.2f} times as fast"
+    return f"crossover at about {crossover:.1f} materials, {end}"
+
+
+def conclude(rows, _arguments):
+    """A sentence for each line of the plot."""
+    lines = {}
+    for row in rows:
+        if row["variant"] != BASE and row["ratio_median"]:
+            key = f"{row['figure']}, {row['series']}, {row['variant']}"
+            lines.setdefault(key, []).append((int(row["materials"]), float(row["ratio_median"])))
+    return [f"{key}: {describe(sorted(points))}" for key, points in lines.items()]
+
+
+EXPERIMENT = Experiment(
+    "dial", __doc__.splitlines()[0], configurations,
+    Plot("lines", "The divergence dial: time of the megakernel by that of the wavefront",
+         "materials", "megakernel / wavefront", y="ratio", log_y=False, mark=1.0),
+    add_arguments=add_arguments, check=check_images, finish=finish, conclude=conclude,
+    table=("ratio_median",))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT))

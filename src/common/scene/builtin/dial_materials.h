@@ -1,0 +1,16 @@
+// The materials of the scene `dial`.
+#pragma once
+
+#include <cstdint>
+
+#include "common/scene/material_description.h"
+
+namespace pt {
+
+/// Material `number` of the dial. The first 13 are one of each BSDF: ten that reflect about 0.75 of
+/// the light, in hues that differ a little, then three kinds of glass, which absorb nothing. The
+/// kinds repeat with other roughness, exponent or index, and then with the other distribution of
+/// facets where they have two. The first one is diffuse.
+MaterialDescription make_dial_material(std::uint32_t number);
+
+}  // namespace pt
