@@ -32,17 +32,14 @@ enum class SphereAccess {
   last_scan,  ///< likewise, by a kernel too short to be copied for shared memory
 };
 
-/// Most threads of a block on CUDA. Many kinds of materials and lights want registers more than
-/// they want threads (results/ has the measurement): with 768 they get 80.
-template <class Traits>
-inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 768 : 1024;
-
-/// Of a kernel that shades one kind of BSDF: they need fewer.
-#ifndef PT_KIND_BLOCK
-#define PT_KIND_BLOCK 768
+/// Most threads of a block on CUDA. Many kinds of lights and materials want registers more than
+/// they want threads (results/ has the measurement): with 512 they get 128.
+#ifndef PT_SHADE_BLOCK
+#define PT_SHADE_BLOCK 512
 #endif
-template <class Traits, class Bsdf>
-inline constexpr int shading_block_max<OneKind<Traits, Bsdf>> = PT_KIND_BLOCK;
+template <class Traits>
+inline constexpr int shading_block_max =
+    Traits::lighting == Lighting::full ? PT_SHADE_BLOCK : 1024;
 
 /// Only brute force scans.
 template <class Traits, SphereAccess access>

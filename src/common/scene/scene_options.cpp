@@ -60,9 +60,10 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
-/// Kernels without triangles know the paper's materials alone.
+/// Kernels without triangles know the paper's materials alone, which have no back.
 bool needs_triangles(const MaterialDescription& material) {
-  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+  const bool has_black_back = material.one_sided && !is_black(material.parameters[0].value);
+  return has_black_back || material.node != MaterialNode::none || !material.opacity.is_opaque() ||
          static_cast<int>(material.kind) >= PaperBsdfs::size;
 }
 

@@ -14,7 +14,7 @@ struct FirstHit {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);  ///< geometric, outward
   Vec3 shading_normal = Vec3(0.0f);
-  Vec2 uv = Vec2(0.0f);
+  Vec2 uv = Vec2(0.0f);  ///< v from a texture's head downwards, as in files
   Color albedo = Color(0.0f);
   std::uint32_t primitive = no_primitive;  ///< spheres, then quads, then triangles, as loaded
   std::uint32_t instance = no_primitive;
@@ -71,6 +71,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
     if (!surface.material.is(Material::textured)) {
       first.uv = triangle_uv<Traits>(scene, ray, hit, triangle);
     }
+    if ((triangle.attributes & TriangleAttributes::uvs) != 0) first.uv.y = 1.0f - first.uv.y;
   }
   return first;
 }
