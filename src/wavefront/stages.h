@@ -38,8 +38,7 @@ enum class SphereAccess {
 #define PT_SHADE_BLOCK 512
 #endif
 template <class Traits>
-inline constexpr int shading_block_max =
-    Traits::lighting == Lighting::full ? PT_SHADE_BLOCK : 1024;
+inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? PT_SHADE_BLOCK : 1024;
 
 /// Only brute force scans.
 template <class Traits, SphereAccess access>

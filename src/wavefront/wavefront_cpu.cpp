@@ -70,7 +70,7 @@ class WavefrontCpu : public CpuRenderer {
     buffers_.compaction = compaction_info(options_.compaction);
     buffers_.shades_by_kind = options.shade == Shade::material;
     buffers_.kinds = kinds_of(scene);
-  buffers_.only_triangles = scene_.has_only_triangles();
+    buffers_.only_triangles = scene_.has_only_triangles();
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
                                    !buffers_.compaction.appends, scene_.light_selector.has_tree()};
     const std::uint64_t size_bytes =

@@ -150,7 +150,7 @@ TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
                                        {"regenerate", {"on", "off"}},
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},
-                                       {"stage-block", {"256", "33", "768"}}};
+                                       {"stage-block", {"256", "33", "512"}}};
   expect_all_same(options("wavefront"), variations(choices, 6, 5), options("megakernel"));
 }
 
