@@ -6,10 +6,7 @@
 namespace pt {
 namespace {
 
-#ifndef PT_ORDER_BLOCK
-#define PT_ORDER_BLOCK 256
-#endif
-constexpr int order_block = PT_ORDER_BLOCK;
+constexpr int order_block = 256;
 static_assert(kind_count <= order_block);
 
 /// How many of a warp's threads have this thread's `kind`, and how many of them come before it.
