@@ -112,6 +112,7 @@ __global__ void __launch_bounds__(block_max<Stage>())
   const std::uint32_t count = *queues.count;
   if (blockIdx.x * blockDim.x >= count) return;
   const Scene scene = storage.bind();
+  const std::uint32_t* const slots = queues.slots + (queues.first != nullptr ? *queues.first : 0);
   Appender appender(shared);
   constexpr StageId own_tag = stage_info(Stage::id).queue;
   const bool appends = queues.appends;
@@ -121,7 +122,7 @@ __global__ void __launch_bounds__(block_max<Stage>())
     const std::uint32_t i = base + threadIdx.x;
     std::uint32_t slot = i;
     bool mine = i < count;
-    if (mine && has_queue) slot = queues.slots[i];
+    if (mine && has_queue) slot = slots[i];
     if (mine && looks_at_tags) mine = queues.tags[slot] == own_tag;
     Next next{};
     if (mine) next = stage(scene, slot, i);

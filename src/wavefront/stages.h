@@ -32,10 +32,13 @@ enum class SphereAccess {
   last_scan,  ///< likewise, by a kernel too short to be copied for shared memory
 };
 
-/// Most threads of a block on CUDA. Many kinds of materials and lights want registers more than
-/// they want threads (results/ has the measurement): with 768 they get 80.
+/// Most threads of a block on CUDA. Many kinds of lights and materials want registers more than
+/// they want threads (results/ has the measurement): with 512 they get 128.
+#ifndef PT_SHADE_BLOCK
+#define PT_SHADE_BLOCK 512
+#endif
 template <class Traits>
-inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 768 : 1024;
+inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? PT_SHADE_BLOCK : 1024;
 
 /// Only brute force scans.
 template <class Traits, SphereAccess access>
@@ -180,6 +183,9 @@ struct ShadeSurface {
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr int block_max = shading_block_max<Traits>;
+  /// The only BSDF that it knows; null: it knows several.
+  static constexpr const char* kind =
+      Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {

@@ -43,6 +43,13 @@ struct QueuedPaths {
   __device__ void finish(std::uint32_t number, const ClosestTriangle& query) const {
     rays.pool.store_hit(rays.slot(number), query.result());
   }
+
+  /// For masks. `path_key` gives a path's key by its number.
+  template <class PathKey>
+  __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
+    const PathState path = rays.pool.load_name(slot);
+    return next_ray_key(path_key(path.number), path.rays);
+  }
 };
 
 /// Questions to lights; what arrives is added to the path's sample.
@@ -65,6 +72,13 @@ struct QueuedShadowRays {
     std::uint32_t path;
     const ShadowRay shadow = rays.pool.load_shadow(rays.slot(number), path);
     add_radiance(samples, path, shadow.radiance);
+  }
+
+  template <class PathKey>
+  __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
+    std::uint32_t number;
+    rays.pool.load_shadow(slot, number);
+    return shadow_ray_key(path_key(number), rays.pool.load_shadow_rays(slot));
   }
 };
 

@@ -1,10 +1,18 @@
 // The numbers of a wave, in the device's memory: between two waves nobody asks the host.
 #pragma once
 
-#include "common/platform.h"
+#include "common/material/material.h"
 #include "common/render/stage_info.h"
 
 namespace pt {
+
+/// The kinds of BSDFs in the ordered queue of surfaces: those of kind k stand in
+/// [first[k], first[k] + count[k]).
+struct KindRanges {
+  std::uint32_t count[kind_count];
+  std::uint32_t first[kind_count];
+  std::uint32_t placed[kind_count];  ///< while they are put in order
+};
 
 struct WaveCounters {
   std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; a pass may use the one behind
@@ -18,6 +26,7 @@ struct WaveCounters {
   std::uint32_t traced;                    ///< rays handed out to persistent warps
   std::uint32_t shadow_traced;             ///< shadow rays, likewise
   std::uint32_t waves;
+  KindRanges kinds;
 };
 
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
@@ -32,6 +41,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   for (int queue = 0; queue < queue_count; ++queue) {
     if (queue != free_queue && queue != ray_queue) c.waiting[queue] = 0;
   }
+  for (int kind = 0; kind < kind_count; ++kind) c.kinds.count[kind] = c.kinds.placed[kind] = 0;
   c.live = rays;
   c.generate = 0;
   c.intersect = 0;

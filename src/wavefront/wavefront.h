@@ -7,6 +7,7 @@
 #include "common/scene/scene_data.h"
 #include "wavefront/compaction.h"
 #include "wavefront/stages.h"
+#include "wavefront/surface_order.h"
 
 namespace pt {
 
@@ -21,7 +22,8 @@ enum class StageInput {
 struct StageQueues {
   StageInput input = StageInput::queue;
   bool appends = true;  ///< finished slots are appended to queues; else their tags are written
-  const std::uint32_t* slots = nullptr;  ///< with StageInput::queue, the first *count of it
+  const std::uint32_t* slots = nullptr;  ///< with StageInput::queue, *count of it,
+  const std::uint32_t* first = nullptr;  ///< from this place on; null: from 0
   const std::uint32_t* count = nullptr;
   StageId* tags = nullptr;                ///< these two where slots have tags
   StageId* shadow_tags = nullptr;         ///< only with lights
@@ -36,7 +38,21 @@ struct WaveBuffers {
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
-  bool reuses_slots = true;  ///< false: the pool holds the whole batch, a free slot stays free
+  bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
+  bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
+  // Where surfaces are ordered:
+  bool shades_by_kind = false;            ///< --shade material
+  std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
+  std::uint8_t* kind_of_place = nullptr;  ///< [slot_count]
+  std::uint32_t* ordered = nullptr;       ///< [slot_count] the queue of surfaces, in order
+
+  bool orders_surfaces() const { return compaction.orders || shades_by_kind; }
+
+  /// Of all queues, at most.
+  std::size_t queue_bytes_per_slot() const {
+    const std::size_t order = sizeof *ordered + sizeof *kind_of_place;
+    return queue_count * sizeof(std::uint32_t) + (orders_surfaces() ? order : 0);
+  }
 
   /// Calls function(queue) for each that this render needs.
   template <class Function>
@@ -48,6 +64,7 @@ struct WaveBuffers {
         function(queues[queue_index(stage.id)]);
       }
     }
+    if (orders_surfaces()) function(ordered), function(kind_of_place);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -92,10 +109,13 @@ struct WaveBuffers {
 
 // What follows is written for an Executor, the device's way to do it:
 //   compact(request)         a pass over the tags, where the strategy makes one
+//   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
-//   traces_queues<Traits>    whether persistent warps can trace such scenes' queues of rays, and
-//   trace_queue(queues)      does so: the next hit of each path is stored
+//   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
+//                            kinds, and
+//   traces_queues_here()     in this very one;
+//   trace_queue(queues, samples)          does so: the next hit of each path is stored
 //   trace_shadow_queue(queues, samples)   likewise: light that arrives is added
 
 /// What every ray meets. Where warps persist they trace the whole queue and store the hits, and a
@@ -105,8 +125,8 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
                 bool parts_misses) {
   const StageQueues rays = b.stage_queues(StageId::intersect, &b.counters->intersect, b.pool.tag);
   if constexpr (Executor::template traces_queues<Traits>) {
-    if (rays.appends) {
-      execute.trace_queue(rays);
+    if (rays.appends && execute.traces_queues_here()) {
+      execute.trace_queue(rays, samples);
       execute.run(SortHits{b.pool}, rays);
       return;
     }
@@ -120,9 +140,44 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   const StageQueues rays =
       b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
   if constexpr (Executor::template traces_queues<Traits>) {
-    if (rays.appends) return execute.trace_shadow_queue(rays, samples);
+    if (rays.appends && execute.traces_queues_here()) {
+      return execute.trace_shadow_queue(rays, samples);
+    }
   }
   execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, samples}, rays);
+}
+
+/// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can
+/// tell the kind. `surfaces`: their ordered queue.
+template <class Shading, class Source, class Executor>
+void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
+                     const StageQueues& surfaces) {
+  const auto shade = [&]<class Kind>(std::type_identity<Kind>, MaterialKind kind) {
+    const int k = static_cast<int>(kind);
+    if ((b.kinds >> k & 1) == 0) return;
+    StageQueues range = surfaces;
+    range.first = &b.counters->kinds.first[k], range.count = &b.counters->kinds.count[k];
+    execute.run(ShadeSurface<Kind, Branching::divergent, Source>{context}, range);
+  };
+  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
+    shade(std::type_identity<OneKind<Shading, Bsdf>>{}, kind_of<Bsdf>);
+  });
+  shade(std::type_identity<Shading>{}, several_kinds);
+}
+
+template <class Shading, Branching branching, class Source, class Executor>
+void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+  constexpr StageId id = StageId::shade_surface;
+  StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
+  if (b.orders_surfaces()) {
+    execute.order_surfaces(SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.kind_of_place,
+                                        b.ordered, &b.counters->kinds});
+    surfaces.slots = b.ordered;
+  }
+  if constexpr (Shading::lighting == Lighting::full) {
+    if (b.shades_by_kind) return shade_each_kind<Shading>(execute, b, context, surfaces);
+  }
+  execute.run(ShadeSurface<Shading, branching, Source>{context}, surfaces);
 }
 
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
@@ -149,8 +204,13 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
                                                             Traits::has_lights},
                 b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
-  execute.run(ShadeSurface<ShadingTraits<Traits>, branching, Source>{context},
-              b.stage_queues(shade_surface, b.waiting(shade_surface), tags));
+  using Shading = ShadingTraits<Traits>;
+  if (Traits::has_masks && b.only_triangles) {
+    // Masks make a scene `mixed` for its rays, but not for its surfaces.
+    shade_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
+  } else {
+    shade_surfaces<Shading, branching>(execute, b, context);
+  }
 
   if constexpr (Traits::has_lights) {
     execute.compact(b.request<shadow>(b.pool.shadow_tag));

@@ -6,6 +6,7 @@
 
 #include "common/device/cpu_renderer.h"
 #include "common/render/option_names.h"
+#include "common/scene/prepare_materials.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -37,6 +38,10 @@ class CpuExecutor {
 
   bool more() const { return more_; }
 
+  void order_surfaces(const SurfaceOrder& order) {
+    timer_.time(to_string(StageId::order_surfaces), [&] { order_surfaces_cpu(scene_, order); });
+  }
+
   template <class Traits>
   static constexpr bool traces_queues = false;  // a thread is no warp
 
@@ -63,10 +68,13 @@ class WavefrontCpu : public CpuRenderer {
                                       static_cast<std::uint64_t>(options.spp);
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
     buffers_.compaction = compaction_info(options_.compaction);
+    buffers_.shades_by_kind = options.shade == Shade::material;
+    buffers_.kinds = kinds_of(scene);
+    buffers_.only_triangles = scene_.has_only_triangles();
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
                                    !buffers_.compaction.appends, scene_.light_selector.has_tree()};
     const std::uint64_t size_bytes =
-        pool_size_ * (PathPool::bytes_per_slot(parts) + queue_count * sizeof(std::uint32_t));
+        pool_size_ * (PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);
     allocate(parts);
@@ -80,8 +88,9 @@ class WavefrontCpu : public CpuRenderer {
     buffers_.counters = &counters_;
     pool.allocate_arrays(parts,
                          [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
-    buffers_.for_each_queue(parts.lights,
-                            [&](std::uint32_t*& queue) { queue = array<std::uint32_t>(); });
+    buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>();
+    });
   }
 
   // Zero-filled, so every slot is free.

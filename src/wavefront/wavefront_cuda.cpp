@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include "common/error.h"
+#include "common/scene/prepare_materials.h"
 
 namespace pt {
 namespace {
@@ -27,7 +29,7 @@ constexpr double mib = 1024.0 * 1024.0;
 WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
     : CudaRenderer(options, scene, device) {
   schedule_ = options.schedule == Schedule::host ? "host" : "graph";
-  allocate_pool();
+  allocate_pool(scene);
   check_cuda(cudaMallocHost(reinterpret_cast<void**>(&host_counters_), sizeof *host_counters_),
              "cudaMallocHost");
 }
@@ -37,13 +39,19 @@ WavefrontCuda::~WavefrontCuda() {
   cudaFreeHost(host_counters_);
 }
 
-void WavefrontCuda::allocate_pool() {
+void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
+  buffers_.kinds = kinds_of(scene);
+  buffers_.only_triangles = scene_.has_only_triangles();
+  const bool one_kind = std::has_single_bit(buffers_.kinds);
+  buffers_.shades_by_kind = options_.shade == Shade::material ||
+                            (options_.shade == Shade::automatic && !one_kind &&
+                             traits_.lighting == Lighting::full && buffers_.compaction.has_queues);
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
                                  !appends, scene_.light_selector.has_tree()};
   const std::uint64_t bytes_per_slot =
-      PathPool::bytes_per_slot(parts) + (queue_count + 1) * sizeof(std::uint32_t);
+      PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
   if (options_.pool_size == 0) {
     const std::uint64_t wanted =
@@ -66,8 +74,9 @@ void WavefrontCuda::allocate_pool() {
   pool.allocate_arrays(parts, [&](auto* array) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", n);
   });
-  buffers_.for_each_queue(parts.lights, [&](std::uint32_t*& queue) {
-    queue = memory_.allocate<std::uint32_t>("queues", n);
+  buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
+    queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(
+        "queues", n);
   });
   if (appends && buffers_.reuses_slots) {
     std::vector<std::uint32_t> all(n);

@@ -21,14 +21,20 @@ class WavefrontCuda : public CudaRenderer {
 
   // The Executor of run_wave (wavefront.h):
   void compact(const CompactionRequest& request);
+  void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
-  /// Wide trees, where a thread per ray would wait for the slowest of its warp.
+  /// Wide trees, where a thread per ray would wait for the slowest of its warp. Masked scenes are
+  /// of one kind, with spheres and instances or without.
   template <class Traits>
-  static constexpr bool traces_queues =
-      Traits::accel == Accel::cwbvh&& Traits::geometry == Geometry::triangles;
-  void trace_queue(const StageQueues& queues);
+  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh &&
+                                        (Traits::geometry == Geometry::triangles ||
+                                         Traits::has_masks);
+  bool traces_queues_here() const {
+    return scene_.has_only_triangles() && scene_.triangles.triangle_count > 0;
+  }
+  void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
 
  protected:
@@ -44,12 +50,14 @@ class WavefrontCuda : public CudaRenderer {
   template <class Source>
   StageContext<Source> context_of(const SampleBuffer& batch, const Source& source) const;
   template <class Rays>
+  void trace_persistently(const Rays& rays, const SampleBuffer& samples, StageId stage);
+  template <class Rays>
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);
   template <class Kinds, class Source>
   void enqueue_finish_of(const StageContext<Source>& context);
-  void allocate_pool();
+  void allocate_pool(const SceneData& scene);
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();
   void read_counters();

@@ -7,6 +7,16 @@
 
 namespace pt {
 
+/// What statistics call the stage's kernel.
+template <class Stage>
+std::string kernel_name() {
+  std::string name = to_string(Stage::id);
+  if constexpr (requires { Stage::kind; }) {
+    if (Stage::kind != nullptr) name += std::string("/") + Stage::kind;
+  }
+  return name;
+}
+
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   const int block = options_.stage_block[static_cast<int>(Stage::id)];
@@ -17,7 +27,7 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
         (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
     const std::uint32_t resident =
         resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
-    launch(stage_info(Stage::id).name.data(), kernel, blocks < resident ? blocks : resident, block,
+    launch(kernel_name<Stage>().c_str(), kernel, blocks < resident ? blocks : resident, block,
            shared_bytes, storage, stage, queues, clock());
   };
   const auto launch_global = [&] {

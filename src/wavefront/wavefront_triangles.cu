@@ -1,8 +1,15 @@
 // Scenes with triangles.
-#include "wavefront/trace_queue.cuh"
+#include "wavefront/trace_masked_queue.cuh"
 #include "wavefront/wavefront_enqueue.cuh"
 
 namespace pt {
+
+template <class Rays>
+void WavefrontCuda::trace_persistently(const Rays& rays, const SampleBuffer& samples,
+                                       StageId stage) {
+  if (!traits_.has_masks) return run_persistent(rays, stage);
+  run_persistent(MaskedRays<Rays>{rays, scene_, samples}, stage);
+}
 
 template <class Rays>
 void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
@@ -13,18 +20,24 @@ void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
          stage, clock());
 }
 
-void WavefrontCuda::trace_queue(const StageQueues& queues) {
-  run_persistent(QueuedPaths{{buffers_.pool, queues, &buffers_.counters->traced}},
-                 StageId::intersect);
+void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
+  trace_persistently(QueuedPaths{{buffers_.pool, queues, &buffers_.counters->traced}}, samples,
+                     StageId::intersect);
 }
 
 void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  run_persistent(
+  trace_persistently(
       QueuedShadowRays{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples},
-      StageId::shadow);
+      samples, StageId::shadow);
 }
 
 using SamplerContext = StageContext<SamplerSource>;
+
+// In shade_kinds_*.cu, which compile beside this file.
+extern template void shade_each_kind<Traits<Accel::brute, Geometry::triangles, Lighting::full>>(
+    WavefrontCuda&, const WaveBuffers&, const SamplerContext&, const StageQueues&);
+extern template void shade_each_kind<Traits<Accel::brute, Geometry::mixed, Lighting::full>>(
+    WavefrontCuda&, const WaveBuffers&, const SamplerContext&, const StageQueues&);
 
 template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const SamplerContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(const SamplerContext&);

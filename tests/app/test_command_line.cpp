@@ -40,6 +40,7 @@ const std::map<std::string, std::string>& other_values() {
       {"mis", "balance"},
       {"sampling", "cosine"},
       {"sampler", "sobol"},
+      {"shade", "material"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},
       {"exposure", "-1.5"},
@@ -394,6 +395,8 @@ TEST(Refused, Contradictions) {
       {"--exposure 1", "--exposure 1: applies to .png and .ppm; image.exr holds linear radiance"},
       {"--stats a --csv ./a", "--csv ./a: is the file of --stats too"},
       {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
+      {"--shade material --compaction none",
+       "--shade material: takes ranges of an ordered queue; --compaction none has no queues"},
   });
 }
 

@@ -142,6 +142,49 @@ TEST(Aovs, OfTheCornellBoxFitTogether) {
   EXPECT_GT(hits, 900u);
 }
 
+// What Mitsuba 3.9.1's aov `uv:uv` shows of these shapes: a rectangle's v grows with y, PLY's is as
+// in the file, OBJ's is one less it. Mitsuba has 0 at a texture's head, so v grows downwards there.
+TEST(Aovs, UvIsMitsubas) {
+  const TempFolder folder;
+  write_text(folder.file("a.obj"),
+             "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 0.5\nvt 0 0.5\n"
+             "f 1/1 2/2 3/3 4/4\n");
+  write_text(folder.file("a.ply"),
+             "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+             "property float z\nproperty float u\nproperty float v\nelement face 1\n"
+             "property list uchar int vertex_indices\nend_header\n-1 -1 0 0 0\n1 -1 0 1 0\n"
+             "1 1 0 1 0.5\n-1 1 0 0 0.5\n4 0 1 2 3\n");
+  struct Case {
+    std::string shape;
+    double v0, by_y;  // v at y = 0, and how it grows
+  };
+  for (const Case& c : {Case{"rectangle'>", 0.5, 0.5},
+                        {"ply'><string name='filename' value='a.ply'/>", 0.25, 0.25},
+                        {"obj'><string name='filename' value='a.obj'/>", 0.75, -0.25}}) {
+    for (const char* reflectance : {"", "<texture type='checkerboard' name='reflectance'/>"}) {
+      if (c.v0 == 0.5 && !*reflectance) continue;  // a quad has no coordinates
+      write_text(folder.file("a.xml"),
+                 "<scene version='3.0.0'><emitter type='constant'/><sensor type='perspective'>"
+                 "<transform name='to_world'><lookat origin='0.3, 0.2, 2' target='0, 0, 0' "
+                 "up='0, 1, 0'/></transform></sensor><shape type='" +
+                     c.shape + "<bsdf type='diffuse'>" + reflectance + "</bsdf></shape></scene>");
+      const Image image = render_options(with(Options(), {{"scene", folder.file("a.xml")},
+                                                          {"device", "cpu"},
+                                                          {"width", "8"},
+                                                          {"height", "8"},
+                                                          {"spp", "1"},
+                                                          {"filter", "box"},
+                                                          {"aov", "position,uv"}}))
+                              .image;
+      for (std::size_t i = 0; i < 64; ++i) {
+        const float *p = &image.layers[0].values[3 * i], *uv = &image.layers[1].values[2 * i];
+        EXPECT_NEAR(uv[0], 0.5 + 0.5 * p[0], 1e-5) << c.shape;
+        EXPECT_NEAR(uv[1], c.v0 + c.by_y * p[1], 1e-5) << c.shape;
+      }
+    }
+  }
+}
+
 // The numbers of spheres are those of the scene, whatever structure sorts them.
 TEST(Aovs, NumbersDoNotDependOnTheStructure) {
   const auto image = [](const char* accel) {

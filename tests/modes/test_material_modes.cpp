@@ -1,13 +1,16 @@
 // Every BSDF, with and without masks: all modes of the CPU give one image, bit for bit.
 #include "common/scene/prepare_scene.h"
+#include "masked_room.h"
 #include "material_room.h"
 #include "mode_cases.h"
 
 namespace pt {
 namespace {
 
-class MaterialModes : public testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Masked, MaterialModes, testing::Bool());
+class MaterialModes : public testing::TestWithParam<SceneData (*)()> {};
+INSTANTIATE_TEST_SUITE_P(Rooms, MaterialModes,
+                         testing::Values([] { return material_room(false); },
+                                         [] { return material_room(true); }, masked_room));
 
 TEST_P(MaterialModes, EqualSerial) {
   const auto render = [](const Settings& settings) {
@@ -15,7 +18,7 @@ TEST_P(MaterialModes, EqualSerial) {
         Options(),
         {{"device", "cpu"}, {"width", "45"}, {"height", "41"}, {"spp", "4"}, {"max-depth", "6"}});
     apply(options, settings);
-    SceneData scene = material_room(GetParam());
+    SceneData scene = GetParam()();
     prepare_scene(scene, options);
     return take_image(*make_renderer(options, scene, choose_device(options.device)));
   };
@@ -24,6 +27,13 @@ TEST_P(MaterialModes, EqualSerial) {
   expect_same(render({{"mode", "megakernel"}}), serial);
   for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
     expect_same(render({{"mode", "wavefront"}, {"accel", accel}, {"finish-paths", "0"}}), serial);
+  }
+  for (const Settings& ordered :
+       {Settings{{"shade", "material"}}, Settings{{"shade", "uber"}, {"compaction", "sort"}},
+        Settings{{"shade", "material"}, {"compaction", "cub"}}}) {
+    Settings wavefront{{"mode", "wavefront"}, {"finish-paths", "0"}, {"pool-size", "1000"}};
+    wavefront.insert(wavefront.end(), ordered.begin(), ordered.end());
+    expect_same(render(wavefront), serial);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "common/scene/prepare_scene.h"
 #include "cuda_test.h"
 #include "lit_room.h"
+#include "masked_room.h"
 #include "material_room.h"
 #include "mode_cases.h"
 
@@ -17,23 +18,26 @@ struct Room {
 
 void PrintTo(const Room& room, std::ostream* out) { *out << room.name; }
 
+Rendered render_small(SceneData scene, const Settings& settings) {
+  Options options =
+      with(Options(), {{"width", "45"}, {"height", "41"}, {"spp", "4"}, {"max-depth", "6"}});
+  apply(options, settings);
+  prepare_scene(scene, options);
+  return take_image(*make_renderer(options, scene, choose_device(options.device)));
+}
+
 class GpuRoomsOf : public CudaTest, public testing::WithParamInterface<Room> {
  protected:
   static Rendered render(const Settings& settings) {
-    Options options =
-        with(Options(), {{"width", "45"}, {"height", "41"}, {"spp", "4"}, {"max-depth", "6"}});
-    apply(options, settings);
-    SceneData scene = GetParam().make();
-    prepare_scene(scene, options);
-    return take_image(*make_renderer(options, scene, choose_device(options.device)));
+    return render_small(GetParam().make(), settings);
   }
 };
-INSTANTIATE_TEST_SUITE_P(Cuda, GpuRoomsOf,
-                         testing::Values(Room{"materials", [] { return material_room(false); }},
-                                         Room{"masked_materials",
-                                              [] { return material_room(true); }},
-                                         Room{"lights", lit_room}),
-                         [](const auto& room) { return room.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Cuda, GpuRoomsOf,
+    testing::Values(Room{"materials", [] { return material_room(false); }},
+                    Room{"masked_materials", [] { return material_room(true); }},
+                    Room{"masked_room", masked_room}, Room{"lights", lit_room}),
+    [](const auto& room) { return room.param.name; });
 
 TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
@@ -41,7 +45,7 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
     for (const char* compaction : {"atomic", "cub", "none"}) {
       for (const char* finish : {"0", "131072"}) {
-        if (std::string(accel) == "brute" && GetParam().name == std::string("masked_materials")) {
+        if (std::string(accel) == "brute" && std::string(GetParam().name).starts_with("masked")) {
           continue;  // brute force has no masks on CUDA
         }
         SCOPED_TRACE(testing::Message() << accel << ", " << compaction << ", " << finish);
@@ -50,6 +54,25 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
                             {"accel", accel},
                             {"compaction", compaction},
                             {"finish-paths", finish}}),
+                    expected);
+      }
+    }
+  }
+}
+
+// By default a scene of several kinds is shaded by kind.
+TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
+  const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
+  for (const char* shade : {"uber", "material", "auto"}) {
+    for (const char* compaction : {"atomic", "cub", "sort"}) {
+      for (const char* pool : {"1000", "auto"}) {
+        SCOPED_TRACE(testing::Message() << shade << ", " << compaction << ", " << pool);
+        expect_same(render({{"device", "cuda"},
+                            {"mode", "wavefront"},
+                            {"shade", shade},
+                            {"compaction", compaction},
+                            {"pool-size", pool},
+                            {"finish-paths", "0"}}),
                     expected);
       }
     }
@@ -65,6 +88,52 @@ TEST_P(GpuRoomsOf, AreCloseToTheCpu) {
   double sum_a = 0, sum_b = 0;
   for (std::size_t i = 0; i < a.rgb.size(); ++i) sum_a += a.rgb[i], sum_b += b.rgb[i];
   EXPECT_NEAR(sum_a / sum_b, 1.0, 5e-3);
+}
+
+class CudaMasks : public CudaTest {
+ protected:
+  /// By the wavefront on the GPU, as the settings say, and by the megakernel.
+  static void expect_equal(const SceneData& scene, Settings settings, bool persistent) {
+    settings.insert(settings.end(), {{"device", "cuda"}, {"mode", "wavefront"}, {"spp", "16"}});
+    const Settings megakernel = {{"device", "cuda"}, {"spp", "16"}, {"mode", "megakernel"}};
+    const Rendered found = render_small(scene, settings);
+    expect_same(found, render_small(scene, megakernel));
+    std::uint64_t sorted = 0;  // only where warps persist has this stage anything to do
+    for (const StageTime& stage : found.run.stages) {
+      if (stage.stage == "sort_hits") sorted += stage.launches;
+    }
+    EXPECT_EQ(sorted > 0, persistent);
+  }
+};
+
+TEST_F(CudaMasks, PersistentWarpsAskThem) {
+  for (const char* pool : {"100", "3001", "auto"}) {
+    for (const char* schedule : {"host", "graph"}) {
+      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+        SCOPED_TRACE(testing::Message() << pool << ", " << schedule << ", " << builder);
+        expect_equal(masked_room(),
+                     {{"pool-size", pool},
+                      {"schedule", schedule},
+                      {"builder", builder},
+                      {"finish-paths", "0"}},
+                     true);
+      }
+    }
+  }
+}
+
+TEST_F(CudaMasks, AThreadPerRayAsksThemAmongSpheresAndInstances) {
+  const Settings wide{{"accel", "cwbvh"}, {"pool-size", "3001"}, {"finish-paths", "0"}};
+  SceneData with_sphere = masked_room();
+  with_sphere.add_sphere({0, 0, 1}, 0.5f, with_sphere.add_material(make_diffuse(Color(0.5f))));
+  expect_equal(with_sphere, wide, false);
+  SceneData instanced = masked_room();
+  for (std::size_t i = 0; i < 20; ++i) instanced.meshes[i].group = 1;
+  instanced.instances = {{1, rotate({0, 1, 0}, 30)}, {1, translate({1, 0, 0})}};
+  expect_equal(instanced, wide, false);
+  for (const char* compaction : {"cub", "none"}) {
+    expect_equal(masked_room(), {{"accel", "cwbvh"}, {"compaction", compaction}}, false);
+  }
 }
 
 }  // namespace

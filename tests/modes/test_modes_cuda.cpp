@@ -69,7 +69,7 @@ TEST_P(GpuModesOf, MegakernelDoesNotDependOnHow) {
 
 TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
   std::vector<Choice> choices = with_shared(
-      {{"compaction", {"atomic", "cub", "none"}},
+      {{"compaction", {"atomic", "cub", "none", "sort"}},
        {"schedule", {"graph", "host"}},
        {"regenerate", {"on", "off"}},
        {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
@@ -145,12 +145,12 @@ INSTANTIATE_TEST_SUITE_P(Cuda, GpuTrianglesOf, testing::ValuesIn(triangle_kinds)
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
-  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "none"}},
+  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "none", "sort"}},
                                        {"schedule", {"graph", "host"}},
                                        {"regenerate", {"on", "off"}},
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},
-                                       {"stage-block", {"256", "33", "768"}}};
+                                       {"stage-block", {"256", "33", "512"}}};
   expect_all_same(options("wavefront"), variations(choices, 6, 5), options("megakernel"));
 }
 

@@ -27,7 +27,7 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
                   variations({{"accel", {"cwbvh", "bvh2"}}, {"threads", {"2", "1"}}}, 0, 1),
                   serial);
   const std::vector<Choice> choices{{"accel", {"cwbvh", "bvh2"}},
-                                    {"compaction", {"atomic", "cub", "none"}},
+                                    {"compaction", {"atomic", "cub", "none", "sort"}},
                                     {"pool-size", {"333", "auto", "3600"}},
                                     {"regenerate", {"on", "off"}},
                                     {"finish-paths", {"0", "100"}}};

@@ -1,5 +1,5 @@
-// Every BSDF of the tests' cases on a panel of its own, some of them masked, blended or seen from
-// behind, around a lamp.
+// Every BSDF of the tests' cases on a panel of its own, and materials made of two of them, some
+// masked or seen from behind, around a lamp.
 #pragma once
 
 #include "bsdf_cases.h"
@@ -11,12 +11,19 @@ inline SceneData material_room(bool masks) {
   SceneData scene;
   scene.name = "material room";
   const std::uint32_t glow = scene.add_material(make_diffuse(Color(0.0f), {9, 8, 6}));
-  const std::vector<BsdfCase> cases = all_bsdf_cases();
-  const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(double(cases.size()))));
-  for (std::size_t i = 0; i < cases.size(); ++i) {
+  std::vector<MaterialDescription> materials;
+  for (const BsdfCase& bsdf : all_bsdf_cases()) materials.push_back(bsdf.material);
+  const auto made_of_others = materials.size();
+  const std::uint32_t plain = scene.add_material(make_diffuse({0.3f, 0.5f, 0.6f}));
+  const std::uint32_t metal = scene.add_material(make_metal({0.8f, 0.6f, 0.4f}, 0.3f));
+  materials.push_back(make_two_sided(plain, metal));
+  materials.push_back(make_blend({Color(0.4f)}, metal, plain));
+  materials.push_back(make_two_sided(plain, plain));
+  const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(double(materials.size()))));
+  for (std::size_t i = 0; i < materials.size(); ++i) {
     const auto x = static_cast<float>(i % columns), y = static_cast<float>(i / columns);
-    MaterialDescription material = cases[i].material;
-    material.one_sided = i % 5 == 4;
+    MaterialDescription material = materials[i];
+    material.one_sided = i < made_of_others && i % 5 == 4;
     if (masks && i % 3 == 1) material.opacity = constant_opacity(0.3f + 0.1f * (i % 4));
     const std::uint32_t number = scene.add_material(material);
     // Panels lean to and fro, so that some are met at a grazing angle and from behind.

@@ -113,6 +113,7 @@ struct Executor {
   static constexpr bool traces_queues = false;
 
   void compact(const CompactionRequest&) {}
+  void order_surfaces(const SurfaceOrder& order) { order_surfaces_cpu(scene, order); }
   void begin_wave() { more = pt::begin_wave(counters, path_count, true, finish_paths); }
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
@@ -138,7 +139,7 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
     return memory->data();
   };
   b.pool.allocate_arrays({true, false, false, false}, array);
-  b.for_each_queue(true, [&](std::uint32_t*& queue) { queue = array(queue); });
+  b.for_each_queue(true, [&](auto*& queue) { queue = array(queue); });
   std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;
 

@@ -23,27 +23,41 @@ class Notes {
     ran.push_back(StageId::compact);
     for (int c = 0; c < request.queues_wanted; ++c) wanted.push_back(request.wanted[c]);
   }
+  void order_surfaces(const SurfaceOrder& how) {
+    ran.push_back(StageId::order_surfaces);
+    order = how;
+  }
   void begin_wave() { ran.push_back(StageId::begin_wave); }
   template <class Stage>
   void run(const Stage&, const StageQueues& queues) {
     ran.push_back(Stage::id);
     inputs.push_back(queues.input);
+    if constexpr (requires { Stage::kind; }) {
+      shaded.push_back({Stage::kind == nullptr ? "all" : Stage::kind, queues});
+    }
     for (const StageId to : Stage::outcomes.to) EXPECT_TRUE(stage_info(to).has_own_queue());
   }
-  void trace_queue(const StageQueues&) { traced.push_back(StageId::intersect), note_traced(); }
+  bool traces_queues_here() const { return here; }
+  void trace_queue(const StageQueues&, const SampleBuffer&) {
+    traced.push_back(StageId::intersect), note_traced();
+  }
   void trace_shadow_queue(const StageQueues&, const SampleBuffer&) {
     traced.push_back(StageId::shadow), note_traced();
   }
 
+  bool here = true;  ///< the scene is one that they can trace
   std::vector<StageId> ran, traced, wanted;
   std::vector<StageInput> inputs;
+  SurfaceOrder order;
+  std::vector<std::pair<std::string, StageQueues>> shaded;  ///< by which kernels, and what
 
  private:
   void note_traced() { ran.push_back(traced.back()); }
 };
 
 template <class Traits, Branching branching, bool persistent>
-Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true) {
+Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true,
+                           bool here = true) {
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
@@ -53,6 +67,7 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   buffers.reuses_slots = reuses_slots;
   const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
   Notes<persistent> notes;
+  notes.here = here;
   run_wave<Traits, branching>(notes, buffers, context);
   run_finish<Traits>(notes, buffers, context);
   return notes;
@@ -60,13 +75,34 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
 
 using Ids = std::vector<StageId>;
 
+/// Where a wave orders surfaces: the queues and counters that it has.
+struct OrderedWave {
+  WaveCounters counters{};
+  std::uint32_t slot_count = 0, queue[1] = {}, ordered[1] = {};
+  std::uint8_t kinds[1] = {};
+  Notes<false> notes;
+
+  void run(Compaction strategy, std::uint32_t scene_kinds, bool by_kind) {
+    WaveBuffers buffers;
+    buffers.compaction = compaction_info(strategy);
+    buffers.counters = &counters, buffers.slot_count = &slot_count;
+    buffers.queues[queue_index(StageId::shade_surface)] = queue;
+    buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
+    buffers.ordered = ordered, buffers.kind_of_place = kinds;
+    const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
+    run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
+  }
+};
+
 TEST(WaveOrder, AThreadPerRayTracesAndSendsOn) {
   using enum StageId;
   for (const CompactionInfo& strategy : compaction_table) {
     SCOPED_TRACE(strategy.name);
     const auto notes = notes_of<TriangleScene, Branching::divergent, false>(strategy);
-    EXPECT_EQ(notes.ran, (Ids{compact, begin_wave, generate, intersect, compact, shade_miss,
-                              shade_surface, compact, shadow, finish}));
+    Ids expected{compact,    begin_wave,    generate, intersect, compact,
+                 shade_miss, shade_surface, compact,  shadow,    finish};
+    if (strategy.orders) expected.insert(expected.begin() + 6, order_surfaces);
+    EXPECT_EQ(notes.ran, expected);
     EXPECT_EQ(notes.wanted, (Ids{generate, intersect, shade_miss, shade_surface, shadow}));
     EXPECT_TRUE(notes.traced.empty());
   }
@@ -81,9 +117,18 @@ TEST(WaveOrder, PersistentWarpsTraceAndSortHitsSendsOn) {
     EXPECT_EQ(notes.traced, strategy.appends ? (Ids{intersect, shadow}) : Ids{});
     EXPECT_EQ(std::ranges::count(notes.ran, sort_hits), strategy.appends ? 1 : 0);
     if (!strategy.appends) continue;
-    EXPECT_EQ(notes.ran, (Ids{compact, begin_wave, generate, intersect, sort_hits, compact,
-                              shade_miss, shade_surface, compact, shadow, finish}));
+    Ids expected{compact,    begin_wave,    generate, intersect, sort_hits, compact,
+                 shade_miss, shade_surface, compact,  shadow,    finish};
+    if (strategy.orders) expected.insert(expected.begin() + 7, order_surfaces);
+    EXPECT_EQ(notes.ran, expected);
   }
+}
+
+TEST(WaveOrder, AThreadPerRayTracesScenesThatPersistentWarpsCannot) {
+  const CompactionInfo& strategy = compaction_info(Compaction::atomic);
+  const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy, true, false);
+  EXPECT_TRUE(notes.traced.empty());
+  EXPECT_EQ(notes.ran, (notes_of<TriangleScene, Branching::divergent, false>(strategy).ran));
 }
 
 TEST(WaveOrder, ReducedBranchingHasNoStageForMisses) {
@@ -92,6 +137,41 @@ TEST(WaveOrder, ReducedBranchingHasNoStageForMisses) {
       notes_of<SphereScene, Branching::reduced, false>(compaction_info(Compaction::atomic));
   EXPECT_EQ(notes.ran,
             (Ids{compact, begin_wave, generate, intersect, compact, shade_surface, finish}));
+}
+
+TEST(WaveOrder, EachKindOfTheSceneIsShadedOverItsRangeOfTheOrderedQueue) {
+  const auto bit = [](MaterialKind kind) { return 1u << static_cast<int>(kind); };
+  OrderedWave wave;
+  wave.run(Compaction::atomic, bit(kind_of<Conductor>) | bit(kind_of<Diffuse>) | bit(several_kinds),
+           true);
+  const Notes<false>& notes = wave.notes;
+  EXPECT_EQ(notes.order.slots, wave.queue);
+  EXPECT_EQ(notes.order.count, &wave.counters.waiting[queue_index(StageId::shade_surface)]);
+  EXPECT_EQ(notes.order.ordered, wave.ordered);
+  const std::pair<std::string, MaterialKind> expected[] = {
+      {"diffuse", kind_of<Diffuse>}, {"conductor", kind_of<Conductor>}, {"all", several_kinds}};
+  ASSERT_EQ(notes.shaded.size(), std::size(expected));
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    const auto& [kernel, queues] = notes.shaded[i];
+    const int kind = static_cast<int>(expected[i].second);
+    EXPECT_EQ(kernel, expected[i].first);
+    EXPECT_EQ(queues.slots, wave.ordered);
+    EXPECT_EQ(queues.first, &wave.counters.kinds.first[kind]);
+    EXPECT_EQ(queues.count, &wave.counters.kinds.count[kind]);
+  }
+}
+
+TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
+  OrderedWave sorted, as_they_come;
+  sorted.run(Compaction::sort, 3, false);
+  ASSERT_EQ(sorted.notes.shaded.size(), 1u);
+  EXPECT_EQ(sorted.notes.shaded[0].second.slots, sorted.ordered);
+  EXPECT_EQ(sorted.notes.shaded[0].second.count, sorted.notes.order.count);
+  EXPECT_EQ(sorted.notes.shaded[0].second.first, nullptr);
+  as_they_come.run(Compaction::atomic, 3, false);
+  ASSERT_EQ(as_they_come.notes.shaded.size(), 1u);
+  EXPECT_EQ(as_they_come.notes.shaded[0].second.slots, as_they_come.queue);
+  EXPECT_EQ(std::ranges::count(as_they_come.notes.ran, StageId::order_surfaces), 0);
 }
 
 TEST(WaveOrder, EveryStageOfAWaveIsReached) {

@@ -109,6 +109,11 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);
+  if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
+    throw Error(
+        fmt::format("--shade material: takes ranges of an ordered queue; --compaction {} has no "
+                    "queues, expected another one",
+                    to_string(options.compaction)));
   if (given.contains("spheres") && options.scene != "spheres")
     throw Error(fmt::format("--spheres {}: has no effect on the scene '{}', only on 'spheres'",
                             options.spheres, options.scene));

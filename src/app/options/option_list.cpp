@@ -210,7 +210,8 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"
            "cub: a selection in order; atomic: appended in any order;\n"
-           "none: not at all, every stage visits the whole pool")
+           "none: not at all, every stage visits the whole pool; sort:\n"
+           "as atomic, and surfaces are ordered by their kind of BSDF")
       .only(wavefront, any_device)
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",
@@ -221,6 +222,11 @@ void add_execution(std::vector<OptionEntry>& list) {
                  return o.pool_size == 0 ? "auto" : std::to_string(o.pool_size);
                }),
            "wavefront: paths in flight; K and M mean 2^10 and 2^20")
+      .only(wavefront, any_device)
+      .add(choice("shade", &Options::shade),
+           "wavefront: surfaces are shaded by one kernel for all, or by\n"
+           "one for each kind of BSDF over its range of an ordered queue;\n"
+           "auto: the latter on CUDA where a scene has several kinds")
       .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",

@@ -60,6 +60,8 @@ class ClosestTriangle {
 /// is asked for: the record of the hit need not be read again.
 class ClosestTriangleId {
  public:
+  static constexpr bool has_masks = false;
+
   PT_HD ClosestTriangleId(float t_min, float t_max) : t_min_(t_min), t_(t_max) {}
 
   PT_HD float t_max() const { return t_; }
@@ -114,6 +116,14 @@ class AnyTriangle {
   bool found_ = false;
 };
 
+/// Whether a mask decides about a triangle that was met at `t`, NaN for not met: what the query
+/// would not take it need not be asked about.
+template <class Query>
+PT_HD bool is_up_to_mask(const Query& query, const Triangle& triangle, float t) {
+  return (triangle.attributes & TriangleAttributes::masked) != 0 && t > query.t_min() &&
+         t <= query.t_max();
+}
+
 /// The same of what is there of masked triangles. Mask has
 ///   bool hides(const Triangle&, const TriangleHit&, std::uint32_t instance) const
 /// and is asked about them alone. Only offer_slots() heeds it.
@@ -128,8 +138,7 @@ class MaskedQuery : public Query {
   /// `t` is that of the hit, or where an instance's box has moved it.
   PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, float t,
                    std::uint32_t instance) const {
-    return (triangle.attributes & TriangleAttributes::masked) != 0 && t > this->t_min() &&
-           t <= this->t_max() && mask_.hides(triangle, hit, instance);
+    return is_up_to_mask(*this, triangle, t) && mask_.hides(triangle, hit, instance);
   }
 
  private:

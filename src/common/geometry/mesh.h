@@ -22,6 +22,8 @@ struct Mesh {
   std::uint32_t material = 0;
   std::uint32_t group = 0;  ///< 0: part of the world; else what instances of this group repeat
   bool masked = false;      ///< set from the material: see TriangleAttributes
+  /// Linear, by vertex and by triangle, or empty: what loaders make a texture of (vertex_colors.h).
+  std::vector<Color> colors = {}, face_colors = {};
 };
 
 }  // namespace pt

@@ -173,6 +173,14 @@ class Builder {
   LightTreeData& data_;
 };
 
+/// The cone around the picture's corners.
+void bound_projector(const Light& light, LightBounds& bounds) {
+  const float right2 = glm::dot(light.c, light.c), aspect = bits_to_float(light.triangle);
+  bounds.axis = light.b;
+  bounds.cone = std::atan(std::sqrt((1.0f + 1.0f / (aspect * aspect)) / right2));
+  bounds.emission = 1e-3f;
+}
+
 /// Of what a spot light gives, its falloff beyond the inner angle is bounded by a cosine that is
 /// positive up to the outer one.
 void bound_spot(const DeltaLight& spot, LightBounds& bounds) {
@@ -206,6 +214,7 @@ std::optional<LightBounds> bounds_of(const Light& light) {
     bounds.cone = half_turn;
     bounds.intensity = luminance(light.radiance);
     if (light.kind == LightKind::spot) bound_spot(light.delta(), bounds);
+    if (light.kind == LightKind::projector) bound_projector(light, bounds);
   }
   if (!(bounds.intensity > 0.0f)) return std::nullopt;
   return bounds;

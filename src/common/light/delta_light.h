@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/light_sample.h"
+#include "common/texture/texture.h"
 
 namespace pt {
 
@@ -22,6 +23,7 @@ enum class LightKind : std::uint8_t {
   sun,
   point,
   spot,
+  projector,
   directional
 };
 
@@ -39,6 +41,10 @@ struct DeltaLight {
   float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
   float cos_outer = -1.0f;   ///< none beyond this one,
   SpotFalloff falloff = SpotFalloff::smooth;  ///< in between
+  Vec3 right{1, 0, 0};  ///< projector: where the picture's u grows, over the tangent of half its
+                        ///< angle
+  float aspect = 1.0f;  ///< width over height; negative where the map to the world mirrors
+  std::uint32_t texture = no_texture;  ///< the picture, of intensity / cos^3 about the axis
 };
 
 /// Between 0 and 1: the share of its intensity that a spot light sends at an angle to its axis.
@@ -83,6 +89,8 @@ PT_HD Color delta_light_power(const DeltaLight& light, float scene_radius) {
   switch (light.kind) {
     case LightKind::point:
       return 4.0f * pi * light.intensity;
+    case LightKind::projector:
+      return 4.0f / (dot(light.right, light.right) * fabsf(light.aspect)) * light.intensity;
     case LightKind::spot:
       return 2.0f * pi * (1.0f - 0.5f * (light.cos_inner + light.cos_outer)) * light.intensity;
     default:

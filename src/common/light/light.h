@@ -38,8 +38,10 @@ struct alignas(16) Light {
            ///< sun: where it is
   float weight;
   Vec3 c;  ///< triangle: the edge to the third vertex; spot: cosines of both angles,
-           ///< falloff; sphere: square of the radius; sun: see Sun::one_minus_cos
-  std::uint32_t triangle;  ///< its id, where it has texture coordinates; else no_texture
+           ///< falloff; projector: see DeltaLight::right; sphere: square of the radius; sun: see
+           ///< Sun::one_minus_cos
+  std::uint32_t triangle;  ///< its id, where it has texture coordinates, else no_texture;
+                           ///< projector: the bits of its aspect
   Color radiance;          ///< or intensity, or irradiance, as the kind has it
   std::uint32_t emission_texture;
 
@@ -53,6 +55,21 @@ struct alignas(16) Light {
 };
 
 static_assert(sizeof(Light) == 64);
+
+/// What a projector sends in a direction: its picture at `uv`, times `factor`.
+struct Projection {
+  Vec2 uv;
+  float factor = 0.0f;
+};
+
+PT_HD Projection project(const Light& light, const Vec3& direction) {
+  const float cosine = dot(light.b, direction);
+  const Vec3 up = bits_to_float(light.triangle) * cross_rounded(light.c, light.b);
+  const float u = 0.5f + 0.5f * dot(light.c, direction) / cosine;
+  const float v = 0.5f + 0.5f * dot(up, direction) / cosine;
+  const bool inside = cosine > 0.0f && u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f;
+  return {{u, v}, inside ? 1.0f / (cosine * cosine * cosine) : 0.0f};
+}
 
 PT_HD float luminance(const Color& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 

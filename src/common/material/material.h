@@ -30,6 +30,11 @@ enum class MaterialKind : std::uint8_t {};
 template <class Bsdf>
 inline constexpr MaterialKind kind_of{static_cast<std::uint8_t>(index_in<Bsdf>(Bsdfs{}))};
 
+/// Of a material made of others, whose BSDFs are not all of one kind.
+inline constexpr MaterialKind several_kinds{Bsdfs::size};
+/// Whoever has something for each kind has so many.
+inline constexpr int kind_count = Bsdfs::size + 1;
+
 /// A colour, or a number in all of its components, times a texture where there is one.
 struct alignas(16) Parameter {
   Color value = Color(0.0f);
@@ -60,7 +65,7 @@ struct alignas(16) Material {
   static constexpr std::uint8_t tangents = 8;   ///< needs a tangent along which u grows
   static constexpr std::uint8_t nested = 16;    ///< no BSDF, but a MaterialNode
 
-  MaterialKind kind = kind_of<Diffuse>;
+  MaterialKind kind = kind_of<Diffuse>;  ///< nested: of all that it may become, or several_kinds
   std::uint8_t flags = 0;
   MaterialNode node = MaterialNode::none;
   std::uint32_t parameters = 0;          ///< where the others begin in the pool; nested: `first`

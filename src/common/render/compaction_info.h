@@ -13,13 +13,14 @@ enum class TagPass {
 };
 
 //   name, whether stages append to queues (else they write tags), whether there are queues, its
-//   pass
-#define PT_COMPACTIONS(STRATEGY)     \
-  STRATEGY(cub, false, true, gather) \
-  STRATEGY(atomic, true, true, none) \
-  STRATEGY(none, false, false, count)
+//   pass, whether the queue of surfaces is ordered by the kind of BSDF
+#define PT_COMPACTIONS(STRATEGY)             \
+  STRATEGY(cub, false, true, gather, false)  \
+  STRATEGY(atomic, true, true, none, false)  \
+  STRATEGY(none, false, false, count, false) \
+  STRATEGY(sort, true, true, none, true)
 
-#define PT_COMPACTION_ENUMERATOR(name, appends, has_queues, pass) name,
+#define PT_COMPACTION_ENUMERATOR(name, appends, has_queues, pass, orders) name,
 enum class Compaction { PT_COMPACTIONS(PT_COMPACTION_ENUMERATOR) };
 #undef PT_COMPACTION_ENUMERATOR
 
@@ -29,10 +30,11 @@ struct CompactionInfo {
   bool appends;
   bool has_queues;
   TagPass pass;
+  bool orders;
 };
 
-#define PT_COMPACTION_ROW(name, appends, has_queues, pass) \
-  {Compaction::name, #name, appends, has_queues, TagPass::pass},
+#define PT_COMPACTION_ROW(name, appends, has_queues, pass, orders) \
+  {Compaction::name, #name, appends, has_queues, TagPass::pass, orders},
 inline constexpr CompactionInfo compaction_table[] = {PT_COMPACTIONS(PT_COMPACTION_ROW)};
 #undef PT_COMPACTION_ROW
 #undef PT_COMPACTIONS

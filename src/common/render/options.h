@@ -17,6 +17,7 @@ namespace pt {
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class Schedule { automatic, host, graph };
+enum class Shade { automatic, uber, material };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path };
 enum class Branching { divergent, reduced };
@@ -119,6 +120,7 @@ struct Options {
   Compaction compaction = Compaction::atomic;
   std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
   bool regenerate = true;
+  Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
   int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
   StageBlocks stage_block = make_stage_blocks(256);

@@ -24,6 +24,7 @@ namespace pt {
   STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \
   STAGE(compact, idle, false)               \
+  STAGE(order_surfaces, idle, false)        \
   STAGE(begin_wave, idle, false)            \
   STAGE(megakernel, idle, false)            \
   STAGE(serial, idle, false)                \

@@ -187,6 +187,11 @@ class Lister {
     light.radiance = delta.intensity;
     light.triangle = light.emission_texture = no_texture;
     light.kind = delta.kind;
+    if (delta.kind == LightKind::projector) {
+      light.c = delta.right;
+      light.triangle = float_to_bits(delta.aspect);
+      light.emission_texture = delta.texture;
+    }
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
     data_.lights.push_back(light);
     finish_lamp(data_.lights.size() - 1);

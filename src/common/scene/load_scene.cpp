@@ -8,6 +8,7 @@
 
 #include "common/scene/files/mesh_files.h"
 #include "common/scene/files/texture_store.h"
+#include "common/scene/files/vertex_colors.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/gltf/gltf.h"
 #include "common/scene/mitsuba/mitsuba_xml.h"
@@ -37,8 +38,11 @@ void complete(const std::filesystem::path& path, const LoadOptions& options, Sce
 SceneData load_ply(const std::filesystem::path& path, const LoadOptions& options) {
   SceneData scene;
   Mesh mesh = read_ply(path);
-  mesh.material = scene.add_material(make_diffuse(Color(0.5f)));
+  VertexColors colors(scene, options);
+  mesh.material = scene.add_material(make_diffuse(Color(mesh.colors.empty() ? 0.5f : 1.0f)));
+  colors.tint(mesh, false, path.string());
   scene.meshes.push_back(std::move(mesh));
+  colors.finish();
   complete(path, options, scene);
   return scene;
 }
@@ -93,7 +97,12 @@ SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options
     numbers.push_back(add_obj_material(material, textures, scene));
   }
   scene.meshes = std::move(file.meshes);
-  for (Mesh& mesh : scene.meshes) mesh.material = numbers[mesh.material];
+  VertexColors colors(scene, options);
+  for (Mesh& mesh : scene.meshes) {
+    mesh.material = numbers[mesh.material];
+    colors.tint(mesh, false, path.string());
+  }
+  colors.finish();
   complete(path, options, scene);
   return scene;
 }

@@ -37,6 +37,9 @@ void pack_node(const MaterialDescription& source, const SceneData& scene, Materi
   }
   material.node = source.node;
   material.parameters = source.children[0], material.second = source.children[1];
+  material.kind = scene.material_records[source.children[0]].kind;
+  const MaterialKind second = scene.material_records[source.children[1]].kind;
+  if (material.kind != second) material.kind = several_kinds;
 }
 
 void pack_bsdf(const MaterialDescription& source, SceneData& scene, Material& material) {
@@ -84,6 +87,18 @@ void list_opacities(SceneData& scene) {
 }
 
 }  // namespace
+
+std::uint32_t kinds_of(const SceneData& scene) {
+  static_assert(kind_count <= 32);
+  std::uint32_t kinds = 0;
+  const auto add = [&](std::uint32_t material) {
+    kinds |= 1u << static_cast<int>(scene.material_records[material].kind);
+  };
+  for (const Mesh& mesh : scene.meshes) add(mesh.material);
+  for (const std::uint32_t material : scene.sphere_material) add(material);
+  for (const std::uint32_t material : scene.quad_material) add(material);
+  return kinds;
+}
 
 void prepare_materials(SceneData& scene) {
   weigh_emission_textures(scene);

@@ -5,6 +5,9 @@
 
 namespace pt {
 
+/// A bit for each MaterialKind of the materials that surfaces have.
+std::uint32_t kinds_of(const SceneData& scene);
+
 /// Fills material_records, parameters and emissions from the materials: the first parameters by
 /// material and then the others, emissions only of what shines, textures' means measured.
 void prepare_materials(SceneData& scene);

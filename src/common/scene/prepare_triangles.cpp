@@ -20,8 +20,7 @@ namespace {
 Accel automatic_structure(const SceneData& scene, const Options& options) {
   const bool persistent = options.device.kind == DeviceChoice::Kind::cuda &&
                           options.mode == Mode::wavefront && scene.instances.empty() &&
-                          scene.opacities.empty() && scene.spheres.empty() &&
-                          options.compaction == Compaction::atomic;
+                          scene.spheres.empty() && compaction_info(options.compaction).appends;
   return persistent ? Accel::cwbvh : Accel::bvh2;
 }
 

@@ -44,6 +44,9 @@ struct Scene {
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
 
+  bool has_only_triangles() const {
+    return primitives.count() == 0 && triangles.instance_count == 0;
+  }
   PT_HD Material material(std::uint32_t number) const { return load_wide(&materials[number]); }
   /// `material` shines.
   PT_HD Emission emission(const Material& material) const {
@@ -83,15 +86,25 @@ struct Traits {
   static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
+  /// The BSDFs that a kernel shades.
+  using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
   static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
 };
-
-/// The BSDFs of a scene's kernels.
-template <class T>
-using BsdfsOf = std::conditional_t<T::lighting == Lighting::full, Bsdfs, PaperBsdfs>;
 
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
 using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
+
+/// The same of scenes that have triangles and nothing else.
+template <class T>
+using TrianglesAlone = std::conditional_t<
+    T::geometry == Geometry::mixed,
+    Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks, typename T::Integrator>, T>;
+
+/// Of surfaces whose materials are all of one kind.
+template <class T, class Bsdf>
+struct OneKind : T {
+  using BsdfList = TypeList<Bsdf>;
+};
 
 }  // namespace pt

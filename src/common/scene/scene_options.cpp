@@ -28,8 +28,8 @@ std::string unless(E value, Usual... usual) {
 }
 
 constexpr const char* paper =
-    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power and --sampler "
-    "independent; expected such a scene instead of '{}', or other options";
+    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
+    "independent and not --shade material; expected such a scene instead of '{}', or other options";
 
 /// The whole policy. What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {
@@ -60,9 +60,10 @@ constexpr SceneRule rules[] = {
      paper},
 };
 
-/// Kernels without triangles know the paper's materials alone.
+/// Kernels without triangles know the paper's materials alone, which have no back.
 bool needs_triangles(const MaterialDescription& material) {
-  return material.node != MaterialNode::none || !material.opacity.is_opaque() ||
+  const bool has_black_back = material.one_sided && !is_black(material.parameters[0].value);
+  return has_black_back || material.node != MaterialNode::none || !material.opacity.is_opaque() ||
          static_cast<int>(material.kind) >= PaperBsdfs::size;
 }
 
@@ -70,7 +71,8 @@ bool needs_triangles(const MaterialDescription& material) {
 
 bool is_lean(const SceneData& scene, const Options& o) {
   return has_primitives_only(scene) && o.sampling == DirectionSampling::bsdf &&
-         o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent;
+         o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent &&
+         o.shade != Shade::material;
 }
 
 bool has_primitives_only(const SceneData& scene) {

@@ -14,7 +14,7 @@ struct FirstHit {
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);  ///< geometric, outward
   Vec3 shading_normal = Vec3(0.0f);
-  Vec2 uv = Vec2(0.0f);
+  Vec2 uv = Vec2(0.0f);  ///< v from a texture's head downwards, as in files
   Color albedo = Color(0.0f);
   std::uint32_t primitive = no_primitive;  ///< spheres, then quads, then triangles, as loaded
   std::uint32_t instance = no_primitive;
@@ -38,7 +38,7 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, 
       shading_frame<Traits>(surface.shading_normal, surface.dp_du).to_local(-ray.direction);
   Color albedo(0.0f);
   const SurfaceParameters<Traits> parameters(scene, surface);
-  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
+  visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const BsdfSample sample = bsdf.sample(wo, Vec3(u));
     albedo = sample.outside * sample.weight;
   });
@@ -71,6 +71,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
     if (!surface.material.is(Material::textured)) {
       first.uv = triangle_uv<Traits>(scene, ray, hit, triangle);
     }
+    if ((triangle.attributes & TriangleAttributes::uvs) != 0) first.uv.y = 1.0f - first.uv.y;
   }
   return first;
 }

@@ -33,22 +33,18 @@ PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
          static_cast<float>(scene.light_count);
 }
 
-PT_HD Color textured_radiance(const Scene& scene, const Light& light, const Vec3& barycentric) {
-  if (light.emission_texture == no_texture) return light.radiance;
-  const bool has_uvs = light.triangle != no_texture;
-  const Vec2 uv = texture_coordinates(scene, light.triangle, has_uvs, barycentric);
-  return textured(scene, light.radiance, light.emission_texture, uv);
-}
-
-/// Any light but the environment.
-PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
-                                        float u0, float u1) {
+/// Any light but the environment, without its texture; `uv`: where in that.
+PT_HD IncidentLight sample_plain_light(const Scene& scene, const Light& light, const Vec3& from,
+                                       float u0, float u1, Vec2& uv) {
   if (is_triangle(light.kind)) {
     const TriangleLightSample s =
         sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
     if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
-    return {s.light.wi, s.light.end, textured_radiance(scene, light, b), s.light.pdf};
+    if (light.emission_texture != no_texture) {
+      uv = texture_coordinates(scene, light.triangle, light.triangle != no_texture, b);
+    }
+    return {s.light.wi, s.light.end, light.radiance, s.light.pdf};
   }
   if (light.kind == LightKind::sphere) {
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
@@ -58,8 +54,22 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
     const LightSample s = sample_sun(light.b, light.c.x, u0, u1);
     return {s.wi, s.end, light.radiance, s.pdf};
   }
-  const DeltaLightSample s = sample_delta_light(light.delta(), from);
+  DeltaLightSample s = sample_delta_light(light.delta(), from);
+  if (light.kind == LightKind::projector) {
+    const Projection projection = project(light, -s.wi);
+    uv = projection.uv;
+    s.irradiance *= projection.factor;
+  }
   return {s.wi, s.end, s.irradiance, 1.0f, true};
+}
+
+/// Any light but the environment.
+PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
+                                        float u0, float u1) {
+  Vec2 uv(0.0f);
+  IncidentLight incident = sample_plain_light(scene, light, from, u0, u1, uv);
+  incident.radiance = textured(scene, incident.radiance, light.emission_texture, uv);
+  return incident;
 }
 
 /// Any light (Lighting::full), chosen by the selector.

@@ -117,7 +117,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   BsdfSample next;
   BsdfValue value;
   const SurfaceParameters<Traits> parameters(scene, surface);
-  visit<BsdfsOf<Traits>>(surface.material.kind, parameters, [&](const auto& bsdf) {
+  visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
     if (asks) {
       const Vec3 wi = frame.to_local(incident.wi);

@@ -170,6 +170,14 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   return surface;
 }
 
+/// The material that a ray met.
+PT_HD std::uint32_t material_number_at(const Scene& scene, const Hit& hit) {
+  const std::uint32_t primitives = scene.primitives.count();
+  return hit.primitive < primitives
+             ? scene.material_of[hit.primitive]
+             : scene.triangles.triangles[hit.primitive - primitives].material;
+}
+
 template <class Traits>
 PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {

@@ -140,7 +140,8 @@ TEST(GltfErrors, Extensions) {
   maker.root["extensionsUsed"] = {"KHR_draco_mesh_compression", "KHR_materials_unlit"};
   EXPECT_EQ(Loaded(maker).count("KHR_draco_mesh_compression is ignored"), 1u);
   EXPECT_EQ(Loaded(maker).count("extensionsUsed"), 1u);
-  maker.root["extensionsRequired"] = {"KHR_materials_unlit"};
+  maker.root["extensionsRequired"] = {"KHR_materials_unlit", "KHR_materials_clearcoat",
+                                      "KHR_materials_sheen", "KHR_materials_specular"};
   EXPECT_NO_THROW(Loaded{maker});
   maker.root["extensionsRequired"].push_back("KHR_draco_mesh_compression");
   expect_load_error(maker.gltf(), "KHR_draco_mesh_compression is not supported");

@@ -167,7 +167,7 @@ TEST(MitsubaXml, whatIsNotKnownIsReportedOnce) {
       "<shape type=\"wobble\"/>\n<shape type=\"wobble\"/>\n"
       "<shape type=\"rectangle\"><float name=\"wobbliness\" value=\"1\"/></shape>\n"
       "<shape type=\"rectangle\"><bsdf type=\"wobbly\"/></shape>\n"
-      "<emitter type=\"wobbler\"/><surprise/><integrator type=\"sppm\"/>";
+      "<emitter type=\"wobbler\"/><surprise/><integrator type=\"depth\"/>";
   const LoadedScene loaded = load_xml(xml);
   EXPECT_EQ(loaded.count("scene.xml:2: shape 'wobble'"), 1);
   EXPECT_EQ(loaded.count("'wobble'"), 1);
@@ -176,7 +176,7 @@ TEST(MitsubaXml, whatIsNotKnownIsReportedOnce) {
   EXPECT_EQ(loaded.count("bsdf 'wobbly'"), 1);
   EXPECT_EQ(loaded.count("emitter 'wobbler'"), 1);
   EXPECT_EQ(loaded.count("<surprise>"), 1);
-  EXPECT_EQ(loaded.count("integrator 'sppm'"), 1);
+  EXPECT_EQ(loaded.count("integrator 'depth'"), 1);
   EXPECT_EQ(loaded.count("no sensor"), 1);
   EXPECT_EQ(loaded.count("NO LIGHT OF THE FILE IS LEFT"), 1);
   EXPECT_EQ(loaded.warnings.size(), 8u);
@@ -204,6 +204,35 @@ TEST(MitsubaXml, depthCountsRays) {
                 .scene.defaults.max_depth,
             3);
   EXPECT_FALSE(load_xml(square).scene.defaults.max_depth);
+}
+
+TEST(MitsubaXml, howLightIsComputedIsNoFinding) {
+  const auto load = [](const std::string& integrator) {
+    const std::string rest = "<sensor type=\"perspective\"/><emitter type=\"constant\"/>";
+    return load_xml(integrator + rest + square, "0.6.0");
+  };
+  for (const char* type :
+       {"path", "volpath", "ptracer", "sppm", "bdpt", "pssmlt", "photonmapper"}) {
+    const LoadedScene loaded =
+        load("<integrator type=\"" + std::string(type) +
+             "\"><integer name=\"maxDepth\" value=\"7\"/><integer name=\"rrDepth\" value=\"3\"/>"
+             "</integrator>");
+    EXPECT_TRUE(loaded.warnings.empty()) << type << ": " << loaded.warnings[0];
+    EXPECT_EQ(loaded.scene.defaults.max_depth, 7) << type;
+    EXPECT_EQ(loaded.scene.defaults.rr_depth, 3) << type;
+  }
+  const LoadedScene photons = load(
+      "<integrator type=\"sppm\"><integer name=\"photonCount\" value=\"250000\"/>"
+      "<boolean name=\"hideEmitters\" value=\"true\"/></integrator>");
+  EXPECT_EQ(photons.count("hide_emitters"), 1);
+  EXPECT_EQ(photons.warnings.size(), 1u);
+  const LoadedScene adaptive =
+      load("<integrator type=\"adaptive\"><integrator type=\"bdpt\"/></integrator>");
+  EXPECT_TRUE(adaptive.warnings.empty());
+  for (const char* type : {"aov", "depth", "ao", "multichannel"}) {
+    const LoadedScene other = load("<integrator type=\"" + std::string(type) + "\"/>");
+    EXPECT_EQ(other.count("integrator '" + std::string(type) + "'"), 1);
+  }
 }
 
 }  // namespace

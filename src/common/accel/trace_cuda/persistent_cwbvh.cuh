@@ -53,6 +53,8 @@ struct PersistentTuning {
 ///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
 ///     first's number; count 0: there is none left
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
+///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
+///     triangle's mask lets the ray through
 template <class Query, class Work>
 class PersistentTracer {
  public:
@@ -158,12 +160,38 @@ class PersistentTracer {
     const std::uint32_t last = leaf.first + leaf.count - 1;
     const Triangle a = load_wide(&tree_.triangles[leaf.first]);
     const Triangle b = load_wide(&tree_.triangles[last]);
-    const float t_a = intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t;
-    const float t_b = intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t;
+    float t_a = intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t;
+    float t_b = intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t;
+    if constexpr (Query::has_masks) {
+      const bool ask_a = is_up_to_mask(query_, a, t_a);
+      const bool ask_b = leaf.count == 2 && is_up_to_mask(query_, b, t_b);
+      drop_hidden(leaf, ask_a, ask_b, t_a, t_b);
+    }
     if (query_.offer_nearer(tree_, {t_a, leaf.first, a.id}, {t_b, last, b.id})) {
       nodes_.bits = leaves_.bits = 0;
       depth_ = 0;
     }
+  }
+
+  /// What a mask hides was not met. One loop, so that lanes ask together, be it about their first
+  /// triangle or their second.
+  __device__ void drop_hidden(const CwbvhLeaf& leaf, bool ask_a, bool ask_b, float& t_a,
+                              float& t_b) const {
+    PT_UNROLL(1)
+    while (ask_a || ask_b) {
+      const bool hidden = is_hidden(leaf.first + (ask_a ? 0 : 1));
+      if (hidden) (ask_a ? t_a : t_b) = bits_to_float(0x7fffffffu);
+      if (!ask_a) ask_b = false;
+      ask_a = false;
+    }
+    if (leaf.count == 1) t_b = t_a;
+  }
+
+  /// Meets the triangle again: to keep its coordinates would cost all tests registers, which spill.
+  __device__ bool is_hidden(std::uint32_t slot) const {
+    const Triangle triangle = load_wide(&tree_.triangles[slot]);
+    return work_.hides(query_, slot,
+                       intersect_triangle(triangle_ray_, triangle.v0, triangle.v1, triangle.v2));
   }
 
   const TriangleTree& tree_;

@@ -17,6 +17,10 @@ std::uint32_t ObjMeshBuilder::vertex_of(const ObjCorner& corner, const ObjVertic
     has_uvs_ |= corner.uv != obj_none;
     has_normals_ |= corner.normal != obj_none;
     mesh_.positions.push_back(vertices.positions[corner.position]);
+    if (corner.position < vertices.colors.size()) {
+      mesh_.colors.resize(next, Color(1.0f));
+      mesh_.colors.push_back(vertices.colors[corner.position]);
+    }
     mesh_.uvs.push_back(corner.uv == obj_none ? Vec2(0.0f) : vertices.uvs[corner.uv]);
     mesh_.normals.push_back(corner.normal == obj_none ? Vec3(0.0f)
                                                       : vertices.normals[corner.normal]);
@@ -37,6 +41,7 @@ void ObjMeshBuilder::add_face(const std::vector<ObjCorner>& corners, const ObjVe
 Mesh ObjMeshBuilder::finish() && {
   if (!has_uvs_) mesh_.uvs = {};
   if (!has_normals_) mesh_.normals = {};
+  if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.positions.size(), Color(1.0f));
   return std::move(mesh_);
 }
 

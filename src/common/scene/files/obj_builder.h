@@ -13,6 +13,7 @@ namespace pt {
 /// Positions, texture coordinates and normals that a file has listed so far.
 struct ObjVertices {
   std::vector<Vec3> positions;
+  std::vector<Color> colors;  ///< linear, of the first positions; the others have none
   std::vector<Vec2> uvs;
   std::vector<Vec3> normals;
 };
@@ -30,8 +31,8 @@ class ObjMeshBuilder {
   /// Adds a face of 3 or more corners as a fan.
   void add_face(const std::vector<ObjCorner>& corners, const ObjVertices& vertices);
 
-  /// The mesh, one vertex for each different corner. Without uvs or normals where no corner has
-  /// one; else a corner without has the uv (0, 0) and the normal 0.
+  /// The mesh, one vertex for each different corner. Without uvs, normals or colours where no
+  /// corner has one; else a corner without has the uv (0, 0), the normal 0, and is white.
   Mesh finish() &&;
 
  private:

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/files/text_number.h"
 
 namespace pt {
@@ -78,7 +79,8 @@ class ObjLines {
   void read(std::string_view line) {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
-      vertices_.positions.push_back(next_position(line));  // a weight or colour may follow
+      vertices_.positions.push_back(next_position(line));
+      read_color(line);
     } else if (keyword == "vt") {
       vertices_.uvs.push_back(next_vec2(line));
     } else if (keyword == "vn") {
@@ -93,6 +95,26 @@ class ObjLines {
   }
 
  private:
+  /// What follows a position: a weight, a colour in the sRGB curve, or both.
+  void read_color(std::string_view rest) {
+    if (trim(rest).empty() || trim(rest).starts_with('#')) return;
+    std::string_view words[4];
+    std::size_t count = 0;
+    while (count < 4 && !(words[count] = next_word(rest)).empty() &&
+           !words[count].starts_with('#')) {
+      ++count;
+    }
+    if (count < 3) return;
+    Color color;
+    for (int i = 0; i < 3; ++i) {
+      std::string_view word = words[count - 3 + static_cast<std::size_t>(i)];
+      const float value = next_float(word);
+      color[i] = value > 0.0f ? srgb_curve.decode(std::min(value, 1.0f)) : 0.0f;
+    }
+    vertices_.colors.resize(vertices_.positions.size() - 1, Color(1.0f));
+    vertices_.colors.push_back(color);
+  }
+
   void read_face(std::string_view line) {
     corners_.clear();
     for (std::string_view word; !(word = next_word(line)).empty();) {

@@ -29,6 +29,10 @@ std::uint64_t next_ply_count(Values& values, PlyType type) {
   return static_cast<std::uint64_t>(count);
 }
 
+/// The linear colour of three numbers of a file: integers are in the sRGB curve, the type's largest
+/// is 1; floats are linear. What is negative or not finite becomes 0.
+Color decode_ply_color(const Color& numbers, PlyType type);
+
 /// Passes over a property.
 template <class Values>
 void skip_ply_property(Values& values, const PlyProperty& property) {

@@ -2,6 +2,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 
 #include "common/scene/files/ply_elements.h"
@@ -21,6 +23,18 @@ std::size_t find_indices(const PlyElement& element) {
   return *indices;
 }
 
+/// The numbers of the properties red, green and blue, or none.
+using FaceColor = std::array<std::optional<std::size_t>, 3>;
+
+FaceColor find_color(const PlyElement& element) {
+  const FaceColor color = {element.find({"red", "r"}), element.find({"green", "g"}),
+                           element.find({"blue", "b"})};
+  for (const auto& component : color) {
+    if (!component || element.properties[*component].count_type) return {};
+  }
+  return color;
+}
+
 /// Reads the vertices of one face.
 template <class Values>
 void read_polygon(Values& values, const PlyProperty& property, std::uint64_t vertex_count,
@@ -38,27 +52,45 @@ void read_polygon(Values& values, const PlyProperty& property, std::uint64_t ver
   }
 }
 
+/// One face: its vertices and, where `color` says so, the three numbers of its colour.
+template <class Values>
+void read_face(Values& values, const PlyElement& element, std::uint64_t vertex_count,
+               std::size_t indices, const FaceColor& color, std::vector<std::uint32_t>& polygon,
+               Color& numbers) {
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const auto component = std::ranges::find(color, p);
+    if (p == indices) {
+      read_polygon(values, element.properties[p], vertex_count, polygon);
+    } else if (component != color.end()) {
+      numbers[static_cast<int>(component - color.begin())] =
+          static_cast<float>(values.next(element.properties[p].type));
+    } else {
+      skip_ply_property(values, element.properties[p]);
+    }
+  }
+}
+
 /// One face after the other, any properties.
 template <class Values>
 void read_in_turn(Values& values, const PlyElement& element, std::uint64_t vertex_count,
                   Mesh& mesh) {
   const std::size_t indices = find_indices(element);
+  const FaceColor color = find_color(element);
   std::vector<std::uint32_t> polygon;
+  Color numbers(0.0f);
   mesh.triangles.reserve(element.count);
   for (std::uint64_t i = 0; i < element.count; ++i) {
     try {
-      for (std::size_t p = 0; p < element.properties.size(); ++p) {
-        if (p == indices) {
-          read_polygon(values, element.properties[p], vertex_count, polygon);
-        } else {
-          skip_ply_property(values, element.properties[p]);
-        }
-      }
+      read_face(values, element, vertex_count, indices, color, polygon, numbers);
     } catch (const Error& error) {
       throw Error(fmt::format("face {}: {}", i, error.what()));
     }
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       mesh.triangles.push_back({{polygon[0], polygon[k - 1], polygon[k]}});
+    }
+    if (color[0]) {
+      mesh.face_colors.resize(mesh.triangles.size(),
+                              decode_ply_color(numbers, element.properties[*color[0]].type));
     }
   }
 }
@@ -114,6 +146,7 @@ struct EqualFaces {
 
 /// The faces as EqualFaces if the first and the size of the file allow that they are.
 std::optional<EqualFaces> guess_equal_faces(PlyBinaryValues values, const PlyElement& element) {
+  if (find_color(element)[0]) return {};
   const std::size_t indices = find_indices(element);
   const PlyProperty& list = element.properties[indices];
   std::size_t before = 0, after = 0;

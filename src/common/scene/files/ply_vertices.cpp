@@ -11,7 +11,7 @@ namespace pt {
 namespace {
 
 /// Where a property of a vertex goes.
-enum Role : int { x, y, z, nx, ny, nz, u, v, role_count };
+enum Role : int { x, y, z, nx, ny, nz, red, green, blue, u, v, role_count };
 using Roles = std::array<std::optional<std::size_t>, role_count>;  ///< the property of each
 
 /// Which properties mean what. Throws Error for vertices without positions.
@@ -22,10 +22,14 @@ Roles find_roles(const PlyElement& element) {
                  element.find({"nx"}),
                  element.find({"ny"}),
                  element.find({"nz"}),
+                 element.find({"red", "r", "diffuse_red"}),
+                 element.find({"green", "g", "diffuse_green"}),
+                 element.find({"blue", "b", "diffuse_blue"}),
                  element.find({"u", "s", "texture_u", "texture_s"}),
                  element.find({"v", "t", "texture_v", "texture_t"})};
   if (!roles[x] || !roles[y] || !roles[z]) throw Error("vertices without x, y and z");
   if (!roles[nx] || !roles[ny] || !roles[nz]) roles[nx] = roles[ny] = roles[nz] = {};
+  if (!roles[red] || !roles[green] || !roles[blue]) roles[red] = roles[green] = roles[blue] = {};
   if (!roles[u] || !roles[v]) roles[u] = roles[v] = {};
   for (const auto& property : roles) {
     if (property && element.properties[*property].count_type) {
@@ -42,12 +46,14 @@ void allocate(const PlyElement& element, const Roles& roles, Mesh& mesh) {
   }
   mesh.positions.resize(element.count);
   if (roles[nx]) mesh.normals.resize(element.count);
+  if (roles[red]) mesh.colors.resize(element.count);
   if (roles[u]) mesh.uvs.resize(element.count);
 }
 
 float* place_of(Mesh& mesh, int role, std::size_t vertex) {
   if (role < nx) return &mesh.positions[vertex][role - x];
-  if (role < u) return &mesh.normals[vertex][role - nx];
+  if (role < red) return &mesh.normals[vertex][role - nx];
+  if (role < u) return &mesh.colors[vertex][role - red];
   return &mesh.uvs[vertex][role - u];
 }
 
@@ -114,6 +120,17 @@ void read_records(PlyBinaryValues& values, const PlyElement& element, const Role
                     });
 }
 
+void decode_colors(const PlyElement& element, const Roles& roles, Mesh& mesh) {
+  if (!roles[red]) return;
+  const PlyType type = element.properties[*roles[red]].type;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.colors.size(), 2048),
+                    [&](const tbb::blocked_range<std::size_t>& block) {
+                      for (std::size_t i = block.begin(); i < block.end(); ++i) {
+                        mesh.colors[i] = decode_ply_color(mesh.colors[i], type);
+                      }
+                    });
+}
+
 }  // namespace
 
 void check_ply_count(const PlyElement& element, std::size_t rest_bytes, bool ascii) {
@@ -136,6 +153,7 @@ void read_ply_vertices(PlyBinaryValues& values, const PlyElement& element, Mesh&
   } else {
     read_records(values, element, roles, mesh);
   }
+  decode_colors(element, roles, mesh);
 }
 
 void read_ply_vertices(PlyTextValues& values, const PlyElement& element, Mesh& mesh) {
@@ -143,6 +161,7 @@ void read_ply_vertices(PlyTextValues& values, const PlyElement& element, Mesh& m
   check_ply_count(element, values.rest().size(), true);
   allocate(element, roles, mesh);
   read_in_turn(values, element, roles, mesh);
+  decode_colors(element, roles, mesh);
 }
 
 }  // namespace pt

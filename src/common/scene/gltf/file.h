@@ -15,11 +15,18 @@
 namespace pt::gltf {
 
 /// The extensions that are understood; others are ignored, or an Error where the file needs them.
-inline constexpr std::array<std::string_view, 9> known_extensions = {
-    "KHR_lights_punctual",        "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",       "KHR_mesh_quantization",
+inline constexpr std::array<std::string_view, 12> known_extensions = {
+    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
     "KHR_texture_transform"};
 
 /// A place is a path of names and numbers such as meshes[3].primitives[0].

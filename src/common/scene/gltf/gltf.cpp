@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "common/scene/files/vertex_colors.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/gltf/bake.h"
 #include "common/scene/gltf/cameras.h"
@@ -64,14 +65,17 @@ void add_group(const std::vector<Mesh>& meshes, const std::vector<const PlacedNo
   for (const PlacedNode* node : nodes) scene.instances.push_back({group, node->to_world});
 }
 
-void add_meshes(File& file, const std::vector<PlacedNode>& nodes, SceneData& scene) {
+void add_meshes(File& file, const std::vector<PlacedNode>& nodes, const LoadOptions& options,
+                SceneData& scene) {
   Materials materials(file, scene);
+  VertexColors colors(scene, options);
   std::uint32_t groups = 0;
   for (const auto& [index, users] : uses_of_meshes(file, nodes)) {
     std::vector<Mesh> meshes;
     for (PrimitiveMesh& primitive : read_primitives(file, index)) {
-      primitive.mesh.material =
-          materials.number(primitive.material, fmt::format("meshes[{}]", index));
+      const std::string place = fmt::format("meshes[{}]", index);
+      primitive.mesh.material = materials.number(primitive.material, place);
+      colors.tint(primitive.mesh, materials.is_unlit(primitive.material), file.describe(place));
       meshes.push_back(std::move(primitive.mesh));
     }
     if (meshes.empty()) continue;
@@ -89,6 +93,7 @@ void add_meshes(File& file, const std::vector<PlacedNode>& nodes, SceneData& sce
     }
     if (!instances.empty()) add_group(meshes, instances, ++groups, scene);
   }
+  colors.finish();
 }
 
 }  // namespace
@@ -102,7 +107,7 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   SceneData scene;
   scene.name = path.filename().string();
   const std::vector<PlacedNode> nodes = place_nodes(file);
-  add_meshes(file, nodes, scene);
+  add_meshes(file, nodes, options, scene);
   if (scene.meshes.empty()) file.fail("", "no triangles in the scene: expected at least one");
   add_lights(file, nodes, scene);
   const Bounds bounds = scene_bounds(scene);

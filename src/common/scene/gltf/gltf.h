@@ -14,9 +14,8 @@ namespace pt {
 /// it, a scene without light a studio's; `options.warn` is told so.
 ///
 /// What has no counterpart here is replaced by the nearest that has, and reported once a kind:
-/// metallic-roughness by diffuse or metal, transmission by smooth glass, textures of single numbers
-/// by their mean. Ignored: normal maps, transparency by alpha, colours of vertices, points and
-/// lines, skins, morph targets and animations.
+/// what the principled BSDF has otherwise, colours of vertices beside textures by their mean.
+/// Ignored: points and lines, skins, morph targets and animations.
 ///
 /// Throws Error, one line with the file and the object's place in it
 /// (meshes[3].primitives[0].attributes.POSITION), for a file that is missing, malformed or needs

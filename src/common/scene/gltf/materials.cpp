@@ -56,6 +56,12 @@ std::uint32_t Materials::number(int index, const std::string& place) {
   return result;
 }
 
+bool Materials::is_unlit(int index) const {
+  return index >= 0 &&
+         find_extension(file_.model.materials[static_cast<std::size_t>(index)].extensions,
+                        "KHR_materials_unlit");
+}
+
 MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place) {
   MaterialDescription result;
   set_opacity(source, place, result);
@@ -134,6 +140,10 @@ void Materials::set_transmission(const tinygltf::Material& source, const std::st
   result.parameters[3] =
       number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
                 place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
+  const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
+  if (volume && vector_or(*volume, "attenuationColor", Color(1.0f)) != Color(1.0f)) {
+    file_.report(place, "KHR_materials_volume: media are not supported: glass is clear inside");
+  }
 }
 
 /// KHR_materials_ior, and KHR_materials_specular as another index with the reflectance that it

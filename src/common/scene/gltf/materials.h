@@ -19,6 +19,10 @@ class Materials {
   /// of the reference.
   std::uint32_t number(int index, const std::string& place);
 
+  /// Whether material `index`, which has a number, is its base colour's light
+  /// (KHR_materials_unlit).
+  bool is_unlit(int index) const;
+
  private:
   MaterialDescription convert(const tinygltf::Material& source, const std::string& place);
   void set_base(const tinygltf::Material& source, const std::string& place,

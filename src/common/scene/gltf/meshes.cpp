@@ -61,6 +61,24 @@ void read_uvs(const File& file, int accessor, const std::string& place, Mesh& me
   }
 }
 
+/// RGB or RGBA, linear.
+void read_colors(File& file, int accessor, const std::string& place, Mesh& mesh) {
+  const auto& source = file.at(file.model.accessors, accessor, "accessors", place);
+  const int components = source.type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
+  const std::vector<float> values = read_floats(file, accessor, components, place);
+  const auto width = static_cast<std::size_t>(components);
+  check_count(file, values.size() / width, mesh, place);
+  mesh.colors.resize(values.size() / width);
+  const auto clamp = [](float x) { return x > 0.0f ? std::min(x, 1.0f) : 0.0f; };
+  bool opaque = true;
+  for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
+    const float* rgba = &values[i * width];
+    mesh.colors[i] = {clamp(rgba[0]), clamp(rgba[1]), clamp(rgba[2])};
+    opaque = opaque && (components == 3 || rgba[3] >= 1.0f);
+  }
+  if (!opaque) file.report(place, "the alpha of vertices is ignored");
+}
+
 std::vector<std::uint32_t> vertex_sequence(const File& file, const tinygltf::Primitive& primitive,
                                            const Mesh& mesh, const std::string& place) {
   if (primitive.indices < 0) {
@@ -106,9 +124,6 @@ std::vector<TriangleIndices> make_triangles(const File& file, int mode,
 
 void report_ignored(File& file, const tinygltf::Primitive& primitive, const std::string& place) {
   if (!primitive.targets.empty()) file.report(place, "morph targets are ignored");
-  if (primitive.attributes.contains("COLOR_0")) {
-    file.report(place, "colours of vertices (COLOR_0) are ignored");
-  }
 }
 
 Mesh read_primitive(File& file, const tinygltf::Primitive& primitive, const std::string& place) {
@@ -126,6 +141,9 @@ Mesh read_primitive(File& file, const tinygltf::Primitive& primitive, const std:
   }
   if (const auto uvs = attributes.find("TEXCOORD_0"); uvs != attributes.end()) {
     read_uvs(file, uvs->second, place_of("TEXCOORD_0"), mesh);
+  }
+  if (const auto colors = attributes.find("COLOR_0"); colors != attributes.end()) {
+    read_colors(file, colors->second, place_of("COLOR_0"), mesh);
   }
   mesh.triangles =
       make_triangles(file, primitive.mode, vertex_sequence(file, primitive, mesh, place), place);

@@ -26,6 +26,7 @@ bool is_modern(const ObjectGraph& graph) {
 Context::Context(SceneData& scene_data, const LoadOptions& load_options, const ObjectGraph& graph)
     : scene(scene_data),
       textures(scene_data.textures, scene_data.texels),
+      colors(scene_data, load_options),
       modern(is_modern(graph)),
       options_(load_options),
       graph_(graph) {}

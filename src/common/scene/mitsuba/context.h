@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/scene/files/texture_store.h"
+#include "common/scene/files/vertex_colors.h"
 #include "common/scene/load_options.h"
 #include "common/scene/mitsuba/object.h"
 #include "common/scene/scene_data.h"
@@ -21,6 +22,7 @@ class Context {
 
   SceneData& scene;
   TextureStore textures;
+  VertexColors colors;
   /// Mitsuba 2 and 3; else 0.x, with other defaults here and there.
   const bool modern;
 

@@ -73,9 +73,9 @@ using Adder = void (*)(Context&, const Object&);
 
 const std::map<std::string_view, Adder>& adders() {
   static const std::map<std::string_view, Adder> table = {
-      {"point", add_point},       {"spot", add_spot},    {"directional", add_directional},
-      {"constant", add_constant}, {"sky", add_daylight}, {"sun", add_daylight},
-      {"sunsky", add_daylight},
+      {"point", add_point},       {"spot", add_spot},           {"directional", add_directional},
+      {"constant", add_constant}, {"sky", add_daylight},        {"sun", add_daylight},
+      {"sunsky", add_daylight},   {"projector", add_projector},
   };
   return table;
 }

@@ -51,8 +51,8 @@ void read_filter(Context& context, const Object& filter) {
     choice.a = filter.number("stddev", choice.a);
   } else if (type == "mitchell") {
     choice = default_filter(FilterKind::mitchell);
-    choice.a = filter.number("B", choice.a);
-    choice.b = filter.number("C", choice.b);
+    choice.a = filter.number("b", choice.a);  // B and C in the file: names are in snake_case here
+    choice.b = filter.number("c", choice.b);
   } else if (type == "catmullrom") {
     choice = {FilterKind::mitchell, 0.0f, 0.5f};
   } else if (type == "lanczos") {

@@ -1,6 +1,8 @@
 // <integrator>: how long paths are.
 #include <fmt/format.h>
 
+#include <set>
+
 #include "common/scene/mitsuba/sensor.h"
 
 namespace pt::mitsuba {
@@ -10,6 +12,15 @@ namespace {
 // after 64 rays is less than a part in 1000 unless surfaces reflect more than 90 %.
 constexpr int unlimited_depth = 64;
 constexpr int max_depth_limit = 65535;
+
+/// Ways to compute the light of all paths, which is what we compute: how is not the scene's affair.
+const std::set<std::string_view> light_transport = {
+    "bdpt",   "erpt",      "mlt",       "path",    "photonmapper",   "ppm",
+    "pssmlt", "ptracer",   "sppm",      "volpath", "volpath_simple", "volpathmis",
+    "prb",    "prb_basic", "prbvolpath"};
+
+/// Ways to run the integrator inside of one.
+const std::set<std::string_view> ways_to_run = {"adaptive", "irrcache"};
 
 void read_max_depth(Context& context, const Object& integrator, int depth) {
   if (depth < -1) {
@@ -26,35 +37,41 @@ void read_max_depth(Context& context, const Object& integrator, int depth) {
   context.scene.defaults.max_depth = depth == -1 ? unlimited_depth : depth;
 }
 
+void read_around(Context& context, const Object& integrator, const Object& nested) {
+  if (!ways_to_run.contains(integrator.type())) {
+    context.warn_once(
+        "integrator " + integrator.type(), integrator.element(),
+        fmt::format("integrator '{}' is not supported: the one inside is used", integrator.type()));
+  }
+  integrator.ignore_all();
+  read_integrator(context, nested);
+}
+
 }  // namespace
 
 void read_integrator(Context& context, const Object& integrator) {
   const std::string type = integrator.type();
-  // Integrators that stand around another one, such as `aov` or `adaptive`.
   if (const Object* nested = integrator.child("integrator")) {
-    context.warn_once(
-        "integrator " + type, integrator.element(),
-        fmt::format("integrator '{}' is not supported: the one inside is used", type));
-    integrator.ignore_all();
-    return read_integrator(context, *nested);
+    return read_around(context, integrator, *nested);
   }
-  if (type != "path" && type != "volpath" && type != "direct") {
+  const bool direct = type == "direct";
+  if (!direct && !light_transport.contains(type)) {
     context.warn_once("integrator " + type, integrator.element(),
                       fmt::format("integrator '{}' is not supported: the scene is rendered by path "
                                   "tracing",
                                   type));
-    const std::optional<int> depth = integrator.integer("max_depth");
-    integrator.ignore_all();
-    return read_max_depth(context, integrator, depth.value_or(-1));
   }
-  integrator.ignore({"strict_normals", "emitter_samples", "bsdf_samples", "shading_samples"});
   if (integrator.boolean("hide_emitters", false)) {
     context.warn_once("hide_emitters", integrator.element(),
                       "hide_emitters is not supported: emitters are visible");
   }
   read_max_depth(context, integrator, integrator.integer("max_depth").value_or(-1));
-  if (type == "direct") context.scene.defaults.max_depth = 2;
+  if (direct) context.scene.defaults.max_depth = 2;
   context.scene.defaults.rr_depth = integrator.integer("rr_depth");
+  // The rest is about the method.
+  if (!direct && type != "path" && type != "volpath") return integrator.ignore_all();
+  integrator.ignore({"strict_normals", "emitter_samples", "bsdf_samples", "shading_samples",
+                     "samples_per_pass", "block_size", "timeout"});
 }
 
 }  // namespace pt::mitsuba

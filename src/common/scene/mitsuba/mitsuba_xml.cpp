@@ -56,6 +56,7 @@ SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions&
       stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
+  context.colors.finish();
   context.add_studio_if_dark();
   context.report_unused();
   return scene;

@@ -37,22 +37,6 @@ double focal_length_mm(const Object& sensor) {
   return *length;
 }
 
-/// The angle of view along the axis that the file fixes, whatever the image's final size.
-void read_fov(const Object& sensor, CameraParameters& camera) {
-  camera.fov_axis = fov_axis_of(sensor);
-  if (const std::optional<double> fov = sensor.number("fov")) {
-    if (!(*fov > 0 && *fov < 180)) {
-      fail(*sensor.find("fov"),
-           fmt::format("fov {}; expected degrees between 0 and 180, both excluded", *fov));
-    }
-    camera.fov_degrees = static_cast<float>(*fov);
-    return;
-  }
-  const double tangent = 0.5 * std::hypot(36.0, 24.0) / focal_length_mm(sensor);
-  camera.fov_degrees = static_cast<float>(2.0 * std::atan(tangent) * 180.0 / std::acos(-1.0));
-  camera.fov_axis = FovAxis::diagonal;
-}
-
 /// Mitsuba's camera looks along its z, with y up and x to the left of the image.
 void place_camera(Context& context, const Object& sensor) {
   const Affine map = sensor.transform("to_world");
@@ -85,6 +69,21 @@ void read_lens(const Object& sensor, CameraParameters& camera) {
 }
 
 }  // namespace
+
+void read_fov(const Object& sensor, CameraParameters& camera) {
+  camera.fov_axis = fov_axis_of(sensor);
+  if (const std::optional<double> fov = sensor.number("fov")) {
+    if (!(*fov > 0 && *fov < 180)) {
+      fail(*sensor.find("fov"),
+           fmt::format("fov {}; expected degrees between 0 and 180, both excluded", *fov));
+    }
+    camera.fov_degrees = static_cast<float>(*fov);
+    return;
+  }
+  const double tangent = 0.5 * std::hypot(36.0, 24.0) / focal_length_mm(sensor);
+  camera.fov_degrees = static_cast<float>(2.0 * std::atan(tangent) * 180.0 / std::acos(-1.0));
+  camera.fov_axis = FovAxis::diagonal;
+}
 
 void read_sensor(Context& context, const Object& sensor) {
   const std::string type = sensor.type();

@@ -9,6 +9,10 @@ namespace pt::mitsuba {
 /// warning. Width, height and samples per pixel become defaults.
 void read_sensor(Context& context, const Object& sensor);
 
+/// The angle of view of a sensor or a projector, along the axis that the file fixes, whatever the
+/// image's final size.
+void read_fov(const Object& sensor, CameraParameters& camera);
+
 /// Width and height; what is about the file that Mitsuba would write is passed over.
 void read_film(Context& context, const Object& film);
 

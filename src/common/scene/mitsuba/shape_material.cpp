@@ -51,10 +51,11 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
                                          std::uint32_t group) {
   const Object* bsdf = shape.child("bsdf");
   const Object* emitter = emitter_of(context, shape, group);
-  if (!bsdf && !emitter && shape.child("medium")) {
+  if (!shape.children("medium").empty()) {
     context.warn_once("medium", shape.element(),
-                      "media are not supported: light passes a shape that has one and no bsdf");
-    return std::nullopt;
+                      "media are not supported: shapes are empty, and light passes one that has a "
+                      "medium and no bsdf");
+    if (!bsdf && !emitter) return std::nullopt;
   }
   constexpr std::uint32_t invisible = 0xffffffffu;
   const auto [entry, is_new] = context.materials.try_emplace({bsdf, emitter}, invisible);

@@ -57,11 +57,11 @@ TextureWrap wrap_of(Context& context, const Object& texture, const std::string& 
 void read_filter(Context& context, const Object& object, Texture& texture) {
   const std::string filter = object.text("filter_type", context.modern ? "bilinear" : "ewa");
   if (filter == "nearest") texture.filter = TextureFilter::nearest;
-  if (filter != "nearest" && filter != "bilinear" && object.find("filter_type")) {
-    context.warn_once("filter " + filter, object.element(),
-                      fmt::format("texture filter '{}' is not supported: bilinear is used, "
-                                  "without mip maps",
-                                  filter));
+  // 0.x's `trilinear` and `ewa` are bilinear but for what they do about aliasing, which samples do.
+  if (filter != "nearest" && filter != "bilinear" && filter != "trilinear" && filter != "ewa") {
+    context.warn_once(
+        "filter " + filter, object.element(),
+        fmt::format("texture filter '{}' is not supported: bilinear is used", filter));
   }
 }
 
@@ -125,6 +125,20 @@ ColorTexture read_scale(Context& context, const Object& object, Quantity quantit
   return result;
 }
 
+/// Of Mitsuba's attributes of meshes the colours alone.
+ColorTexture read_mesh_attribute(Context& context, const Object& object, Quantity quantity) {
+  const std::string name = object.text("name", "");
+  const Color scale(object.number("scale", 1.0f));
+  const bool is_color = quantity == Quantity::reflectance || quantity == Quantity::emission;
+  if (is_color && name == "vertex_color") return {scale, context.colors.by_vertex()};
+  if (is_color && name == "face_color") return {scale, context.colors.by_face()};
+  context.warn_once("mesh_attribute " + name, object.element(),
+                    fmt::format("mesh_attribute '{}' is not supported here, vertex_color and "
+                                "face_color are as colours: white is used",
+                                name));
+  return {scale, no_texture};
+}
+
 }  // namespace
 
 ColorTexture read_texture(Context& context, const Object& object, Quantity quantity) {
@@ -139,6 +153,7 @@ ColorTexture read_texture(Context& context, const Object& object, Quantity quant
     return read_bitmap(context, object, quantity);
   }
   if (type == "checkerboard") return read_checkerboard(context, object, quantity);
+  if (type == "mesh_attribute") return read_mesh_attribute(context, object, quantity);
   if (type == "scale") return read_scale(context, object, quantity);
   const Color grey(quantity == Quantity::reflectance ? 0.5f : 1.0f);
   context.warn_once("texture " + type, object.element(),

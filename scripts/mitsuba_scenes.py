@@ -1,0 +1,526 @@
+"""The scenes of the suite against Mitsuba, as XML, and what they load: see scripts/mitsuba_suite.
+
+A scene is a string: shapes and lights. A number in brackets is its probe, which tests change by a
+few percent to see that they would notice. SETTINGS has what differs from the usual sensor and
+integrator.
+"""
+import math
+import struct
+import zlib
+
+import numpy
+
+# --- XML
+
+
+def tag(kind, name, value):
+    return f'<{kind} name="{name}" value="{value}"/>'
+
+
+def values(parameters):
+    """Floats, booleans and names; texts of three numbers are colours."""
+    inside = ""
+    for name, value in parameters.items():
+        if isinstance(value, bool):
+            inside += tag("boolean", name, str(value).lower())
+        elif isinstance(value, int):
+            inside += tag("integer", name, value)
+        elif isinstance(value, str) and len(value.split()) == 3:
+            inside += tag("rgb", name, value)
+        elif isinstance(value, str) and value[0].isalpha():
+            inside += tag("string", name, value)
+        else:
+            inside += tag("float", name, value)
+    return inside
+
+
+def plugin(element, kind, *inside, **parameters):
+    return f'<{element} type="{kind}">{values(parameters)}{"".join(inside)}</{element}>'
+
+
+def bsdf(kind, *inside, **parameters):
+    return plugin("bsdf", kind, *inside, **parameters)
+
+
+def emitter(kind, *inside, **parameters):
+    return plugin("emitter", kind, *inside, **parameters)
+
+
+def shape(kind, place, *inside, **parameters):
+    return plugin("shape", kind, to_world(place), *inside, **parameters) + "\n"
+
+
+def texture(kind, name, *inside, **parameters):
+    return plugin("texture", kind, *inside, **parameters).replace(">", f' name="{name}">', 1)
+
+
+def bitmap(file, name, *inside, **parameters):
+    return texture("bitmap", name, tag("string", "filename", file), *inside, **parameters)
+
+
+def transform(name, steps):
+    return f'<transform name="{name}">{steps}</transform>'
+
+
+def to_world(steps):
+    return transform("to_world", steps)
+
+
+def rotate(axis, angle):
+    return f'<rotate {axis}="1" angle="{angle}"/>'
+
+
+def scale(*factors):
+    factors += (1,) * (len(factors) == 2)  # of textures
+    return f'<scale value="{", ".join(map(str, factors))}"/>'
+
+
+def move(x, y, z):
+    return f'<translate x="{x}" y="{y}" z="{z}"/>'
+
+
+# --- What scenes are made of. y is up; the camera looks along -z from above.
+
+GREY, RED, BLUE = "0.5 0.45 0.4", "0.8 0.3 0.1", "0.1 0.4 0.9"
+COPPER = {"eta": "0.2 0.92 1.1", "k": "3.9 2.45 2.14"}
+DOWN = rotate("x", 90)
+
+
+def diffuse(color=GREY):
+    return bsdf("diffuse", reflectance=color)
+
+
+def two_sided(*inside):
+    return bsdf("twosided", *inside)
+
+
+def floor(material=diffuse()):
+    return shape("rectangle", rotate("x", -90) + scale(3), material)
+
+
+WALL = shape("rectangle", scale(3) + move(0, 1, -2), diffuse("0.25 0.4 0.6"))
+BLACK = diffuse("0 0 0")
+
+
+def glow(radiance, *inside):
+    return emitter("area", *inside, radiance=radiance) if radiance else emitter("area", *inside)
+
+
+LAMP = shape("rectangle", DOWN + scale(0.8, 1, 0.5) + rotate("z", -20) + move(-0.9, 2.5, 1.2),
+             BLACK, glow("7 6 5"))
+SMALL_LAMP = shape("rectangle", DOWN + scale(0.3, 1, 0.5) + rotate("z", 40) + move(1.5, 2.3, 0.8),
+                   BLACK, glow("[2] 9 4"))
+SKY = emitter("constant", radiance="0.4 0.45 0.5")
+STAGE = floor() + WALL + LAMP + SKY
+BALL = scale(0.75) + move(-0.8, 0.77, 0)
+CARD = scale(0.7) + rotate("x", -35) + rotate("y", 20) + move(0.8, 0.75, 0.1)
+CARD_BACK = scale(0.7) + rotate("x", 145) + rotate("y", 20) + move(0.8, 0.75, 0.1)
+
+
+def made_of(material):
+    """A ball and a card."""
+    return shape("sphere", BALL, material) + shape("rectangle", CARD, material) + STAGE
+
+
+def card(material, place=CARD, *others):
+    return shape("rectangle", scale(1.6) + place, material) + "".join(others) + STAGE
+
+
+def sunlit_card(material):
+    sun = emitter("directional", '<vector name="direction" x="0.4" y="-1" z="-0.7"/>',
+                  irradiance="3 2.5 2")
+    return shape("rectangle", scale(1.6) + CARD, material) + floor() + WALL + sun
+
+
+def lit_by(*lights):
+    """A ball, a block and a floor without other light."""
+    return (floor() + shape("sphere", scale(0.6) + move(-0.7, 0.62, 0), diffuse(RED))
+            + shape("cube", scale(0.4) + rotate("y", 30) + move(0.8, 0.41, 0.2),
+                    diffuse("0.3 0.6 0.4")) + "".join(lights))
+
+
+def uv(*steps):
+    return transform("to_uv", "".join(steps))
+
+
+CHECKS = two_sided(bsdf("diffuse", texture("checkerboard", "reflectance", uv(scale(3, 5)),
+                                           color0="[0.8] 0.3 0.1", color1="0.1 0.4 0.9")))
+PICTURE = bsdf("diffuse", bitmap("picture.png", "reflectance"))
+
+
+def picture(*inside, file="picture.exr", **parameters):
+    """A card that shows more than one copy of a picture."""
+    more = uv(scale("[2.3]", 1.7), move(-0.3, 0.2, 0))
+    return card(bsdf("diffuse", bitmap(file, "reflectance", more, *inside, **parameters)))
+
+
+def principled(**parameters):
+    return made_of(bsdf("principled", **parameters))
+
+
+def patch(kind, *inside, **parameters):
+    """The mesh, whose normals are smoother than it is."""
+    return shape(kind, scale(1.4, 1.1, 1.9) + rotate("x", -50) + rotate("y", 15) + move(0, 0.7, 0), *inside,
+                 filename=f"patch.{kind}", **parameters) + STAGE
+
+
+def mesh_lamp(kind, place, *inside, radiance="[4] 5 3", **parameters):
+    return lit_by(shape(kind, place, BLACK, glow(radiance), *inside, **parameters))
+
+
+def many_lamps():
+    lamps = ""
+    for i in range(24):
+        color = " ".join(f"{1 + 9 * ((i * k) % 5 == 2) + k * (i % 3):g}" for k in (1, 2, 3))
+        place = scale(0.25) + rotate("x", 60 + 7 * (i % 5)) + move(
+            f"{i % 6 - 2.5:g}", f"{2.4 + 0.2 * (i % 4):g}", f"{i // 6 * 0.6 - 0.4:g}")
+        lamps += shape("rectangle" if i % 4 else "sphere", place if i % 4 else scale(0.3) + place,
+                       BLACK, glow(color if i else "[20] 3 2"))
+    return lit_by(lamps)
+
+
+def group():
+    """Instances, stretched and mirrored."""
+    parts = shape("ply", scale(0.8), two_sided(diffuse(BLUE)), filename="patch.ply")
+    parts += shape("sphere", scale(0.4) + move(0, 0, 0.5), diffuse(RED))
+    place = rotate("x", -40) + rotate("y", 30) + move(-0.8, 0.8, 0)
+    other = rotate("x", -60) + rotate("y", -20) + move(0.9, "[0.6]", 0.3)
+    reference = '<ref id="group"/>'
+    return (f'<shape type="shapegroup" id="group">{parts}</shape>'
+            + shape("instance", scale(1, 0.7, 1.2) + place, reference)
+            + shape("instance", scale(-0.8, 1.1, 0.7) + other, reference) + STAGE)
+
+
+def room():
+    """Closed: five walls and a lamp under the ceiling."""
+    def wall(turn, color):
+        return shape("rectangle", move(0, 0, -1) + turn + move(0, 1, 0), diffuse(color))
+
+    return (wall(rotate("x", -90), GREY) + wall(rotate("x", 90), GREY) + wall("", GREY)
+            + wall(rotate("y", 90), "[0.7] 0.1 0.05") + wall(rotate("y", -90), "0.1 0.5 0.1")
+            + shape("cube", scale(0.3, 0.6, 0.3) + rotate("y", 20) + move(-0.35, 0.6, -0.3),
+                    diffuse("0.7 0.7 0.7"))
+            + shape("sphere", scale(0.35) + move(0.4, 0.35, 0.2), bsdf("conductor", material="Ag"))
+            + shape("rectangle", DOWN + scale(0.5, 1, 0.5) + move(0, 1.98, 0), BLACK,
+                    glow("6 5 4")))
+
+
+def large(inside):
+    return inside.replace("</transform>", scale(1000) + "</transform>")
+
+
+# --- The scenes
+
+ROUGH = {"distribution": "ggx", "alpha": "[0.3]"}
+BECKMANN = {"distribution": "beckmann", "alpha": "[0.3]"}
+MAPPED = diffuse("[0.8] 0.3 0.1")
+GLASS = bsdf("dielectric", int_ior=1.5, ext_ior=1.0)
+OLD = {"use_shadowing_function": False, "flip_invalid_normals": False}
+
+
+def grey(name):
+    return bitmap("grey.exr", name, raw=True)
+
+
+def bumps(material, **parameters):
+    return bsdf("bumpmap", bitmap("hills.exr", "map", raw=True), material, **parameters)
+
+
+def normals(material, **parameters):
+    return bsdf("normalmap", bitmap("normals.exr", "normalmap", raw=True), material, **parameters)
+
+
+
+SCENES = {
+    # bsdfs
+    "diffuse": made_of(diffuse("[0.8] 0.3 0.1")),
+    "diffuse_back": card(MAPPED, CARD_BACK, shape("sphere", BALL, MAPPED)),
+    "conductor_gold": made_of(bsdf("conductor", material="Au", specular_reflectance="[0.9] 0.8 1")),
+    "conductor_eta_k": made_of(bsdf("conductor", eta="0.2 0.92 1.1", k="[3.9] 2.45 2.14")),
+    "roughconductor_ggx": made_of(bsdf("roughconductor", **ROUGH, **COPPER)),
+    "roughconductor_beckmann": made_of(bsdf("roughconductor", material="Al", **BECKMANN)),
+    "roughconductor_anisotropic": made_of(bsdf("roughconductor", distribution="ggx", material="Cu",
+                                               alpha_u="[0.15]", alpha_v=0.5)),
+    "roughconductor_textured": card(bsdf("roughconductor", grey("alpha"),
+                                         distribution="ggx",
+                                         specular_reflectance="[0.9] 0.8 0.5")),
+    "dielectric": made_of(bsdf("dielectric", int_ior="[1.5]", ext_ior=1.0)),
+    "dielectric_tinted": made_of(bsdf("dielectric", int_ior="diamond",
+                                      specular_transmittance="[0.8] 0.9 0.4",
+                                      specular_reflectance="0.5 0.7 1")),
+    "roughdielectric_ggx": made_of(bsdf("roughdielectric", int_ior=1.5, ext_ior=1.0, **ROUGH)),
+    "roughdielectric_beckmann": made_of(bsdf("roughdielectric", int_ior=1.33, ext_ior=1.0,
+                                             **BECKMANN)),
+    "thindielectric": made_of(bsdf("thindielectric", int_ior="[1.7]", ext_ior=1.0)),
+    "plastic": made_of(bsdf("plastic", int_ior=1.6, diffuse_reflectance="[0.8] 0.3 0.1")),
+    "plastic_nonlinear": made_of(bsdf("plastic", int_ior=1.6, nonlinear=True,
+                                      diffuse_reflectance="[0.8] 0.3 0.1")),
+    "roughplastic_ggx": made_of(bsdf("roughplastic", diffuse_reflectance=BLUE, nonlinear=True,
+                                     **ROUGH)),
+    "roughplastic_beckmann": made_of(bsdf("roughplastic", diffuse_reflectance=RED, **BECKMANN)),
+    "principled": principled(base_color=RED, roughness="[0.4]", specular=0.9, spec_tint=0.6),
+    "principled_metallic": principled(base_color=RED, metallic=0.9, roughness="[0.5]"),
+    "principled_anisotropic": principled(base_color=BLUE, metallic=1.0, roughness="[0.5]",
+                                         anisotropic=0.8),
+    "principled_clearcoat": principled(base_color=BLUE, roughness=0.8, clearcoat="[1]",
+                                       clearcoat_gloss=0.3),
+    "principled_sheen": principled(base_color=RED, roughness=0.9, sheen="[1]", sheen_tint=0.5,
+                                   flatness=0.6),
+    "principled_spec_trans": principled(base_color=BLUE, spec_trans="[0.7]", roughness=0.4,
+                                        eta=1.4),
+    "principled_textured": card(bsdf("principled", grey("roughness"),
+                                     bitmap("picture.exr", "base_color", raw=True),
+                                     metallic="[0.6]")),
+    "principledthin": made_of(bsdf("principledthin", base_color=RED, roughness=0.5, spec_trans=0.4,
+                                   diff_trans="[0.8]", eta=1.4, sheen=0.4, flatness=0.3)),
+    "twosided_front": card(two_sided(MAPPED, diffuse(BLUE))),
+    "twosided_back": card(two_sided(bsdf("plastic", diffuse_reflectance=BLUE), MAPPED), CARD_BACK),
+    "mask": card(bsdf("mask", two_sided(diffuse(RED)), opacity="[0.35]")),
+    "mask_textured": card(bsdf("mask", grey("opacity"),
+                               two_sided(MAPPED))),
+    "blend": made_of(bsdf("blendbsdf", diffuse(RED), bsdf("roughconductor", material="Ag",
+                                                          alpha=0.3), weight="[0.4]")),
+    "mask_of_blend": card(bsdf("mask", grey("opacity"), bsdf(
+        "blendbsdf", two_sided(MAPPED), two_sided(diffuse(BLUE)), weight=0.3))),
+    "mask_twice": card(bsdf("mask", grey("opacity"), two_sided(diffuse(RED))), CARD, shape(
+        "rectangle", scale(1.4) + CARD + move(0.1, 0.2, 0.4),
+        bsdf("mask", two_sided(diffuse(BLUE)), opacity="[0.5]"))),
+    "mask_sphere": made_of(bsdf("mask", two_sided(diffuse(RED)), opacity="[0.5]")),
+    "blend_twosided": card(two_sided(bsdf("blendbsdf", grey("weight"), MAPPED, diffuse(BLUE))),
+                           CARD_BACK),
+    "blend_textured": card(bsdf("blendbsdf", grey("weight"), MAPPED,
+                                bsdf("roughplastic", diffuse_reflectance=BLUE))),
+    # Where a part is a mirror, Mitsuba 3.9.1 weighs light and BSDF samples so that they do not sum
+    # to 1 (1 % off); a sun has no such weights.
+    "blend_plastic": sunlit_card(bsdf("blendbsdf", grey("weight"), MAPPED,
+                                      bsdf("plastic", diffuse_reflectance=BLUE))),
+    "blend_of_glass": sunlit_card(bsdf("blendbsdf", grey("weight"), GLASS, bsdf(
+        "blendbsdf", two_sided(diffuse(RED)), diffuse(BLUE), weight="[0.6]"))),
+    "normalmap": card(normals(MAPPED)),
+    "normalmap_old": card(normals(MAPPED, **OLD)),
+    "normalmap_within_twosided": card(two_sided(normals(MAPPED)), CARD_BACK),
+    "normalmap_around_twosided": card(normals(two_sided(MAPPED)), CARD_BACK),
+    "normalmap_glass": card(normals(GLASS)),
+    "normalmap_patch": patch("obj", two_sided(normals(MAPPED))),
+    "bumpmap": card(bumps(diffuse(RED), scale="[0.4]")),
+    "bumpmap_old": card(bumps(diffuse(RED), scale="[0.4]", **OLD)),
+    "bumpmap_twosided": card(two_sided(bumps(diffuse(RED), scale="[0.4]")), CARD_BACK),
+    "bumpmap_patch": patch("ply", two_sided(bumps(diffuse(RED), scale="[0.3]"))),
+    "bumpmap_transform": card(bsdf("bumpmap", bitmap(
+        "hills.exr", "map", uv(rotate("z", 30), scale(0.7, 1.6)), raw=True, wrap_mode="mirror"),
+        diffuse(RED), scale="[0.3]")),
+    "null_textured": card(bsdf("blendbsdf", grey("weight"), two_sided(MAPPED), bsdf("null"))),
+    "null": made_of(bsdf("blendbsdf", two_sided(diffuse(RED)), bsdf("null"), weight="[0.4]")),
+    # lights
+    "light_rectangle": mesh_lamp("rectangle", DOWN + scale(0.7, 1, 1) + move(-0.8, 2, 0.4)),
+    "light_sphere": mesh_lamp("sphere", scale(0.4) + move(-0.8, 2, 0.4), radiance="[8] 9 5"),
+    "light_disk": mesh_lamp("disk", DOWN + scale(0.8) + move(-0.8, 2, 0.4)),
+    "light_cube": mesh_lamp("cube", scale(0.3, 0.2, 0.4) + rotate("y", 20) + move(-0.3, 1.8, 0.4)),
+    "light_cylinder": mesh_lamp("cylinder", scale(0.2, 0.2, 1.5) + rotate("y", 70)
+                                + move(-1, 1.9, 0.4)),
+    # Of smooth normals Mitsuba 3.9.1 takes the cosine of the interpolated one: 1 % too bright.
+    "light_mesh": mesh_lamp("ply", scale(0.8) + rotate("x", 110) + move(-0.5, 2, 0.4),
+                            filename="patch.ply", face_normals=True),
+    "light_textured": lit_by(shape("rectangle", DOWN + scale(1.2, 1, 0.9) + move(-0.4, 1.9, 0.4),
+                                   BLACK, glow("", bitmap("picture.exr", "radiance", uv(
+                                       scale("[1.4]", 1)), raw=True)))),
+    "light_two": lit_by(shape("rectangle", DOWN + scale(0.5) + move(-1.2, 2.4, 0.4), BLACK,
+                              glow("[9] 4 2")), shape("sphere", scale(0.2) + move(1.6, 2.5, 1),
+                                                      BLACK, glow("5 9 20"))),
+    "light_many": many_lamps(),
+    "light_point": lit_by(emitter("point", '<point name="position" x="-1" y="2.5" z="1.5"/>',
+                                  intensity="[9] 8 6")),
+    "light_spot": lit_by(emitter("spot", to_world('<lookat origin="-1.5,3,2" target="0,0.2,0" '
+                                                  'up="0,1,0"/>'), cutoff_angle=25.0,
+                                 beam_width=10.0, intensity="[30] 25 20")),
+    "light_directional": lit_by(emitter("directional", '<vector name="direction" x="0.5" y="-1" '
+                                        'z="-0.4"/>', irradiance="[3] 2.5 2")),
+    "light_constant": lit_by(emitter("constant", radiance="[0.9] 0.7 1.2")),
+    "light_envmap": lit_by(emitter("envmap", to_world(rotate("x", 25) + rotate("y", 130)),
+                                   filename="sky.exr", scale="[0.8]")),
+    "light_envmap_and_lamp": lit_by(emitter("envmap", filename="sky.exr", scale=0.3), LAMP.replace(
+        "7 6 5", "[3] 4 5")),
+    "light_envmap_poles": lit_by(emitter("envmap", to_world(rotate("x", 25)),
+                                         filename="poles.exr", scale="[0.3]")),
+    "light_envmap_seen": shape("sphere", move(0, 0, 90)) + emitter("envmap", to_world(
+        rotate("x", 25)), filename="poles.exr", scale="[0.3]"),
+    "light_envmap_and_three": lit_by(
+        emitter("envmap", filename="sky.exr", scale=0.1), LAMP.replace("7 6 5", "[3] 4 5"),
+        shape("sphere", scale(0.2) + move(1.6, 2.5, 1), BLACK, glow("5 9 20")),
+        shape("rectangle", DOWN + scale(-0.6, 1, 0.4) + rotate("z", 30) + move(1.2, 2.2, -0.5),
+              BLACK, glow("9 3 2"))),
+    "light_textured_and_plain": lit_by(SMALL_LAMP, shape(
+        "rectangle", DOWN + scale(-1.2, 1, 0.9) + move(-0.4, 2.3, 0.6), BLACK,
+        glow("", bitmap("picture.exr", "radiance", raw=True)))),
+    "light_sunsky_and_lamps": lit_by(LAMP, SMALL_LAMP.replace("[2]", "2"), emitter(
+        "sunsky", '<vector name="sun_direction" x="0.5" y="0.4" z="0.6"/>', to_world(
+            rotate("x", -90)), sky_scale="[3]", sun_scale=0.1, sun_aperture=40.0)),
+    "light_in_glass": floor() + WALL + shape("sphere", move(0, 1.1, 0), GLASS) + shape(
+        "sphere", scale(0.6) + move(0, 1.1, 0), diffuse(), glow("[3] 3 3")) + SKY,
+    "light_sunsky": lit_by(emitter(
+        "sunsky", '<vector name="sun_direction" x="0.5" y="0.4" z="0.6"/>', to_world(
+            rotate("x", -90)), turbidity="[4.5]", albedo="0.1 0.3 0.5", sun_aperture=20.0)),
+    "light_sky": lit_by(emitter(
+        "sunsky", '<vector name="sun_direction" x="-0.3" y="0.7" z="0.4"/>', to_world(
+            rotate("x", -90)), turbidity="[3]", sun_scale=0.0)),
+    "light_sun": lit_by(emitter(
+        "sunsky", '<vector name="sun_direction" x="0.5" y="0.6" z="0.5"/>', to_world(
+            rotate("x", -90)), sun_scale="[20]", sun_aperture=10.0, sky_scale=0.0)),
+    # shapes
+    "shape_sphere": shape("sphere", rotate("x", 50) + rotate("y", 40) + move(0, 1, 0),
+                          CHECKS) + STAGE,
+    "shape_disk": shape("disk", scale(1.3) + rotate("x", -50) + move(0, 0.9, 0), CHECKS) + STAGE,
+    "shape_cube": shape("cube", scale(0.8) + rotate("y", 30) + rotate("x", 15) + move(0, 0.9, 0),
+                        CHECKS) + STAGE,
+    "shape_cylinder": shape("cylinder", rotate("x", 20) + move(-0.3, 1, 0), CHECKS,
+                            '<point name="p0" x="-1" y="0" z="0"/>'
+                            '<point name="p1" x="1" y="0.3" z="0"/>', radius=0.6) + STAGE,
+    "shape_ply": patch("ply", CHECKS),
+    "shape_obj": patch("obj", CHECKS),
+    "shape_serialized": patch("serialized", CHECKS),
+    "shape_face_normals": patch("ply", two_sided(bsdf("roughconductor", **ROUGH, **COPPER)),
+                                face_normals=True),
+    "shape_flip_normals": patch("obj", MAPPED, flip_normals=True) + shape(
+        "sphere", scale(-0.5) + move(-1.2, 1.6, 0), MAPPED, flip_normals=True),
+    "shape_instances": group(),
+    # filters: edges and a bright lamp
+    **{f"filter_{name}": lit_by(shape(
+        "sphere", scale(0.3) + move(0.3, 1.5, 0.4), BLACK, glow("4 3 5")), SKY)
+       for name in ("tent", "gaussian", "default", "mitchell", "catmullrom", "lanczos")},
+    # textures
+    "texture_nearest": picture(filter_type="nearest"),
+    "texture_bilinear": picture(filter_type="bilinear"),
+    "texture_mirror": picture(wrap_mode="mirror"),
+    "texture_clamp": picture(wrap_mode="clamp"),
+    "texture_srgb": picture(file="picture.png"),
+    "texture_raw": picture(file="picture.png", raw=True),
+    "texture_rotated": card(bsdf("diffuse", bitmap("picture.exr", "reflectance", uv(
+        rotate("z", 30), scale("[1.7]", 2.6), move(0.3, 0.1, 0)), raw=True))),
+    # sensors and the whole
+    **{f"sensor_{name}": lit_by(LAMP, SKY) for name in ("fov_axis", "thinlens", "crop",
+                                                       "focal_length")},
+    "room": room(),
+    "scale_1000": large(made_of(bsdf("roughplastic", diffuse_reflectance=RED, **ROUGH))),
+}
+
+VIEW = '<lookat origin="0.3,2.3,4.6" target="0,0.6,0" up="0,1,0"/>'
+DEEP = {"depth": 24}  # passages through masks count in Mitsuba
+
+
+def film(width=24, height=24, *inside, rfilter='<rfilter type="box"/>'):
+    return {"film": plugin("film", "hdrfilm", *inside, rfilter, width=width, height=height)}
+
+
+def noisy_filter(kind, **parameters):
+    border = tag("boolean", "sample_border", "true")  # weights of pixels beyond it as well
+    return {**NOISY, **film(24, 24, border, rfilter=plugin("rfilter", kind, **parameters))}
+
+
+def sensor(kind="perspective", view=VIEW, *inside, **parameters):
+    return {"sensor": (kind, to_world(view) + "".join(inside) + values(parameters))}
+
+
+NOISY = {"samples": 768}
+SETTINGS = {
+    **{name: NOISY for name in """conductor_gold conductor_eta_k roughconductor_anisotropic
+       dielectric_tinted roughdielectric_beckmann thindielectric blend light_rectangle light_sphere
+       light_disk light_cube light_cylinder light_mesh light_textured light_many
+       light_envmap_and_three normalmap_glass light_sunsky light_sunsky_and_lamps shape_sphere shape_cube shape_cylinder
+       shape_flip_normals""".split()},
+    **{name: DEEP for name in SCENES if name.startswith(("mask", "null"))},
+    "dielectric": {"depth": 6, **NOISY}, "roughdielectric_ggx": {"depth": 6, **NOISY},
+    "light_in_glass": {"depth": 8},
+    "light_two": {"samples": 1024}, "light_textured_and_plain": {"samples": 1024},
+    "light_envmap_seen": sensor(view='<lookat origin="0,0,0" target="0.1,1,-0.4" up="0,0,1"/>',
+                                fov=70.0),
+    "room": {"depth": 8, **NOISY, **sensor(
+        view='<lookat origin="0,1,3.6" target="0,1,0" up="0,1,0"/>', fov=38.0)},
+    "filter_tent": noisy_filter("tent", radius="[1.4]"),
+    "filter_gaussian": noisy_filter("gaussian", stddev="[0.6]"),
+    "filter_default": {**NOISY, **film(24, 24, tag("boolean", "sample_border", "true"),
+                                       rfilter="")},
+    "filter_mitchell": noisy_filter("mitchell", B=0.05, C="[0.9]"),
+    "filter_catmullrom": noisy_filter("catmullrom"),
+    "filter_lanczos": noisy_filter("lanczos", lobes=2),
+    "sensor_fov_axis": {**film(24, 16), **sensor(fov="[50]", fov_axis="larger")},
+    "sensor_thinlens": sensor("thinlens", VIEW, fov=36.0, aperture_radius="[0.3]",
+                              focus_distance=3.9),
+    "sensor_crop": film(40, 32, values({"crop_offset_x": 9, "crop_offset_y": 7, "crop_width": 20,
+                                        "crop_height": 18})),
+    "sensor_focal_length": sensor("perspective", VIEW, tag("string", "focal_length", "60mm")),
+    "scale_1000": sensor(
+        view='<lookat origin="300,2300,4600" target="0,600,0" up="0,1,0"/>', fov=36.0),
+}
+
+
+# --- Files that the scenes name
+
+
+def pictures():
+    """Name -> rows of pixels, no two alike."""
+    x, y = numpy.meshgrid(numpy.arange(8), numpy.arange(6))
+    waves = numpy.sin(x * 2.1) * numpy.cos(y * 1.7) * 0.5 + 0.5
+    slope = numpy.stack([0.9 * numpy.sin(x * 1.3 + y), 0.7 * numpy.cos(x - 2.0 * y),
+                         numpy.ones(x.shape)], axis=2)
+    a, b = numpy.meshgrid(numpy.arange(16), numpy.arange(8))
+    bright = 6.0 * ((a > 3) & (a < 7) & (b > 1) & (b < 4))
+    color = numpy.stack([0.05 + 0.85 * x / 7, 0.85 - 0.12 * y, 0.1 + 0.8 * ((x + 2 * y) % 3 == 0)],
+                        axis=2)
+    return {"picture.exr": color, "picture.png": color,
+            "grey.exr": numpy.repeat(0.15 + 0.8 * ((x * 3 + y * 5) % 7 / 6)[..., None], 3, axis=2),
+            "hills.exr": numpy.repeat(waves[..., None], 3, axis=2),
+            "normals.exr": 0.5 + 0.5 * slope / numpy.linalg.norm(slope, axis=2, keepdims=True),
+            "poles.exr": numpy.repeat((0.5 + 0.1 * a + 30.0 * (b == 0) + 20.0 * (b == 7))[..., None],
+                                      3, axis=2) * [1, 0.8, 0.5],
+            "sky.exr": numpy.stack([0.3 + 0.5 * (a % 5) + bright, 0.5 + 0.1 * a + bright,
+                                    1.5 - 0.1 * (a % 7) + 0.1 * b], axis=2)}
+
+
+def patch_vertices(side=5):
+    """A hilly square: rows of position, normal, (u, v), and triangles."""
+    rows = []
+    for j in range(side):
+        for i in range(side):
+            x, y = 2 * i / (side - 1) - 1, 2 * j / (side - 1) - 1
+            z = 0.25 * math.sin(2 * x + 1) * math.cos(1.5 * y)
+            n = [-0.5 * math.cos(2 * x + 1) * math.cos(1.5 * y),
+                 0.375 * math.sin(2 * x + 1) * math.sin(1.5 * y), 1]
+            n = [c / math.sqrt(sum(m * m for m in n)) for c in n]
+            rows.append([x, y, z, *n, (i + 0.3 * j) / side, j / side])
+    corner = [j * side + i for j in range(side - 1) for i in range(side - 1)]
+    faces = [f for c in corner for f in ((c, c + 1, c + side + 1), (c, c + side + 1, c + side))]
+    return numpy.round(rows, 4), faces
+
+
+def patch_ply(rows, faces):
+    names = "".join(f"property float {name}\n" for name in "x y z nx ny nz u v".split())
+    head = (f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\n{names}element face {len(faces)}\n"
+            "property list uchar int vertex_indices\nend_header\n")
+    lines = [" ".join(f"{v:g}" for v in row) for row in rows]
+    return (head + "\n".join(lines + [f"3 {a} {b} {c}" for a, b, c in faces]) + "\n").encode()
+
+
+def patch_obj(rows, faces):
+    def lines(name, first, last):
+        return "".join(f"{name} {' '.join(f'{v:g}' for v in row[first:last])}\n" for row in rows)
+
+    corners = "".join("f " + " ".join(f"{i + 1}/{i + 1}/{i + 1}" for i in f) + "\n" for f in faces)
+    return (lines("v", 0, 3) + lines("vn", 3, 6) + lines("vt", 6, 8) + corners).encode()
+
+
+def patch_serialized(rows, faces):
+    """Version 4 of Mitsuba's own format, floats with normals and coordinates."""
+    body = struct.pack("<I", 0x0001 | 0x0002 | 0x1000) + b"patch\0"
+    body += struct.pack("<QQ", len(rows), len(faces))
+    for part in (rows[:, 0:3], rows[:, 3:6], rows[:, 6:8]):
+        body += part.astype("<f4").tobytes()
+    body += numpy.array(faces, dtype="<u4").tobytes()
+    head = struct.pack("<HH", 0x041c, 4)
+    return head + zlib.compress(body, 9) + struct.pack("<QI", 0, 1)
+
+
+def meshes():
+    """Name -> bytes."""
+    rows, faces = patch_vertices()
+    return {"patch.ply": patch_ply(rows, faces), "patch.obj": patch_obj(rows, faces),
+            "patch.serialized": patch_serialized(rows, faces)}

@@ -1,0 +1,34 @@
+// The surfaces that wait to be shaded, ordered by the kind of their BSDFs: a counting sort of their
+// queue. Threads side by side then execute the same code, and a kind's range of the ordered queue
+// can be shaded by a kernel that knows no other (after Laine et al. 2013, 'Megakernels Considered
+// Harmful', section 4).
+//
+// Contract: the ordered queue holds the same slots as the queue, range by range (KindRanges);
+// within a range in any order, on the CPU in that of the queue.
+#pragma once
+
+#include "common/transport/surface.h"
+#include "wavefront/path_pool.h"
+#include "wavefront/wave_counters.h"
+
+namespace pt {
+
+struct SurfaceOrder {
+  PathPool pool;
+  const std::uint32_t* slots = nullptr;  ///< the queue, the first *count of it
+  const std::uint32_t* count = nullptr;
+  std::uint8_t* kinds = nullptr;     ///< [capacity of the queue] room for the kind of each place
+  std::uint32_t* ordered = nullptr;  ///< [capacity of the queue]
+  KindRanges* ranges = nullptr;      ///< counts and places are 0 before
+};
+
+/// That of the surface that the slot's path has met.
+PT_HD std::uint8_t surface_kind(const Scene& scene, const PathPool& pool, std::uint32_t slot) {
+  const std::uint32_t material = material_number_at(scene, pool.load_hit(slot));
+  return static_cast<std::uint8_t>(scene.material(material).kind);
+}
+
+/// On the calling thread's oneTBB arena.
+void order_surfaces_cpu(const Scene& scene, const SurfaceOrder& order);
+
+}  // namespace pt

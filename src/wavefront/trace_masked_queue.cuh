@@ -1,0 +1,59 @@
+// The same in scenes of triangles of which some are there in part.
+#pragma once
+
+#include "wavefront/trace_queue.cuh"
+
+namespace pt {
+
+/// Query, asking masks. Rays of paths begin at 0, so the ray's record has its key
+/// (transport/mask.h) where others have t_min.
+template <class Query>
+class QueryWithKey : public Query {
+ public:
+  static constexpr bool has_masks = true;
+
+  __device__ QueryWithKey(float key, float t_max) : Query(0.0f, t_max), key_(key) {}
+  __device__ std::uint32_t key() const { return __float_as_uint(key_); }
+
+ private:
+  float key_;
+};
+
+/// Apart from the tracer's loop, which has no register to spare: masks are rare.
+__device__ __noinline__ inline bool mask_hides(const Scene* scene, std::uint32_t ray_key,
+                                               std::uint32_t slot, float b1, float b2) {
+  const Triangle triangle = load_wide(&scene->triangles.triangles[slot]);
+  return MaskTest{*scene, ray_key}.hides(triangle, {0.0f, b1, b2}, 0);
+}
+
+/// QueuedPaths or QueuedShadowRays of a scene without spheres and instances.
+template <class Rays>
+struct MaskedRays : Rays {
+  using Query = QueryWithKey<typename Rays::Query>;
+  Scene scene;
+  SampleBuffer names;  ///< which tells a path's name by its number
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
+                                 int& count) const {
+    const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
+    if (static_cast<int>(lane) < count) {
+      record.t_min = __uint_as_float(key_of(this->rays.slot(first + lane)));
+    }
+    return first;
+  }
+
+  __device__ bool hides(const Query& query, std::uint32_t slot, const TriangleHit& hit) const {
+    return mask_hides(&scene, query.key(), slot, hit.b1, hit.b2);
+  }
+
+ private:
+  using MaskedTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
+
+  __device__ std::uint32_t key_of(std::uint32_t slot) const {
+    return this->ray_key(slot, [this](std::uint32_t number) {
+      return mask_key<MaskedTraits>(scene, names.id_of(number));
+    });
+  }
+};
+
+}  // namespace pt

@@ -1,0 +1,91 @@
+// The order of surfaces by the kind of their BSDFs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "common/scene/prepare_materials.h"
+#include "common/scene/prepare_scene.h"
+#include "common/scene/scene_data.h"
+#include "material_room.h"
+#include "statistics.h"
+#include "wavefront/surface_order.h"
+
+namespace pt {
+namespace {
+
+using Slots = std::vector<std::uint32_t>;
+
+/// As the descriptions have it, without the records.
+int expected_kind(const SceneData& scene, std::uint32_t material) {
+  const MaterialDescription& m = scene.materials[material];
+  if (m.node == MaterialNode::none) return static_cast<int>(m.kind);
+  const int first = expected_kind(scene, m.children[0]),
+            second = expected_kind(scene, m.children[1]);
+  return first == second ? first : Bsdfs::size;
+}
+
+/// Panels, and spheres in front of them.
+SceneData panels_and_spheres() {
+  SceneData scene = material_room(false);
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t glass = scene.add_material(make_dielectric(Color(1.0f), 1.5f));
+    scene.add_sphere({float(i), 0, 3}, 0.2f, i == 1 ? 0 : glass);
+  }
+  prepare_scene(scene, Options());
+  return scene;
+}
+
+class SurfaceOrderOf : public testing::TestWithParam<std::uint32_t> {};
+INSTANTIATE_TEST_SUITE_P(Counts, SurfaceOrderOf, testing::Values(0, 1, 2, 4095, 4097, 100'000));
+
+TEST_P(SurfaceOrderOf, AStableSortByKind) {
+  const SceneData data = panels_and_spheres();
+  const Scene scene = host_view(data, 8, 8);
+  const std::uint32_t count = GetParam(), slot_count = count + 100;
+  const auto primitives = scene.primitives.count();
+  const auto things = primitives + static_cast<std::uint32_t>(data.tree.triangles.size());
+  TestRandom random(count + 1);
+  std::vector<StoredHit> hits(slot_count);
+  for (StoredHit& hit : hits) hit = {1.0f, random.below(things)};
+  Slots slots(slot_count);
+  for (std::uint32_t i = 0; i < slot_count; ++i) slots[i] = i;
+  for (std::uint32_t i = slot_count; i > 1; --i) std::swap(slots[i - 1], slots[random.below(i)]);
+
+  const auto kind = [&](std::uint32_t slot) {
+    const std::uint32_t thing = hits[slot].primitive;
+    return expected_kind(data, thing < primitives
+                                   ? data.material_of[thing]
+                                   : data.tree.triangles[thing - primitives].material);
+  };
+  Slots expected(slots.begin(), slots.begin() + count);
+  std::ranges::stable_sort(expected, {}, kind);
+
+  SurfaceOrder order;
+  order.pool.hit = hits.data();
+  order.slots = slots.data(), order.count = &count;
+  std::vector<std::uint8_t> kinds(slot_count);
+  Slots ordered(slot_count, 0xdeadbeef);
+  KindRanges ranges{};
+  order.kinds = kinds.data(), order.ordered = ordered.data(), order.ranges = &ranges;
+  order_surfaces_cpu(scene, order);
+
+  for (std::size_t i = count; i < slot_count; ++i) ASSERT_EQ(ordered[i], 0xdeadbeef) << i;
+  ordered.resize(count);
+  EXPECT_EQ(ordered, expected);
+  std::uint32_t first = 0, present = 0;
+  for (int k = 0; k < kind_count; ++k) {
+    EXPECT_EQ(ranges.first[k], first) << k;
+    EXPECT_EQ(ranges.count[k], std::ranges::count(expected, k, kind)) << k;
+    first += ranges.count[k];
+    present |= ranges.count[k] > 0 ? 1u << k : 0;
+  }
+  EXPECT_EQ(first, count);
+  EXPECT_EQ(present & ~kinds_of(data), 0u);
+  if (count == 100'000) {
+    EXPECT_EQ(present, kinds_of(data));  // all of these are met
+    EXPECT_EQ(std::popcount(present), kind_count);
+  }
+}
+
+}  // namespace
+}  // namespace pt
