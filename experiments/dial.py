@@ -2,7 +2,8 @@
 """Dial: from how many materials on is the wavefront faster than the megakernel?
 
 The scene `dial:K:C:F` has K materials with coherence C (0 noise, 1 stripes), open or closed
-(docs/scenes.md). Each variant of the wavefront is compared with the megakernel, which keeps its
+(docs/scenes.md). Each variant of the wavefront (one kernel for all materials, the same over a queue
+ordered by kind, a kernel for each kind) is compared with the megakernel, which keeps its
 default work and block; `ratio` is the megakernel's time divided by the variant's, so the crossover
 is where it passes 1. All trace the same structure (--accel), so that shading makes the difference.
 First, images of all variants are compared: they must be equal bit for bit.
@@ -24,9 +25,9 @@ COHERENCES = ["0", "0.5", "1"]
 BASE = "megakernel"
 VARIANTS = {
     BASE: "--mode megakernel",
-    "wavefront": "--mode wavefront",
-    "wavefront, shade material": "--mode wavefront --shade material",
-    "wavefront, compaction sort": "--mode wavefront --compaction sort",
+    "uber": "--mode wavefront --shade uber",
+    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "by material": "--mode wavefront --shade material",
 }
 DEPTH = 8
 
@@ -64,7 +65,7 @@ def configurations(arguments, _device):
             is_base = variant == BASE  # in no plot: the others are drawn relative to it
             rows.append(Configuration(
                 f"{scene}: {variant}", f"{image} {options}",
-                {"panel": f"{figure}: {variant}", "series": f"coherence {coherence}",
+                {"panel": f"{figure}, {variant}", "series": f"coherence {coherence}",
                  "x": "" if is_base else materials, "figure": figure, "materials": materials,
                  "coherence": coherence, "variant": variant, "ratio_median": "", "ratio_min": "",
                  "ratio_max": ""}))

@@ -173,7 +173,7 @@ class Experiments(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         rows = self.rows(f"{script}-quick")
         self.assertTrue(all(row["experiment"] == script for row in rows))
-        self.assertGreaterEqual(sum(row["status"] == "measured" for row in rows), len(rows) / 2)
+        self.assertGreater(sum(row["status"] == "measured" for row in rows), len(rows) / 2)
 
     def test_every_experiment_has_its_files(self):
         self.assertLessEqual({"block_size", "image_size", "speed_targets", "toggles"}, set(SCRIPTS))
@@ -202,7 +202,7 @@ class Dial(unittest.TestCase):
                  "kernel_ms_min": str(ms - 1), "kernel_ms_median": str(ms),
                  "kernel_ms_max": str(ms + 2),
                  **(counts if variant != self.dial.BASE else {**counts, "rays": "30"})}
-                for variant, times in ((self.dial.BASE, (10, 20)), ("wavefront", (20, 10)))
+                for variant, times in ((self.dial.BASE, (10, 20)), ("uber", (20, 10)))
                 for materials, ms in zip((1, 4), times)]
 
     def test_ratios_and_conclusions(self):
@@ -212,7 +212,7 @@ class Dial(unittest.TestCase):
                          ["1.0000", "1.0000", "0.5000", "2.0000"])
         self.assertEqual((rows[2]["ratio_min"], rows[2]["ratio_max"]), ("0.4091", "0.6316"))
         sentence, = self.dial.conclude(rows, None)
-        self.assertEqual(sentence, "open, coherence 0, wavefront: crossover at about 1.6 materials,"
+        self.assertEqual(sentence, "open, coherence 0, uber: crossover at about 1.6 materials,"
                          " 2.00 times as fast with 4")
 
     def test_other_paths_are_an_error(self):
@@ -223,9 +223,9 @@ class Dial(unittest.TestCase):
         device = harness.find_device(PTEXP, "cpu")
         arguments = types.SimpleNamespace(quick=True, accel="bvh2")
         self.dial.check_images(PTEXP, device, arguments)
-        other = {"wavefront": "--mode wavefront --seed 9"}
+        other = {"by material": "--mode wavefront --seed 9"}
         with mock.patch.dict(self.dial.VARIANTS, other), \
-                self.assertRaisesRegex(harness.HarnessError, "wavefront and megakernel differ"):
+                self.assertRaisesRegex(harness.HarnessError, "by material and megakernel differ"):
             self.dial.check_images(PTEXP, device, arguments)
 
 
