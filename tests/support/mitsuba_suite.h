@@ -71,32 +71,48 @@ struct Estimates {
   }
 };
 
-/// The largest of some differences, in standard deviations.
-struct Worst {
-  double z = 0;
-  double ours = 0, theirs = 0;
+/// Two values that ought to be equal, and how many standard deviations they are apart.
+struct Difference {
+  double z = 0, ours = 0, theirs = 0;
   std::size_t place = 0;
 
-  void take(const Worst& other) {
+  void take(const Difference& other) {
     if (other.z > z) *this = other;
   }
-  friend std::ostream& operator<<(std::ostream& out, const Worst& w) {
-    return out << w.z << " sigmas at " << w.place << " (" << w.ours << ", Mitsuba " << w.theirs
+  friend std::ostream& operator<<(std::ostream& out, const Difference& d) {
+    return out << d.z << " sigmas at " << d.place << " (" << d.ours << ", Mitsuba " << d.theirs
                << ")";
   }
 };
 
-inline Worst differences(const std::vector<Estimate>& ours, const std::vector<Estimate>& theirs,
-                         double rounding) {
-  Worst worst;
+/// `rounding`: the part of a value that counts as another standard deviation.
+inline std::vector<Difference> differences(const std::vector<Estimate>& ours,
+                                           const std::vector<Estimate>& theirs, double rounding) {
+  std::vector<Difference> all;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     const Estimate &a = ours[i], &b = theirs[i];
     const double exact = rounding * b.value;
     const double error = std::sqrt(a.variance + b.variance + exact * exact);
-    const double difference = std::abs(a.value - b.value);
-    worst.take({error > 0 ? difference / error : difference > 0 ? 1e9 : 0, a.value, b.value, i});
+    const double apart = std::abs(a.value - b.value);
+    all.push_back({error > 0 ? apart / error : apart > 0 ? 1e9 : 0, a.value, b.value, i});
   }
+  return all;
+}
+
+inline Difference worst_of(const std::vector<Difference>& all) {
+  Difference worst;
+  for (const Difference& d : all) worst.take(d);
   return worst;
+}
+
+/// The sum of their squares as a normal number (Wilson and Hilferty 1931). Finds what is a little
+/// wrong everywhere.
+inline double chi_square_sigmas(const std::vector<Difference>& all) {
+  double sum = 0;
+  for (const Difference& d : all) sum += d.z * d.z;
+  const auto n = static_cast<double>(all.size());
+  const double spread = 2 / (9 * n);
+  return (std::cbrt(sum / n) - (1 - spread)) / std::sqrt(spread);
 }
 
 /// The upper half of the file has means, the lower one their standard errors.
