@@ -436,7 +436,7 @@ SETTINGS = {
     "light_two": {"samples": 1024}, "light_textured_and_plain": {"samples": 1024},
     "light_envmap_seen": sensor(view='<lookat origin="0,0,0" target="0.1,1,-0.4" up="0,0,1"/>',
                                 fov=70.0),
-    "room": {"depth": 8, **NOISY, **sensor(
+    "room": {"depth": 8, "samples": 512, **sensor(
         view='<lookat origin="0,1,3.6" target="0,1,0" up="0,1,0"/>', fov=38.0)},
     "filter_tent": noisy_filter("tent", radius="[1.4]"),
     "filter_gaussian": noisy_filter("gaussian", stddev="[0.6]"),
