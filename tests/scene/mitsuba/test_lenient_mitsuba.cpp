@@ -62,8 +62,8 @@ TEST(LenientMitsuba, AShapeAroundAMediumIsNotThere) {
 
 TEST(LenientMitsuba, NoLightIsLeft) {
   const std::string shape = "<shape type=\"sphere\"/>";
-  const LoadedScene loaded = load_xml(shape + "\n<emitter type=\"projector\"/>");
-  EXPECT_EQ(loaded.count("NO LIGHT OF THE FILE IS LEFT: not supported: 'projector' of line 3; a "
+  const LoadedScene loaded = load_xml(shape + "\n<emitter type=\"wobbler\"/>");
+  EXPECT_EQ(loaded.count("NO LIGHT OF THE FILE IS LEFT: not supported: 'wobbler' of line 3; a "
                          "soft studio"),
             1);
   EXPECT_TRUE(has_light(loaded.scene));
@@ -72,7 +72,7 @@ TEST(LenientMitsuba, NoLightIsLeft) {
   const LoadedScene dark =
       load_xml(shape + "<emitter type=\"constant\"><rgb name=\"radiance\" value=\"0\"/></emitter>");
   EXPECT_FALSE(has_light(dark.scene)) << "as the file says";
-  const LoadedScene other = load_xml(shape + lamp + "<emitter type=\"projector\"/>");
+  const LoadedScene other = load_xml(shape + lamp + "<emitter type=\"wobbler\"/>");
   EXPECT_EQ(other.count("LIGHT"), 0);
   EXPECT_EQ(other.scene.environment.width, 0);
 }
