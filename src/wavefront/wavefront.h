@@ -112,6 +112,8 @@ struct WaveBuffers {
 //   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
+//   kinds_have_kernels       whether it has a kernel for each kind of BSDF; else the one for all
+//                            shades their ranges
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
 //   traces_queues_here()     in this very one;
@@ -160,7 +162,8 @@ void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext
     execute.run(ShadeSurface<Kind, Branching::divergent, Source>{context}, range);
   };
   for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    shade(std::type_identity<OneKind<Shading, Bsdf>>{}, kind_of<Bsdf>);
+    using Kind = std::conditional_t<Executor::kinds_have_kernels, OneKind<Shading, Bsdf>, Shading>;
+    shade(std::type_identity<Kind>{}, kind_of<Bsdf>);
   });
   shade(std::type_identity<Shading>{}, several_kinds);
 }

@@ -42,6 +42,9 @@ class CpuExecutor {
     timer_.time(to_string(StageId::order_surfaces), [&] { order_surfaces_cpu(scene_, order); });
   }
 
+  // They would take minutes to compile and gain nothing where threads do not run in warps.
+  static constexpr bool kinds_have_kernels = false;
+
   template <class Traits>
   static constexpr bool traces_queues = false;  // a thread is no warp
 

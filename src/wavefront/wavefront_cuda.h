@@ -23,6 +23,7 @@ class WavefrontCuda : public CudaRenderer {
   void compact(const CompactionRequest& request);
   void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
+  static constexpr bool kinds_have_kernels = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
   /// Wide trees, where a thread per ray would wait for the slowest of its warp. Masked scenes are

@@ -109,6 +109,7 @@ struct Executor {
   std::uint32_t path_count, finish_paths;
   bool more = true;
 
+  static constexpr bool kinds_have_kernels = false;
   template <class>
   static constexpr bool traces_queues = false;
 

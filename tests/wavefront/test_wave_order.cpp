@@ -16,6 +16,7 @@ using SphereScene = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::
 template <bool persistent>
 class Notes {
  public:
+  static constexpr bool kinds_have_kernels = true;
   template <class Traits>
   static constexpr bool traces_queues = persistent;
 
