@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+"""Shading: one kernel for all materials, the same over an ordered queue, or a kernel for each kind?
+
+The wavefront's three ways to shade surfaces, beside the megakernel. Scene files may be named as
+further arguments of --scenes. All images of a scene have the same counts of rays.
+"""
+import sys
+from pathlib import Path
+
+import harness
+from harness import Configuration, Experiment, Plot
+
+# scene, samples, and the promise in 10^6 samples/s that the best way keeps on an H200
+BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed", 16, None)]
+PROMISES = {"modern-hall/scene.xml": 430, "grey-white-room/scene.xml": 300}
+WAYS = {
+    "megakernel": "--mode megakernel",
+    "uber": "--mode wavefront --shade uber",
+    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "by material": "--mode wavefront --shade material",
+}
+SIZE, DEPTH = 1024, 8
+
+
+def add_arguments(parser):
+    parser.add_argument("--scenes", nargs="*", default=[], metavar="FILE",
+                        help="scene files to measure besides the built-in scenes")
+
+
+def configurations(arguments, _device):
+    # Each configuration runs in a folder of its own: only whole paths lead anywhere.
+    files = [str(Path(path).resolve()) for path in arguments.scenes]
+    scenes = BUILT_IN + [(path, 64, PROMISES.get("/".join(Path(path).parts[-2:])))
+                         for path in files]
+    size = SIZE
+    if arguments.quick:
+        scenes = [(scene.replace("1M", "1K"), 2, promise) for scene, _, promise in scenes]
+        size = SIZE // 32
+    rows = []
+    for scene, spp, promise in scenes:
+        name = "/".join(Path(scene).parts[-2:])
+        for way, options in WAYS.items():
+            rows.append(Configuration(
+                f"{name}: {way}",
+                f"--scene {scene} --width {size} --height {size} --spp {spp} "
+                f"--max-depth {DEPTH} {options}",
+                {"panel": name, "x": way, "target_msamples_per_s": promise or "", "verdict": ""}))
+    return rows
+
+
+def finish(rows, arguments):
+    for scene in {row["panel"] for row in rows if row["target_msamples_per_s"]}:
+        measured = [row for row in rows if row["panel"] == scene]
+        best = max(measured, key=lambda row: float(row["mpaths_per_s"]))
+        holds = float(best["mpaths_per_s"]) >= float(best["target_msamples_per_s"])
+        best["verdict"] = "quick" if arguments.quick else "pass" if holds else "MISS"
+
+
+EXPERIMENT = Experiment(
+    "shading", __doc__.splitlines()[0], configurations,
+    Plot("bars", "Ways to shade: 1024 x 1024, depth 8", log_y=False),
+    add_arguments=add_arguments, finish=finish,
+    table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT))
