@@ -22,9 +22,12 @@ struct SurfaceOrder {
   KindRanges* ranges = nullptr;      ///< counts and places are 0 before
 };
 
-/// That of the surface that the slot's path has met.
+/// That of the surface that the slot's path has met; 0 for a miss, which waits among the surfaces
+/// where branches are reduced.
 PT_HD std::uint8_t surface_kind(const Scene& scene, const PathPool& pool, std::uint32_t slot) {
-  const std::uint32_t material = material_number_at(scene, pool.load_hit(slot));
+  const Hit hit = pool.load_hit(slot);
+  if (hit.is_miss()) return 0;
+  const std::uint32_t material = material_number_at(scene, hit);
   return static_cast<std::uint8_t>(scene.material(material).kind);
 }
 
