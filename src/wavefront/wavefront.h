@@ -40,18 +40,17 @@ struct WaveBuffers {
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
   bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
   bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
-  // Where surfaces are ordered:
-  bool shades_by_kind = false;            ///< --shade material
+  // The order of surfaces:
+  bool orders_surfaces = false;
+  bool shades_by_kind = false;            ///< --shade material: only where they are ordered
   std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
   std::uint8_t* kind_of_place = nullptr;  ///< [slot_count]
   std::uint32_t* ordered = nullptr;       ///< [slot_count] the queue of surfaces, in order
 
-  bool orders_surfaces() const { return compaction.orders || shades_by_kind; }
-
   /// Of all queues, at most.
   std::size_t queue_bytes_per_slot() const {
     const std::size_t order = sizeof *ordered + sizeof *kind_of_place;
-    return queue_count * sizeof(std::uint32_t) + (orders_surfaces() ? order : 0);
+    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? order : 0);
   }
 
   /// Calls function(queue) for each that this render needs.
@@ -64,7 +63,7 @@ struct WaveBuffers {
         function(queues[queue_index(stage.id)]);
       }
     }
-    if (orders_surfaces()) function(ordered), function(kind_of_place);
+    if (orders_surfaces) function(ordered), function(kind_of_place);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -172,7 +171,7 @@ template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   constexpr StageId id = StageId::shade_surface;
   StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
-  if (b.orders_surfaces()) {
+  if (b.orders_surfaces) {
     execute.order_surfaces(SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.kind_of_place,
                                         b.ordered, &b.counters->kinds});
     surfaces.slots = b.ordered;

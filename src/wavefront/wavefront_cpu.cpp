@@ -72,6 +72,7 @@ class WavefrontCpu : public CpuRenderer {
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
     buffers_.compaction = compaction_info(options_.compaction);
     buffers_.shades_by_kind = options.shade == Shade::material;
+    buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind;
     buffers_.kinds = kinds_of(scene);
     buffers_.only_triangles = scene_.has_only_triangles();
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,

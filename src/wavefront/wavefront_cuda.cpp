@@ -44,10 +44,13 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
   buffers_.only_triangles = scene_.has_only_triangles();
-  const bool one_kind = std::has_single_bit(buffers_.kinds);
-  buffers_.shades_by_kind = options_.shade == Shade::material ||
-                            (options_.shade == Shade::automatic && !one_kind &&
-                             traits_.lighting == Lighting::full && buffers_.compaction.has_queues);
+  buffers_.shades_by_kind = options_.shade == Shade::material;
+  // An order pays as soon as warps would meet several BSDFs; kernels for each kind give no more
+  // (results/ has the measurement).
+  const bool order_pays = traits_.lighting == Lighting::full && buffers_.compaction.has_queues &&
+                          !std::has_single_bit(buffers_.kinds);
+  buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind ||
+                             (options_.shade == Shade::automatic && order_pays);
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
                                  !appends, scene_.light_selector.has_tree()};
   const std::uint64_t bytes_per_slot =

@@ -62,7 +62,7 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
-  buffers.compaction = strategy;
+  buffers.compaction = strategy, buffers.orders_surfaces = strategy.orders;
   buffers.counters = &counters;
   buffers.slot_count = &slot_count;
   buffers.reuses_slots = reuses_slots;
@@ -88,6 +88,7 @@ struct OrderedWave {
     buffers.compaction = compaction_info(strategy);
     buffers.counters = &counters, buffers.slot_count = &slot_count;
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
+    buffers.orders_surfaces = by_kind || buffers.compaction.orders;
     buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
     buffers.ordered = ordered, buffers.kind_of_place = kinds;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};

@@ -224,9 +224,9 @@ void add_execution(std::vector<OptionEntry>& list) {
            "wavefront: paths in flight; K and M mean 2^10 and 2^20")
       .only(wavefront, any_device)
       .add(choice("shade", &Options::shade),
-           "wavefront: surfaces are shaded all at once, or kind of BSDF by\n"
-           "kind over ranges of an ordered queue, on CUDA by a kernel for\n"
-           "each; auto: the latter on CUDA where a scene has several kinds")
+           "wavefront: surfaces are shaded by one kernel for all, or kind\n"
+           "of BSDF by kind over ranges of an ordered queue, on CUDA by\n"
+           "a kernel for each; auto: by one, on CUDA in order of the kinds")
       .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",
