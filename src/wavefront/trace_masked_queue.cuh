@@ -1,4 +1,4 @@
-// The same in scenes of triangles of which some are there in part.
+// The rays of a queue, traced by persistent warps, in scenes with masks.
 #pragma once
 
 #include "wavefront/trace_queue.cuh"
