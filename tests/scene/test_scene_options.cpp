@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare_scene.h"
+#include "common/scene/scene_options.h"
 
 namespace pt {
 namespace {
@@ -44,15 +45,24 @@ TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
   }
 }
 
+TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
+  for (const auto& [shade, lean] : {std::pair{Shade::material, false}, {Shade::uber, true}}) {
+    Options options;
+    options.shade = shade;
+    EXPECT_EQ(is_lean(build_scene(options), options), lean);
+  }
+}
+
 TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(
       refusal("boxes", "rng", "xorwow"),
-      "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power "
-      "and --sampler independent; expected such a scene instead of 'boxes', or other options");
+      "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, "
+      "--sampler independent and not --shade material; expected such a scene instead of 'boxes', "
+      "or other options");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
             "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
-            "--mis power and --sampler independent; expected such a scene instead of 'boxes', or "
-            "other options");
+            "--mis power, --sampler independent and not --shade material; expected such a scene "
+            "instead of 'boxes', or other options");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),
               "--scene-memory " + value +
