@@ -123,10 +123,10 @@ def importance_sampling(device):
     gains = []
     for (panel, equal), rows in (in_groups(table.measured, "panel", "equal").items()
                                  if table else ()):
-        errors = {row["series"]: number(row["relmse"]) for row in rows}
+        errors = {row["x"] or row["series"]: number(row["relmse"]) for row in rows}
         uniform, ours = errors.get("sampling uniform, nee off"), errors.get("nee off")
         if equal != "time" and uniform and ours:
-            gains.append((uniform / ours, f"{panel}, {equal}"))
+            gains.append((uniform / ours, panel))
     if not gains:
         return NOT_MEASURED, "", "sampling"
     more = [gain > 1 for gain, _ in gains]

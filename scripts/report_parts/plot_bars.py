@@ -7,7 +7,11 @@ from .words import show, short, unit_of, with_interval
 LEFT, RIGHT, STEP = 2, 430, 31
 
 
-def draw_bar(row, value, scale, top, unit, is_default):
+def is_the_default(row):
+    return row["x"] == "default" and is_measured(row)
+
+
+def draw_bar(row, value, scale, top, unit):
     start, end = (scale(max(scale.low, 0) or scale.low), scale(value.middle))
     middle = top + 20
     shapes = [f'<rect class="bar" x="{svg.place(start)}" y="{svg.place(top + 16)}" '
@@ -19,7 +23,7 @@ def draw_bar(row, value, scale, top, unit, is_default):
                    svg.line(high, middle - 3, high, middle + 3, "cap")]
     shapes.append(svg.text(RIGHT, top + 11, show(value.middle), "value end"))
     tip = f"{row['x']}: {with_interval(value, unit, 4)}"
-    return svg.point(value, tip, "default" if is_default else "s0", shapes)
+    return svg.point(value, tip, "default" if is_the_default(row) else "s0", shapes)
 
 
 def draw_bars(rows, style, _all_series, ends):
@@ -35,15 +39,14 @@ def draw_bars(rows, style, _all_series, ends):
     parts.append(svg.text((LEFT + RIGHT) / 2, bottom + 31, style.get("y_label", ""),
                           "axis middle"))
     unit = unit_of(style["y"])
+    mark = interval(rows[0], style["y"]).middle if is_the_default(rows[0]) else style.get("mark")
+    if mark is not None and ends[0] <= mark <= ends[1]:
+        parts.append(svg.line(scale(mark), 0, scale(mark), bottom, "mark"))
     for index, row in enumerate(rows):
         value = interval(row, style["y"]) if is_measured(row) else None
-        is_default = row["x"] == "default"
         parts.append(svg.text(LEFT, STEP * index + 11, row["x"], "name"))
         if value:
-            parts.append(draw_bar(row, value, scale, STEP * index, unit, is_default))
-            if is_default and index == 0:
-                parts.append(svg.line(scale(value.middle), 26, scale(value.middle), bottom,
-                                      "mark"))
+            parts.append(draw_bar(row, value, scale, STEP * index, unit))
         else:
             parts.append(svg.text(LEFT, STEP * index + 24, row.get("status", ""), "note"))
     return bottom + 40, "".join(parts)

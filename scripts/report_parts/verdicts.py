@@ -37,7 +37,9 @@ def ranking(pairs, unit, low_is_better=True, start=capital):
                          f"{show(others[-1][1].middle / best[1].middle)} times as long.")
     elif first:
         parts.append(f"{best[0]} is highest with {with_interval(best[1], unit)}, before "
-                     f"{first[0]} with {with_interval(first[1], unit)}.")
+                     f"{first[0]} with {with_interval(first[1], unit)}"
+                     + ("." if first[1].known and best[1].known else
+                        ", by values without a spread."))
     return " ".join(parts)
 
 
@@ -92,7 +94,7 @@ def about_panel(rows, style):
         if pairs and pairs[0][0] == "default":
             return about_default(pairs, unit)
         return ranking(pairs, unit, style["y"].endswith("_ms"))
-    sentences = [about_series(series or "All", pairs_of(members, style["y"], "x"), style)
+    sentences = [about_series(capital(series) or "All", pairs_of(members, style["y"], "x"), style)
                  for series, members in in_groups(rows, "series").items()]
     sentences = [sentence for sentence in sentences if sentence]
     if style.get("mark") is None:

@@ -16,7 +16,9 @@ def plain(value):
 
 
 def short(value):
-    """For axes: 600, 180k, 2.88M."""
+    """For axes: 4096, 180k, 2.88M."""
+    if abs(value) < 1e4 and value == int(value) and abs(value) % 1000:
+        return f"{value:.0f}"
     for limit, letter in ((1e9, "G"), (1e6, "M"), (1e3, "k")):
         if abs(value) >= limit:
             return f"{value / limit:.3g}{letter}"
