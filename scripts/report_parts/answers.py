@@ -21,7 +21,7 @@ def way(row):
 def scene_rows(device):
     """(table, scene, commit, rows of one image): the megakernel's rows and the wavefront's."""
     for name in ("image_size", "scenes", "shading", "dial"):
-        table = device.tables.get(name)
+        table = device.to_judge(name)
         groups, kinds = {}, {row.get("device_kind") for row in table.measured} if table else ()
         kind = "cuda" if "cuda" in kinds else "cpu"
         for row in table.measured if table else []:
@@ -72,7 +72,7 @@ def which_mode(device):
 
 
 def which_block(device):
-    table = device.tables.get("block_size")
+    table = device.to_judge("block_size")
     if not table or not table.measured:
         return paragraph(NOT_MEASURED.format("block_size"))
     lines, losses = [], {}
@@ -105,7 +105,7 @@ def effect(idea, where, default, value, source):
 
 
 def effects(device):
-    table = device.tables.get("toggles")
+    table = device.to_judge("toggles")
     for mode, rows in (in_groups(table.measured, "panel").items() if table else ()):
         default = next((interval(row, "kernel_ms") for row in rows if row["x"] == "default"), None)
         for row in rows if default else ():

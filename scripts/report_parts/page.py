@@ -37,8 +37,9 @@ def answers(devices):
 
 
 def audit_table(device):
-    rows = [[claim, html.verdict_cell(verdict), f"<td>{escape(numbers)}</td>", source]
-            for claim, verdict, numbers, source in audit(device)]
+    rows = [[f"<td>{escape(claim)}<small>{escape(rule)}</small></td>", html.verdict_cell(verdict),
+             f"<td>{escape(numbers)}</td>", source]
+            for claim, rule, verdict, numbers, source in audit(device)]
     return html.html_table(["claim", "verdict", "what was measured", "table"], rows, "audit")
 
 

@@ -106,16 +106,6 @@ def give_ray_sets_a_plot(table):
                            "y_label": "time of the rays [ms]", "log_y": False}
 
 
-def give_sampling_a_plot(table):
-    """The gains of the ways to sample: one panel for a scene at equal samples, or equal time."""
-    for row in table.rows:
-        row["x"] = row["series"]
-        row["panel"], row["series"] = f"{row['panel']}, equal: {row['equal']}", ""
-    table.facts["plot"] = {"kind": "bars", "title": "Gain over the former defaults", "x_label": "",
-                           "y": "gain", "y_label": "error of the former defaults / error",
-                           "log_y": False, "mark": 1.0}
-
-
 def read_table(path):
     path = Path(path)
     with open(path, newline="", encoding="utf-8") as file:
@@ -132,8 +122,6 @@ def read_table(path):
     table = Table(path.stem, columns, rows, facts)
     if facts and not table.plot and {"ray_file", "time_ms", "accel"} <= set(columns):
         give_ray_sets_a_plot(table)
-    if facts and not table.plot and {"relmse", "equal", "gain", "panel", "series"} <= set(columns):
-        give_sampling_a_plot(table)
     return table
 
 
@@ -142,6 +130,11 @@ class Device:
     folder: Path
     name: str
     tables: dict  # by name
+
+    def to_judge(self, name):
+        """A table that answers and verdicts may rest on: not one of small images."""
+        table = self.tables.get(name)
+        return None if table and table.facts.get("quick") else table
 
 
 def read_device(folder):

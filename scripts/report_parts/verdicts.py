@@ -79,8 +79,8 @@ def about_series(name, pairs, style):
                 f"{with_interval(high)} with {plain(last)} {label}.")
     power = exponent([(x, value.middle) for x, value in pairs])
     middles = [value.middle for _, value in pairs]
-    if power is not None and power >= STEADY and middles == sorted(middles):
-        return (f"{name}: {show(last / first)} times the {label} take "
+    if unit and power is not None and power >= STEADY and middles == sorted(middles):
+        return (f"{name}: {plain(last / first)} times the {label} take "
                 f"{show(high.middle / low.middle)} times as long (time grows as "
                 f"{label}^{power:.2f}).")
     named = [(f"{plain(x)} {label}", value) for x, value in pairs]
@@ -108,12 +108,22 @@ def about_panel(rows, style):
     return " ".join(sentences)
 
 
+def about_gains(table):
+    """Ways to sample are compared at equal samples and at equal time, not along their lines."""
+    return [(f"{panel}, equal: {equal}", ranking(pairs_of(rows, "gain", "series"), "", False)
+             + " Each error is that of one image.")
+            for (panel, equal), rows in in_groups(table.measured, "panel", "equal").items()]
+
+
 def meaning(table):
     """[(panel, sentences)]"""
-    if not table.plot:
+    if {"gain", "equal"} <= set(table.columns):
+        found = about_gains(table)
+    elif table.plot:
+        found = [(panel, about_panel(rows, table.plot))
+                 for panel, rows in in_groups(table.drawn, "panel").items()]
+    else:
         return []
-    found = [(panel, about_panel(rows, table.plot))
-             for panel, rows in in_groups(table.drawn, "panel").items()]
     once = sum(1 for row in table.measured if row.get("repeat") == "1")
     gone = [row for row in table.rows if not is_measured(row)]
     if gone:
