@@ -25,8 +25,8 @@ class Scale:
 
 
 def even(low, high):
-    """At most six round numbers."""
-    rough = (high - low) / 5
+    """At most seven round numbers."""
+    rough = (high - low) / 6
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(step * power for step in (1, 2, 5, 10) if step * power >= rough)
     first = math.ceil(low / step - 1e-9)

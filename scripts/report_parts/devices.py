@@ -14,7 +14,7 @@ def rows_by_name(table, column):
     """{name: (what was to be computed, value)}"""
     found = {}
     for row in table.measured:
-        name = row.get("name") or ", ".join(row[label] for label in ("panel", "x") if row.get(label))
+        name = row.get("name") or ", ".join(filter(None, (row.get("panel"), row.get("x"))))
         if name and interval(row, column):
             found[name] = tuple(row.get(label, "") for label in WORK), interval(row, column)
     return found

@@ -63,17 +63,17 @@ def draw_lines(rows, style, all_series, ends):
         track = " ".join(f"{svg.place(x_scale(x))},{svg.place(y_scale(value.middle))}"
                          for x, value in found)
         parts.append(f'<polyline class="line s{index % svg.SERIES}" points="{track}"/>')
-        parts += [draw_point(x_scale(x), y_scale, value, f"{series or style['y_label']}, {plain(x)} "
+        name = series or style["y_label"]
+        parts += [draw_point(x_scale(x), y_scale, value, f"{name}, {plain(x)} "
                              f"{style.get('x_label', '')}: {with_interval(value, unit, 4)}", index)
                   for x, value in found]
         for row in members:
             target = number(row.get("target_ms"))
             if target and ends[0] <= target <= ends[1]:
                 here = x_scale(number(row["x"]))
-                parts.append(f'<g class="s{index % svg.SERIES}"><title>{svg.escape(series)}: target '
-                             f'{show(target)} ms</title>' + svg.line(
-                                 here - 9, y_scale(target), here + 9, y_scale(target), "target")
-                             + "</g>")
+                dash = svg.line(here - 9, y_scale(target), here + 9, y_scale(target), "target")
+                parts.append(f'<g class="s{index % svg.SERIES}"><title>{svg.escape(series)}: '
+                             f"target {show(target)} ms</title>{dash}</g>")
     refused = {(number(row["x"]), row["status"]) for row in rows if not is_measured(row)
                and number(row["x"])}
     for x, status in sorted(refused):

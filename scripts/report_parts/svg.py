@@ -71,5 +71,6 @@ def standing_alone(title, panels, style):
         top += 40 + max(height for _, height, _ in row)
     width = 28 + columns * WIDTH + (columns - 1) * 24
     return (f'<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {width} '
-            f'{place(top)}" width="{width}" height="{place(top)}"><style>{for_daylight(style)}</style>'
+            f'{place(top)}" width="{width}" height="{place(top)}">'
+            f"<style>{for_daylight(style)}</style>"
             f'<rect class="paper" width="{width}" height="{place(top)}"/>{"".join(parts)}</svg>\n')

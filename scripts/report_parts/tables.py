@@ -97,7 +97,7 @@ def in_groups(rows, *labels):
 
 
 def give_ray_sets_a_plot(table):
-    """Tables of `ptexp trace` have no description of a plot: bars, one panel for each set of rays."""
+    """Tables of `ptexp trace` have no description of a plot: bars, a panel for each set of rays."""
     for row in table.rows:
         rays = row["ray_file"].removesuffix(".rays")
         row["panel"], _, row["series"] = rays, "", ""

@@ -30,8 +30,8 @@ def unit_of(column):
 
 
 def with_interval(value, unit="", digits=3):
-    while value.known and digits < 6 and value.low != value.high and show(value.low, digits) == show(
-            value.high, digits):
+    spread = value.known and value.low != value.high
+    while spread and digits < 6 and show(value.low, digits) == show(value.high, digits):
         digits += 1  # the ends shall differ
     text = show(value.middle, digits) + (f" {unit}" if unit else "")
     if not value.known:
