@@ -128,8 +128,8 @@ def each_idea(device):
     if not lines:
         return paragraph(NOT_MEASURED.format("of toggles, shading or dial"))
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
-                     "defaults; of one kernel over unordered surfaces for shading): above 1 the choice "
-                     "costs, below 1 it gains. The interval follows from the extremes of both."
+                     "defaults; of one kernel over unordered surfaces for shading): above 1 the "
+                     "choice costs, below 1 it gains. The interval follows from the extremes of both."
                      ) + html_table(["choice", "where", "time ratio", "verdict", "table"], lines)
 
 

@@ -116,8 +116,9 @@ class Page(HTMLParser):
         values = dict(attrs)
         if tag not in VOID:
             self.open.append(tag)
-        self.references += [values[name] for name in ("src", "href", "xlink:href", "srcset", "data",
-                                                      "action", "poster") if values.get(name)]
+        self.references += [values[name] for name in ("src", "href", "xlink:href", "srcset",
+                                                      "data", "action", "poster")
+                            if values.get(name)]
         self.ids += [values["id"]] if "id" in values else []
         self.exact += [values["data-v"]] if "data-v" in values else []
 
