@@ -129,8 +129,8 @@ def each_idea(device):
         return paragraph(NOT_MEASURED.format("of toggles, shading or dial"))
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
                      "defaults; of one kernel over unordered surfaces for shading): above 1 the "
-                     "choice costs, below 1 it gains. The interval follows from the extremes of both."
-                     ) + html_table(["choice", "where", "time ratio", "verdict", "table"], lines)
+                     "choice costs, below 1 it gains. The interval follows from the extremes of "
+                     "both.") + html_table(["choice", "where", "time ratio", "verdict", "table"], lines)
 
 
 QUESTIONS = (("Which mode for my scene?", which_mode), ("Which block size?", which_block),

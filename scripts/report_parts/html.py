@@ -22,10 +22,12 @@ def cell(text):
 
 def html_table(heads, rows, name=""):
     """`rows` of texts, or of cells that are HTML already (they begin with <td)."""
-    head = "".join(f'<th scope="col"><button type="button">{escape(head)}</button></th>'
-                   for head in heads)
-    body = "".join("<tr>" + "".join(text if text.startswith("<td") else cell(text)
-                                    for text in row) + "</tr>\n" for row in rows)
+    rows = [[text if text.startswith("<td") else cell(text) for text in row] for row in rows]
+    right = [any(row[column].startswith('<td class="n"') for row in rows)
+             for column in range(len(heads))]
+    head = "".join(f'<th scope="col"{" class=n" * is_number}><button type="button">{escape(head)}'
+                   "</button></th>" for head, is_number in zip(heads, right))
+    body = "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows)
     return (f'<div class="scroll"><table class="sortable {name}"><thead><tr>{head}</tr></thead>'
             f"<tbody>\n{body}</tbody></table></div>")
 

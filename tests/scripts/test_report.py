@@ -91,8 +91,8 @@ def blocks(times):
              "repeat": 10, "kernel_ms_median": time, "kernel_ms_min": 0.99 * time,
              "kernel_ms_max": 1.01 * time}
             for (threads, side), time in zip(((16, 4), (64, 8), (256, 16), (1024, 32)), times)]
-    return rows + [{**rows[0], "name": "4096", "x": 4096, "status": "refused", "message": "too many",
-                    "kernel_ms_median": "", "kernel_ms_min": "", "kernel_ms_max": ""}]
+    return rows + [{**rows[0], "name": "4096", "x": 4096, "status": "refused",
+                    "message": "too many", "kernel_ms_median": "", "kernel_ms_min": "", "kernel_ms_max": ""}]
 
 
 def sampling(uniform, ours):
@@ -303,8 +303,8 @@ class Report(unittest.TestCase):
         self.run_report(self.folder, other, "-o", page)
         text = page.read_text(encoding="utf-8")
         self.check_well_formed(text)
-        self.assertIn("Over 3 configurations that both measured, Device B takes 2.00 times the time "
-                      "of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 more "
+        self.assertIn("Over 3 configurations that both measured, Device B takes 2.00 times the "
+                      "time of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 more "
                       "have equal names but other images", text)
         first, second = plots_in(text)
         self.assertEqual(self.places(first, "x"), self.places(second, "x"))
