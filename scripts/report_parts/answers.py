@@ -1,5 +1,5 @@
 """The first section: which mode for my scene, which block size, what does each idea give."""
-from .html import cell, html_table, paragraph, verdict_cell
+from .html import html_table, paragraph, verdict_cell
 from .tables import in_groups, interval, number
 from .words import change, quotient, relation, show, with_interval
 
@@ -83,7 +83,7 @@ def which_block(device):
         equal = [x for x, value in pairs[1:] if relation(least, value) == "overlap"]
         for x, value in pairs:
             losses.setdefault(x, []).append(value.middle / least.middle)
-        lines.append([panel, series, best, time_cell(least), cell(", ".join(equal) or "none"),
+        lines.append([panel, series, best, time_cell(least), f"<td>{', '.join(equal) or 'none'}</td>",
                       f"{worst} (x{show(most.middle / least.middle)})"])
     everywhere = {x: max(values) for x, values in losses.items() if len(values) == len(lines)}
     text = "No size was measured in every way of executing."
@@ -130,7 +130,8 @@ def each_idea(device):
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
                      "defaults; of one kernel over unordered surfaces for shading): above 1 the "
                      "choice costs, below 1 it gains. The interval follows from the extremes of "
-                     "both.") + html_table(["choice", "where", "time ratio", "verdict", "table"], lines)
+                     "both.") + html_table(
+                         ["choice", "where", "time ratio", "verdict", "table"], lines)
 
 
 QUESTIONS = (("Which mode for my scene?", which_mode), ("Which block size?", which_block),

@@ -28,7 +28,7 @@ def html_table(heads, rows, name=""):
     head = "".join(f'<th scope="col"{" class=n" * is_number}><button type="button">{escape(head)}'
                    "</button></th>" for head, is_number in zip(heads, right))
     body = "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows)
-    return (f'<div class="scroll"><table class="sortable {name}"><thead><tr>{head}</tr></thead>'
+    return (f'<div class="scroll {name}"><table class="sortable"><thead><tr>{head}</tr></thead>'
             f"<tbody>\n{body}</tbody></table></div>")
 
 
@@ -42,6 +42,11 @@ def varies(table, column):
     return len({row.get(column, "") for row in table.rows}) > 1
 
 
+def is_in_the_name(table, column):
+    return column in ("series", "panel") and all(
+        row[column] and row[column] in row.get("name", "") for row in table.rows)
+
+
 def columns_shown(table):
     """The experiment's own columns and the measures, without those that say nothing."""
     end = table.columns.index("schema_version") if "schema_version" in table.columns else None
@@ -49,6 +54,7 @@ def columns_shown(table):
         return table.columns
     own = table.columns[:end] if end is not None else RAY_SETS
     shown = [column for column in own if column in table.columns and column not in NOT_SHOWN
+             and not is_in_the_name(table, column)
              and (varies(table, column) or (len(table.rows) == 1 and table.rows[0][column]))]
     return list(dict.fromkeys(shown + [column for column in MEASURES if column in table.columns
                                        and any(row[column] for row in table.rows)]))

@@ -92,7 +92,8 @@ def blocks(times):
              "kernel_ms_max": 1.01 * time}
             for (threads, side), time in zip(((16, 4), (64, 8), (256, 16), (1024, 32)), times)]
     return rows + [{**rows[0], "name": "4096", "x": 4096, "status": "refused",
-                    "message": "too many", "kernel_ms_median": "", "kernel_ms_min": "", "kernel_ms_max": ""}]
+                    "message": "too many",
+                    **{f"kernel_ms_{part}": "" for part in ("median", "min", "max")}}]
 
 
 def sampling(uniform, ours):
@@ -304,8 +305,8 @@ class Report(unittest.TestCase):
         text = page.read_text(encoding="utf-8")
         self.check_well_formed(text)
         self.assertIn("Over 3 configurations that both measured, Device B takes 2.00 times the "
-                      "time of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 more "
-                      "have equal names but other images", text)
+                      "time of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 "
+                      "more have equal names but other images", text)
         first, second = plots_in(text)
         self.assertEqual(self.places(first, "x"), self.places(second, "x"))
         shutil.copy(self.folder / "toggles.json", other / "toggles.json")
