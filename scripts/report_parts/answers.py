@@ -83,7 +83,8 @@ def which_block(device):
         equal = [x for x, value in pairs[1:] if relation(least, value) == "overlap"]
         for x, value in pairs:
             losses.setdefault(x, []).append(value.middle / least.middle)
-        lines.append([panel, series, best, time_cell(least), f"<td>{', '.join(equal) or 'none'}</td>",
+        lines.append([panel, series, best, time_cell(least),
+                      f"<td>{', '.join(equal) or 'none'}</td>",
                       f"{worst} (x{show(most.middle / least.middle)})"])
     everywhere = {x: max(values) for x, values in losses.items() if len(values) == len(lines)}
     text = "No size was measured in every way of executing."

@@ -15,7 +15,7 @@ def cell(text):
     """A number shows four digits and keeps all of them for sorting and reading."""
     value = number(text)
     if value is None or not value == value:  # NaN sorts nowhere
-        return f"<td>{escape(text)}</td>"
+        return f"<td{' class=long' * (len(text) > 60)}>{escape(text)}</td>"
     shown = f"{value:,.0f}" if value == int(value) and abs(value) < 1e15 else show(value, 4)
     return f'<td class="n" data-v="{escape(text)}" title="{escape(text)}">{shown}</td>'
 

@@ -45,13 +45,13 @@ def audit_table(device):
 
 def figures(table, shared):
     panels = plots.draw_panels(table, shared)
-    kind = f" Bars: {table.kind}." if table.kind else ""
+    kind = f"; thin lines with ends: {table.kind}" if table.kind else ""
     return '<div class="panels">' + "".join(
         f"<figure><figcaption>{escape(panel)}</figcaption>"
         f"{plots.in_page(height, content, f'{plots.title_of(table)}: {panel}')}</figure>"
         for panel, height, content in panels) + (
-            f'</div><p class="note">{escape(plots.title_of(table))}. Markers and bars: '
-            f"medians.{kind}</p>")
+            f'</div><p class="note">{escape(plots.title_of(table))}. Medians'
+            f"{kind}.</p>")
 
 
 def environment(table):
