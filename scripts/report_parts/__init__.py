@@ -1,0 +1,1 @@
+"""The parts of scripts/report: tables are read, compared, drawn and set on one page."""

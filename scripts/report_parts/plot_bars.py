@@ -1,0 +1,52 @@
+"""Bars that lie, each below its name: the value at the right, the interval as a thin line."""
+from . import svg
+from .axes import Scale
+from .tables import interval, is_measured
+from .words import show, short, unit_of, with_interval
+
+LEFT, RIGHT, STEP = 2, 430, 31
+
+
+def is_the_default(row):
+    return row["x"] == "default" and is_measured(row)
+
+
+def draw_bar(row, value, scale, top, unit):
+    start, end = (scale(max(scale.low, 0) or scale.low), scale(value.middle))
+    middle = top + 20
+    shapes = [f'<rect class="bar" x="{svg.place(start)}" y="{svg.place(top + 16)}" '
+              f'width="{svg.place(max(end - start, 0.5))}" height="8"/>']
+    if value.known:
+        low, high = scale(value.low), scale(value.high)
+        shapes += [svg.line(low, middle, high, middle, "interval"),
+                   svg.line(low, middle - 3, low, middle + 3, "cap"),
+                   svg.line(high, middle - 3, high, middle + 3, "cap")]
+    shapes.append(svg.text(RIGHT, top + 11, show(value.middle), "value end"))
+    tip = f"{row['x']}: {with_interval(value, unit, 4)}"
+    return svg.point(value, tip, "default" if is_the_default(row) else "s0", shapes)
+
+
+def draw_bars(rows, style, _all_series, ends):
+    """The height and the content of a panel."""
+    scale = Scale(*ends, style.get("log_y", False), LEFT, RIGHT)
+    bottom = STEP * len(rows) + 4
+    parts = []
+    for value in scale.ticks():
+        parts.append(svg.line(scale(value), 0, scale(value), bottom, "grid"))
+        side = "start" if scale(value) < LEFT + 12 else "middle"
+        parts.append(svg.text(scale(value), bottom + 14, short(value), f"tick {side}",
+                              f' data-value="{value!r}"'))
+    parts.append(svg.text((LEFT + RIGHT) / 2, bottom + 31, style.get("y_label", ""),
+                          "axis middle"))
+    unit = unit_of(style["y"])
+    mark = interval(rows[0], style["y"]).middle if is_the_default(rows[0]) else style.get("mark")
+    if mark is not None and ends[0] <= mark <= ends[1]:
+        parts.append(svg.line(scale(mark), 0, scale(mark), bottom, "mark"))
+    for index, row in enumerate(rows):
+        value = interval(row, style["y"]) if is_measured(row) else None
+        parts.append(svg.text(LEFT, STEP * index + 11, row["x"], "name"))
+        if value:
+            parts.append(draw_bar(row, value, scale, STEP * index, unit))
+        else:
+            parts.append(svg.text(LEFT, STEP * index + 24, row.get("status", ""), "note"))
+    return bottom + 40, "".join(parts)

@@ -1,0 +1,38 @@
+"""The plot of a table: one panel for each value of the label `panel`."""
+from . import axes, svg
+from .plot_bars import draw_bars
+from .plot_lines import draw_lines
+from .tables import in_groups, interval, is_measured
+
+
+def values_of(rows, table):
+    return [value for row in rows if is_measured(row)
+            for value in [interval(row, table.plot["y"])] if value]
+
+
+def domains(tables):
+    """{panel: lowest and highest place}: the same for the tables of several devices."""
+    found = {}
+    for table in tables:
+        for panel, rows in in_groups(table.drawn, "panel").items():
+            found.setdefault(panel, []).extend(values_of(rows, table))
+    log = tables[0].plot.get("log_y", False)
+    return {panel: axes.domain(values, log) for panel, values in found.items() if values}
+
+
+def draw_panels(table, shared=None):
+    """[(panel, height, content)]"""
+    shared = shared or domains([table])
+    series = list(in_groups(table.drawn, "series"))
+    draw = draw_bars if table.plot["kind"] == "bars" else draw_lines
+    return [(panel, *draw(rows, table.plot, series, shared[panel]))
+            for panel, rows in in_groups(table.drawn, "panel").items() if panel in shared]
+
+
+def in_page(height, content, label):
+    return (f'<svg class="plot" role="img" aria-label="{svg.escape(label)}" viewBox="0 0 '
+            f'{svg.WIDTH} {svg.place(height)}">{content}</svg>')
+
+
+def title_of(table):
+    return table.plot.get("title") or table.name

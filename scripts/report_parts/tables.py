@@ -1,0 +1,149 @@
+"""Reads results/DEVICE/NAME.csv with the NAME.json beside it. Columns are found by their names, so
+that tables of all schema versions can be read; what is not there is empty."""
+import csv
+import json
+from dataclasses import dataclass, field
+from pathlib import Path
+
+CONFIDENCE = "confidence interval"
+RANGE = "fastest to slowest repeat"
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A measured value. `low` and `high` are None where nothing is known about its spread."""
+    middle: float
+    low: float = None
+    high: float = None
+    kind: str = ""
+
+    @property
+    def known(self):
+        return self.low is not None
+
+    def inverse(self):
+        return Interval(1 / self.middle, *((1 / self.high, 1 / self.low) if self.known else
+                                           (None, None)), self.kind)
+
+
+def number(text):
+    try:
+        return float(text)
+    except (TypeError, ValueError):
+        return None
+
+
+def is_measured(row):
+    return row.get("status", "measured") == "measured"
+
+
+def interval(row, column):
+    """The value of a column with its interval, None if it was not measured. A row that was
+    repeated once has no interval, even if its table has columns for it."""
+    middle = number(row.get(f"{column}_median"))
+    if middle is None:
+        middle = number(row.get(column))
+    if middle is None:
+        return None
+    stem = column[:-3] if column.endswith("_ms") else column
+    for low, high, kind in ((f"{column}_low", f"{column}_high", CONFIDENCE),
+                            (f"{column}_min", f"{column}_max", RANGE),
+                            (f"{stem}_min_ms", f"{stem}_max_ms", RANGE)):
+        ends = number(row.get(low)), number(row.get(high))
+        if None not in ends and not (ends[0] == ends[1] and row.get("repeat") == "1"):
+            return Interval(middle, *ends, kind)
+    return Interval(middle)
+
+
+@dataclass
+class Table:
+    name: str
+    columns: list
+    rows: list
+    facts: dict = field(default_factory=dict)  # of the JSON; empty: there is none
+
+    @property
+    def measured(self):
+        return [row for row in self.rows if is_measured(row)]
+
+    @property
+    def plot(self):
+        return self.facts.get("plot")
+
+    @property
+    def drawn(self):
+        """Rows with a place in the plot."""
+        return [row for row in self.rows if row.get("x")] if self.plot else []
+
+    @property
+    def commits(self):
+        return list(dict.fromkeys(row["commit"] for row in self.rows if row.get("commit")))
+
+    @property
+    def kind(self):
+        """What the intervals of the plot are."""
+        kinds = {value.kind for row in self.measured if self.plot
+                 for value in [interval(row, self.plot["y"])] if value and value.known}
+        return " or ".join(sorted(kinds))
+
+
+def in_groups(rows, *labels):
+    """{values of the labels: rows}, in the order of the table."""
+    groups = {}
+    for row in rows:
+        key = tuple(row.get(label, "") for label in labels)
+        groups.setdefault(key if len(labels) > 1 else key[0], []).append(row)
+    return groups
+
+
+def give_ray_sets_a_plot(table):
+    """Tables of `ptexp trace` have no description of a plot: bars, a panel for each set of rays."""
+    for row in table.rows:
+        rays = row["ray_file"].removesuffix(".rays")
+        row["panel"], _, row["series"] = rays, "", ""
+        row["x"] = ", ".join(row[label] for label in ("accel", "builder", "variant") if row[label])
+    table.facts["plot"] = {"kind": "bars", "title": "Tracing alone", "x_label": "", "y": "time_ms",
+                           "y_label": "time of the rays [ms]", "log_y": False}
+
+
+def read_table(path):
+    path = Path(path)
+    with open(path, newline="", encoding="utf-8") as file:
+        reader = csv.DictReader(file)
+        rows = [{key: value or "" for key, value in row.items() if key} for row in reader]
+        columns = list(reader.fieldnames or [])
+    facts = {}
+    description = path.with_suffix(".json")
+    if description.is_file():
+        try:
+            facts = json.loads(description.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise ValueError(f"{description}: not JSON: {error}") from error
+    table = Table(path.stem, columns, rows, facts)
+    if facts and not table.plot and {"ray_file", "time_ms", "accel"} <= set(columns):
+        give_ray_sets_a_plot(table)
+    return table
+
+
+@dataclass
+class Device:
+    folder: Path
+    name: str
+    tables: dict  # by name
+
+    def to_judge(self, name):
+        """A table that answers and verdicts may rest on: not one of small images."""
+        table = self.tables.get(name)
+        return None if table and table.facts.get("quick") else table
+
+
+def read_device(folder):
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise ValueError(f"{folder}: no such folder; a folder of results/ was expected")
+    tables = {path.stem: read_table(path) for path in sorted(folder.glob("*.csv"))}
+    if not tables:
+        raise ValueError(f"{folder}: no tables; *.csv of the experiments were expected")
+    names = [table.facts["device"]["name"] for table in tables.values()
+             if table.facts.get("device")]
+    return Device(folder, names[0] if names else folder.name, tables)

@@ -1,0 +1,135 @@
+"""What a plot's numbers mean, in sentences. A difference is one only where intervals are apart."""
+from .tables import in_groups, interval, is_measured, number
+from .words import (change, exponent, listed, plain, relation, show, unit_of, versus,
+                    with_interval)
+
+STEADY = 0.5  # y ~ x^p with at least this p, and y grows from x to x: a sentence on growth
+
+
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
+def pairs_of(rows, column, label):
+    found = ((row.get(label, ""), interval(row, column)) for row in rows
+             if is_measured(row))
+    return [(name, value) for name, value in found if value]
+
+
+def ranking(pairs, unit, low_is_better=True, start=capital):
+    """The best against the next that differs; those between do not."""
+    pairs = sorted(pairs, key=lambda pair: pair[1].middle, reverse=not low_is_better)
+    if len(pairs) < 2:
+        return ""
+    best, *others = pairs
+    equal = [pair for pair in others if relation(best[1], pair[1]) == "overlap"]
+    first = next((pair for pair in others if pair not in equal), None)
+    parts = []
+    if equal:
+        parts.append(f"There is no significant difference between {best[0]} "
+                     f"({with_interval(best[1], unit)}) and "
+                     + listed(f"{name} ({with_interval(value, unit)})" for name, value in equal)
+                     + ": their intervals overlap.")
+    if first and low_is_better:
+        parts.append(start(versus(best[0], best[1], first[0], first[1], unit)))
+        if others[-1] != first:
+            parts.append(f"The slowest, {others[-1][0]}, takes "
+                         f"{show(others[-1][1].middle / best[1].middle)} times as long.")
+    elif first:
+        parts.append(f"{best[0]} is highest with {with_interval(best[1], unit)}, before "
+                     f"{first[0]} with {with_interval(first[1], unit)}"
+                     + ("." if first[1].known and best[1].known else
+                        ", by values without a spread."))
+    return " ".join(parts)
+
+
+def about_default(pairs, unit):
+    """Each row against the first one, the default."""
+    default, groups = pairs[0][1], {}
+    for name, value in pairs[1:]:
+        word, ratio = change(default, value)
+        groups.setdefault(word, []).append((ratio, name))
+    parts = [f"The default takes {with_interval(default, unit)}."]
+    for word, start in (("faster", "Faster: "), ("slower", "Slower: ")):
+        if word in groups:
+            ordered = sorted(groups[word], reverse=word == "slower")
+            parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in ordered)
+                         + " in time.")
+    for word, start in (("no significant difference", "No significant difference to the default: "),
+                        ("not known", "Without a spread, so not judged: ")):
+        if word in groups:
+            parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in groups[word])
+                         + ".")
+    return " ".join(parts)
+
+
+def about_series(name, pairs, style):
+    """How a line runs: against its mark, as growth, or to its best place."""
+    unit, label = unit_of(style["y"]), style.get("x_label") or "x"
+    pairs = sorted((number(x), value) for x, value in pairs if number(x))
+    if len(pairs) < 2:
+        return ""
+    (first, low), (last, high) = pairs[0], pairs[-1]
+    if style.get("mark") is not None:
+        above = [x for x, value in pairs if value.known and value.low > style["mark"]]
+        where = (f"nowhere clearly above {style['mark']:g}" if not above else
+                 f"everywhere above {style['mark']:g}" if len(above) == len(pairs) else
+                 f"clearly above {style['mark']:g} with {listed(plain(x) for x in above)} {label}")
+        return (f"{name}: {where}; from {with_interval(low)} with {plain(first)} to "
+                f"{with_interval(high)} with {plain(last)} {label}.")
+    power = exponent([(x, value.middle) for x, value in pairs])
+    middles = [value.middle for _, value in pairs]
+    if unit and power is not None and power >= STEADY and middles == sorted(middles):
+        return (f"{name}: {plain(last / first)} times the {label} take "
+                f"{show(high.middle / low.middle)} times as long (time grows as "
+                f"{label}^{power:.2f}).")
+    named = [(f"{plain(x)} {label}", value) for x, value in pairs]
+    return f"{name}: {ranking(named, unit, style['y'].endswith('_ms'), str)}"
+
+
+def about_panel(rows, style):
+    unit = unit_of(style["y"])
+    if style["kind"] == "bars":
+        pairs = pairs_of(rows, style["y"], "x")
+        if pairs and pairs[0][0] == "default":
+            return about_default(pairs, unit)
+        return ranking(pairs, unit, style["y"].endswith("_ms"))
+    sentences = [about_series(capital(series) or "All", pairs_of(members, style["y"], "x"), style)
+                 for series, members in in_groups(rows, "series").items()]
+    sentences = [sentence for sentence in sentences if sentence]
+    if style.get("mark") is None:
+        last = max((number(row["x"]) for row in rows if is_measured(row)
+                    and number(row["x"])), default=None)
+        there = [row for row in rows if number(row["x"]) == last]
+        best = ranking(pairs_of(there, style["y"], "series"), unit, style["y"].endswith("_ms"),
+                       str)
+        if best:
+            sentences.append(f"With {plain(last)} {style.get('x_label', '')}: {best}")
+    return " ".join(sentences)
+
+
+def about_gains(table):
+    """Ways to sample are compared at equal samples and at equal time, not along their lines."""
+    return [(f"{panel}, equal: {equal}", ranking(pairs_of(rows, "gain", "series"), "", False)
+             + " Each error is that of one image.")
+            for (panel, equal), rows in in_groups(table.measured, "panel", "equal").items()]
+
+
+def meaning(table):
+    """[(panel, sentences)]"""
+    if {"gain", "equal"} <= set(table.columns):
+        found = about_gains(table)
+    elif table.plot:
+        found = [(panel, about_panel(rows, table.plot))
+                 for panel, rows in in_groups(table.drawn, "panel").items()]
+    else:
+        return []
+    once = sum(1 for row in table.measured if row.get("repeat") == "1")
+    gone = [row for row in table.rows if not is_measured(row)]
+    if gone:
+        found.append(("", f"{len(gone)} of {len(table.rows)} configurations were not measured "
+                      f"({listed(sorted({row['status'] for row in gone}))}); the table says why."))
+    if once:
+        found.append(("", f"{once} of {len(table.rows)} configurations were measured once and have "
+                      "no interval."))
+    return [(panel, text) for panel, text in found if text]

@@ -1,0 +1,396 @@
+"""scripts/report on small tables whose numbers are known: what the page says, and what it draws."""
+import csv
+import json
+import math
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as ElementTree
+from html.parser import HTMLParser
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+REPORT = ROOT / "scripts" / "report"
+RESULTS = ROOT / "results" / "nvidia-h200"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "scripts"))
+from report_parts import claims, verdicts, words  # noqa: E402
+from report_parts.axes import Scale  # noqa: E402
+from report_parts.tables import Interval, interval, read_device, read_table  # noqa: E402
+
+VOID = {"meta", "img", "input", "br", "link", "hr"}
+# A PNG of one pixel.
+PIXEL = bytes.fromhex("89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d"
+                      "49444154789c6360606060000000050001a5f645400000000049454e44ae426082")
+TOGGLES = {"kind": "bars", "title": "Toggles", "x_label": "", "y_label": "kernel time [ms]",
+           "y": "kernel_ms", "log_y": False}
+SIZES = {"kind": "lines", "title": "Sizes", "x_label": "pixels", "y_label": "time [ms]",
+         "y": "image_ms", "log_y": True}
+
+
+def facts(name, plot, **more):
+    return {"experiment": name, "question": f"{name.capitalize()}: how long does it take?",
+            "command": f"python3 {name}.py", "date": "2026-01-02T03:04:05+00:00", "quick": False,
+            "program": ["ptexp 0.1.0", "commit abc"], "gpus": ["name, driver_version", "G, 1.2"],
+            "device": {"choice": "cuda:0", "name": "Device A", "detail": "2 units"},
+            "host": {"cpu": "C", "cores": 4, "system": "S"}, "plot": plot, **more}
+
+
+def write(folder, name, rows, description):
+    folder.mkdir(parents=True, exist_ok=True)
+    columns = list(dict.fromkeys(column for row in rows for column in row))
+    with open(folder / f"{name}.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        writer.writerows(rows)
+    if description:
+        (folder / f"{name}.json").write_text(json.dumps(description), encoding="utf-8")
+
+
+def toggle(mode, choice, low, middle, high, **more):
+    return {"experiment": "toggles", "name": f"{mode}: {choice}", "status": "measured",
+            "message": "", "panel": mode, "x": choice, "schema_version": 6, "commit": "abc",
+            "width": 600, "height": 300, "mode": mode, "repeat": 10, "kernel_ms_median": middle,
+            "kernel_ms_min": low, "kernel_ms_max": high, "mpaths_per_s": 9000, **more}
+
+
+def toggles(reduced=(1.9, 2.0, 2.1)):
+    return [toggle("megakernel", "default", 0.98, 1.0, 1.02),
+            toggle("megakernel", "scene-memory shared", 1.01, 1.03, 1.05),
+            toggle("megakernel", "branching reduced", *reduced),
+            toggle("megakernel", "rng <odd> & \"new\"", 0.7, 0.75, 0.8)]
+
+
+def size(series, kind, pixels, low, middle, high, repeat=10):
+    width = math.isqrt(2 * pixels)
+    return {"experiment": "image_size", "name": f"{series} {pixels}", "status": "measured",
+            "series": series, "panel": "", "x": pixels, "image_ms_median": middle,
+            "image_ms_min": low, "image_ms_max": high, "schema_version": 1, "commit": "abc",
+            "width": width, "height": width // 2, "mode": series.partition(",")[0],
+            "repeat": repeat, "device_kind": kind, "kernel_ms_median": middle,
+            "kernel_ms_min": low, "kernel_ms_max": high}
+
+
+def sizes(cpu=1000.0, power=1.0):
+    rows = []
+    for pixels in (20000, 80000, 320000):
+        growth = (pixels / 20000) ** power
+        rows += [size("megakernel, CUDA", "cuda", pixels, 0.9 * growth, growth, 1.2 * growth),
+                 size("wavefront, CUDA", "cuda", pixels, 1.9 * growth, 2 * growth, 2.1 * growth),
+                 size("serial, CPU", "cpu", pixels, cpu * growth, cpu * growth, cpu * growth, 1)]
+    return rows
+
+
+def blocks(times):
+    rows = [{"experiment": "block_size", "name": f"{threads}", "status": "measured", "message": "",
+             "series": "megakernel, pixel", "panel": "600x300", "x": threads, "schema_version": 1,
+             "commit": "abc", "width": 600, "height": 300, "block": f"{side}x{side}",
+             "repeat": 10, "kernel_ms_median": time, "kernel_ms_min": 0.99 * time,
+             "kernel_ms_max": 1.01 * time}
+            for (threads, side), time in zip(((16, 4), (64, 8), (256, 16), (1024, 32)), times)]
+    return rows + [{**rows[0], "name": "4096", "x": 4096, "status": "refused",
+                    "message": "too many",
+                    **{f"kernel_ms_{part}": "" for part in ("median", "min", "max")}}]
+
+
+def sampling(uniform, ours):
+    return [{"experiment": "sampling", "name": way, "status": "measured", "panel": "cornell",
+             "series": way, "x": 1.5, "equal": "4 spp", "relmse": error, "gain": 1 / error,
+             "schema_version": 6} for way, error in (("sampling uniform, nee off", uniform),
+                                                     ("nee off", ours))]
+
+
+class Page(HTMLParser):
+    """Reads a page and finds tags that do not match, references, ids and the texts of cells."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.wrong, self.references, self.ids, self.exact = [], [], [], [], []
+        self.feed(text)
+        self.close()
+        self.wrong += self.open
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+        self.references += [values[name] for name in ("src", "href", "xlink:href", "srcset",
+                                                      "data", "action", "poster")
+                            if values.get(name)]
+        self.ids += [values["id"]] if "id" in values else []
+        self.exact += [values["data-v"]] if "data-v" in values else []
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in VOID:
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(f"/{tag} at {self.getpos()}")
+
+
+def plots_in(text):
+    return [ElementTree.fromstring(svg) for svg in re.findall(r"<svg.*?</svg>", text, re.S)]
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="ptexp report ")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name) / "device-a"
+
+    def run_report(self, *arguments, fails=False):
+        done = subprocess.run([sys.executable, str(REPORT), *map(str, arguments)], text=True,
+                              capture_output=True, check=False)
+        self.assertEqual(done.returncode, 1 if fails else 0, done.stderr)
+        return done.stderr if fails else done.stdout
+
+    def make(self, **tables):
+        plots = {"toggles": TOGGLES, "image_size": SIZES,
+                 "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
+                 "sampling": {**SIZES, "y": "relmse"}}
+        for name, rows in tables.items():
+            write(self.folder, name, rows, facts(name, plots[name]))
+        self.run_report(self.folder)
+        return (self.folder / "report.html").read_text(encoding="utf-8")
+
+    def check_well_formed(self, text):
+        page = Page(text)
+        self.assertEqual(page.wrong, [])
+        self.assertEqual(len(page.ids), len(set(page.ids)))
+        for reference in page.references:
+            self.assertRegex(reference, r"^(#|data:image/png;base64,)")
+            if reference.startswith("#"):
+                self.assertIn(reference[1:], page.ids)
+        self.assertNotRegex(text, r"@import|url\(|https?://")
+        return page
+
+    def test_numbers_are_those_of_the_tables(self):
+        text = self.make(toggles=toggles(), image_size=sizes())
+        exact = Page(text).exact
+        points = [float(point.get("data-middle")) for svg in plots_in(text)
+                  for point in svg.iter() if (point.get("class") or "").startswith("point")]
+        for row, column in ([(row, "kernel_ms") for row in toggles()]
+                            + [(row, "image_ms") for row in sizes()]):
+            for part in ("median", "min", "max"):
+                self.assertIn(str(row[f"{column}_{part}"]), exact)
+            self.assertIn(row[f"{column}_median"], points)
+        self.assertEqual(len(points), 4 + 9)
+        self.assertIn("rng &lt;odd&gt; &amp;", text)
+        self.assertIn("Method: <code>python3 toggles.py</code>", text)
+        self.assertIn("driver_version: 1.2", text)
+
+    def places(self, svg, axis):
+        """Values and places of the ticks."""
+        ticks = [tick for tick in svg.iter("text") if tick.get("data-value")]
+        off = 3.6 if axis == "y" else 0  # text stands below the middle of its line
+        return [(float(tick.get("data-value")), float(tick.get(axis)) - off) for tick in ticks]
+
+    def check_interval(self, svg, axis, of):
+        (a, at_a), (b, at_b) = self.places(svg, axis)[0], self.places(svg, axis)[-1]
+        self.assertNotEqual(a, b)
+        found = 0
+        for point in svg.iter("g"):
+            if not point.get("data-low"):
+                continue
+            bar = next(line for line in point.iter("line") if line.get("class") == "interval")
+            for end, name in (("1", "data-low"), ("2", "data-high")):
+                share = (of(float(point.get(name))) - of(a)) / (of(b) - of(a))
+                self.assertAlmostEqual(float(bar.get(axis + end)), at_a + share * (at_b - at_a),
+                                       delta=0.02)
+            found += 1
+        return found
+
+    def test_intervals_are_drawn_where_the_axes_say(self):
+        lines, = plots_in(self.make(image_size=sizes()))
+        self.assertEqual(self.check_interval(lines, "y", math.log), 6)  # the CPU was measured once
+        shutil.rmtree(self.folder)
+        bars, = plots_in(self.make(toggles=toggles()))
+        self.assertEqual(self.check_interval(bars, "x", float), 4)
+
+    def test_confidence_intervals_are_preferred(self):
+        row = {"kernel_ms_median": "2", "kernel_ms_min": "1", "kernel_ms_max": "4", "repeat": "10"}
+        self.assertEqual(interval(row, "kernel_ms"),
+                         Interval(2, 1, 4, "fastest to slowest repeat"))
+        row |= {"kernel_ms_low": "1.9", "kernel_ms_high": "2.2"}
+        self.assertEqual(interval(row, "kernel_ms"), Interval(2, 1.9, 2.2, "confidence interval"))
+        once = {"kernel_ms_median": "2", "kernel_ms_min": "2", "kernel_ms_max": "2", "repeat": "1"}
+        self.assertFalse(interval(once, "kernel_ms").known)
+        rays = {"time_ms": "2", "time_min_ms": "1", "time_max_ms": "4"}
+        self.assertEqual(interval(rays, "time_ms").high, 4)
+        self.assertIsNone(interval({"kernel_ms_median": ""}, "kernel_ms"))
+
+    def test_sentences_for_clear_and_unclear_differences(self):
+        one, near, far = Interval(1, 0.9, 1.1), Interval(1.1, 1.05, 1.2), Interval(2, 1.9, 2.1)
+        self.assertEqual(words.versus("a", one, "b", far),
+                         "a (1.00 ms [0.900, 1.10]) is 2.00 times as fast as b (2.00 ms "
+                         "[1.90, 2.10]).")
+        self.assertRegex(words.versus("a", one, "b", near), "no significant difference between a")
+        self.assertRegex(words.versus("a", one, "b", Interval(2)), "without a spread")
+        self.assertEqual(words.change(far, one)[0], "faster")
+        text = self.make(toggles=toggles(), image_size=sizes(), block_size=blocks((4, 3, 2, 1)))
+        (_, said), = verdicts.meaning(read_table(self.folder / "toggles.csv"))
+        self.assertEqual(said, "The default takes 1.00 ms [0.980, 1.02]. Faster: rng <odd> & "
+                         "\"new\" (x0.750) in time. Slower: branching reduced (x2.00) in time. No "
+                         "significant difference to the default: scene-memory shared (x1.03).")
+        self.assertIn("16 times the pixels take 16.0 times as long (time grows as pixels^1.00)",
+                      text)
+        self.assertIn("3 of 9 configurations were measured once and have no interval.", text)
+        self.assertIn("1 of 5 configurations were not measured (refused)", text)
+        self.assertIn("Take 1024 threads: over the 1 cases they take at most 1.00 times", text)
+
+    def judged(self, **tables):
+        if self.folder.exists():
+            shutil.rmtree(self.folder)
+        self.make(**tables)
+        return {claim.split()[0]: verdict for claim, _, verdict, _, _ in
+                claims.audit(read_device(self.folder))}
+
+    def test_every_claim_has_a_verdict(self):
+        self.assertEqual(self.judged(toggles=toggles(), image_size=sizes(),
+                                     block_size=blocks((4, 3, 2, 1)), sampling=sampling(4, 2)),
+                         {"Time": "refuted", "Larger": "refuted", "Shared": "refuted",
+                          "Reduced": "refuted", "The": "depends", "Importance": "confirmed",
+                          "Metropolis": "not measured"})
+        other = self.judged(toggles=toggles((0.4, 0.5, 0.6)), image_size=sizes(10, power=4),
+                            block_size=blocks((1, 2, 3, 4)), sampling=sampling(2, 4))
+        self.assertEqual([other[name] for name in ("Time", "Larger", "Reduced", "The",
+                                                   "Importance")],
+                         ["confirmed", "confirmed", "confirmed", "confirmed", "refuted"])
+        self.assertEqual(self.judged(block_size=blocks((4, 2, 3, 2.99)))["Larger"], "depends")
+        self.assertEqual(self.judged(image_size=sizes(2))["The"], "refuted")
+        nothing = self.judged(toggles=toggles()[:1])
+        self.assertEqual(set(nothing.values()), {"not measured"})
+        self.assertEqual(len(nothing), 7)
+
+    def test_quick_tables_are_shown_but_not_judged(self):
+        write(self.folder, "toggles", toggles(), facts("toggles", TOGGLES, quick=True))
+        self.run_report(self.folder)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("say nothing about speed", text)
+        self.assertNotIn(">refuted<", text)
+
+    def test_page_stands_alone(self):
+        write(self.folder, "plain", [{"a": 1, "b": "<x>"}], None)
+        page = self.check_well_formed(self.make(toggles=toggles(), image_size=sizes(),
+                                                block_size=blocks((4, 3, 2, 1))))
+        self.assertTrue({"answers", "audit", "toggles", "image-size", "plain"} <=
+                        {name.replace("_", "-") for name in page.ids})
+
+    def test_pairs_of_pictures(self):
+        self.folder.mkdir()
+        for name in ("a.png", "a.reference.png", "alone.png", "big.png", "big.reference.png"):
+            (self.folder / name).write_bytes(PIXEL + bytes(3000 if name == "big.png" else 0))
+        write(self.folder, "toggles", toggles(), facts("toggles", TOGGLES))
+        self.run_report(self.folder, "--image-limit", 2)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        page = self.check_well_formed(text)
+        self.assertEqual(sum(reference.startswith("data:") for reference in page.references), 2)
+        self.assertIn("Larger than 2 KiB and so not on this page: big.", text)
+
+    def test_two_devices(self):
+        self.make(toggles=toggles())
+        other = self.folder.parent / "device-b"
+        rows = [{**row, **{f"kernel_ms_{part}": 2 * row[f"kernel_ms_{part}"]
+                           for part in ("min", "median", "max")}} for row in toggles()]
+        rows[3]["width"] = 24  # another image: its time says nothing
+        write(other, "toggles", rows, facts("toggles", TOGGLES, device={"name": "Device B"}))
+        page = self.folder.parent / "both.html"
+        self.assertIn("-o FILE must name it", self.run_report(self.folder, other, fails=True))
+        self.run_report(self.folder, other, "-o", page)
+        text = page.read_text(encoding="utf-8")
+        self.check_well_formed(text)
+        self.assertIn("Over 3 configurations that both measured, Device B takes 2.00 times the "
+                      "time of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 "
+                      "more have equal names but other images", text)
+        first, second = plots_in(text)
+        self.assertEqual(self.places(first, "x"), self.places(second, "x"))
+        shutil.copy(self.folder / "toggles.json", other / "toggles.json")
+        self.run_report(self.folder, other, "-o", page)
+        self.assertIn("Device A (device-b)", page.read_text(encoding="utf-8"))
+
+    def test_plots_as_files(self):
+        self.make(toggles=toggles(), image_size=sizes())
+        self.run_report(self.folder, "--plots", self.folder / "plots")
+        for name in ("toggles", "image_size"):
+            text = (self.folder / "plots" / f"{name}.svg").read_text(encoding="utf-8")
+            self.assertTrue(ElementTree.fromstring(text).tag.endswith("svg"))
+            self.assertNotIn("var(", text)
+
+    def test_what_cannot_be_read_is_named(self):
+        self.assertIn("nowhere: no such folder", self.run_report("nowhere", fails=True))
+        self.folder.mkdir()
+        self.assertIn("no tables", self.run_report(self.folder, fails=True))
+        write(self.folder, "toggles", toggles(), None)
+        (self.folder / "toggles.json").write_text("{", encoding="utf-8")
+        error = self.run_report(self.folder, fails=True)
+        self.assertIn("toggles.json: not JSON", error)
+        self.assertEqual(len(error.splitlines()), 1)
+
+    def test_scales(self):
+        scale = Scale(1, 100, True, 0, 10)
+        self.assertAlmostEqual(scale(10), 5)
+        self.assertEqual(scale.ticks(), [1, 2, 5, 10, 20, 50, 100])
+        self.assertEqual(Scale(0, 10.5, False, 0, 1).ticks(), [0, 2, 4, 6, 8, 10])
+        self.assertEqual([words.show(x) for x in (0.01234, 1.09096, 104678, 0)],
+                         ["0.0123", "1.09", "104,678", "0"])
+
+    def test_committed_page_is_that_of_the_committed_tables(self):
+        page = self.folder.parent / "page.html"
+        self.run_report(RESULTS, "-o", page)
+        self.check_well_formed(page.read_text(encoding="utf-8"))
+        self.assertLess(page.stat().st_size, 1_500_000)
+        self.assertEqual(page.read_bytes(), (RESULTS / "report.html").read_bytes(),
+                         "run scripts/report and commit the page")
+
+
+class Browser(unittest.TestCase):
+    SCRIPT = """<script>
+addEventListener("error", (event) => document.body.append("ERROR " + event.message));
+addEventListener("load", () => {
+  const column = [...document.querySelectorAll("#toggles th")].find((head) =>
+    head.textContent === "kernel ms median");
+  column.querySelector("button").click();
+  const first = column.closest("table").tBodies[0].rows[0].cells[column.cellIndex].dataset.v;
+  const slider = document.querySelector(".slider");
+  slider.value = 20;
+  slider.dispatchEvent(new Event("input"));
+  const at = document.querySelector(".frame").style.getPropertyValue("--at");
+  const shown = [...document.querySelectorAll("svg.plot")].every((plot) =>
+    plot.getBoundingClientRect().height > 100);
+  document.body.append(`FIRST ${first} AT ${at} SHOWN ${shown}`);
+});
+</script></head>"""
+
+    @unittest.skipUnless(shutil.which("node"), "no node to read the script")
+    def test_script_is_javascript(self):
+        subprocess.run(["node", "--check", ROOT / "scripts" / "report_parts" / "page.js"],
+                       check=True)
+
+    def test_page_works(self):
+        browser = shutil.which("chromium") or shutil.which("google-chrome")
+        if not browser:
+            self.skipTest("no chromium or google-chrome on PATH")
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            write(folder, "toggles", toggles(), facts("toggles", TOGGLES))
+            for picture in ("a.png", "a.reference.png"):
+                (folder / picture).write_bytes(PIXEL)
+            subprocess.run([sys.executable, REPORT, folder], check=True, capture_output=True)
+            page = folder / "report.html"
+            page.write_text(page.read_text(encoding="utf-8").replace("</head>", self.SCRIPT, 1),
+                            encoding="utf-8")
+            shown = subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu",
+                                    f"--user-data-dir={folder}/profile", "--dump-dom",
+                                    page.as_uri()], check=True, capture_output=True, text=True,
+                                   timeout=120).stdout
+        self.assertIn("FIRST 0.75 AT 20% SHOWN true", shown)
+        self.assertNotIn("ERROR ", shown.rpartition("</script>")[2])
+
+
+if __name__ == "__main__":
+    unittest.main()
