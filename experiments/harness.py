@@ -86,7 +86,8 @@ def report(session, journal, constant):
 
 def print_table(session, rows, conclusions):
     print("\n".join(["", table_text(rows, session.experiment.table), "", *conclusions,
-                     f"wrote {session.path}", draw(session.path)]))
+                     f"table: {session.path}",
+                     *([draw(session.path)] if session.experiment.plot else [])]))
 
 
 def run(experiment, arguments):
@@ -107,8 +108,8 @@ def run(experiment, arguments):
     try:
         constant = measure(session, journal)
     except KeyboardInterrupt:
-        print(f"{experiment.name}: interrupted; {session.path} has what is measured, the same "
-              "command goes on", file=sys.stderr)
+        print(f"{experiment.name}: interrupted; the same command goes on, and {session.path} has "
+              "what it measured", file=sys.stderr)
         return 130
     return report(session, journal, constant)
 

@@ -27,9 +27,10 @@ def command_line(session, configuration, number=0):
 
 
 def plan(session):
-    """(round, configuration) of every process, in order."""
+    """(round, configuration) of every process, in order: every second round goes backwards, so
+    that nothing always comes after the same."""
     return [(number, configuration) for number in range(session.arguments.rounds)
-            for configuration in session.configurations
+            for configuration in session.configurations[::-1 if number % 2 else 1]
             if repeats(configuration, session.arguments)[0][number]]
 
 

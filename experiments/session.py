@@ -51,7 +51,7 @@ def origin(session, journal, constant):
         "key": journal.key, "complete": False, "rounds": journal.of("machine"),
         "equal_images": {event["group"]: event["configurations"]
                          for event in journal.of("equal images")},
-        "plot": asdict(session.experiment.plot),
+        **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
         "configurations": {
             c.name: shlex.join(["ptexp", *command_line(session, c)[1:]])
             for c in session.configurations},
