@@ -6,12 +6,22 @@ exit code}, "kills": n}; the last: it kills the harness when it is to render num
 """
 import json
 import os
-import signal
 import sys
-from pathlib import Path
 
-HERE = Path(sys.argv[0]).parent
-BEHAVIOUR = json.loads((HERE / "behaviour.json").read_text())
+HERE = os.path.dirname(sys.argv[0])
+
+
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as file:
+        return file.read()
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+BEHAVIOUR = json.loads(read(HERE, "behaviour.json"))  # modules that load slowly are left out here
 COLUMNS = ["seed", "kernel_ms_median", "kernel_ms_min", "kernel_ms_max", "serial_ms_median",
            "serial_ms_min", "serial_ms_max", "mpaths_per_s", "paths", "rays", "shadow_rays",
            "scene_ms", "repeat"]
@@ -22,7 +32,7 @@ def option(name, default=""):
 
 
 def compare(first, second):
-    differ = Path(first).read_text() != Path(second).read_text()
+    differ = read(first) != read(second)
     print(f"differing pixels       {3 if differ else 0}")
     sys.exit(int(differ))
 
@@ -30,11 +40,11 @@ def compare(first, second):
 def render():
     seed = option("--seed")
     is_measured = "--csv" in sys.argv
-    with open(HERE / "log", "a+") as log:
+    with open(os.path.join(HERE, "log"), "a+", encoding="utf-8") as log:
         log.seek(0)
         number = log.read().count("measure")
         if is_measured and number == BEHAVIOUR.get("kills"):
-            os.kill(os.getppid(), signal.SIGKILL)
+            os.kill(os.getppid(), 9)
             sys.exit(9)
         print("measure" if is_measured else "check", seed, option("--repeat"), option("--width"),
               file=log)
@@ -42,7 +52,7 @@ def render():
     if code:
         print(f"ptexp: error: seed {seed} is wrong", file=sys.stderr)
         sys.exit(code)
-    Path(option("--output")).write_text(BEHAVIOUR.get("images", {}).get(seed, "same"))
+    write(option("--output"), BEHAVIOUR.get("images", {}).get(seed, "same"))
     if is_measured:
         times = BEHAVIOUR.get("times", {}).get(seed, [1.0])
         measure([times[i % len(times)] for i in range(int(option("--repeat")))], seed)
@@ -51,10 +61,10 @@ def render():
 def measure(times, seed):
     row = dict.fromkeys(COLUMNS, "1")
     row.update(seed=seed, paths="1000", rays="3000", shadow_rays="1000")
-    Path(option("--csv")).write_text(",".join(row) + "\n" + ",".join(row.values()) + "\n")
+    write(option("--csv"), ",".join(row) + "\n" + ",".join(row.values()) + "\n")
     runs = [{"kernel_ms": time, "stages": [{"stage": "serial", "time_ms": time / 2}]}
             for time in times]
-    Path(option("--stats")).write_text(json.dumps({"runs": runs}))
+    write(option("--stats"), json.dumps({"runs": runs}))
 
 
 if sys.argv[1] == "--list-devices":
