@@ -54,7 +54,9 @@ class Intervals(unittest.TestCase):
         self.assertEqual(intervals.median_interval((3.0, 1.0, 2.0)), (1.0, 3.0))
         self.assertEqual(exact_interval((3.0, 1.0, 2.0)), (1.0, 3.0))
         for times in ((1.0, 2.0, 4.0, 8.0), (5.0, 5.0, 5.1, 5.1), (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)):
-            self.assertEqual(intervals.median_interval(times), exact_interval(times))
+            expected = exact_interval(times)
+            self.assertEqual(intervals.median_interval(times), expected)
+            self.assertEqual(intervals.bootstrap([times], lambda s: median(s[0])), expected)
 
     def test_nine_times(self):
         # The median of a resample is at most the k-th time if five of nine draws are: a binomial.
