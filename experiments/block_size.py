@@ -31,7 +31,7 @@ def configurations(arguments, _device):
         image = f"--width {width} --height {height} --spp {spp} --max-depth 50"
         result += [Configuration(f"{series}, {threads} threads, {panel}", f"{options} {image}",
                                  {"series": series, "panel": panel, "x": threads},
-                                 same_image=panel)
+                                 same_image="spheres")
                    for series, threads, options in BLOCKS]
     return result
 

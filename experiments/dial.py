@@ -30,7 +30,7 @@ OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high
 
 
 def add_arguments(parser):
-    parser.set_defaults(repeat=5, warmup=1)  # 128 processes: two minutes on a GPU
+    parser.set_defaults(repeat=6, rounds=2, warmup=1)  # 256 processes: some minutes on a GPU
     parser.add_argument("--size", type=int, default=1024, metavar="N",
                         help="width and height in pixels [%(default)s]")
     parser.add_argument("--spp", type=int, default=16, metavar="N",

@@ -49,7 +49,8 @@ def open_journal(session):
 
 
 def measure(session, journal):
-    """Raises KeyboardInterrupt with the table written."""
+    """Measures what is missing, and writes the table after each process; returns the part of its
+    origin that no measurement changes."""
     constant = constant_origin(session)
 
     def save():

@@ -13,12 +13,10 @@ from table import write_atomically
 
 
 def read_events(path):
-    """Those of whole lines."""
+    """Those up to a line that was cut off: an object without its end is no JSON."""
     events = []
     with contextlib.suppress(FileNotFoundError, ValueError):
-        for line in path.read_text(encoding="utf-8").splitlines(keepends=True):
-            if not line.endswith("\n"):
-                break
+        for line in path.read_text(encoding="utf-8").splitlines():
             events.append(json.loads(line))
     return events
 

@@ -49,7 +49,7 @@ def nvidia_smi(query):
 
 
 def machine_state():
-    """What a round can differ in: clocks, temperature, power, why clocks are low; other programs."""
+    """What a round can differ in: clocks, temperature, power, why clocks are low, the load."""
     gpus = next(filter(None, (nvidia_smi(f"{GPU_NOW},{name}") for name in SLOWED_BY)), [])
     return {"date": now(), "gpus": gpus, "load": os.getloadavg()[0]}
 

@@ -155,9 +155,10 @@ def run(experiment, arguments):
         raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
     save(rows, complete=not failed)
     for row in rows:
-        rate = f"{float(row['mrays_per_s']):10.1f} Mrays/s" if row["status"] == "measured" else (
-            f"failed: {row['message']}")
-        print(f"{row['ray_file']:40} {row['accel']:6} {row['builder']:6} {row['variant']:10} {rate}")
+        result = (f"failed: {row['message']}" if row["status"] == "failed" else
+                  f"{float(row['mrays_per_s']):10.1f} Mrays/s")
+        way = f"{row['accel']:6} {row['builder']:6} {row['variant']:10}"
+        print(f"{row['ray_file']:40} {way} {result}")
     print(f"\nwrote {path}")
     if not failed:
         journal.remove()

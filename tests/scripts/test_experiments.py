@@ -110,7 +110,7 @@ class Experiments(unittest.TestCase):
             for column, value in process.row.items():
                 with self.subTest(column=column):
                     if column.endswith(("_ms_median", "_ms", "_per_s")) and value:
-                        # The rates have six digits, and the sum of a median's two halves is rounded.
+                        # The rates have six digits.
                         self.assertAlmostEqual(float(row[column]) / max(float(value), 1e-9), 1,
                                                delta=1e-5 if float(value) else 1)
                     else:

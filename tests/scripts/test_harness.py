@@ -61,7 +61,8 @@ class Intervals(unittest.TestCase):
     def test_nine_times(self):
         # The median of a resample is at most the k-th time if five of nine draws are: a binomial.
         def at_most(k):
-            return sum(math.comb(9, i) * (k / 9) ** i * (1 - k / 9) ** (9 - i) for i in range(5, 10))
+            return sum(math.comb(9, i) * (k / 9) ** i * (1 - k / 9) ** (9 - i)
+                       for i in range(5, 10))
         low, high = (next(k for k in range(1, 10) if at_most(k) >= share)
                      for share in (0.025, 0.975))
         times = tuple(random.Random(5).sample([float(k) for k in range(1, 10)], 9))
@@ -209,6 +210,10 @@ class Harness(unittest.TestCase):
         self.assertIn("the same command goes on", errors)
         self.assertEqual(self.columns("status"), ["pending"] * 3)
         self.assertEqual(self.columns("kernel_ms_median"), ["1.000000", "", ""])
+        self.fake("a", version="def")  # another commit: nothing is taken over
+        self.log()
+        self.assertEqual(self.run_seeds()[0], 0)
+        self.assertEqual(len(self.log()), 6)
 
     def test_a_failure_is_a_row(self):
         self.fake("a", wrong={"2": 11, "3": 2})
@@ -299,6 +304,32 @@ class Harness(unittest.TestCase):
         self.assertIn("slower by more than 2 %: none", output)
         self.fake("b", images={"": "other"}, version="d")
         self.assertEqual(self.compare_builds()[0], 2)
+
+    def trace(self, _program, rays, *_):
+        """Stands for the measurement of a set of rays; Ctrl-C at the third."""
+        name = Path(rays).name
+        self.traced.append(name)
+        if len(self.traced) == 3:
+            raise KeyboardInterrupt
+        return [{"status": "measured", "ray_file": name, "accel": "", "builder": "", "variant": "",
+                 "mrays_per_s": "1"}]
+
+    def test_ray_sets_go_on(self):
+        ray_sets, self.traced = importlib.import_module("ray_sets"), []
+
+        def run():
+            with contextlib.redirect_stdout(io.StringIO()), \
+                    contextlib.redirect_stderr(io.StringIO()), \
+                    mock.patch.object(ray_sets, "measure", self.trace):
+                return harness.main(ray_sets.EXPERIMENT, self.options("--quick"),
+                                    runner=ray_sets.run)
+        self.assertEqual(run(), 130)
+        path, = self.folder.glob("out/*/ray_sets-quick.csv")
+        self.assertEqual(len(path.read_text().splitlines()), 1 + 2)
+        self.assertEqual(run(), 0)
+        self.assertEqual(len(path.read_text().splitlines()), 1 + 6)
+        self.assertEqual(self.traced[2], self.traced[3])  # the one that was cut off
+        self.assertEqual(len(self.traced), 6 + 1)
 
     def test_intervals_are_drawn(self):
         try:
