@@ -16,7 +16,7 @@ from statistics import median
 import harness
 from harness import Configuration, Experiment
 from image_check import with_options
-from intervals import bootstrap
+from intervals import bootstrap, in_rounds
 
 BUILDS = ["A", "B"]
 SLOWER = 1.02  # an interval wholly above it is a loss
@@ -29,7 +29,7 @@ QUICK = "--width 24 --height 12 --spp 2"
 
 
 def add_arguments(parser):
-    parser.set_defaults(repeat=20, rounds=4)
+    parser.set_defaults(repeat=20, rounds=5)
     parser.add_argument("a", metavar="A", help="the program before the change")
     parser.add_argument("b", metavar="B", help="the program after it")
     parser.add_argument("--experiment", metavar="NAME", default="",
@@ -65,7 +65,13 @@ def configurations(arguments, device):
 
 
 def times_of(row):
-    return [float(time) for time in row["kernel_ms_runs"].split(";")]
+    """A list for each round."""
+    times = [float(time) for time in row["kernel_ms_runs"].split(";")]
+    return in_rounds(times, int(row["rounds"]))
+
+
+def flat(rounds):
+    return [time for of_round in rounds for time in of_round]
 
 
 def ratio(samples):
@@ -97,8 +103,9 @@ def finish(rows, _arguments):
     for before, after in pairs_of(rows):
         samples = [times_of(before), times_of(after)]
         low, high = bootstrap(samples, ratio)
-        after.update(ratio_median=f"{ratio(samples):.4f}", ratio_low=f"{low:.4f}",
-                     ratio_high=f"{high:.4f}", verdict=verdict_of(low, high))
+        after.update(ratio_median=f"{ratio(list(map(flat, samples))):.4f}",
+                     ratio_low=f"{low:.4f}", ratio_high=f"{high:.4f}",
+                     verdict=verdict_of(low, high))
 
 
 def conclude(rows, _arguments):
@@ -106,9 +113,10 @@ def conclude(rows, _arguments):
     if not pairs:
         return ["no configuration was measured with both programs"]
     samples = [times_of(row) for pair in pairs for row in pair]
+    mean = mean_ratio(list(map(flat, samples)))
     low, high = bootstrap(samples, mean_ratio)
     slower = [after["case"] for _, after in pairs if after["verdict"] == "SLOWER"]
-    return [f"B takes {mean_ratio(samples):.4f} times as long as A (geometric mean of "
+    return [f"B takes {mean:.4f} times as long as A (geometric mean of "
             f"{len(pairs)}; {low:.4f} to {high:.4f}): {verdict_of(low, high)}",
             f"slower by more than 2 %: {', '.join(slower) or 'none'}"]
 

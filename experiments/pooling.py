@@ -44,7 +44,8 @@ def pooled(processes):
         if row.get(column):
             count = sum(int(row[name]) for name in counts)
             row[column] = f"{count / (1000 * median(times)):.6g}"
-    low, high = median_interval(tuple(times))
+    low, high = median_interval(tuple(tuple(run["kernel_ms"] for run in process.runs)
+                                      for process in processes))
     row["repeat"] = str(len(times))
     return {"rounds": str(len(processes)), "kernel_ms_low": number(low),
             "kernel_ms_high": number(high), "kernel_ms_runs": ";".join(map(number, times)), **row}

@@ -41,22 +41,42 @@ sys.exit(harness.main(Experiment("fake", "Fake?", lambda *_: [
 """
 
 
-def exact_interval(times):
-    """From all equally likely resamples, one by one."""
-    medians = sorted(median(drawn) for drawn in itertools.product(times, repeat=len(times)))
-    return tuple(medians[math.ceil(share * len(medians)) - 1] for share in (0.025, 0.975))
+def exact_interval(rounds, outside=0.025):
+    """From all equally likely resamples, one by one. Rounds are equally long."""
+    def resamples(times):
+        return itertools.product(times, repeat=len(times))
+    medians = sorted(median(itertools.chain(*drawn)) for chosen in resamples(rounds)
+                     for drawn in itertools.product(*map(resamples, chosen)))
+    return tuple(medians[math.ceil(share * len(medians)) - 1] for share in (outside, 1 - outside))
+
+
+def median_of_first(samples):
+    return median(samples[0])
 
 
 class Intervals(unittest.TestCase):
     def test_few_times(self):
-        self.assertEqual(intervals.median_interval((4.0,)), (4.0, 4.0))
+        self.assertEqual(intervals.median_interval(((4.0,),)), (4.0, 4.0))
         # Of the 27 resamples of three times 7 have the least as their median, 7 the greatest.
-        self.assertEqual(intervals.median_interval((3.0, 1.0, 2.0)), (1.0, 3.0))
-        self.assertEqual(exact_interval((3.0, 1.0, 2.0)), (1.0, 3.0))
+        self.assertEqual(intervals.median_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
+        self.assertEqual(exact_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
+        self.assertEqual(intervals.median_interval(((3.0,), (1.0,), (2.0,))), (1.0, 3.0))
         for times in ((1.0, 2.0, 4.0, 8.0), (5.0, 5.0, 5.1, 5.1), (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)):
-            expected = exact_interval(times)
-            self.assertEqual(intervals.median_interval(times), expected)
-            self.assertEqual(intervals.bootstrap([times], lambda s: median(s[0])), expected)
+            expected = exact_interval((times,))
+            self.assertEqual(intervals.median_interval((times,)), expected)
+            self.assertEqual(intervals.bootstrap([(times,)], median_of_first), expected)
+
+    def test_rounds(self):
+        for rounds in (((1.0, 2.0), (4.0, 8.0)), ((1.0, 1.1, 1.2), (3.0, 3.1, 3.2)),
+                       ((1.0, 1.5), (2.0, 2.5), (4.0, 4.5))):
+            low, high = intervals.median_interval(rounds)
+            # Of 4000 draws the share below has a deviation of 0.0025.
+            widest, narrowest = (exact_interval(rounds, share) for share in (0.0175, 0.0325))
+            self.assertTrue(widest[0] <= low <= narrowest[0] < narrowest[1] <= high <= widest[1])
+        self.assertEqual(intervals.median_interval(((1.0, 2.0), (4.0, 8.0))), (1.0, 8.0))
+        # Repeats of a round that agree say nothing about other rounds.
+        drifting = ((1.0,) * 5, (2.0,) * 5, (3.0,) * 5)
+        self.assertEqual(intervals.median_interval(drifting), (1.0, 3.0))
 
     def test_nine_times(self):
         # The median of a resample is at most the k-th time if five of nine draws are: a binomial.
@@ -66,15 +86,17 @@ class Intervals(unittest.TestCase):
         low, high = (next(k for k in range(1, 10) if at_most(k) >= share)
                      for share in (0.025, 0.975))
         times = tuple(random.Random(5).sample([float(k) for k in range(1, 10)], 9))
-        self.assertEqual(intervals.median_interval(times), (low, high))
+        self.assertEqual(intervals.median_interval((times,)), (low, high))
         self.assertEqual((low, high), (2, 8))
 
-    def test_the_same_numbers_every_time(self):
-        samples = [[1.0, 1.5, 2.5], [2.0, 2.25, 9.0]]
-        found = [intervals.bootstrap(samples, lambda s: median(s[1]) / median(s[0]))
-                 for _ in range(2)]
-        self.assertEqual(found[0], found[1])
-        self.assertTrue(0.8 <= found[0][0] < 1.5 < found[0][1] <= 9)
+    def test_drift_cancels_in_ratios(self):
+        before = [[1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]
+        after = [[1.5, 1.5], [3.0, 3.0], [4.5, 4.5]]
+        self.assertEqual(intervals.bootstrap(
+            [before, after], lambda s: median(s[1]) / median(s[0])), (1.5, 1.5))
+
+    def test_sharing_into_rounds(self):
+        self.assertEqual(intervals.in_rounds([1, 2, 3, 4, 5], 3), [[1, 2], [3, 4], [5]])
 
 
 class Pooling(unittest.TestCase):
