@@ -87,6 +87,8 @@ def draw_lines(axes, rows, style):
         label_times(axes.yaxis)
     if style.get("mark") is not None:
         axes.axhline(style["mark"], color=COLOURS[4], linestyle="--", linewidth=1)
+    if not axes.get_legend_handles_labels()[0]:
+        return  # nothing is measured yet
     if len(style["series"]) <= len(COLOURS):
         axes.legend(fontsize="small")
     else:
@@ -118,6 +120,8 @@ def draw(path):
     path = Path(path)
     facts = read_facts(path)
     rows = [row for row in read_rows(path) if row["x"]]  # without x: not for the picture
+    if not rows:
+        raise ValueError("no row has its place in the picture yet: is the table complete?")
     style = {**facts["plot"], "series": list(in_groups(rows, "series"))}
     panels = in_groups(rows, "panel")
     bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0
