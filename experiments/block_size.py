@@ -30,7 +30,8 @@ def configurations(arguments, _device):
         panel = f"{width}x{height}, {spp} samples"
         image = f"--width {width} --height {height} --spp {spp} --max-depth 50"
         result += [Configuration(f"{series}, {threads} threads, {panel}", f"{options} {image}",
-                                 {"series": series, "panel": panel, "x": threads})
+                                 {"series": series, "panel": panel, "x": threads},
+                                 same_image="spheres")
                    for series, threads, options in BLOCKS]
     return result
 

@@ -11,7 +11,7 @@ from harness import Configuration, Experiment, Plot
 
 SIZES = [(600, 300), (1200, 600), (2400, 1200)]
 SPP = 100
-TIMES = ["image_ms_median", "image_ms_min", "image_ms_max"]  # kernel_ms_* without --cpu-spp
+TIMES = [f"image_ms_{part}" for part in ("median", "min", "max", "low", "high")]
 CPU_SERIES = {"serial, CPU": "serial", "megakernel, CPU": "megakernel",
               "wavefront, CPU": "wavefront"}
 CUDA_SERIES = {"megakernel, CUDA": "megakernel", "wavefront, CUDA": "wavefront"}
@@ -45,12 +45,12 @@ def configurations(arguments, device):
         f"{series} {width}x{height}",
         f"--mode {mode} --width {width} --height {height} --spp {spp_used} --max-depth 50",
         {"series": series, "panel": "", "x": width * height, "full_spp": spp, "extrapolated": "",
-         **dict.fromkeys(TIMES, "")}, **where)
+         **dict.fromkeys(TIMES, "")}, same_image="spheres", **where)
             for width, height in sizes for series, mode, spp_used, where in runs]
 
 
 def finish(rows, _arguments):
-    """The time of the whole image: measured, or extrapolated where fewer samples were taken."""
+    """The time of the whole image: kernel_ms, or extrapolated where fewer samples were taken."""
     for row in rows:
         factor = int(row["full_spp"]) / int(row["spp"])
         row["extrapolated"] = "no" if factor == 1 else "yes"

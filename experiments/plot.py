@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Draws the tables of the experiments: NAME.csv, with the NAME.json beside it, as NAME.png.
 
-A marker is the median of the repeats, a bar reaches from the fastest to the slowest. The colours
+A marker is the median of the repeats, a bar its 95 % interval (in tables without one, from the
+fastest repeat to the slowest). The colours
 (Okabe and Ito 2008, 'Color Universal Design') and the markers tell the series apart, each alone.
 """
 import argparse
-import csv
-import json
 import sys
 from pathlib import Path
 
@@ -14,9 +13,12 @@ import matplotlib
 matplotlib.use("Agg")  # draws into files, needs no screen
 from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-import-position
 
+from table import read_facts, read_rows  # noqa: E402  pylint: disable=wrong-import-position
+
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X"]
 COLUMNS = 3  # panels side by side
+MISSING = ["refused", "failed", "pending"]  # what a row without a value may say
 TICKS = 12  # more places on the axis than these, measured times say, have no ticks of their own
 
 
@@ -32,9 +34,17 @@ def spread(rows, column):
     """Medians, and the lengths of the bars below and above them: none for a single value."""
     if f"{column}_median" not in rows[0]:
         return [float(row[column]) for row in rows], None
+    has_interval = all(row.get(f"{column}_low") for row in rows)
+    ends = ("low", "high") if has_interval else ("min", "max")
     low, middle, high = ([float(row[f"{column}_{part}"]) for row in rows]
-                         for part in ("min", "median", "max"))
+                         for part in (ends[0], "median", ends[1]))
     return middle, [[m - l for m, l in zip(middle, low)], [h - m for m, h in zip(middle, high)]]
+
+
+def drawable(rows, column):
+    """The measured rows that have the value: a table that was cut off lacks some."""
+    return [row for row in rows if row["status"] == "measured"
+            and (row.get(f"{column}_median") or row.get(column))]
 
 
 def label_times(axis):
@@ -49,8 +59,7 @@ def draw_lines(axes, rows, style):
         number = style["series"].index(series)
         colour, marker = number % len(COLOURS), (number + number // len(COLOURS)) % len(MARKERS)
         look = {"color": COLOURS[colour], "marker": MARKERS[marker]}
-        measured = sorted((row for row in members if row["status"] == "measured"),
-                          key=lambda row: float(row["x"]))
+        measured = sorted(drawable(members, style["y"]), key=lambda row: float(row["x"]))
         if measured:
             medians, bars = spread(measured, style["y"])
             axes.errorbar([float(row["x"]) for row in measured], medians, bars, label=series,
@@ -59,10 +68,10 @@ def draw_lines(axes, rows, style):
         axes.scatter([float(row["x"]) for row in targets],
                      [float(row["target_ms"]) for row in targets], marker="_", s=300,
                      color=look["color"], label=f"{series}: target" if targets else None)
-    refused = [row for row in rows if row["status"] == "refused"]
-    for x in sorted({float(row["x"]) for row in refused}):
+    missing = {float(row["x"]): row["status"] for row in rows if row["status"] in MISSING}
+    for x, status in sorted(missing.items()):
         axes.axvline(x, color="grey", linestyle=":", linewidth=1)
-        axes.text(x, 0.98, "refused ", rotation=90, ha="right", va="top", color="grey",
+        axes.text(x, 0.98, f"{status} ", rotation=90, ha="right", va="top", color="grey",
                   transform=axes.get_xaxis_transform())
     axes.set_xscale("log")
     axes.set_xlabel(style["x_label"])
@@ -78,6 +87,8 @@ def draw_lines(axes, rows, style):
         label_times(axes.yaxis)
     if style.get("mark") is not None:
         axes.axhline(style["mark"], color=COLOURS[4], linestyle="--", linewidth=1)
+    if not axes.get_legend_handles_labels()[0]:
+        return  # nothing is measured yet
     if len(style["series"]) <= len(COLOURS):
         axes.legend(fontsize="small")
     else:
@@ -85,14 +96,15 @@ def draw_lines(axes, rows, style):
 
 
 def draw_bars(axes, rows, style):
-    measured = [row for row in rows if row["status"] == "measured"]
+    measured = drawable(rows, style["y"])
     places = {row["name"]: -place for place, row in enumerate(rows)}  # the first one on top
-    medians, bars = spread(measured, style["y"])
-    axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
-              color=COLOURS[5], edgecolor=COLOURS[0])
+    if measured:
+        medians, bars = spread(measured, style["y"])
+        axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
+                  color=COLOURS[5], edgecolor=COLOURS[0])
     for row in rows:
-        if row["status"] == "refused":
-            axes.text(0, places[row["name"]], " refused", va="center", color="grey",
+        if row["status"] in MISSING:
+            axes.text(0, places[row["name"]], f" {row['status']}", va="center", color="grey",
                       transform=axes.get_yaxis_transform())
     if measured and measured[0]["x"] == "default":
         axes.axvline(medians[0], color=COLOURS[4], linestyle="--", linewidth=1)
@@ -103,17 +115,13 @@ def draw_bars(axes, rows, style):
         label_times(axes.xaxis)
 
 
-def read_facts(path):
-    """What was measured, and how its table is drawn."""
-    return json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))
-
-
 def draw(path):
     """Draws the table at `path`; returns the path of the picture."""
     path = Path(path)
     facts = read_facts(path)
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(file) if row["x"]]  # without x: not for the picture
+    rows = [row for row in read_rows(path) if row["x"]]  # without x: not for the picture
+    if not rows:
+        raise ValueError("no row has its place in the picture yet: is the table complete?")
     style = {**facts["plot"], "series": list(in_groups(rows, "series"))}
     panels = in_groups(rows, "panel")
     bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0

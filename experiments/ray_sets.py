@@ -4,8 +4,8 @@
 Makes sets of rays by `ptexp rays` and traces them by `ptexp trace` (docs/tracing.md). Mesh or scene
 files may be named by --scenes.
 """
-import csv
-import os
+import hashlib
+import json
 import shlex
 import subprocess
 import sys
@@ -14,6 +14,8 @@ from pathlib import Path
 
 import harness
 from harness import Experiment, HarnessError
+from journal import Journal
+from program import version_of
 
 # What a built-in scene is looked at from; files have cameras of their own.
 TERRAIN_CAMERA = "--look-from -490,175,490 --look-at 0,10,0 --vfov 38"
@@ -33,14 +35,15 @@ def add_arguments(parser):
 
 
 def ptexp(program, command, timeout_s):
+    """None, or what went wrong."""
     try:
         run = subprocess.run([str(program), *command], capture_output=True, text=True, check=False,
                              stdin=subprocess.DEVNULL, timeout=timeout_s)
     except subprocess.TimeoutExpired:
-        raise HarnessError(f"no end after {timeout_s:g} s: {shlex.join(command)}") from None
-    if run.returncode != 0:
-        raise HarnessError(f"exit code {run.returncode}: {shlex.join(command)}: "
-                           f"{run.stderr.strip()}")
+        return f"no end after {timeout_s:g} s (--timeout)"
+    if run.returncode == 130:  # Ctrl-C has reached ptexp first
+        raise KeyboardInterrupt
+    return f"exit code {run.returncode}: {run.stderr.strip()}" if run.returncode else None
 
 
 def name_of(scene):
@@ -68,20 +71,64 @@ def ray_sets(device, arguments, folder):
             yield rays, make, traces
 
 
-def measure(program, device, arguments, folder):
-    """A row for every set of rays and way to trace it."""
-    for rays, make, traces in ray_sets(device, arguments, folder):
-        for command in [make, *traces]:
-            ptexp(program, command, arguments.timeout)
-        os.unlink(rays)
-        print(Path(rays).name, flush=True)
-    with open(Path(folder, "rows.csv"), newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    for row in rows:  # not where it was measured
-        row["ray_file"] = Path(row["ray_file"]).name
-        row["mesh"] = "/".join(p for p in Path(row["mesh"]).parts[-2:] if p != "..")
-        row["command"] = row["command"].replace(f"{folder}/", "")
-    return [{"experiment": EXPERIMENT.name, "status": "measured", **row} for row in rows]
+def without_folder(row, folder):
+    """Not where it was measured."""
+    row["ray_file"] = Path(row["ray_file"]).name
+    row["mesh"] = "/".join(p for p in Path(row["mesh"]).parts[-2:] if p != "..")
+    row["command"] = row["command"].replace(f"{folder}/", "")
+    return row
+
+
+def option(command, name):
+    return command[command.index(name) + 1] if name in command else ""
+
+
+def measure(program, rays, make, traces, arguments):
+    """A row for every way to trace one set of rays."""
+    folder, rows = Path(rays).parent, []
+    no_rays = ptexp(program, make, arguments.timeout)
+    for trace in traces:
+        table = Path(folder, "rows.csv")
+        message = no_rays or ptexp(program, trace, arguments.timeout)
+        row = {"experiment": EXPERIMENT.name, "status": "failed" if message else "measured",
+               "message": message or ""}
+        if message:
+            ways = {name: option(trace, f"--{name}") for name in ("accel", "builder", "variant")}
+            row.update(ways, ray_file=Path(rays).name, mesh=option(trace, "--mesh"))
+        else:
+            row.update(without_folder(harness.read_rows(table)[0], folder))
+            table.unlink()
+        rows.append(row)
+    Path(rays).unlink(missing_ok=True)
+    return rows
+
+
+def key_of(program, device, arguments):
+    """Equal for calls whose measurements may stand in one table."""
+    sets = [[make, *traces] for _, make, traces in ray_sets(device, arguments, ".")]
+    facts = json.dumps([version_of(program), device.name, sets])
+    return hashlib.sha256(facts.encode()).hexdigest()[:16]
+
+
+def measured_sets(journal):
+    """{ray file: rows} of the sets that need not be measured again."""
+    return {event["name"]: event["rows"] for event in journal.of("ray set")
+            if all(row["status"] == "measured" for row in event["rows"])}
+
+
+def measure_all(program, device, arguments, journal, save):
+    """All rows; `save` is called with those so far after every set of rays."""
+    known, rows = measured_sets(journal), []
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        for rays, make, traces in ray_sets(device, arguments, folder):
+            name = Path(rays).name
+            if name not in known:
+                known[name] = measure(program, rays, make, traces, arguments)
+                journal.add("ray set", name=name, rows=known[name])
+                print(name, flush=True)
+            rows += known[name]
+            save(rows)
+    return rows
 
 
 def run(experiment, arguments):
@@ -91,15 +138,31 @@ def run(experiment, arguments):
         for _, make, traces in ray_sets(device, arguments, "."):
             for command in [make, *traces]:
                 print(shlex.join([str(program), *command]))
-        return
+        return 0
     path = harness.table_path(experiment, device, arguments)
-    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
-        rows = measure(program, device, arguments, folder)
-    harness.write_table(path, rows, harness.provenance(experiment, program, device, arguments))
+    journal = Journal(path.with_suffix(".journal"), key_of(program, device, arguments),
+                      arguments.fresh, lambda _: True)
+    journal.begin(date=harness.now())
+    facts = harness.provenance(experiment, program, device, arguments)
+
+    def save(rows, complete=False):
+        if any(row["status"] == "measured" for row in rows):
+            harness.write_table(path, rows, {**facts, "complete": complete})
+    rows = measure_all(program, device, arguments, journal, save)
+    failed = [row for row in rows if row["status"] == "failed"]
+    if len(failed) == len(rows):
+        journal.remove()
+        raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
+    save(rows, complete=not failed)
     for row in rows:
-        print(f"{row['ray_file']:40} {row['accel']:6} {row['builder']:6} {row['variant']:10} "
-              f"{float(row['mrays_per_s']):10.1f} Mrays/s")
+        result = (f"failed: {row['message']}" if row["status"] == "failed" else
+                  f"{float(row['mrays_per_s']):10.1f} Mrays/s")
+        way = f"{row['accel']:6} {row['builder']:6} {row['variant']:10}"
+        print(f"{row['ray_file']:40} {way} {result}")
     print(f"\nwrote {path}")
+    if not failed:
+        journal.remove()
+    return 1 if failed else 0
 
 
 EXPERIMENT = Experiment("ray_sets", __doc__.splitlines()[0], None, None,

@@ -9,6 +9,7 @@ taken to fall as 1 / time for the little that a render ends before or after the 
 """
 import re
 import shlex
+import shutil
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -91,22 +92,23 @@ def image_of(scene, arguments):
             f"--max-depth {DEPTH} --mode {arguments.mode}")
 
 
-def chooses_lights(program, scene, folder):
+def chooses_lights(program, scene):
     """Whether --light-selection applies: not to scenes of spheres and quads."""
-    try:
-        harness.run_ptexp(program, "--scene", scene, "--width", "1", "--height", "1", "--spp", "1",
-                          "--light-selection", "power", "--device", "cpu", "--quiet", "--output",
-                          str(Path(folder, "probe.ppm")))
-    except Refused as refusal:
-        if "--light-selection" not in str(refusal).partition("ptexp: error: ")[2]:
-            raise
-        return False
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        try:
+            harness.run_ptexp(program, "--scene", scene, "--width", "1", "--height", "1", "--spp",
+                              "1", "--light-selection", "power", "--device", "cpu", "--quiet",
+                              "--output", str(Path(folder, "probe.ppm")))
+        except Refused as refusal:
+            if "--light-selection" not in str(refusal).partition("ptexp: error: ")[2]:
+                raise
+            return False
     return True
 
 
-def ways_of(program, scene, folder):
+def ways_of(program, scene):
     """{way: options}. Where lights are not chosen, what was the default before still is."""
-    if chooses_lights(program, scene, folder):
+    if chooses_lights(program, scene):
         return WAYS
     ways = {way: options for way, options in WAYS.items()
             if not way.startswith("light-selection")}
@@ -116,12 +118,15 @@ def ways_of(program, scene, folder):
 def configurations(arguments, _device):
     settle(arguments)
     program = harness.find_program(arguments.ptexp)
-    arguments.folder = tempfile.TemporaryDirectory(prefix="ptexp-")
-    folder, arguments.pictures = arguments.folder.name, {}
+    # Kept until the end, so that an experiment that was cut off goes on.
+    folder = arguments.folder = arguments.output.resolve() / f".sampling-images{arguments.label}"
+    arguments.pictures = {}
+    if not arguments.list:
+        folder.mkdir(parents=True, exist_ok=True)
     rows = []
     for name, scene in scenes_of(arguments).items():
         image = image_of(scene, arguments)
-        for way, options in ways_of(program, scene, folder).items():
+        for way, options in ways_of(program, scene).items():
             def add(equal, amount, limit, **more):
                 full_name = f"{name}: {way}, {amount}"
                 arguments.pictures[full_name] = str(Path(folder, f"{len(rows)}.exr"))
@@ -150,7 +155,7 @@ def render_reference(program, device, scene, path, arguments):
 def finish(rows, arguments):
     program = harness.find_program(arguments.ptexp)
     device = harness.find_device(program, arguments.device).choice
-    reference = Path(arguments.folder.name, "reference.exr")
+    reference = arguments.folder / "reference.exr"
     for name, scene in scenes_of(arguments).items():
         mine = [row for row in rows if row["panel"] == name]
         render_reference(program, device, scene, reference, arguments)
@@ -160,7 +165,7 @@ def finish(rows, arguments):
             for row, error in zip(mine, errors):
                 row["relmse"], row["x"] = f"{error:.6g}", row["kernel_ms_median"]
         fill_in_gains(mine, arguments.seconds)
-    arguments.folder.cleanup()
+    shutil.rmtree(arguments.folder)
 
 
 def error_of(row, seconds):
@@ -175,7 +180,8 @@ def fill_in_gains(rows, seconds):
     before = {row["equal"]: error_of(row, seconds) for row in rows if row["series"] == BEFORE}
     for row in rows:
         error = error_of(row, seconds)
-        row["gain"] = f"{before[row['equal']] / error:.3g}" if error > 0 else ""
+        if error > 0 and row["equal"] in before:
+            row["gain"] = f"{before[row['equal']] / error:.3g}"
 
 
 def conclude(rows, arguments):

@@ -47,7 +47,8 @@ def configurations(arguments, device):
                         f"--mode {mode} --scene {scene} --accel {accel} {chosen}"
                         f"--width {size} --height {size} --spp {spp} --max-depth {DEPTH}",
                         {"panel": name, "x": f"{mode}, {label}",
-                         "target_msamples_per_s": target or "", "verdict": ""}))
+                         "target_msamples_per_s": target or "", "verdict": ""},
+                        same_image=name))
     return rows
 
 

@@ -58,7 +58,8 @@ def configuration(mode, scene, width, height, spp, depth, quick):
         f"--max-depth {depth}",
         {"series": f"{mode}, {scene}", "panel": "", "x": paths if depth == 50 else "",
          "target": target, "target_ms": target_ms(target, paths), "reached": "", "growth": "",
-         "waves_expected": "", **dict.fromkeys(VERDICTS, "")})
+         "waves_expected": "", **dict.fromkeys(VERDICTS, "")},
+        same_image=f"{scene}, depth {depth}")
 
 
 def verdict(holds):

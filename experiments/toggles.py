@@ -38,7 +38,8 @@ def configurations(arguments, _device):
     if arguments.quick:
         image, pool_sizes = "--width 60 --height 30 --spp 5 --max-depth 50", QUICK_POOL_SIZES
     return [Configuration(f"{mode}: {name}", f"--mode {mode} {image} {options}",
-                          {"panel": mode, "x": name, "relative_to_default": ""})
+                          {"panel": mode, "x": name, "relative_to_default": ""},
+                          same_image="" if name == "rng xorwow" else "spheres")
             for mode in TOGGLES for name, options in changes_of(mode, pool_sizes).items()]
 
 

@@ -1,0 +1,77 @@
+"""Stands for ptexp in tests of the harness: it takes its times from the file `behaviour.json`
+beside it and writes what it was asked for into the file `log` there.
+
+behaviour.json: {"version": text, "times": {seed: [ms]}, "images": {seed: text}, "wrong": {seed:
+exit code}, "kills": n}; the last: it kills the harness when it is to render number n.
+"""
+import json
+import os
+import sys
+
+HERE = os.path.dirname(sys.argv[0])
+
+
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as file:
+        return file.read()
+
+
+def write(path, text):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+BEHAVIOUR = json.loads(read(HERE, "behaviour.json"))  # modules that load slowly are left out here
+COLUMNS = ["seed", "kernel_ms_median", "kernel_ms_min", "kernel_ms_max", "serial_ms_median",
+           "serial_ms_min", "serial_ms_max", "mpaths_per_s", "paths", "rays", "shadow_rays",
+           "scene_ms", "repeat"]
+
+
+def option(name, default=""):
+    return sys.argv[sys.argv.index(name) + 1] if name in sys.argv else default
+
+
+def compare(first, second):
+    differ = read(first) != read(second)
+    print(f"differing pixels       {3 if differ else 0}")
+    sys.exit(int(differ))
+
+
+def render():
+    seed = option("--seed")
+    is_measured = "--csv" in sys.argv
+    with open(os.path.join(HERE, "log"), "a+", encoding="utf-8") as log:
+        log.seek(0)
+        number = log.read().count("measure")
+        if is_measured and number == BEHAVIOUR.get("kills"):
+            os.kill(os.getppid(), 9)
+            sys.exit(9)
+        print("measure" if is_measured else "check", seed, option("--repeat"), option("--width"),
+              file=log)
+    code = BEHAVIOUR.get("wrong", {}).get(seed, 0)
+    if code:
+        print(f"ptexp: error: seed {seed} is wrong", file=sys.stderr)
+        sys.exit(code)
+    write(option("--output"), BEHAVIOUR.get("images", {}).get(seed, "same"))
+    if is_measured:
+        times = BEHAVIOUR.get("times", {}).get(seed, [1.0])
+        measure([times[i % len(times)] for i in range(int(option("--repeat")))], seed)
+
+
+def measure(times, seed):
+    row = dict.fromkeys(COLUMNS, "1")
+    row.update(seed=seed, paths="1000", rays="3000", shadow_rays="1000")
+    write(option("--csv"), ",".join(row) + "\n" + ",".join(row.values()) + "\n")
+    runs = [{"kernel_ms": time, "stages": [{"stage": "serial", "time_ms": time / 2}]}
+            for time in times]
+    write(option("--stats"), json.dumps({"runs": runs}))
+
+
+if sys.argv[1] == "--list-devices":
+    print("cpu        CPU (2 threads)")
+elif sys.argv[1] == "--version":
+    print(f"ptexp 0\ncommit {BEHAVIOUR.get('version', 'abc')}")
+elif sys.argv[1] == "compare":
+    compare(*sys.argv[2:4])
+else:
+    render()

@@ -1,0 +1,368 @@
+"""Tests the experiments' harness with a program that does nothing (fake_ptexp.py): medians and
+intervals, rounds, runs that are cut off, failures, images that differ, builds that are slower."""
+import contextlib
+import csv
+import importlib
+import io
+import itertools
+import json
+import math
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from statistics import median
+from unittest import mock
+
+HERE = Path(__file__).resolve().parent
+sys.dont_write_bytecode = True
+EXPERIMENTS = HERE.parents[1] / "experiments"
+sys.path.insert(0, str(EXPERIMENTS))
+import harness  # noqa: E402
+import intervals  # noqa: E402
+import pooling  # noqa: E402
+import provenance  # noqa: E402
+import rounds  # noqa: E402
+from harness import Configuration, Experiment  # noqa: E402
+from image_check import with_options  # noqa: E402
+from program import Process  # noqa: E402
+
+# An experiment of its own file, for a harness that is killed.
+SCRIPT = """
+import sys
+sys.path.insert(0, {experiments!r})
+import harness
+from harness import Configuration, Experiment
+sys.exit(harness.main(Experiment("fake", "Fake?", lambda *_: [
+    Configuration(f"seed {{seed}}", f"--seed {{seed}}", {{"x": seed}}) for seed in (1, 2, 3)],
+    None)))
+"""
+
+
+def exact_interval(rounds, outside=0.025):
+    """From all equally likely resamples, one by one. Rounds are equally long."""
+    def resamples(times):
+        return itertools.product(times, repeat=len(times))
+    medians = sorted(median(itertools.chain(*drawn)) for chosen in resamples(rounds)
+                     for drawn in itertools.product(*map(resamples, chosen)))
+    return tuple(medians[math.ceil(share * len(medians)) - 1] for share in (outside, 1 - outside))
+
+
+def median_of_first(samples):
+    return median(samples[0])
+
+
+class Intervals(unittest.TestCase):
+    def test_few_times(self):
+        self.assertEqual(intervals.median_interval(((4.0,),)), (4.0, 4.0))
+        # Of the 27 resamples of three times 7 have the least as their median, 7 the greatest.
+        self.assertEqual(intervals.median_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
+        self.assertEqual(exact_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
+        self.assertEqual(intervals.median_interval(((3.0,), (1.0,), (2.0,))), (1.0, 3.0))
+        for times in ((1.0, 2.0, 4.0, 8.0), (5.0, 5.0, 5.1, 5.1), (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)):
+            expected = exact_interval((times,))
+            self.assertEqual(intervals.median_interval((times,)), expected)
+            self.assertEqual(intervals.bootstrap([(times,)], median_of_first), expected)
+
+    def test_rounds(self):
+        for rounds in (((1.0, 2.0), (4.0, 8.0)), ((1.0, 1.1, 1.2), (3.0, 3.1, 3.2)),
+                       ((1.0, 1.5), (2.0, 2.5), (4.0, 4.5))):
+            low, high = intervals.median_interval(rounds)
+            # Of 4000 draws the share below has a deviation of 0.0025.
+            widest, narrowest = (exact_interval(rounds, share) for share in (0.0175, 0.0325))
+            self.assertTrue(widest[0] <= low <= narrowest[0] < narrowest[1] <= high <= widest[1])
+        self.assertEqual(intervals.median_interval(((1.0, 2.0), (4.0, 8.0))), (1.0, 8.0))
+        # Repeats of a round that agree say nothing about other rounds.
+        drifting = ((1.0,) * 5, (2.0,) * 5, (3.0,) * 5)
+        self.assertEqual(intervals.median_interval(drifting), (1.0, 3.0))
+
+    def test_nine_times(self):
+        # The median of a resample is at most the k-th time if five of nine draws are: a binomial.
+        def at_most(k):
+            return sum(math.comb(9, i) * (k / 9) ** i * (1 - k / 9) ** (9 - i)
+                       for i in range(5, 10))
+        low, high = (next(k for k in range(1, 10) if at_most(k) >= share)
+                     for share in (0.025, 0.975))
+        times = tuple(random.Random(5).sample([float(k) for k in range(1, 10)], 9))
+        self.assertEqual(intervals.median_interval((times,)), (low, high))
+        self.assertEqual((low, high), (2, 8))
+
+    def test_drift_cancels_in_ratios(self):
+        before = [[1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]
+        after = [[1.5, 1.5], [3.0, 3.0], [4.5, 4.5]]
+        self.assertEqual(intervals.bootstrap(
+            [before, after], lambda s: median(s[1]) / median(s[0])), (1.5, 1.5))
+
+    def test_sharing_into_rounds(self):
+        self.assertEqual(intervals.in_rounds([1, 2, 3, 4, 5], 3), [[1, 2], [3, 4], [5]])
+
+
+class Pooling(unittest.TestCase):
+    def process(self, times, **row):
+        columns = {"kernel_ms_median": "0", "kernel_ms_min": "0", "kernel_ms_max": "0",
+                   "serial_ms_median": "0", "serial_ms_min": "0", "serial_ms_max": "0",
+                   "compact_ms_median": "", "other_ms_median": "0", "other_ms_min": "0",
+                   "other_ms_max": "0", "mpaths_per_s": "0", "mrays_per_s": "0", "paths": "6000",
+                   "rays": "9000", "shadow_rays": "3000", "repeat": "0", "scene_ms": "1"}
+        return Process("measured", row={**columns, **row}, runs=[
+            {"kernel_ms": time, "stages": {"serial": time / 2, "a": 0.25, "b": 0.5}}
+            for time in times])
+
+    def test_golden_row(self):
+        row = pooling.pooled([self.process([5.0, 1.0], scene_ms="1"),
+                              self.process([2.0], scene_ms="4"),
+                              self.process([4.0], scene_ms="2")])
+        expected = {"rounds": "3", "repeat": "4", "kernel_ms_median": "3.000000",
+                    "kernel_ms_min": "1.000000", "kernel_ms_max": "5.000000",
+                    "kernel_ms_low": "1.000000", "kernel_ms_high": "5.000000",
+                    "kernel_ms_runs": "5.000000;1.000000;2.000000;4.000000",
+                    "serial_ms_median": "1.500000", "serial_ms_max": "2.500000",
+                    "other_ms_median": "0.750000", "compact_ms_median": "",
+                    "scene_ms": "2.000000", "mpaths_per_s": "2", "mrays_per_s": "4"}
+        self.assertEqual({key: row[key] for key in expected}, expected)
+
+
+class Harness(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="ptexp harness ")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        self.program = self.fake("a")
+
+    def fake(self, name, **behaviour):
+        """A program in a folder of its own."""
+        program = self.folder / name / "ptexp"
+        program.parent.mkdir(exist_ok=True)
+        text = (HERE / "fake_ptexp.py").read_text(encoding="utf-8")
+        program.write_text(f"#!{sys.executable} -SE\n{text}", encoding="utf-8")
+        program.chmod(0o755)
+        (program.parent / "behaviour.json").write_text(json.dumps(behaviour), encoding="utf-8")
+        return program
+
+    def log(self, word="measure", name="a"):
+        """(seed, repeat) of the processes that the program was."""
+        path = self.folder / name / "log"
+        lines = path.read_text().splitlines() if path.exists() else []
+        path.unlink(missing_ok=True)
+        return [tuple(line.split()[1:3]) for line in lines if line.startswith(word)]
+
+    def options(self, *more):
+        return ["--ptexp", str(self.program), "--output", str(self.folder / "out"), "--warmup", "0",
+                "--repeat", "2", "--rounds", "2", *more]
+
+    def run_seeds(self, *more, seeds=(1, 2, 3), group="", **facts):
+        """(exit code, text printed, text of errors)"""
+        experiment = Experiment("fake", "Fake?", lambda *_: [
+            Configuration(f"seed {seed}", f"--seed {seed}", {"x": seed}, same_image=group)
+            for seed in seeds], None, **facts)
+        output, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            status = harness.main(experiment, self.options(*more))
+        return status, output.getvalue(), errors.getvalue()
+
+    def rows(self):
+        path, = self.folder.glob("out/*/fake.csv")
+        with open(path, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def facts(self):
+        path, = self.folder.glob("out/*/fake.json")
+        return json.loads(path.read_text(encoding="utf-8"))
+
+    def columns(self, name):
+        return [row[name] for row in self.rows()]
+
+    def test_rounds_take_turns(self):
+        status, output, _ = self.run_seeds("--repeat", "5", "--rounds", "3")
+        self.assertEqual(status, 0)
+        self.assertEqual(self.log(), [("1", "2"), ("2", "2"), ("3", "2"), ("3", "2"), ("2", "2"),
+                                      ("1", "2"), ("1", "1"), ("2", "1"), ("3", "1")])
+        self.assertEqual(self.columns("repeat"), ["5"] * 3)
+        self.assertEqual(self.columns("rounds"), ["3"] * 3)
+        self.assertEqual([(state["round"], state["when"]) for state in self.facts()["rounds"]],
+                         [(n, when) for n in range(3) for when in ("begin", "end")])
+        self.assertRegex(output, r"(?m)^1/9  seed 1: 1 ms  \(about \d+ s left\)$")
+
+    def test_fewer_repeats_than_rounds(self):
+        self.run_seeds("--repeat", "1", "--rounds", "3", seeds=(7,))
+        self.assertEqual(self.log(), [("7", "1")])
+        self.assertEqual(self.columns("status"), ["measured"])
+
+    def test_a_killed_run_goes_on(self):
+        script = self.folder / "fake.py"
+        script.write_text(SCRIPT.format(experiments=str(EXPERIMENTS)), encoding="utf-8")
+        self.fake("a", kills=4)
+        command = [sys.executable, script, *self.options()]
+        run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual(run.returncode, -9, run.stderr)
+        self.assertEqual(len(self.log()), 4)  # seed 3 in the second round
+        self.assertEqual(self.columns("status"), ["pending", "pending", "measured"])
+        self.assertEqual(self.columns("rounds"), ["1", "1", "2"])
+        self.assertFalse(self.facts()["complete"])
+        journal, = self.folder.glob("out/*/fake.journal")
+        with open(journal, "a", encoding="utf-8") as file:
+            file.write('{"event": "proc')  # cut off while it wrote
+        self.fake("a")
+        run = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(self.log(), [("2", "1"), ("1", "1")])
+        self.assertEqual(self.columns("status"), ["measured"] * 3)
+        self.assertEqual(len(self.facts()["resumed"]), 1)
+        self.assertEqual(list(self.folder.glob("out/*/*.journal")), [])
+
+    def test_what_is_measured_again(self):
+        self.run_seeds()
+        self.assertEqual(len(self.log()), 6)
+        self.assertEqual(self.run_seeds()[0], 0)
+        self.assertEqual(self.log(), [])
+        self.run_seeds("--fresh")
+        self.assertEqual(len(self.log()), 6)
+        self.run_seeds("--repeat", "4")
+        self.assertEqual(len(self.log()), 6)
+        self.fake("a", version="def")  # another commit
+        self.run_seeds("--repeat", "4")
+        self.assertEqual(len(self.log()), 6)
+
+    def test_ctrl_c(self):
+        self.fake("a", wrong={"2": 130})
+        status, _, errors = self.run_seeds()
+        self.assertEqual(status, 130)
+        self.assertIn("the same command goes on", errors)
+        self.assertEqual(self.columns("status"), ["pending"] * 3)
+        self.assertEqual(self.columns("kernel_ms_median"), ["1.000000", "", ""])
+        self.fake("a", version="def")  # another commit: nothing is taken over
+        self.log()
+        self.assertEqual(self.run_seeds()[0], 0)
+        self.assertEqual(len(self.log()), 6)
+
+    def test_a_failure_is_a_row(self):
+        self.fake("a", wrong={"2": 11, "3": 2})
+        status, _, errors = self.run_seeds()
+        self.assertEqual(status, 1)
+        self.assertIn("failed: seed 2: exit code 11: seed 2 is wrong", errors)
+        self.assertEqual(self.columns("status"), ["measured", "failed", "refused"])
+        self.assertEqual(self.columns("message"),
+                         ["", "exit code 11: seed 2 is wrong", "seed 3 is wrong"])
+        self.assertEqual(self.log(), [(seed, "1") for seed in "1231"])
+        self.fake("a")  # it was the machine's fault
+        self.assertEqual(self.run_seeds()[0], 0)
+        self.assertEqual(self.log(), [("2", "1"), ("2", "1")])
+        self.assertEqual(self.columns("status"), ["measured", "measured", "refused"])
+
+    def test_equal_images(self):
+        status, _, errors = self.run_seeds(group="all", image_check="--width 7 --seed 5")
+        self.assertEqual((status, errors), (0, ""))
+        self.assertEqual(self.log("check"), [("5", "7")])  # one and the same command
+        self.assertEqual(self.facts()["equal_images"], {"all": ["seed 1", "seed 2", "seed 3"]})
+
+    def test_unequal_images_are_refused(self):
+        self.fake("a", images={"3": "other"})
+        status, _, errors = self.run_seeds(group="all")
+        self.assertEqual((status, len(errors.splitlines())), (2, 1), errors)
+        self.assertIn("images of seed 3 and seed 1 differ in 3 pixels", errors)
+        self.assertEqual(self.log(), [])
+        self.assertEqual(list(self.folder.glob("out/*/*.csv")), [])
+
+    def test_images_that_fail(self):
+        self.fake("a", wrong={"1": 2, "2": 11})
+        status, _, _ = self.run_seeds(group="all")
+        self.assertEqual(status, 1)
+        self.assertEqual(self.columns("status"), ["refused", "failed", "measured"])
+        self.assertIn("image check", self.rows()[1]["message"])
+
+    def test_options_of_images(self):
+        self.assertEqual(with_options("--spp 9 --scene 'a b' --strict --width 3",
+                                      "--width 1 --spp 2"),
+                         ["--scene", "a b", "--strict", "--width", "1", "--spp", "2"])
+
+    def test_scene_hashes(self):
+        folder = self.folder / "scene"
+        folder.mkdir()
+        (folder / "scene.xml").write_text("<scene/>")
+        (folder / "texture.png").write_text("red")
+        arguments = f"--spp 1 --scene '{folder / 'scene.xml'}'"
+
+        def found():
+            provenance.folder_hash.cache_clear()
+            return provenance.scene_hash(arguments)
+        before = found()
+        self.assertRegex(before, "^sha256 [0-9a-f]{16}$")
+        self.assertEqual(found(), before)
+        (folder / "texture.png").write_text("blue")
+        self.assertNotEqual(found(), before)
+        self.assertEqual(provenance.scene_hash("--spp 1"), "built-in spheres")
+        self.assertEqual(provenance.scene_hash("--scene statue:1M"), "built-in statue:1M")
+
+    def test_time_left(self):
+        self.assertEqual([rounds.left_text(seconds) for seconds in (0.2, 42, 200, 9000)],
+                         ["about 1 s left", "about 42 s left", "about 3 min left",
+                          "about 2.5 h left"])
+
+    def compare_builds(self, *more):
+        compare = importlib.import_module("compare_builds")
+        output = io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output), \
+                mock.patch.object(compare, "SCENES", {"spheres": "--scene spheres"}):
+            status = harness.main(compare.EXPERIMENT, [
+                str(self.program), str(self.folder / "b" / "ptexp"), "--quick", "--repeat", "6",
+                "--rounds", "2", "--output", str(self.folder / "out"), *more], runner=compare.run)
+        return status, output.getvalue()
+
+    def test_builds(self):
+        times = [1.0, 1.01, 0.99]
+        self.fake("a", times={"": times})
+        self.fake("b", times={"": [1.1 * time for time in times]}, version="b")
+        status, output = self.compare_builds()
+        self.assertEqual(status, 1, output)
+        self.assertIn("B takes 1.1000 times as long as A", output)
+        self.assertIn("slower by more than 2 %: spheres: megakernel, spheres: wavefront", output)
+        self.fake("b", times={"": times}, version="c")
+        status, output = self.compare_builds()
+        self.assertEqual(status, 0, output)
+        self.assertIn("(geometric mean of 2; ", output)
+        self.assertIn("no significant difference", output)
+        self.assertIn("slower by more than 2 %: none", output)
+        self.fake("b", images={"": "other"}, version="d")
+        self.assertEqual(self.compare_builds()[0], 2)
+
+    def trace(self, _program, rays, *_):
+        """Stands for the measurement of a set of rays; Ctrl-C at the third."""
+        name = Path(rays).name
+        self.traced.append(name)
+        if len(self.traced) == 3:
+            raise KeyboardInterrupt
+        return [{"status": "measured", "ray_file": name, "accel": "", "builder": "", "variant": "",
+                 "mrays_per_s": "1"}]
+
+    def test_ray_sets_go_on(self):
+        ray_sets, self.traced = importlib.import_module("ray_sets"), []
+
+        def run():
+            with contextlib.redirect_stdout(io.StringIO()), \
+                    contextlib.redirect_stderr(io.StringIO()), \
+                    mock.patch.object(ray_sets, "measure", self.trace):
+                return harness.main(ray_sets.EXPERIMENT, self.options("--quick"),
+                                    runner=ray_sets.run)
+        self.assertEqual(run(), 130)
+        path, = self.folder.glob("out/*/ray_sets-quick.csv")
+        self.assertEqual(len(path.read_text().splitlines()), 1 + 2)
+        self.assertEqual(run(), 0)
+        self.assertEqual(len(path.read_text().splitlines()), 1 + 6)
+        self.assertEqual(self.traced[2], self.traced[3])  # the one that was cut off
+        self.assertEqual(len(self.traced), 6 + 1)
+
+    def test_intervals_are_drawn(self):
+        try:
+            plot = importlib.import_module("plot")
+        except ImportError:
+            self.skipTest("matplotlib is not installed")
+        row = {"t_median": "3", "t_min": "1", "t_max": "9"}
+        self.assertEqual(plot.spread([row], "t"), ([3], [[2], [6]]))
+        self.assertEqual(plot.spread([{**row, "t_low": "2.5", "t_high": "4"}], "t"),
+                         ([3], [[0.5], [1]]))
+
+
+if __name__ == "__main__":
+    unittest.main()
