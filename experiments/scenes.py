@@ -9,6 +9,7 @@ from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot
+from promises import judge_best
 
 # scene, size, samples, and the promise in 10^6 samples/s that the better mode keeps
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),
@@ -52,18 +53,10 @@ def configurations(arguments, device):
     return rows
 
 
-def finish(rows, arguments):
-    for scene in {row["panel"] for row in rows if row["target_msamples_per_s"]}:
-        measured = [row for row in rows if row["panel"] == scene]
-        best = max(measured, key=lambda row: float(row["mpaths_per_s"]))
-        holds = float(best["mpaths_per_s"]) >= float(best["target_msamples_per_s"])
-        best["verdict"] = "quick" if arguments.quick else "pass" if holds else "MISS"
-
-
 EXPERIMENT = Experiment(
     "scenes", __doc__.splitlines()[0], configurations,
     Plot("bars", "Scenes of triangles: 1024 x 1024, depth 8", log_y=False),
-    add_arguments=add_arguments, finish=finish,
+    add_arguments=add_arguments, finish=judge_best,
     table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
 
 if __name__ == "__main__":

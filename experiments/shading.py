@@ -9,6 +9,7 @@ from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot
+from promises import judge_best
 
 # scene, samples, and the promise in 10^6 samples/s that the best way keeps on an H200
 BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed", 16, None)]
@@ -54,18 +55,10 @@ def configurations(arguments, _device):
     return rows
 
 
-def finish(rows, arguments):
-    for scene in {row["panel"] for row in rows if row["target_msamples_per_s"]}:
-        measured = [row for row in rows if row["panel"] == scene]
-        best = max(measured, key=lambda row: float(row["mpaths_per_s"]))
-        holds = float(best["mpaths_per_s"]) >= float(best["target_msamples_per_s"])
-        best["verdict"] = "quick" if arguments.quick else "pass" if holds else "MISS"
-
-
 EXPERIMENT = Experiment(
     "shading", __doc__.splitlines()[0], configurations,
     Plot("bars", "Ways to shade: 1024 x 1024, depth 8", log_y=False),
-    add_arguments=add_arguments, finish=finish,
+    add_arguments=add_arguments, finish=judge_best,
     table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
 
 if __name__ == "__main__":

@@ -34,11 +34,8 @@ enum class SphereAccess {
 
 /// Most threads of a block on CUDA. Many kinds of lights and materials want registers more than
 /// they want threads (results/ has the measurement): with 512 they get 128.
-#ifndef PT_SHADE_BLOCK
-#define PT_SHADE_BLOCK 512
-#endif
 template <class Traits>
-inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? PT_SHADE_BLOCK : 1024;
+inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 512 : 1024;
 
 /// Only brute force scans.
 template <class Traits, SphereAccess access>
