@@ -17,6 +17,7 @@ from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot, Refused
+from scene_files import short_name
 
 BUILT_IN = ["cornell"]
 SHARED = harness.ROOT.parent / "shared" / "scenes"
@@ -83,7 +84,7 @@ def scene_files(arguments):
 
 
 def scenes_of(arguments):
-    return {"/".join(Path(scene).parts[-2:]): scene
+    return {short_name(scene): scene
             for scene in BUILT_IN + scene_files(arguments)}
 
 

@@ -5,11 +5,11 @@ Also the promises for one H200: the Cornell box and a statue of a million triang
 be named as further arguments of --scenes.
 """
 import sys
-from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot
 from promises import judge_best
+from scene_files import add_scene_files, scene_files, short_name
 
 # scene, size, samples, and the promise in 10^6 samples/s that the better mode keeps
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),
@@ -19,22 +19,15 @@ TRIANGLES = ["bvh2", "cwbvh"]
 DEPTH = 8
 
 
-def add_arguments(parser):
-    parser.add_argument("--scenes", nargs="*", default=[], metavar="FILE",
-                        help="scene files to measure besides the built-in scenes")
-
-
 def configurations(arguments, device):
-    # Each configuration runs in a folder of its own: only whole paths lead anywhere.
-    files = [str(Path(path).resolve()) for path in arguments.scenes]
-    scenes = BUILT_IN + [(path, 1024, 64, None) for path in files]
+    scenes = BUILT_IN + [(path, 1024, 64, None) for path in scene_files(arguments)]
     if arguments.quick:
         scenes = [(scene.replace("M", "K").replace("10K", "10"), size // 32, 2, target)
                   for scene, size, _, target in scenes]
     builders = ["sah", "hploc"] if device.kind == "cuda" else ["sah"]
     rows = []
     for scene, size, spp, target in scenes:
-        name = "/".join(Path(scene).parts[-2:])
+        name = short_name(scene)
         for mode in ["megakernel", "wavefront"]:
             for accel in STRUCTURES.get(scene, TRIANGLES):
                 for builder in builders:
@@ -56,7 +49,7 @@ def configurations(arguments, device):
 EXPERIMENT = Experiment(
     "scenes", __doc__.splitlines()[0], configurations,
     Plot("bars", "Scenes of triangles: 1024 x 1024, depth 8", log_y=False),
-    add_arguments=add_arguments, finish=judge_best,
+    add_arguments=add_scene_files, finish=judge_best,
     table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
 
 if __name__ == "__main__":

@@ -2,14 +2,14 @@
 """Shading: one kernel for all materials, the same over an ordered queue, or a kernel for each kind?
 
 The wavefront's three ways to shade surfaces, beside the megakernel. Scene files may be named as
-further arguments of --scenes. All images of a scene have the same counts of rays.
+further arguments of --scenes.
 """
 import sys
-from pathlib import Path
 
 import harness
 from harness import Configuration, Experiment, Plot
 from promises import judge_best
+from scene_files import add_scene_files, scene_files, short_name
 
 # scene, samples, and the promise in 10^6 samples/s that the best way keeps on an H200
 BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed", 16, None)]
@@ -26,23 +26,16 @@ OTHER_KERNELS = ("cornell", "by material")
 SIZE, DEPTH = 1024, 8
 
 
-def add_arguments(parser):
-    parser.add_argument("--scenes", nargs="*", default=[], metavar="FILE",
-                        help="scene files to measure besides the built-in scenes")
-
-
 def configurations(arguments, _device):
-    # Each configuration runs in a folder of its own: only whole paths lead anywhere.
-    files = [str(Path(path).resolve()) for path in arguments.scenes]
-    scenes = BUILT_IN + [(path, 64, PROMISES.get("/".join(Path(path).parts[-2:])))
-                         for path in files]
+    scenes = BUILT_IN + [(path, 64, PROMISES.get(short_name(path)))
+                         for path in scene_files(arguments)]
     size = SIZE
     if arguments.quick:
         scenes = [(scene.replace("1M", "1K"), 2, promise) for scene, _, promise in scenes]
         size = SIZE // 32
     rows = []
     for scene, spp, promise in scenes:
-        name = "/".join(Path(scene).parts[-2:])
+        name = short_name(scene)
         for way, options in WAYS.items():
             if (scene, way) == OTHER_KERNELS:
                 continue
@@ -58,7 +51,7 @@ def configurations(arguments, _device):
 EXPERIMENT = Experiment(
     "shading", __doc__.splitlines()[0], configurations,
     Plot("bars", "Ways to shade: 1024 x 1024, depth 8", log_y=False),
-    add_arguments=add_arguments, finish=judge_best,
+    add_arguments=add_scene_files, finish=judge_best,
     table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& qu
   // simple_partitioner: no range is longer than its grain.
   constexpr StageId own_tag = stage_info(Stage::id).queue;
   const tbb::blocked_range<std::uint32_t> all(0, *queues.count, RangeAppender::range_max);
-  const std::uint32_t* const slots = queues.slots + (queues.first != nullptr ? *queues.first : 0);
+  const std::uint32_t* const slots = queues.begin();
   const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
     RangeAppender appender;
     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {

@@ -112,7 +112,7 @@ __global__ void __launch_bounds__(block_max<Stage>())
   const std::uint32_t count = *queues.count;
   if (blockIdx.x * blockDim.x >= count) return;
   const Scene scene = storage.bind();
-  const std::uint32_t* const slots = queues.slots + (queues.first != nullptr ? *queues.first : 0);
+  const std::uint32_t* const slots = queues.begin();
   Appender appender(shared);
   constexpr StageId own_tag = stage_info(Stage::id).queue;
   const bool appends = queues.appends;

@@ -29,6 +29,9 @@ struct StageQueues {
   StageId* shadow_tags = nullptr;         ///< only with lights
   std::uint32_t* next[queue_count] = {};  ///< where slots are appended; null: nobody waits there
   std::uint32_t* waiting = nullptr;       ///< [queue_count] ends of the queues
+
+  /// The slots of StageInput::queue.
+  PT_HD const std::uint32_t* begin() const { return slots + (first != nullptr ? *first : 0); }
 };
 
 /// The buffers of a wavefront, allocated by the device's renderer.
