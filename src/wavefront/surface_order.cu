@@ -1,4 +1,5 @@
-// The counting sort of the surfaces on CUDA: one kernel counts, one puts them in their places.
+// The counting sort of the surfaces on CUDA: one kernel for tiles; for ranges one that counts and
+// one that puts them in their places.
 #include "common/device/bind_scene.cuh"
 #include "common/device/stage_stamp.cuh"
 #include "wavefront/wavefront_cuda.h"
@@ -22,32 +23,63 @@ struct Peers {
   }
 };
 
-/// Adds a block's threads of each kind to `total` and returns the place that this one gets: behind
-/// those that came before the block. Called by all threads of the block.
-__device__ std::uint32_t add_kinds(std::uint32_t (&shared)[kind_count], std::uint32_t* total,
-                                   int kind) {
-  if (threadIdx.x < kind_count) shared[threadIdx.x] = 0;
-  __syncthreads();
+/// Adds the warp's threads of each kind to `next` and returns this one's place: what next[kind] was
+/// before, and the peers before it. Called by whole warps.
+__device__ std::uint32_t take_places(std::uint32_t (&next)[kind_count], int kind) {
   const Peers peers(kind);
-  std::uint32_t place = 0;
-  if (kind >= 0 && peers.before == 0) place = atomicAdd(&shared[kind], peers.count);
-  place = __shfl_sync(0xffffffffu, place, __ffs(peers.mask) - 1) + peers.before;
-  __syncthreads();
-  if (threadIdx.x < kind_count && shared[threadIdx.x] > 0) {
-    shared[threadIdx.x] = atomicAdd(&total[threadIdx.x], shared[threadIdx.x]);
-  }
-  __syncthreads();
-  if (kind >= 0) place += shared[kind];
-  __syncthreads();
-  return place;
+  std::uint32_t first = 0;
+  if (kind >= 0 && peers.before == 0) first = atomicAdd(&next[kind], peers.count);
+  return __shfl_sync(0xffffffffu, first, __ffs(peers.mask) - 1) + peers.before;
 }
 
+/// How many come before the first of `kind`.
+__device__ std::uint32_t sum_before(const std::uint32_t* counts, int kind) {
+  std::uint32_t sum = 0;
+  for (int k = 0; k < kind; ++k) sum += counts[k];
+  return sum;
+}
+
+constexpr int tile_block = 1024;
+
+/// A block puts a tile in order.
+__global__ void __launch_bounds__(tile_block, 2)
+    order_tiles(const __grid_constant__ Scene scene, const __grid_constant__ SurfaceOrder order,
+                StageClock* clock) {
+  __shared__ std::uint32_t counts[kind_count], next[kind_count];
+  __shared__ std::int8_t kinds[order_tile];  // of its places, below 0 behind the queue's end
+  stamp_first_thread(clock, StageId::order_surfaces);
+  const std::uint32_t count = *order.count;
+  for (std::uint32_t tile = blockIdx.x * order_tile; tile < count; tile += gridDim.x * order_tile) {
+    __syncthreads();  // slower warps may still put the last tile in order
+    if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
+    __syncthreads();
+    const std::uint32_t places = min(count - tile, order_tile);
+    const std::uint32_t end = (places + 31) / 32 * 32;  // whole warps take places
+    for (std::uint32_t i = threadIdx.x; i < end; i += tile_block) {
+      int kind = -1;
+      if (i < places) kind = surface_kind(scene, order.pool, order.slots[tile + i]);
+      kinds[i] = static_cast<std::int8_t>(kind);
+      take_places(counts, kind);
+    }
+    __syncthreads();
+    if (threadIdx.x < kind_count) next[threadIdx.x] = tile + sum_before(counts, threadIdx.x);
+    __syncthreads();
+    for (std::uint32_t i = threadIdx.x; i < end; i += tile_block) {
+      const std::uint32_t place = take_places(next, kinds[i]);
+      if (i < places) order.ordered[place] = order.slots[tile + i];
+    }
+  }
+}
+
+/// Adds up the kinds of the whole queue.
 __global__ void __launch_bounds__(order_block)
     count_surfaces(const __grid_constant__ Scene scene, const __grid_constant__ SurfaceOrder order,
                    StageClock* clock) {
-  __shared__ std::uint32_t shared[kind_count];
+  __shared__ std::uint32_t counts[kind_count];
   stamp_first_thread(clock, StageId::order_surfaces);
   const std::uint32_t count = *order.count;
+  if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
+  __syncthreads();
   for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
     const std::uint32_t i = base + threadIdx.x;
     int kind = -1;
@@ -55,41 +87,53 @@ __global__ void __launch_bounds__(order_block)
       kind = surface_kind(scene, order.pool, order.slots[i]);
       order.kinds[i] = static_cast<std::uint8_t>(kind);
     }
-    add_kinds(shared, order.ranges->count, kind);
+    take_places(counts, kind);
+  }
+  __syncthreads();
+  if (threadIdx.x < kind_count && counts[threadIdx.x] > 0) {
+    atomicAdd(&order.ranges->count[threadIdx.x], counts[threadIdx.x]);
   }
 }
 
 __global__ void __launch_bounds__(order_block)
     place_surfaces(const __grid_constant__ SurfaceOrder order, StageClock* clock) {
-  __shared__ std::uint32_t shared[kind_count], first[kind_count];
+  __shared__ std::uint32_t counts[kind_count], next[kind_count], first[kind_count];
   stamp_first_thread(clock, StageId::order_surfaces);
   const std::uint32_t count = *order.count;
   if (blockIdx.x * blockDim.x >= count && blockIdx.x > 0) return;
   if (threadIdx.x < kind_count) {
-    std::uint32_t sum = 0;
-    for (int k = 0; k < static_cast<int>(threadIdx.x); ++k) sum += order.ranges->count[k];
-    first[threadIdx.x] = sum;
-    if (blockIdx.x == 0) order.ranges->first[threadIdx.x] = sum;
+    first[threadIdx.x] = sum_before(order.ranges->count, threadIdx.x);
+    if (blockIdx.x == 0) order.ranges->first[threadIdx.x] = first[threadIdx.x];
   }
   for (std::uint32_t base = blockIdx.x * blockDim.x; base < count; base += gridDim.x * blockDim.x) {
     const std::uint32_t i = base + threadIdx.x;
     const int kind = i < count ? order.kinds[i] : -1;
-    const std::uint32_t place = add_kinds(shared, order.ranges->placed, kind);
-    if (kind >= 0) order.ordered[first[kind] + place] = order.slots[i];
+    if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
+    __syncthreads();
+    const std::uint32_t place = take_places(counts, kind);
+    __syncthreads();
+    if (threadIdx.x < kind_count && counts[threadIdx.x] > 0) {
+      next[threadIdx.x] =
+          first[threadIdx.x] + atomicAdd(&order.ranges->placed[threadIdx.x], counts[threadIdx.x]);
+    }
+    __syncthreads();
+    if (kind >= 0) order.ordered[next[kind] + place] = order.slots[i];
   }
 }
 
 }  // namespace
 
 void WavefrontCuda::order_surfaces(const SurfaceOrder& order) {
-  const auto blocks_of = [&](const void* kernel) {
-    const std::uint32_t wanted = (buffers_.pool.slot_count + order_block - 1) / order_block;
-    return std::min(wanted, resident_blocks(kernel, order_block, 0));
+  const auto run = [&](const char* name, auto* kernel, int block, std::uint32_t per_block,
+                       const auto&... arguments) {
+    const std::uint32_t wanted = (buffers_.pool.slot_count + per_block - 1) / per_block;
+    const std::uint32_t resident = resident_blocks(reinterpret_cast<const void*>(kernel), block, 0);
+    launch(name, kernel, std::min(wanted, resident), block, 0, arguments..., order, clock());
   };
-  launch("count_surfaces", count_surfaces, blocks_of(reinterpret_cast<const void*>(count_surfaces)),
-         order_block, 0, scene_, order, clock());
-  launch("place_surfaces", place_surfaces, blocks_of(reinterpret_cast<const void*>(place_surfaces)),
-         order_block, 0, order, clock());
+  if (order.ranges == nullptr)
+    return run("order_tiles", order_tiles, tile_block, order_tile, scene_);
+  run("count_surfaces", count_surfaces, order_block, order_block, scene_);
+  run("place_surfaces", place_surfaces, order_block, order_block);
 }
 
 }  // namespace pt

@@ -1,10 +1,12 @@
 // The surfaces that wait to be shaded, ordered by the kind of their BSDFs: a counting sort of their
-// queue. Threads side by side then execute the same code, and a kind's range of the ordered queue
-// can be shaded by a kernel that knows no other (after Laine et al. 2013, 'Megakernels Considered
-// Harmful', section 4).
+// queue. Threads side by side then execute the same code (after Laine et al. 2013, 'Megakernels
+// Considered Harmful', section 4). One kernel for all kinds needs no more than an order within
+// tiles of the queue, and what was near in the queue stays near in memory. A kernel that knows one
+// kind needs all of its surfaces in one range.
 //
-// Contract: the ordered queue holds the same slots as the queue, range by range (KindRanges);
-// within a range in any order, on the CPU in that of the queue.
+// Contract: the ordered queue holds the same slots as the queue, either range by range (KindRanges)
+// or tile by tile and ascending by kind in each; within one kind in any order, on the CPU in that
+// of the queue.
 #pragma once
 
 #include "common/transport/surface.h"
@@ -13,13 +15,18 @@
 
 namespace pt {
 
+/// Places of the queue that are ordered together: enough for warps of one kind, few enough that a
+/// block's threads keep their kinds.
+inline constexpr std::uint32_t order_tile = 1 << 14;
+
 struct SurfaceOrder {
   PathPool pool;
   const std::uint32_t* slots = nullptr;  ///< the queue, the first *count of it
   const std::uint32_t* count = nullptr;
-  std::uint8_t* kinds = nullptr;     ///< [capacity of the queue] room for the kind of each place
   std::uint32_t* ordered = nullptr;  ///< [capacity of the queue]
-  KindRanges* ranges = nullptr;      ///< counts and places are 0 before
+  // For ranges; null: within tiles
+  KindRanges* ranges = nullptr;   ///< counts and places are 0 before
+  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each place
 };
 
 /// That of the surface that the slot's path has met; 0 for a miss, which waits among the surfaces

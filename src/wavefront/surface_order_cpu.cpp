@@ -1,8 +1,11 @@
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_scan.h>
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "wavefront/surface_order.h"
 
@@ -25,9 +28,29 @@ Counts count_kinds(const SurfaceOrder& order, const Range& range) {
   return counts;
 }
 
-}  // namespace
+void order_tile_cpu(const Scene& scene, const SurfaceOrder& order, std::uint32_t begin,
+                    std::uint32_t end) {
+  std::array<std::uint8_t, order_tile> kinds;
+  Counts next{};
+  for (std::uint32_t i = begin; i < end; ++i) {
+    ++next[kinds[i - begin] = surface_kind(scene, order.pool, order.slots[i])];
+  }
+  std::exclusive_scan(next.begin(), next.end(), next.begin(), begin);
+  for (std::uint32_t i = begin; i < end; ++i) {
+    order.ordered[next[kinds[i - begin]]++] = order.slots[i];
+  }
+}
 
-void order_surfaces_cpu(const Scene& scene, const SurfaceOrder& order) {
+void order_in_tiles(const Scene& scene, const SurfaceOrder& order) {
+  const std::uint32_t count = *order.count;
+  tbb::parallel_for(std::uint32_t{0}, (count + order_tile - 1) / order_tile,
+                    [&](std::uint32_t tile) {
+                      const std::uint32_t begin = tile * order_tile;
+                      order_tile_cpu(scene, order, begin, std::min(begin + order_tile, count));
+                    });
+}
+
+void order_in_ranges(const Scene& scene, const SurfaceOrder& order) {
   const Range all(0, *order.count, grain);
   const Counts counts = tbb::parallel_reduce(
       all, Counts{},
@@ -58,6 +81,12 @@ void order_surfaces_cpu(const Scene& scene, const SurfaceOrder& order) {
         return sum(before, count_kinds(order, range));
       },
       sum);
+}
+
+}  // namespace
+
+void order_surfaces_cpu(const Scene& scene, const SurfaceOrder& order) {
+  order.ranges == nullptr ? order_in_tiles(scene, order) : order_in_ranges(scene, order);
 }
 
 }  // namespace pt

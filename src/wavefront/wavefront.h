@@ -47,13 +47,13 @@ struct WaveBuffers {
   bool orders_surfaces = false;
   bool shades_by_kind = false;            ///< --shade material: only where they are ordered
   std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
-  std::uint8_t* kind_of_place = nullptr;  ///< [slot_count]
+  std::uint8_t* kind_of_place = nullptr;  ///< [slot_count] likewise
   std::uint32_t* ordered = nullptr;       ///< [slot_count] the queue of surfaces, in order
 
   /// Of all queues, at most.
   std::size_t queue_bytes_per_slot() const {
-    const std::size_t order = sizeof *ordered + sizeof *kind_of_place;
-    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? order : 0);
+    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? sizeof *ordered : 0) +
+           (shades_by_kind ? sizeof *kind_of_place : 0);
   }
 
   /// Calls function(queue) for each that this render needs.
@@ -66,7 +66,8 @@ struct WaveBuffers {
         function(queues[queue_index(stage.id)]);
       }
     }
-    if (orders_surfaces) function(ordered), function(kind_of_place);
+    if (orders_surfaces) function(ordered);
+    if (shades_by_kind) function(kind_of_place);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -175,8 +176,9 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
   constexpr StageId id = StageId::shade_surface;
   StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
   if (b.orders_surfaces) {
-    execute.order_surfaces(SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.kind_of_place,
-                                        b.ordered, &b.counters->kinds});
+    KindRanges* const ranges = b.shades_by_kind ? &b.counters->kinds : nullptr;
+    execute.order_surfaces(
+        SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered, ranges, b.kind_of_place});
     surfaces.slots = b.ordered;
   }
   if constexpr (Shading::lighting == Lighting::full) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
+#include <tuple>
 
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_scene.h"
@@ -35,13 +37,18 @@ SceneData panels_and_spheres() {
   return scene;
 }
 
-class SurfaceOrderOf : public testing::TestWithParam<std::uint32_t> {};
-INSTANTIATE_TEST_SUITE_P(Counts, SurfaceOrderOf, testing::Values(0, 1, 2, 4095, 4097, 100'000));
+/// The number of surfaces, and whether they are ordered within tiles.
+class SurfaceOrderOf : public testing::TestWithParam<std::tuple<std::uint32_t, bool>> {};
+INSTANTIATE_TEST_SUITE_P(Counts, SurfaceOrderOf,
+                         testing::Combine(testing::Values(0, 1, 2, 4095, 4097, order_tile,
+                                                          order_tile + 1, 100'000),
+                                          testing::Bool()));
 
 TEST_P(SurfaceOrderOf, AStableSortByKind) {
   const SceneData data = panels_and_spheres();
   const Scene scene = host_view(data, 8, 8);
-  const std::uint32_t count = GetParam(), slot_count = count + 100;
+  const std::uint32_t count = std::get<0>(GetParam()), slot_count = count + 100;
+  const bool in_tiles = std::get<1>(GetParam());
   const auto primitives = scene.primitives.count();
   const auto things = primitives + static_cast<std::uint32_t>(data.tree.triangles.size());
   TestRandom random(count + 1);
@@ -58,7 +65,11 @@ TEST_P(SurfaceOrderOf, AStableSortByKind) {
                                    : data.tree.triangles[thing - primitives].material);
   };
   Slots expected(slots.begin(), slots.begin() + count);
-  std::ranges::stable_sort(expected, {}, kind);
+  const std::uint32_t tile = in_tiles ? order_tile : slot_count;
+  for (std::uint32_t begin = 0; begin < count; begin += tile) {
+    const std::uint32_t places = std::min(tile, count - begin);
+    std::ranges::stable_sort(std::span(expected).subspan(begin, places), {}, kind);
+  }
 
   SurfaceOrder order;
   order.pool.hit = hits.data();
@@ -66,12 +77,14 @@ TEST_P(SurfaceOrderOf, AStableSortByKind) {
   std::vector<std::uint8_t> kinds(slot_count);
   Slots ordered(slot_count, 0xdeadbeef);
   KindRanges ranges{};
-  order.kinds = kinds.data(), order.ordered = ordered.data(), order.ranges = &ranges;
+  order.ordered = ordered.data();
+  if (!in_tiles) order.kinds = kinds.data(), order.ranges = &ranges;
   order_surfaces_cpu(scene, order);
 
   for (std::size_t i = count; i < slot_count; ++i) ASSERT_EQ(ordered[i], 0xdeadbeef) << i;
   ordered.resize(count);
   EXPECT_EQ(ordered, expected);
+  if (in_tiles) return;
   std::uint32_t first = 0, present = 0;
   for (int k = 0; k < kind_count; ++k) {
     EXPECT_EQ(ranges.first[k], first) << k;
