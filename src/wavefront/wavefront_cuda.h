@@ -33,7 +33,8 @@ class WavefrontCuda : public CudaRenderer {
                                         (Traits::geometry == Geometry::triangles ||
                                          Traits::has_masks);
   bool traces_queues_here() const {
-    return scene_.has_only_triangles() && scene_.triangles.triangle_count > 0;
+    return options_.persistent && scene_.has_only_triangles() &&
+           scene_.triangles.triangle_count > 0;
   }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);

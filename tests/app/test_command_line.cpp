@@ -71,6 +71,7 @@ const std::map<std::string, std::string>& other_values() {
       {"pool-size", "1048576"},
       {"finish-paths", "1000"},
       {"regenerate", "off"},
+      {"persistent", "off"},
       {"schedule", "graph"},
       {"stage-block",
        "generate=256,intersect=128,sort_hits=256,shade_miss=256,shade_surface=64,shadow=1024,"

@@ -148,6 +148,7 @@ TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
   const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "none", "sort"}},
                                        {"schedule", {"graph", "host"}},
                                        {"regenerate", {"on", "off"}},
+                                       {"persistent", {"on", "off"}},
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},
                                        {"stage-block", {"256", "33", "512"}}};

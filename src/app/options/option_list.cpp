@@ -237,6 +237,16 @@ void add_execution(std::vector<OptionEntry>& list) {
            "wavefront: a path that ends gives its slot to a new one;\n"
            "off: the pool runs empty before it is filled again")
       .only(wavefront, any_device)
+      .add(custom(
+               "persistent", OptionForm::text, "on|off",
+               [](Options& o, const std::string& s) {
+                 o.persistent = parse_switch("persistent", s);
+               },
+               [](const Options& o) { return o.persistent ? "on" : "off"; }),
+           "wavefront on CUDA: warps that persist trace the appended\n"
+           "queues of rays where a wide tree has triangles alone; off: a\n"
+           "thread per ray")
+      .only(wavefront, cuda)
       .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
            "wavefront: when no sample is left to start and so many paths\n"
            "are still alive, a thread follows each to its end; 0: waves\n"

@@ -120,6 +120,7 @@ struct Options {
   Compaction compaction = Compaction::atomic;
   std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
   bool regenerate = true;
+  bool persistent = true;  ///< warps trace queues where they can (CUDA)
   Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
   int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
