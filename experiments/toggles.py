@@ -14,7 +14,7 @@ BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["redu
 TOGGLES = {
     "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
     "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
-                  ("finish-paths", ["0"])],
+                  ("layout", ["aos"]), ("finish-paths", ["0"])],
 }
 POOL_SIZES = ["128K", "256K", "512K", "1M", "2M", "4M", "8M"]
 QUICK_POOL_SIZES = ["1K", "4K"]

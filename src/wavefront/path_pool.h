@@ -1,9 +1,13 @@
-// The paths in flight, as a structure of arrays: records of 16 bytes, one array per record, so that
-// a warp that reads one record of 32 neighbouring slots makes coalesced 128-bit loads. Nothing
-// outside this file knows the layout.
+// The paths in flight, in records of 16 bytes. As a structure of arrays (--layout soa) each record
+// has an array of its own, so that a warp that reads one record of 32 neighbouring slots makes
+// coalesced 128-bit loads; as an array of structures (aos) all that a slot has lies side by side.
+// Nothing outside this file knows the layout.
 #pragma once
 
+#include <cstddef>
+
 #include "common/film/film.h"
+#include "common/render/options.h"
 #include "common/render/stage_info.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
@@ -28,68 +32,96 @@ struct alignas(8) StoredHit {
 /// What has happened to a path and where it goes is all in three records. A miss needs only two,
 /// and to a new path nothing has happened: its throughput is 1 and is neither stored nor loaded.
 struct PathPool {
+  /// Bytes from a slot's element to the next slot's, by the size of the elements: that size where
+  /// each has its array, the size of all that a slot has where that lies side by side. Run-time
+  /// values, so both layouts are one code: the address of an element is a product and a sum anyway.
+  struct Strides {
+    std::uint32_t record = sizeof(Record), hit = sizeof(StoredHit), word = sizeof(std::uint32_t);
+  };
+
   std::uint32_t slot_count = 0;
+  Strides strides;
+  // Of slot 0; at(field, slot) is another's.
   Record* origin = nullptr;      ///< ray origin, density of the BSDF
   Record* direction = nullptr;   ///< ray direction, number of the path | new_path
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   Receiver* receiver = nullptr;           ///< only where a tree of lights asks for it
-  // Only with compaction over tags:
-  StageId* tag = nullptr;
-  StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
   // Only in scenes with lights:
   Record* shadow_origin = nullptr;     ///< ray origin, distance
   Record* shadow_direction = nullptr;  ///< ray direction, number of the path
   Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free, rays of the path
+  // Only with compaction over tags; arrays in both layouts, since a pass reads them alone:
+  StageId* tag = nullptr;
+  StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
 
   static constexpr std::uint32_t new_path = 0x80000000u;  ///< numbers are below 2^31
 
   /// What a pool for these scenes has: `tags` for compaction over tags.
   struct Parts {
     bool lights, instances, tags, receivers;
+    PoolLayout layout = PoolLayout::soa;
   };
 
-  /// Sets each array that a pool of `slot_count` slots needs to allocate(T*{}, bytes of a T): the
-  /// only list of them.
+  /// Sets what a pool of `slot_count` slots needs to allocate(T*{}, count), room for `count` of T,
+  /// aligned to 16 bytes: the only list of it.
   template <class Allocate>
   void allocate_arrays(const Parts& parts, Allocate&& allocate) {
-    const auto make = [&](auto*& array, bool needed) {
-      if (needed) array = allocate(array);
-    };
-    make(origin, true), make(direction, true), make(throughput, true), make(hit, true);
-    make(hit_instance, parts.instances);
-    make(receiver, parts.receivers);
-    make(tag, parts.tags);
-    make(shadow_tag, parts.tags && parts.lights);
-    make(shadow_origin, parts.lights), make(shadow_direction, parts.lights);
-    make(shadow_radiance, parts.lights);
+    const std::uint64_t n = slot_count;
+    if (parts.layout == PoolLayout::aos) {
+      const std::uint32_t slot_bytes = fields_bytes(parts);
+      strides = {slot_bytes, slot_bytes, slot_bytes};
+      std::byte* const slot_0 = allocate(static_cast<std::byte*>(nullptr), n * slot_bytes);
+      std::uint32_t end = 0;
+      for_each_field(parts, [&]<class T>(T*& field) {
+        field = reinterpret_cast<T*>(slot_0 + next_place<T>(end));
+      });
+    } else {
+      for_each_field(parts, [&](auto*& field) { field = allocate(field, n); });
+    }
+    for_each_tag(parts, [&](StageId*& tags) { tags = allocate(tags, n); });
   }
 
+  /// What allocate_arrays takes for each slot.
   static std::uint64_t bytes_per_slot(const Parts& parts) {
     std::uint64_t sum = 0;
-    PathPool().allocate_arrays(parts, [&](auto* array) {
-      sum += sizeof *array;
-      return array;
-    });
+    const auto add = [&](auto* field) { sum += sizeof *field; };
+    PathPool pool;
+    pool.for_each_tag(parts, add);
+    if (parts.layout == PoolLayout::aos) return sum + fields_bytes(parts);
+    pool.for_each_field(parts, add);
     return sum;
+  }
+
+  /// Where the slot's element of a field is: at(origin, slot).
+  PT_HD Record* at(Record* field, std::uint32_t slot) const {
+    return step(field, slot, strides.record);
+  }
+  PT_HD StoredHit* at(StoredHit* field, std::uint32_t slot) const {
+    return step(field, slot, strides.hit);
+  }
+  template <class Word>
+  PT_HD Word* at(Word* field, std::uint32_t slot) const {
+    static_assert(sizeof(Word) == sizeof(std::uint32_t));
+    return step(field, slot, strides.word);
   }
 
   PT_HD static Record pack(const Vec3& v, std::uint32_t w) { return {v.x, v.y, v.z, w}; }
   PT_HD static Vec3 vec(const Record& r) { return {r.x, r.y, r.z}; }
 
   PT_HD Ray load_ray(std::uint32_t slot) const {
-    return {vec(load_wide(&origin[slot])), vec(load_wide(&direction[slot]))};
+    return {vec(load_wide(at(origin, slot))), vec(load_wide(at(direction, slot)))};
   }
 
   /// The path and its ray, of which a miss needs the direction only.
   PT_HD PathState load_path(std::uint32_t slot, Vec3& ray_direction) const {
-    const Record d = load_wide(&direction[slot]);
+    const Record d = load_wide(at(direction, slot));
     ray_direction = vec(d);
     PathState path;
     path.number = d.w & ~new_path;
     if ((d.w & new_path) == 0) {
-      const Record b = load_wide(&throughput[slot]);
+      const Record b = load_wide(at(throughput, slot));
       path.beta = vec(b);
       path.rays = static_cast<std::uint16_t>(b.w);
       path.shadow_rays = static_cast<std::uint16_t>(b.w >> 16);
@@ -98,57 +130,99 @@ struct PathPool {
   }
 
   PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
-    const Record o = load_wide(&origin[slot]);
+    const Record o = load_wide(at(origin, slot));
     PathState path = load_path(slot, ray.direction);
     ray.origin = vec(o);
     path.bsdf_pdf = bits_to_float(o.w);
-    if (receiver != nullptr) path.receiver = receiver[slot];
+    if (receiver != nullptr) path.receiver = *at(receiver, slot);
     return path;
   }
 
   PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t number) const {
-    store_wide(&origin[slot], pack(ray.origin, float_to_bits(PathState::delta_distribution)));
-    store_wide(&direction[slot], pack(ray.direction, number | new_path));
+    store_wide(at(origin, slot), pack(ray.origin, float_to_bits(PathState::delta_distribution)));
+    store_wide(at(direction, slot), pack(ray.direction, number | new_path));
   }
 
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
-    store_wide(&origin[slot], pack(ray.origin, float_to_bits(path.bsdf_pdf)));
-    store_wide(&direction[slot], pack(ray.direction, path.number));
-    store_wide(&throughput[slot], pack(path.beta, path.packed_rays()));
-    if (receiver != nullptr) receiver[slot] = path.receiver;
+    store_wide(at(origin, slot), pack(ray.origin, float_to_bits(path.bsdf_pdf)));
+    store_wide(at(direction, slot), pack(ray.direction, path.number));
+    store_wide(at(throughput, slot), pack(path.beta, path.packed_rays()));
+    if (receiver != nullptr) *at(receiver, slot) = path.receiver;
   }
 
   /// The path's number and rays alone.
   PT_HD PathState load_name(std::uint32_t slot) const {
     PathState path;
-    path.number = direction[slot].w;
-    if ((path.number & new_path) == 0) path.rays = static_cast<std::uint16_t>(throughput[slot].w);
+    path.number = at(direction, slot)->w;
+    if ((path.number & new_path) == 0)
+      path.rays = static_cast<std::uint16_t>(at(throughput, slot)->w);
     path.number &= ~new_path;
     return path;
   }
 
   PT_HD Hit load_hit(std::uint32_t slot) const {
-    const StoredHit record = hit[slot];
-    return {record.t, record.primitive, hit_instance != nullptr ? hit_instance[slot] : 0};
+    const StoredHit record = *at(hit, slot);
+    return {record.t, record.primitive, hit_instance != nullptr ? *at(hit_instance, slot) : 0};
   }
   PT_HD void store_hit(std::uint32_t slot, const Hit& h) const {
-    hit[slot] = {h.t, h.primitive};
-    if (hit_instance != nullptr) hit_instance[slot] = h.instance;
+    *at(hit, slot) = {h.t, h.primitive};
+    if (hit_instance != nullptr) *at(hit_instance, slot) = h.instance;
   }
 
   PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow,
                           const PathState& path) const {
-    store_wide(&shadow_origin[slot], pack(shadow.ray.origin, float_to_bits(shadow.distance)));
-    store_wide(&shadow_direction[slot], pack(shadow.ray.direction, path.number));
-    store_wide(&shadow_radiance[slot], pack(shadow.radiance, path.rays));
+    store_wide(at(shadow_origin, slot), pack(shadow.ray.origin, float_to_bits(shadow.distance)));
+    store_wide(at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
+    store_wide(at(shadow_radiance, slot), pack(shadow.radiance, path.rays));
   }
   /// Of the path when it asked.
-  PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const { return shadow_radiance[slot].w; }
+  PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
+    return at(shadow_radiance, slot)->w;
+  }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
-    const Record o = load_wide(&shadow_origin[slot]);
-    const Record d = load_wide(&shadow_direction[slot]);
+    const Record o = load_wide(at(shadow_origin, slot));
+    const Record d = load_wide(at(shadow_direction, slot));
     number = d.w;
-    return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(&shadow_radiance[slot]))};
+    return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(at(shadow_radiance, slot)))};
+  }
+
+ private:
+  // All that a slot has, in the order in which it lies side by side.
+  template <class Function>
+  void for_each_field(const Parts& parts, Function&& function) {
+    function(origin), function(direction), function(throughput), function(hit);
+    if (parts.instances) function(hit_instance);
+    if (parts.receivers) function(receiver);
+    if (!parts.lights) return;
+    function(shadow_origin), function(shadow_direction), function(shadow_radiance);
+  }
+  template <class Function>
+  void for_each_tag(const Parts& parts, Function&& function) {
+    if (parts.tags) function(tag);
+    if (parts.tags && parts.lights) function(shadow_tag);
+  }
+
+  /// Where a T may lie behind `end` bytes, which it then counts among.
+  template <class T>
+  static std::uint32_t next_place(std::uint32_t& end) {
+    constexpr std::uint32_t alignment = alignof(T);
+    const std::uint32_t place = (end + alignment - 1) / alignment * alignment;
+    end = place + sizeof(T);
+    return place;
+  }
+
+  /// Of all fields side by side, with what makes the next slot's lie as they do.
+  static std::uint32_t fields_bytes(const Parts& parts) {
+    std::uint32_t end = 0;
+    PathPool().for_each_field(parts, [&]<class T>(T*) { next_place<T>(end); });
+    return next_place<Record>(end);
+  }
+
+  template <class T>
+  PT_HD static T* step(T* field, std::uint32_t slot, std::uint32_t stride_bytes) {
+    // Of 64 bits: a large pool has more than 4 GiB.
+    const std::uint64_t distance = std::uint64_t{slot} * stride_bytes;
+    return reinterpret_cast<T*>(reinterpret_cast<char*>(field) + distance);
   }
 };
 

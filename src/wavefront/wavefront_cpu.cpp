@@ -76,7 +76,8 @@ class WavefrontCpu : public CpuRenderer {
     buffers_.kinds = kinds_of(scene);
     buffers_.only_triangles = scene_.has_only_triangles();
     const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                   !buffers_.compaction.appends, scene_.light_selector.has_tree()};
+                                   !buffers_.compaction.appends, scene_.light_selector.has_tree(),
+                                   options.layout};
     const std::uint64_t size_bytes =
         pool_size_ * (PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
@@ -90,18 +91,19 @@ class WavefrontCpu : public CpuRenderer {
     slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
     buffers_.slot_count = &slot_count_;
     buffers_.counters = &counters_;
-    pool.allocate_arrays(parts,
-                         [&](auto* p) { return array<std::remove_pointer_t<decltype(p)>>(); });
+    pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
+      return array<std::remove_pointer_t<decltype(p)>>(count);
+    });
     buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
-      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>();
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(slot_count_);
     });
   }
 
   // Zero-filled, so every slot is free.
   template <class T>
-  T* array() {
+  T* array(std::uint64_t count) {
     arrays_.push_back(
-        std::shared_ptr<void>(new T[slot_count_]{}, [](void* p) { delete[] static_cast<T*>(p); }));
+        std::shared_ptr<void>(new T[count]{}, [](void* p) { delete[] static_cast<T*>(p); }));
     return static_cast<T*>(arrays_.back().get());
   }
 

@@ -52,7 +52,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind ||
                              (options_.shade == Shade::automatic && order_pays);
   const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                 !appends, scene_.light_selector.has_tree()};
+                                 !appends, scene_.light_selector.has_tree(), options_.layout};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
@@ -74,8 +74,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = static_cast<std::uint32_t>(n);
-  pool.allocate_arrays(parts, [&](auto* array) {
-    return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", n);
+  pool.allocate_arrays(parts, [&](auto* array, std::uint64_t count) {
+    return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
   buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
     queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(

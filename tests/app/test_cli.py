@@ -24,7 +24,7 @@ TIMEOUT_S = 300  # of one run; generous, because the sanitizers share a busy mac
 
 OPTIONS = """--mode --device --spp --width --height --max-depth --seed --scene --spheres --output
     --exposure --look-from --look-at --up --fov --aperture --focus-distance --threads --work --block
-    --compaction --pool-size --regenerate --schedule --scene-memory --branching --rng --repeat
+    --compaction --pool-size --layout --regenerate --schedule --scene-memory --branching --rng --repeat
     --warmup --stats --csv --quiet --list-scenes --list-devices --version --help""".split()
 
 

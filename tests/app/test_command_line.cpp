@@ -69,6 +69,7 @@ const std::map<std::string, std::string>& other_values() {
       {"block", "32x4"},
       {"compaction", "cub"},
       {"pool-size", "1048576"},
+      {"layout", "aos"},
       {"finish-paths", "1000"},
       {"regenerate", "off"},
       {"persistent", "off"},
@@ -413,8 +414,8 @@ TEST(Refused, WithoutEffectInTheMode) {
       {"--mode serial --create-world device", "--create-world device: has no effect"},
   });
   for (const char* mode : {"serial", "megakernel"})
-    for (const char* option :
-         {"compaction none", "pool-size auto", "regenerate on", "schedule host", "stage-block 128"})
+    for (const char* option : {"compaction none", "pool-size auto", "regenerate on",
+                               "schedule host", "stage-block 128", "layout aos"})
       expect_refused({{std::string("--mode ") + mode + " --" + option,
                        std::string("--") + option + ": has no effect with --mode " + mode}});
 }

@@ -30,7 +30,7 @@ TEST_P(MaterialModes, EqualSerial) {
   }
   for (const Settings& ordered :
        {Settings{{"shade", "material"}}, Settings{{"shade", "uber"}, {"compaction", "sort"}},
-        Settings{{"shade", "material"}, {"compaction", "cub"}}}) {
+        Settings{{"shade", "material"}, {"compaction", "cub"}, {"layout", "aos"}}}) {
     Settings wavefront{{"mode", "wavefront"}, {"finish-paths", "0"}, {"pool-size", "1000"}};
     wavefront.insert(wavefront.end(), ordered.begin(), ordered.end());
     expect_same(render(wavefront), serial);

@@ -44,16 +44,19 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   EXPECT_EQ(expected.counts.nonfinite_samples, 0u);
   for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
     for (const char* compaction : {"atomic", "cub", "none"}) {
-      for (const char* finish : {"0", "131072"}) {
+      for (const auto& [finish, layout] :
+           {std::pair{"0", "aos"}, {"0", "soa"}, {"131072", "aos"}}) {
         if (std::string(accel) == "brute" && std::string(GetParam().name).starts_with("masked")) {
           continue;  // brute force has no masks on CUDA
         }
-        SCOPED_TRACE(testing::Message() << accel << ", " << compaction << ", " << finish);
+        SCOPED_TRACE(testing::Message()
+                     << accel << ", " << compaction << ", " << finish << ", " << layout);
         expect_same(render({{"device", "cuda"},
                             {"mode", "wavefront"},
                             {"accel", accel},
                             {"compaction", compaction},
-                            {"finish-paths", finish}}),
+                            {"finish-paths", finish},
+                            {"layout", layout}}),
                     expected);
       }
     }

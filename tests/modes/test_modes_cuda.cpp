@@ -77,7 +77,8 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
        {"stage-block",
         {"256", "1", "2", "16", "33", "1024",
          "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
-         "accumulate=224"}}});
+         "accumulate=224"}},
+       {"layout", {"soa", "aos"}}});
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
@@ -151,7 +152,8 @@ TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
                                        {"persistent", {"on", "off"}},
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},
-                                       {"stage-block", {"256", "33", "512"}}};
+                                       {"stage-block", {"256", "33", "512"}},
+                                       {"layout", {"soa", "aos"}}};
   expect_all_same(options("wavefront"), variations(choices, 6, 5), options("megakernel"));
 }
 

@@ -30,6 +30,7 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
                                     {"compaction", {"atomic", "cub", "none", "sort"}},
                                     {"pool-size", {"333", "auto", "3600"}},
                                     {"regenerate", {"on", "off"}},
+                                    {"layout", {"soa", "aos"}},
                                     {"finish-paths", {"0", "100"}}};
   expect_all_same(options({{"mode", "wavefront"}}), variations(choices, 2, 3), serial);
 }

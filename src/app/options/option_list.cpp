@@ -223,6 +223,10 @@ void add_execution(std::vector<OptionEntry>& list) {
                }),
            "wavefront: paths in flight; K and M mean 2^10 and 2^20")
       .only(wavefront, any_device)
+      .add(choice("layout", &Options::layout),
+           "wavefront: a path's state in arrays by field (soa) or side by\n"
+           "side (aos)")
+      .only(wavefront, any_device)
       .add(choice("shade", &Options::shade),
            "wavefront: surfaces are shaded by one kernel for all, or kind\n"
            "of BSDF by kind over ranges of an ordered queue, on CUDA by\n"

@@ -17,6 +17,7 @@ namespace pt {
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class Schedule { automatic, host, graph };
+enum class PoolLayout { soa, aos };
 enum class Shade { automatic, uber, material };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path };
@@ -118,7 +119,8 @@ struct Options {
   Work work = Work::persistent;                  ///< megakernel
   BlockSize block;                               ///< megakernel, threads per block
   Compaction compaction = Compaction::atomic;
-  std::uint64_t pool_size = 0;  ///< paths in flight, 0: automatic
+  std::uint64_t pool_size = 0;          ///< paths in flight, 0: automatic
+  PoolLayout layout = PoolLayout::soa;  ///< wavefront: of the paths' state
   bool regenerate = true;
   bool persistent = true;  ///< warps trace queues where they can (CUDA)
   Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces

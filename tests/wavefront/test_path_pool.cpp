@@ -1,0 +1,177 @@
+// The path pool in both layouts: what is stored in a slot is what is loaded from it, and its size
+// is what it says.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "wavefront/path_pool.h"
+
+namespace pt {
+namespace {
+
+using Parts = PathPool::Parts;
+
+/// All combinations, in this layout.
+std::vector<Parts> all_parts(PoolLayout layout) {
+  std::vector<Parts> all;
+  for (int bits = 0; bits < 16; ++bits) {
+    all.push_back({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, layout});
+  }
+  return all;
+}
+
+/// A pool whose memory is exactly as large as asked for, so that sanitizers see what leaves it.
+class PoolMemory {
+ public:
+  PathPool allocate(const Parts& parts, std::uint32_t slot_count) {
+    PathPool pool;
+    pool.slot_count = slot_count;
+    pool.allocate_arrays(parts, [this]<class T>(T*, std::uint64_t count) {
+      size_bytes += count * sizeof(T);
+      memory_.emplace_back(std::aligned_alloc(16, (count * sizeof(T) + 15) / 16 * 16), std::free);
+      return static_cast<T*>(memory_.back().get());
+    });
+    return pool;
+  }
+
+  std::uint64_t size_bytes = 0;
+
+ private:
+  std::vector<std::unique_ptr<void, void (*)(void*)>> memory_;
+};
+
+/// Numbers that differ from slot to slot and from field to field.
+Vec3 vector_of(std::uint32_t slot, int field) {
+  const auto s = static_cast<float>(slot), f = static_cast<float>(field);
+  return {s + f / 16, -s - f / 16, 1000 * f + s};
+}
+
+PathState path_of(std::uint32_t slot) {
+  PathState path;
+  path.number = 7 * slot;
+  path.beta = vector_of(slot, 1);
+  path.rays = static_cast<std::uint16_t>(slot + 1);
+  path.shadow_rays = static_cast<std::uint16_t>(slot / 2);
+  path.bsdf_pdf = static_cast<float>(slot) + 0.25f;
+  path.receiver = {slot * 3 + 1};
+  return path;
+}
+
+void store(const PathPool& pool, const Parts& parts, std::uint32_t slot) {
+  const PathState path = path_of(slot);
+  pool.store_path(slot, {vector_of(slot, 2), vector_of(slot, 3)}, path);
+  pool.store_hit(slot, {static_cast<float>(slot) / 2, slot + 100, slot + 200});
+  if (parts.lights) {
+    const Ray ray{vector_of(slot, 4), vector_of(slot, 5)};
+    pool.store_shadow(slot, {ray, static_cast<float>(slot) + 0.5f, vector_of(slot, 6)}, path);
+  }
+  if (parts.tags) pool.tag[slot] = static_cast<StageId>(slot % 5);
+  if (parts.tags && parts.lights) pool.shadow_tag[slot] = static_cast<StageId>(slot % 3);
+}
+
+void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot) {
+  const PathState expected = path_of(slot);
+  Ray ray;
+  const PathState path = pool.load_path(slot, ray);
+  EXPECT_EQ(ray.origin, vector_of(slot, 2));
+  EXPECT_EQ(ray.direction, vector_of(slot, 3));
+  EXPECT_EQ(path.number, expected.number);
+  EXPECT_EQ(path.beta, expected.beta);
+  EXPECT_EQ(path.rays, expected.rays);
+  EXPECT_EQ(path.shadow_rays, expected.shadow_rays);
+  EXPECT_EQ(path.bsdf_pdf, expected.bsdf_pdf);
+  if (parts.receivers) {
+    EXPECT_EQ(path.receiver.bits, expected.receiver.bits);
+  }
+  const Hit hit = pool.load_hit(slot);
+  EXPECT_EQ(hit.t, static_cast<float>(slot) / 2);
+  EXPECT_EQ(hit.primitive, slot + 100);
+  EXPECT_EQ(hit.instance, parts.instances ? slot + 200 : 0);
+  if (parts.lights) {
+    std::uint32_t number = 0;
+    const ShadowRay shadow = pool.load_shadow(slot, number);
+    EXPECT_EQ(number, expected.number);
+    EXPECT_EQ(shadow.ray.origin, vector_of(slot, 4));
+    EXPECT_EQ(shadow.ray.direction, vector_of(slot, 5));
+    EXPECT_EQ(shadow.distance, static_cast<float>(slot) + 0.5f);
+    EXPECT_EQ(shadow.radiance, vector_of(slot, 6));
+    EXPECT_EQ(pool.load_shadow_rays(slot), expected.rays);
+  }
+  if (parts.tags) {
+    EXPECT_EQ(pool.tag[slot], static_cast<StageId>(slot % 5));
+  }
+  if (parts.tags && parts.lights) {
+    EXPECT_EQ(pool.shadow_tag[slot], static_cast<StageId>(slot % 3));
+  }
+}
+
+class PathPoolOf : public testing::TestWithParam<PoolLayout> {};
+INSTANTIATE_TEST_SUITE_P(Layouts, PathPoolOf, testing::Values(PoolLayout::soa, PoolLayout::aos),
+                         [](const auto& layout) { return layout.index == 0 ? "soa" : "aos"; });
+
+TEST_P(PathPoolOf, KeepsWhatEachSlotHas) {
+  constexpr std::uint32_t slot_count = 37;
+  for (const Parts& parts : all_parts(GetParam())) {
+    SCOPED_TRACE(testing::Message()
+                 << "lights " << parts.lights << ", instances " << parts.instances << ", tags "
+                 << parts.tags << ", receivers " << parts.receivers);
+    PoolMemory memory;
+    const PathPool pool = memory.allocate(parts, slot_count);
+    for (std::uint32_t slot = 0; slot < slot_count; ++slot) store(pool, parts, slot);
+    for (std::uint32_t slot = 0; slot < slot_count; ++slot) expect_stored(pool, parts, slot);
+    EXPECT_EQ(memory.size_bytes, slot_count * PathPool::bytes_per_slot(parts));
+    if (HasFailure()) return;
+  }
+}
+
+// A record is read by one access of 16 bytes, which must not be apart.
+TEST_P(PathPoolOf, EveryRecordIsAligned) {
+  for (const Parts& parts : all_parts(GetParam())) {
+    PoolMemory memory;
+    const PathPool pool = memory.allocate(parts, 3);
+    for (std::uint32_t slot = 0; slot < 3; ++slot) {
+      const auto expect_aligned = [&](auto* field) {
+        if (field == nullptr) return;
+        EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pool.at(field, slot)) % alignof(*field), 0u);
+      };
+      expect_aligned(pool.origin), expect_aligned(pool.direction), expect_aligned(pool.throughput);
+      expect_aligned(pool.hit), expect_aligned(pool.hit_instance), expect_aligned(pool.receiver);
+      expect_aligned(pool.shadow_origin), expect_aligned(pool.shadow_direction);
+      expect_aligned(pool.shadow_radiance);
+    }
+  }
+}
+
+// As the table in docs/architecture.md has it.
+TEST(PathPool, SizesInBytes) {
+  const auto bytes = [](Parts parts, PoolLayout layout) {
+    parts.layout = layout;
+    return PathPool::bytes_per_slot(parts);
+  };
+  const struct {
+    Parts parts;
+    std::uint64_t soa, aos;
+  } cases[] = {{{false, false, false, false}, 56, 64},  {{false, true, false, true}, 64, 64},
+               {{true, false, false, false}, 104, 112}, {{true, true, false, true}, 112, 112},
+               {{false, false, true, false}, 57, 65},   {{true, true, true, true}, 114, 114}};
+  for (const auto& [parts, soa, aos] : cases) {
+    EXPECT_EQ(bytes(parts, PoolLayout::soa), soa);
+    EXPECT_EQ(bytes(parts, PoolLayout::aos), aos);
+  }
+}
+
+// More than 4 GiB: no memory is touched.
+TEST_P(PathPoolOf, TheLastSlotOfALargePoolIsFarAway) {
+  const Parts parts{true, false, false, false, GetParam()};
+  PoolMemory memory;
+  const PathPool pool = memory.allocate(parts, 1);
+  const auto place = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p); };
+  const std::uint64_t stride = GetParam() == PoolLayout::soa ? 16 : 112;
+  EXPECT_EQ(place(pool.at(pool.shadow_origin, 0x7fffffffu)) - place(pool.shadow_origin),
+            0x7fffffffu * stride);
+}
+
+}  // namespace
+}  // namespace pt
