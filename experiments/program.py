@@ -58,6 +58,18 @@ def run_ptexp(program, *arguments, timeout_s=None):
     return run.stdout
 
 
+def failure_of(program, command, timeout_s):
+    """Runs ptexp: None, or what went wrong."""
+    try:
+        run = subprocess.run([str(program), *command], capture_output=True, text=True, check=False,
+                             stdin=subprocess.DEVNULL, timeout=timeout_s)
+    except subprocess.TimeoutExpired:
+        return f"no end after {timeout_s:g} s (--timeout)"
+    if run.returncode == 130:  # Ctrl-C has reached ptexp first
+        raise KeyboardInterrupt
+    return f"exit code {run.returncode}: {run.stderr.strip()}" if run.returncode else None
+
+
 def find_device(program, wanted):
     """The device that --device names; auto: the first GPU if there is one, else the CPU."""
     lines = re.findall(r"(?m)^(\S+)\s+(.*) \((.*)\)$", output_of(program, "--list-devices"))

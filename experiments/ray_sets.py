@@ -7,7 +7,6 @@ files may be named by --scenes.
 import hashlib
 import json
 import shlex
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -15,7 +14,7 @@ from pathlib import Path
 import harness
 from harness import Experiment, HarnessError
 from journal import Journal
-from program import version_of
+from program import failure_of, version_of
 
 # What a built-in scene is looked at from; files have cameras of their own.
 TERRAIN_CAMERA = "--look-from -490,175,490 --look-at 0,10,0 --vfov 38"
@@ -32,18 +31,6 @@ def add_arguments(parser):
                         help="meshes (.mesh) and scenes to measure besides the built-in ones")
     parser.add_argument("--size", type=int, default=2048, metavar="N",
                         help="rays are those of an image of N x N pixels [%(default)s]")
-
-
-def ptexp(program, command, timeout_s):
-    """None, or what went wrong."""
-    try:
-        run = subprocess.run([str(program), *command], capture_output=True, text=True, check=False,
-                             stdin=subprocess.DEVNULL, timeout=timeout_s)
-    except subprocess.TimeoutExpired:
-        return f"no end after {timeout_s:g} s (--timeout)"
-    if run.returncode == 130:  # Ctrl-C has reached ptexp first
-        raise KeyboardInterrupt
-    return f"exit code {run.returncode}: {run.stderr.strip()}" if run.returncode else None
 
 
 def name_of(scene):
@@ -86,10 +73,10 @@ def option(command, name):
 def measure(program, rays, make, traces, arguments):
     """A row for every way to trace one set of rays."""
     folder, rows = Path(rays).parent, []
-    no_rays = ptexp(program, make, arguments.timeout)
+    no_rays = failure_of(program, make, arguments.timeout)
     for trace in traces:
         table = Path(folder, "rows.csv")
-        message = no_rays or ptexp(program, trace, arguments.timeout)
+        message = no_rays or failure_of(program, trace, arguments.timeout)
         row = {"experiment": EXPERIMENT.name, "status": "failed" if message else "measured",
                "message": message or ""}
         if message:

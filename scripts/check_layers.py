@@ -33,7 +33,8 @@ LAYERS = [
     # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
     ("rays", ["common/rays/*"], ["build_cuda", "cuda_memory", "render", "trace_cuda", "transport", *SCENE]),
     # What runs a schedule on a device.
-    ("cuda_memory", ["common/device/cuda_check.cuh", "common/device/cuda_memory*"], HOST),
+    ("cuda_memory", ["common/device/cuda_check.cuh", "common/device/cuda_event.cuh",
+                     "common/device/cuda_memory*"], HOST),
     ("device", ["common/device/*"], ["build_cuda", "cuda_memory", "render", "film", "transport", *SCENE]),
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
@@ -84,7 +85,8 @@ PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GL
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
-BUILD_CONDITION_FILES = ["app/make_renderer.cpp", "app/trace_command.cpp",
+BUILD_CONDITION_FILES = ["app/make_renderer.cpp", "app/compact_command.cpp",
+                         "app/trace_command.cpp",
                          "common/device/devices*.cpp"]
 
 SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}

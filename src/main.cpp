@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "app/compact_command.h"
 #include "app/compare_command.h"
 #include "app/options/command_line.h"
 #include "app/render_command.h"
@@ -25,6 +26,8 @@ int execute(const CompareCommand& command) {
 int execute(const TraceCommand& command) { return trace_command(command); }
 
 int execute(const RaysCommand& command) { return rays_command(command); }
+
+int execute(const CompactCommand& command) { return compact_command(command); }
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())

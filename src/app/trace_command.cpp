@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "app/options/option_values.h"
 #include "app/report/csv_file.h"
+#include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
 #include "app/trace_scene.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/check_builder.h"
-#include "common/build_info.h"
 #include "common/device/devices.h"
 #include "common/error.h"
 #include "common/image/atomic_file.h"
@@ -54,47 +52,29 @@ const char* variant_name(TraceVariant variant) {
   return names[static_cast<int>(variant)];
 }
 
-/// Of the kernel module; empty where there is none.
-std::string driver_version() {
-  std::ifstream file("/sys/module/nvidia/version");
-  std::string version;
-  std::getline(file, version);
-  return version;
-}
-
 CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
-  const bool is_cuda = report.device.choice.kind == DeviceChoice::Kind::cuda;
   const auto number = [](double x) { return fmt::format("{:.6g}", x); };
-  const BuildInfo& build = build_info();
-  return {{"version", build.version},
-          {"commit", build.commit},
-          {"build_type", build.build_type},
-          {"compiler", build.compiler},
-          {"cuda", build.cuda},
-          {"fast_math", build.fast_math ? "on" : "off"},
-          {"command", command.command_line},
-          {"device", report.device.name},
-          {"device_kind", is_cuda ? "cuda" : "cpu"},
-          {"threads", is_cuda ? "" : std::to_string(report.threads)},
-          {"driver", is_cuda ? driver_version() : ""},
-          {"mesh", command.mesh},
-          {"triangles", std::to_string(report.triangles)},
-          {"ray_file", command.rays},
-          {"type", report.type == RayType::any ? "any" : "closest"},
-          {"rays", std::to_string(report.rays)},
-          {"accel", to_string(command.accel)},
-          {"builder", builder_name(command, report)},
-          {"variant", variant_name(report.variant)},
-          {"nodes", std::to_string(report.tree.quality.nodes)},
-          {"sah_cost", number(sah_cost(command, report))},
-          {"bytes_per_triangle", number(report.bytes_per_triangle())},
-          {"build_ms", number(report.tree.build_ms)},
-          {"repeat", std::to_string(command.runs.repeat)},
-          {"warmup", std::to_string(command.runs.warmup)},
-          {"time_ms", number(report.time_ms.median)},
-          {"time_min_ms", number(report.time_ms.min)},
-          {"time_max_ms", number(report.time_ms.max)},
-          {"mrays_per_s", number(report.mrays_per_s())}};
+  CsvRow row = origin_columns(command.command_line, report.device, report.threads);
+  const CsvRow own{{"mesh", command.mesh},
+                   {"triangles", std::to_string(report.triangles)},
+                   {"ray_file", command.rays},
+                   {"type", report.type == RayType::any ? "any" : "closest"},
+                   {"rays", std::to_string(report.rays)},
+                   {"accel", to_string(command.accel)},
+                   {"builder", builder_name(command, report)},
+                   {"variant", variant_name(report.variant)},
+                   {"nodes", std::to_string(report.tree.quality.nodes)},
+                   {"sah_cost", number(sah_cost(command, report))},
+                   {"bytes_per_triangle", number(report.bytes_per_triangle())},
+                   {"build_ms", number(report.tree.build_ms)},
+                   {"repeat", std::to_string(command.runs.repeat)},
+                   {"warmup", std::to_string(command.runs.warmup)},
+                   {"time_ms", number(report.time_ms.median)},
+                   {"time_min_ms", number(report.time_ms.min)},
+                   {"time_max_ms", number(report.time_ms.max)},
+                   {"mrays_per_s", number(report.mrays_per_s())}};
+  row.insert(row.end(), own.begin(), own.end());
+  return row;
 }
 
 void print_report(const TraceCommand& command, const TraceReport& report) {

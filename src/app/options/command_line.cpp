@@ -27,6 +27,9 @@ constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
 constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
+constexpr const char* compact_text =
+    "Measures how fast the wavefront's compaction strategies gather waiting slots, each checked\n"
+    "first. Exit code 0: done, 2: an error, or a result that is wrong.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C; the\n"
@@ -40,6 +43,7 @@ struct Parser {
   CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *version = nullptr;
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
+  Subcommand<CompactCommand> compact{app, "compact", compact_text, compact_options()};
   CLI::App* compare = nullptr;
   CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr, *difference = nullptr;
 
@@ -205,6 +209,12 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (parser.rays.is_parsed()) {
     check_alone(parser, "rays", nullptr);
     return parser.rays.parse();
+  }
+  if (parser.compact.is_parsed()) {
+    check_alone(parser, "compact", nullptr);
+    CompactCommand command = parser.compact.parse();
+    command.command_line = shell_text(arguments);
+    return command;
   }
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/compact_command.h"
 #include "app/options/check_options.h"
 #include "app/trace_command.h"
 #include "common/render/options.h"
@@ -27,8 +28,9 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command = std::variant<RenderCommand, CompareCommand, TraceCommand, RaysCommand,
-                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+using Command =
+    std::variant<RenderCommand, CompareCommand, TraceCommand, RaysCommand, CompactCommand,
+                 ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

@@ -139,8 +139,8 @@ StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
   return blocks;
 }
 
-std::uint64_t parse_pool_size(const std::string& name, const std::string& text) {
-  if (text == "auto") return 0;
+std::uint64_t parse_size(const std::string& name, const std::string& text, const std::string& what,
+                         std::uint64_t highest) {
   std::string digits = text;
   int shift = 0;
   if (text.ends_with('K') || text.ends_with('M')) {
@@ -148,11 +148,20 @@ std::uint64_t parse_pool_size(const std::string& name, const std::string& text) 
     digits.pop_back();
   }
   const auto value = whole<std::uint64_t>(digits);
-  if (!value || *value < 1 || *value > max_pool_size >> shift)
+  if (!value || *value < 1 || *value > highest >> shift)
     refuse_value(name, text,
-                 "expected auto or a number of paths from 1 to " + grouped(max_pool_size) +
-                     ", e.g. 512K or 2M (times 2^10, 2^20)");
+                 fmt::format("expected {} from 1 to {}, e.g. 512K or 2M (times 2^10, 2^20)", what,
+                             grouped(highest)));
   return *value << shift;
+}
+
+std::uint64_t parse_pool_size(const std::string& name, const std::string& text) {
+  if (text == "auto") return 0;
+  return parse_size(name, text, "auto or a number of paths", max_pool_size);
+}
+
+int parse_runs(const std::string& name, const std::string& text, std::uint64_t least) {
+  return static_cast<int>(parse_integer(name, text, least, 1'000'000));
 }
 
 std::string grouped(std::uint64_t value) {

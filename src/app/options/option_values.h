@@ -32,7 +32,10 @@ BlockSize parse_block(const std::string& name, const std::string& text);  ///< "
 /// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
 StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
                                StageBlocks blocks);
-/// "auto" (0) or a number of paths, "K" and "M" standing for 2^10 and 2^20.
+/// A number from 1 to `highest`, "K" and "M" standing for 2^10 and 2^20; `what` they count.
+std::uint64_t parse_size(const std::string& name, const std::string& text, const std::string& what,
+                         std::uint64_t highest);
+/// "auto" (0) or a number of paths, likewise.
 std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
 
 template <NamedEnum E>
@@ -47,6 +50,9 @@ std::string number_text(float value);
 std::string vector_text(const std::array<float, 3>& value);
 std::string block_text(const BlockSize& block);
 std::string stage_blocks_text(const StageBlocks& blocks);
+
+/// How often something is run: from `least` to a million.
+int parse_runs(const std::string& name, const std::string& text, std::uint64_t least);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
 

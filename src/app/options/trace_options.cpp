@@ -18,12 +18,6 @@ inline constexpr auto enum_names<RayKind> =
 
 namespace {
 
-constexpr std::uint64_t most_runs = 1000000;
-
-int parse_count(const std::string& name, const std::string& text, std::uint64_t least) {
-  return static_cast<int>(parse_integer(name, text, least, most_runs));
-}
-
 AccelKind parse_accel(const std::string& text) {
   const auto accel = parse_name<AccelKind>("accel", text);
   if (accel == AccelKind::embree)
@@ -72,9 +66,9 @@ std::vector<SubcommandOption<TraceCommand>> trace_options() {
       {"variant", "KIND [auto]", "On CUDA: auto, threads, persistent, beam",
        [](C& c, S v) { c.runs.variant = parse_name<TraceVariant>("variant", v); }},
       {"repeat", "N [1]", "Measured runs",
-       [](C& c, S v) { c.runs.repeat = parse_count("repeat", v, 1); }},
+       [](C& c, S v) { c.runs.repeat = parse_runs("repeat", v, 1); }},
       {"warmup", "N [0]", "Runs before, not measured",
-       [](C& c, S v) { c.runs.warmup = parse_count("warmup", v, 0); }},
+       [](C& c, S v) { c.runs.warmup = parse_runs("warmup", v, 0); }},
       {"csv", "FILE", "Appends a row", [](C& c, S v) { c.csv = v; }},
       {"quiet", nullptr, "Prints nothing but errors", [](C& c, S) { c.quiet = true; }},
   };

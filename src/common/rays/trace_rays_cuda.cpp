@@ -2,6 +2,7 @@
 
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/device/cuda_check.cuh"
+#include "common/device/cuda_event.cuh"
 #include "common/device/cuda_memory.cuh"
 #include "common/error.h"
 #include "common/rays/trace_kernels.cuh"
@@ -11,25 +12,6 @@ namespace pt {
 namespace {
 
 constexpr double coherent_part = 0.5;  // of the groups of rays from which on beams pay
-
-class CudaEvent {
- public:
-  CudaEvent() { check_cuda(cudaEventCreate(&event_), "cudaEventCreate"); }
-  CudaEvent(const CudaEvent&) = delete;
-  CudaEvent& operator=(const CudaEvent&) = delete;
-  ~CudaEvent() { cudaEventDestroy(event_); }
-
-  void record() const { check_cuda(cudaEventRecord(event_), "cudaEventRecord"); }
-  double ms_since(const CudaEvent& begin) const {
-    float ms = 0;
-    check_cuda(cudaEventSynchronize(event_), "tracing rays");
-    check_cuda(cudaEventElapsedTime(&ms, begin.event_, event_), "cudaEventElapsedTime");
-    return ms;
-  }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
 
 TriangleTree upload(const TriangleTreeData& tree, CudaMemory& memory) {
   return tree.view([&](auto*& pointer, const auto& values, const char* kind) {

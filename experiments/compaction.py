@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""Compaction: how much of a copy's bandwidth does each strategy reach, over items and density?
+
+Measured by `ptexp compact` (docs/statistics.md), without a renderer around it.
+"""
+import hashlib
+import json
+import shlex
+import sys
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+
+import harness
+from harness import Experiment, HarnessError, Plot
+from journal import Journal
+from program import failure_of, version_of
+
+ITEMS = ["64K", "256K", "1M", "2M", "4M", "8M", "16M", "32M", "64M"]
+CPU_ITEMS = ["64K", "1M", "4M", "16M"]
+DENSITIES = ["0.1", "0.5", "0.9"]
+# How the waiting slots lie, and whether a cache may hold the memory.
+WAYS = {"random, cold": "--run 1 --cache cold", "random, warm": "--run 1 --cache warm",
+        "in runs of 256, cold": "--run 256 --cache cold"}
+TARGET = 0.8  # of a copy's bandwidth
+TARGET_ITEMS = 1 << 24
+SHORT_ITEMS = 1 << 22  # below, the time counts and not the bandwidth
+
+
+def processes(device, arguments):
+    """{name: command of ptexp but for the table}, in the order of measuring."""
+    items = ITEMS if device.kind == "cuda" else CPU_ITEMS
+    densities, ways = DENSITIES, WAYS
+    if arguments.quick:
+        items, densities, ways = ["1K", "16K"], ["0.5"], {"random, warm": WAYS["random, warm"]}
+    return {f"{count}, {way}": ["compact", "--quiet", "--items", count, "--density",
+                                ",".join(densities), *options.split(), "--device", device.choice,
+                                "--repeat", str(arguments.repeat),
+                                "--warmup", str(arguments.warmup)]
+            for way, options in ways.items() for count in items}
+
+
+def labelled(row, way):
+    """The row of `ptexp compact` with its place in the table and in the plot."""
+    queues = "1 queue" if row["queues"] == "1" else f"{row['queues']} queues"
+    return {"experiment": EXPERIMENT.name,
+            "name": f"{row['strategy']}, {queues}, {row['items']} items, {row['density']}, {way}",
+            "status": "measured", "message": "", "series": f"{row['strategy']}, {queues}",
+            "panel": f"density {row['density']}, {way}", "x": row["items"], **row}
+
+
+def measure(program, name, command, arguments):
+    """The rows of one process."""
+    way = name.partition(", ")[2]
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        table = Path(folder, "rows.csv")
+        message = failure_of(program, [*command, "--csv", str(table)], arguments.timeout)
+        if message:
+            return [{"experiment": EXPERIMENT.name, "name": name, "status": "failed",
+                     "message": message}]
+        rows = harness.read_rows(table)
+    for row in rows:
+        row["command"] = shlex.join(command)
+    return [labelled(row, way) for row in rows]
+
+
+def measure_all(program, commands, arguments, journal, save):
+    """All rows; `save` is called with those so far after every process."""
+    known = {event["name"]: event["rows"] for event in journal.of("items")
+             if all(row["status"] == "measured" for row in event["rows"])}
+    rows = []
+    for name, command in commands.items():
+        if name not in known:
+            known[name] = measure(program, name, command, arguments)
+            journal.add("items", name=name, rows=known[name])
+            print(name, flush=True)
+        rows += known[name]
+        save(rows)
+    return rows
+
+
+def conclude(rows):
+    """Sentences about the target and about short passes."""
+    sentences = []
+    cold = [row for row in rows if row["cache"] == "cold" and row["strategy"] != "none"]
+    for series in dict.fromkeys(row["series"] for row in cold):
+        mine = [row for row in cold if row["series"] == series]
+        large = [float(row["copy_share"]) for row in mine if int(row["items"]) >= TARGET_ITEMS]
+        if large:
+            verdict = "reached" if min(large) >= TARGET else "MISS"
+            sentences.append(f"{series}: {100 * min(large):.0f} to {100 * max(large):.0f} % of a "
+                             f"copy's bandwidth from 16 M items on (target {100 * TARGET:.0f} %: "
+                             f"{verdict})")
+        short = [1e3 * float(row["time_ms"]) for row in mine if int(row["items"]) < SHORT_ITEMS]
+        if short:
+            sentences.append(f"{series}: {min(short):.1f} to {max(short):.1f} us below 4 M items")
+    return sentences
+
+
+def run(experiment, arguments):
+    program = harness.find_program(arguments.ptexp)
+    device = harness.find_device(program, arguments.device)
+    commands = processes(device, arguments)
+    if arguments.list:
+        for command in commands.values():
+            print(shlex.join([str(program), *command]))
+        return 0
+    path = harness.table_path(experiment, device, arguments)
+    key = json.dumps([version_of(program), device.name, commands])
+    journal = Journal(path.with_suffix(".journal"), hashlib.sha256(key.encode()).hexdigest()[:16],
+                      arguments.fresh, lambda _: True)
+    journal.begin(date=harness.now())
+    facts = {**harness.provenance(experiment, program, device, arguments),
+             "plot": asdict(experiment.plot)}
+
+    def save(rows, complete=False):
+        measured = [row for row in rows if row["status"] == "measured"]
+        if measured:
+            harness.write_table(path, rows, {**facts, "complete": complete,
+                                             "conclusions": conclude(measured)})
+        return measured
+    rows = measure_all(program, commands, arguments, journal, save)
+    failed = [row for row in rows if row["status"] == "failed"]
+    if len(failed) == len(rows):
+        journal.remove()
+        raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
+    measured = save(rows, complete=not failed)
+    for row in measured:
+        print(f"{row['name']:60} {1e3 * float(row['time_ms']):10.2f} us "
+              f"{float(row['gb_per_s']):8.1f} GB/s, {float(row['copy_share']):5.3f} of a copy")
+    for row in failed:
+        print(f"{experiment.name}: failed: {row['name']}: {row['message']}", file=sys.stderr)
+    print("\n".join(["", *conclude(measured), f"table: {path}", harness.draw(path)]))
+    if not failed:
+        journal.remove()
+    return 1 if failed else 0
+
+
+EXPERIMENT = Experiment(
+    "compaction", __doc__.splitlines()[0], None,
+    Plot("lines", "Compaction of tags", "items", "part of a copy's bandwidth", y="copy_share",
+         log_y=False, mark=TARGET))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT, runner=run))
