@@ -7,15 +7,13 @@ a reference that the best way renders for 20 seconds with another seed. `gain` i
 was the default before, divided by the row's: at equal samples, or at equal time, where errors are
 taken to fall as 1 / time for the little that a render ends before or after the second.
 """
-import re
 import shlex
-import shutil
 import sys
 import tempfile
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import harness
+from errors import KeptImages
 from harness import Configuration, Experiment, Plot, Refused
 from scene_files import short_name
 
@@ -42,7 +40,6 @@ WAYS = {
     "best, rr 3": "--light-selection tree --sampler sobol --rr 3",
 }
 LEAST_GAIN = {UNIFORM: 20, BEFORE: 2}  # of the best way at equal time, in the issue's scenes
-REFERENCE_SEED = 1000003
 DEPTH = 8
 
 
@@ -119,22 +116,17 @@ def ways_of(program, scene):
 def configurations(arguments, _device):
     settle(arguments)
     program = harness.find_program(arguments.ptexp)
-    # Kept until the end, so that an experiment that was cut off goes on.
-    folder = arguments.folder = arguments.output.resolve() / f".sampling-images{arguments.label}"
-    arguments.pictures = {}
-    if not arguments.list:
-        folder.mkdir(parents=True, exist_ok=True)
+    images = arguments.images = KeptImages("sampling", arguments)
     rows = []
     for name, scene in scenes_of(arguments).items():
         image = image_of(scene, arguments)
         for way, options in ways_of(program, scene).items():
             def add(equal, amount, limit, **more):
                 full_name = f"{name}: {way}, {amount}"
-                arguments.pictures[full_name] = str(Path(folder, f"{len(rows)}.exr"))
                 rows.append(Configuration(
                     full_name, f"{image} {options} {limit}",
                     {"panel": name, "series": way, "x": "", "equal": equal, "relmse": "",
-                     "gain": ""}, image=arguments.pictures[full_name], **more))
+                     "gain": ""}, image=images.add(full_name), **more))
             for spp in arguments.samples:
                 add(f"{spp} spp", f"{spp} spp", f"--spp {spp}")
             add("time", f"{arguments.seconds:g} s", f"--time-limit {arguments.seconds:g}",
@@ -142,31 +134,17 @@ def configurations(arguments, _device):
     return rows
 
 
-def relmse(program, image, reference):
-    text = harness.run_ptexp(program, "compare", image, reference)
-    return float(re.search(r"(?m)^relMSE\s+(\S+)$", text).group(1))
-
-
-def render_reference(program, device, scene, path, arguments):
-    harness.run_ptexp(program, *shlex.split(f"{image_of(scene, arguments)} {WAYS[BEST]}"),
-                      "--time-limit", f"{arguments.reference_seconds:g}", "--seed",
-                      str(REFERENCE_SEED), "--device", device, "--quiet", "--output", str(path))
-
-
 def finish(rows, arguments):
     program = harness.find_program(arguments.ptexp)
     device = harness.find_device(program, arguments.device).choice
-    reference = arguments.folder / "reference.exr"
     for name, scene in scenes_of(arguments).items():
         mine = [row for row in rows if row["panel"] == name]
-        render_reference(program, device, scene, reference, arguments)
-        with ThreadPoolExecutor() as pool:  # `compare` is slow, and one thread
-            pictures = [arguments.pictures[row["name"]] for row in mine]
-            errors = pool.map(lambda picture: relmse(program, picture, reference), pictures)
-            for row, error in zip(mine, errors):
-                row["relmse"], row["x"] = f"{error:.6g}", row["kernel_ms_median"]
+        arguments.images.put_errors(mine, program, device, f"{image_of(scene, arguments)} "
+                                    f"{WAYS[BEST]}", arguments.reference_seconds)
+        for row in mine:
+            row["x"] = row["kernel_ms_median"]
         fill_in_gains(mine, arguments.seconds)
-    shutil.rmtree(arguments.folder)
+    arguments.images.remove()
 
 
 def error_of(row, seconds):

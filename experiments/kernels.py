@@ -1,0 +1,27 @@
+"""The column `kernels` of ptexp's CSV: what each kernel needs (docs/statistics.md)."""
+from dataclasses import dataclass
+
+
+@dataclass
+class Kernel:
+    registers: int  # per thread
+    spill_bytes: int  # per thread
+    shared_bytes: int  # per block
+    block_threads: int
+    occupancy: float  # resident warps by the most that a multiprocessor holds
+
+
+def kernels_of(row):
+    """{name: Kernel}; empty on the CPU."""
+    found = {}
+    for entry in filter(None, row.get("kernels", "").split(";")):
+        name, registers, spills, shared, threads, occupancy = entry.split(":")[:6]
+        found[name] = Kernel(int(registers), int(spills), int(shared), int(threads),
+                             float(occupancy))
+    return found
+
+
+def tracing_kernel(row):
+    """That which finds hits; None on the CPU."""
+    kernels = kernels_of(row)
+    return kernels.get("megakernel") or kernels.get("intersect")

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Ladder: from the megakernel to the wavefront step by step: what does each step give?
+
+Each rung has the options of the one before it and one more; `gain` is the time of the rung before,
+divided by its own. The pool has 1M paths up to the last rungs, because regeneration matters where
+slots are used again; triangles are in a binary tree up to there.
+"""
+import sys
+
+import harness
+from harness import Configuration, Experiment, Plot
+from image_check import with_options
+from images import images_of
+from scene_files import add_scene_files
+from sentences import against, in_groups, time_of
+
+PLAIN = ("--mode wavefront --compaction none --shade uber --regenerate off --finish-paths 0 "
+         "--schedule host --pool-size 1M")
+CUDA, TRIANGLES = "a GPU", "triangles"
+# (rung, what changes against the one before, what it needs)
+STEPS = [
+    ("SoA instead of AoS", "", ()),
+    ("compaction", "--compaction atomic", ()),
+    ("material order", "--compaction sort", ()),
+    ("regeneration", "--regenerate on", ()),
+    ("CUDA graph", "--schedule graph", (CUDA,)),
+    ("last paths in one kernel", "--finish-paths 131072", ()),
+    ("pool of the whole batch", "--pool-size auto", ()),
+    ("wide tree", "--accel cwbvh --persistent off", (CUDA, TRIANGLES)),
+    ("persistent warps", "--persistent on", (CUDA, TRIANGLES)),
+]
+QUICK = "--pool-size 256"
+
+
+def rungs_of(scene, device):
+    """(rung, options besides the image's) from the lowest to the highest."""
+    has = [CUDA] * (device.kind == "cuda") + [TRIANGLES] * (scene != "spheres")
+    tree = "--accel bvh2" if TRIANGLES in has else ""
+    yield "megakernel", f"--mode megakernel {tree}"
+    options = f"{PLAIN} {tree}"
+    yield "split kernels", f"{options} --layout aos"
+    for rung, change, needs in STEPS:
+        if set(needs) <= set(has):
+            options = " ".join(with_options(options, change))
+            yield rung, options
+
+
+def configurations(arguments, device):
+    return [Configuration(
+        f"{scene}: {number} {rung}",
+        " ".join(with_options(f"{image} {options}", QUICK if arguments.quick and number else "")),
+        {"panel": scene, "x": f"{number} {rung}", "gain": ""}, same_image=scene)
+            for scene, image in images_of(arguments).items()
+            for number, (rung, options) in enumerate(rungs_of(scene, device))]
+
+
+def steps(rows):
+    """(row, the row of the measured rung before it)"""
+    for mine in in_groups(rows, "panel").values():
+        yield from zip(mine[1:], mine)
+
+
+def finish(rows, _arguments):
+    for row, before in steps(rows):
+        row["gain"] = f"{time_of(before).middle / time_of(row).middle:.3f}"
+
+
+def conclude(rows, _arguments):
+    lines = [f"{row['panel']}: {row['x']}: {against(before, row, before['x'])}"
+             for row, before in steps(rows)]
+    for scene, mine in in_groups(rows, "panel").items():
+        if len(mine) > 1:
+            lines.append(f"{scene}, all steps together: "
+                         f"{against(mine[0], mine[-1], mine[0]['x'])}")
+    return lines
+
+
+EXPERIMENT = Experiment(
+    "ladder", __doc__.splitlines()[0], configurations,
+    Plot("bars", "The ladder from the megakernel to the wavefront", log_y=False),
+    add_arguments=add_scene_files, finish=finish, conclude=conclude, table=("gain",))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT))

@@ -1,0 +1,206 @@
+"""What experiments make of their rows: labels and sentences, from numbers that are known."""
+import importlib
+import struct
+import sys
+import types
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "experiments"))
+
+CUDA, CPU = (types.SimpleNamespace(kind=kind) for kind in ("cuda", "cpu"))
+FULL = types.SimpleNamespace(quick=False, scenes=[])
+
+
+def row(middle, spread=0.01, **labels):
+    """A measured row whose interval has this half width, relative to the median."""
+    return {"kernel_ms_median": str(middle), "kernel_ms_low": str(middle * (1 - spread)),
+            "kernel_ms_high": str(middle * (1 + spread)), "repeat": "10",
+            **{name: str(value) for name, value in labels.items()}}
+
+
+def experiment(name):
+    return importlib.import_module(name)
+
+
+def option(configuration, name):
+    tokens = configuration.arguments.split()
+    return tokens[tokens.index(name) + 1] if name in tokens else None
+
+
+class Sentences(unittest.TestCase):
+    def setUp(self):
+        self.sentences = experiment("sentences")
+
+    def test_only_intervals_that_are_apart_differ(self):
+        against = self.sentences.against
+        self.assertEqual(against(row(4), row(2), "A"), "2.00 times as fast as A")
+        self.assertEqual(against(row(2), row(4), "A"), "2.00 times as slow as A")
+        self.assertEqual(against(row(2), row(2.1, 0.05), "A"),
+                         "no significant difference to A (1.05 times its time)")
+        once = {"kernel_ms_median": "1", "repeat": "1"}
+        self.assertEqual(against(row(2), once, "A"),
+                         "2.00 times as fast as A, by times without a spread")
+
+    def test_the_best_and_what_equals_it(self):
+        rows = [row(3, x="c"), row(1, 0.1, x="a"), row(1.1, 0.1, x="b")]
+        self.assertEqual(self.sentences.best_of(rows, "x"),
+                         "a and b, without a significant difference")
+        self.assertEqual(self.sentences.best_of(rows[:2], "x"), "a")
+
+    def test_growth_is_the_exponent(self):
+        rows = [row(x**0.5, x=x) for x in (100, 1, 10000)]
+        self.assertEqual(self.sentences.growth(rows, "spheres"),
+                         "10,000 times the spheres take 100 times as long (spheres^0.50)")
+        self.assertEqual(self.sentences.growth(rows[:1], "spheres"), "")
+
+
+class Ladder(unittest.TestCase):
+    def setUp(self):
+        self.ladder = experiment("ladder")
+
+    def test_each_rung_changes_one_thing(self):
+        by_scene = {}
+        for made in self.ladder.configurations(FULL, CUDA):
+            by_scene.setdefault(made.same_image, []).append(made)
+        self.assertEqual(len(by_scene), 3)
+        names = ("--mode", "--layout", "--compaction", "--shade", "--regenerate",
+                 "--finish-paths", "--schedule", "--pool-size", "--accel", "--persistent")
+        for scene, rungs in by_scene.items():
+            for above, below in zip(rungs[2:], rungs[1:]):
+                changed = [name for name in names if option(above, name) != option(below, name)
+                           and not (name == "--persistent" and option(below, name) is None)]
+                self.assertEqual(len(changed), 1, f"{above.name}: {changed}")
+            # Persistent warps, the default, trace wide trees alone: each comes by itself.
+            self.assertEqual([(option(rung, "--accel"), option(rung, "--persistent"))
+                              for rung in rungs[-3:]],
+                             [(None, None)] * 3 if scene == "spheres" else
+                             [("bvh2", None), ("cwbvh", "off"), ("cwbvh", "on")])
+
+    def test_gains_are_those_over_the_rung_before(self):
+        rows = [row(ms, panel="s", x=x, gain="") for ms, x in ((4, "a"), (8, "b"), (2, "c"))]
+        self.ladder.finish(rows, None)
+        self.assertEqual([one["gain"] for one in rows], ["", "0.500", "4.000"])
+        self.assertEqual(self.ladder.conclude(rows, None),
+                         ["s: b: 2.00 times as slow as a", "s: c: 4.00 times as fast as b",
+                          "s, all steps together: 2.00 times as fast as a"])
+
+    def test_no_graph_on_a_cpu(self):
+        self.assertFalse([made for made in self.ladder.configurations(FULL, CPU)
+                          if "graph" in made.arguments])
+
+
+class BlockSize(unittest.TestCase):
+    def test_idle_threads_lanes_and_occupancy(self):
+        kernels = "start_clock:8:0:0:1:0.5;megakernel:51:0:0:{}:{}"
+        rows = [row(ms, mode="megakernel", work="pixel", panel="p", series="s", x=edge * edge,
+                    block=f"{edge}x{edge}", width=600, height=300,
+                    kernels=kernels.format(edge * edge, occupancy))
+                for ms, edge, occupancy in ((4, 4, 0.5), (2, 32, 0.75))]
+        rows.append(row(3, mode="wavefront", work="persistent", panel="p", series="w", x=64,
+                        kernels="intersect:32:0:0:64:1.0000"))
+        block_size = experiment("block_size")
+        block_size.finish(rows, None)
+        # 19 x 10 blocks of 32 x 32 threads for 600 x 300 pixels
+        idle = 1 - 600 * 300 / (19 * 10 * 1024)
+        self.assertEqual([one.get("idle") for one in rows], ["0.0000", f"{idle:.4f}", None])
+        self.assertEqual([one["lanes"] for one in rows], ["0.5", "1", "1"])
+        self.assertEqual([one["occupancy"] for one in rows], ["0.5000", "0.7500", "1.0000"])
+        said = block_size.conclude([{"idle": "", **one} for one in rows], None)
+        self.assertEqual(said[:3], [
+            "p, s: fastest with blocks of 1024 threads",
+            "p, s: 16 threads, 0.500 of a warp: 2.00 times as slow as 1024",
+            "p, s: threads without a pixel: 0.0% with 4x4, 7.5% with 32x32"])
+
+
+class ImageSize(unittest.TestCase):
+    def test_the_papers_mean_of_three_runs(self):
+        image_size = experiment("image_size")
+        made = row(5, series="serial, CPU", full_spp=100, spp=10, rounds=3, kernel_ms_min=1,
+                   kernel_ms_max=9, kernel_ms_runs="4;9;1;9;7")  # 4, 9 | 1, 9 | 7
+        two = {**made, "rounds": "2"}
+        image_size.finish([made, two], None)
+        self.assertEqual(made["image_ms_mean_of_3"], "40.000000")
+        self.assertEqual(made["image_ms_median"], "50.000000")
+        self.assertNotIn("image_ms_mean_of_3", two)
+
+
+class SceneMemory(unittest.TestCase):
+    def test_sentences(self):
+        rows = [row(ms, panel="m", x=50, series=memory)
+                for ms, memory in ((2, "global"), (1, "constant"), (1.99, "shared"))]
+        said, alone = experiment("scene_memory").conclude(
+            rows + [row(3, panel="m", x=60, series="global")], None)
+        self.assertEqual(said, "m, 50 spheres: fastest in constant memory; constant: 2.00 times as "
+                               "fast as global; shared: no significant difference to global (0.995 "
+                               "times its time)")
+        self.assertEqual(alone, "m, 60 spheres: fastest in global memory; nothing else fits")
+
+
+class RandomNumbers(unittest.TestCase):
+    def test_sentences(self):
+        numbers = experiment("random_numbers")
+        rows = [row(ms, panel="p", x=x, relmse=error, set_up_ms=set_up, memory_bytes=mib << 20)
+                for ms, x, error, set_up, mib in ((2, numbers.PHILOX, 0.1, "", 100),
+                                                  (4, numbers.XORWOW, 0.1, "0.5", 150))]
+        self.assertEqual(numbers.conclude(rows, None), [
+            "p, XORWOW: 2.00 times as slow as Philox; setting up its states takes 0.5 ms of 4; "
+            "+50 MiB of memory; 1.00 times less error at equal samples (of one image each, "
+            "without an interval)"])
+        self.assertEqual(numbers.cost(rows[1]), 2 * numbers.cost(rows[0]))
+
+
+class Depth(unittest.TestCase):
+    def test_shares_of_paths(self):
+        depth = experiment("depth")
+        made = [row(ms, panel="p", series=mode, x=2, max_depth=2, live_paths="200;50", rays=250,
+                    paths=200) for ms, mode in ((1, "megakernel"), (2, "wavefront"))]
+        depth.finish(made, None)
+        self.assertEqual((made[0]["alive"], made[0]["rays_per_path"]), ("1;0.25", "1.25"))
+        self.assertEqual(depth.conclude(made, None), [
+            "p: a path has 1.25 rays of at most 2; of 100 paths 25.0 trace a ray 2, 3, ..., and "
+            "25.0 ray 2",
+            "p, megakernel: 4,000 ns a ray at depth 2", "p, wavefront: 8,000 ns a ray at depth 2",
+            "p, depth 2, wavefront: 2.00 times as slow as the megakernel"])
+
+
+class Scenes(unittest.TestCase):
+    def test_both_at_their_best_and_as_usual(self):
+        scenes = experiment("scenes")
+        rows = [row(ms, panel="s", mode=mode, x=f"{mode}, {way}") for ms, mode, way in (
+            (2, "megakernel", "bvh2"), (3, "megakernel", "cwbvh"),
+            (4, "megakernel", "as usually written"), (1, "wavefront", "cwbvh"),
+            (8, "wavefront", "as usually written"))]
+        self.assertEqual(scenes.conclude(rows, None), [
+            "s, both at their best, wavefront: 2.00 times as fast as the megakernel",
+            "s, both as usually written, wavefront: 2.00 times as slow as the megakernel",
+            "s, megakernel at its best: 2.00 times as fast as what is usual",
+            "s, wavefront at its best: 8.00 times as fast as what is usual"])
+
+
+class LampScene(unittest.TestCase):
+    def test_lamps_look_down_and_stay_as_bright(self):
+        lamps = experiment("lamp_scene")
+        for count in (1, 10, 1000):
+            header, _, body = lamps.lamps_ply(count).partition(b"end_header\n")
+            self.assertIn(f"element face {count}\n".encode(), header)
+            corners = struct.unpack(f"<{9 * count}f", body[:36 * count])
+            faces = list(struct.iter_unpack("<Biii", body[36 * count:]))
+            self.assertEqual([face[0] for face in faces], [3] * count)
+            area, seen = 0.0, set()
+            for _, *places in faces:
+                a, b, c = (corners[3 * place:3 * place + 3] for place in places)
+                (ux, uz), (vx, vz) = ([p[0] - a[0], p[2] - a[2]] for p in (b, c))
+                area += (ux * vz - uz * vx) / 2
+                self.assertLess(uz * vx - ux * vz, 0)  # the normal's y: down
+                self.assertEqual({a[1], b[1], c[1]}, {2.0})
+                self.assertLess(max(map(abs, a)), 10.1)
+                seen.add(a)
+            self.assertAlmostEqual(area, 4.0, places=3)
+            self.assertEqual(len(seen), count)
+
+
+if __name__ == "__main__":
+    unittest.main()
