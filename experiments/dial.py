@@ -16,7 +16,7 @@ from harness import Configuration, Experiment, HarnessError, Plot
 
 FIGURES = ["open", "closed"]
 MATERIALS = [1, 2, 4, 8, 16, 32]
-COHERENCES = ["0", "0.5", "1"]
+COHERENCES = [0, 0.5, 1]
 BASE = "megakernel"
 VARIANTS = {
     BASE: "--mode megakernel",
@@ -31,6 +31,10 @@ OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high
 
 def add_arguments(parser):
     parser.set_defaults(repeat=6, rounds=2, warmup=1)  # 256 processes: some minutes on a GPU
+    parser.add_argument("--materials", type=int, nargs="+", default=MATERIALS, metavar="K",
+                        help="numbers of materials, 1 to 32 [%(default)s]")
+    parser.add_argument("--coherences", type=float, nargs="+", default=COHERENCES, metavar="C",
+                        help="0 noise, 1 stripes [%(default)s]")
     parser.add_argument("--size", type=int, default=1024, metavar="N",
                         help="width and height in pixels [%(default)s]")
     parser.add_argument("--spp", type=int, default=16, metavar="N",
@@ -46,9 +50,9 @@ def image_of(scene, size, spp, arguments):
 
 def scenes_of(arguments):
     """(figure, materials, coherence) of each scene: one material lies in one way only."""
-    materials = [1, 3] if arguments.quick else MATERIALS
-    coherences = COHERENCES[:1] if arguments.quick else COHERENCES
-    return [(figure, count, coherence) for figure in FIGURES for count in materials
+    materials = [1, 3] if arguments.quick else arguments.materials
+    coherences = [0] if arguments.quick else arguments.coherences
+    return [(figure, count, f"{coherence:g}") for figure in FIGURES for count in materials
             for coherence in (coherences if count > 1 else coherences[:1])]
 
 

@@ -52,7 +52,10 @@ def cases(arguments, device):
         yield ("triangles", count, "", f"--scene terrain:{name} {builder} --max-depth 8 "
                + image("--width 1024 --height 1024 --spp 16"))
     for count in some(LIGHTS):
-        scene = shlex.quote(str(write_lamp_scene(lamp_folder(arguments), count)))
+        path = lamp_folder(arguments) / f"lamps-{count}" / "scene.xml"
+        if not arguments.list:
+            write_lamp_scene(path, count)
+        scene = shlex.quote(str(path))
         for selection in SELECTIONS:
             yield ("lights", count, f", by {selection}", f"--scene {scene} --light-selection "
                    f"{selection} --max-depth 8 " + image("--width 1024 --height 1024 --spp 16"))

@@ -44,10 +44,8 @@ def lamps_ply(count):
         faces)
 
 
-def write_lamp_scene(folder, count):
-    """The path of the scene, in a folder of its own."""
-    folder = folder / f"lamps-{count}"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "lamps.ply").write_bytes(lamps_ply(count))
-    (folder / "scene.xml").write_text(SCENE, encoding="utf-8")
-    return folder / "scene.xml"
+def write_lamp_scene(path, count):
+    """The scene file `path`, in a folder of its own, with the mesh beside it."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    (path.parent / "lamps.ply").write_bytes(lamps_ply(count))
+    path.write_text(SCENE, encoding="utf-8")

@@ -271,7 +271,8 @@ class Dial(unittest.TestCase):
             self.dial.finish(self.rows(rays="31"), None)
 
     def test_variants_promise_one_image(self):
-        arguments = types.SimpleNamespace(quick=False, size=8, spp=1, accel="bvh2")
+        arguments = types.SimpleNamespace(quick=False, size=8, spp=1, accel="bvh2",
+                                          materials=[1, 4], coherences=[0, 0.5])
         groups = {}
         for configuration in self.dial.configurations(arguments, None):
             groups.setdefault(configuration.same_image, []).append(configuration)

@@ -1,0 +1,79 @@
+"""scripts/reproduce: it knows every experiment, and one that fails stops no other.
+
+The environment variable PTEXP names the executable (build/release/src/ptexp).
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
+REPRODUCE = ROOT / "scripts" / "reproduce"
+NOT_IN_IT = {"compare_builds"}  # needs two programs
+BUDGET_S = 25 * 60  # of all on one H200
+
+# A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.
+PARTLY_BROKEN = """#!/bin/sh
+case "$*" in *"--rng xorwow"*) [ -e '{folder}/mended' ] || exit 3 ;; esac
+exec '{program}' "$@"
+"""
+
+
+def reproduce(*arguments):
+    return subprocess.run([sys.executable, REPRODUCE, *map(str, arguments)], capture_output=True,
+                          text=True, check=False, timeout=600)
+
+
+class Reproduce(unittest.TestCase):
+    def test_every_experiment_is_in_it(self):
+        done = reproduce("--list")
+        *steps, total = re.findall(r"(?m)^(\w+) +(\d+) s", done.stdout)
+        scripts = {path.stem for path in (ROOT / "experiments").glob("*.py")
+                   if "harness.main(" in path.read_text(encoding="utf-8")}
+        self.assertEqual({name for name, _ in steps}, scripts - NOT_IN_IT)
+        seconds = sum(int(of_step) for _, of_step in steps)
+        self.assertEqual(int(total[1]), seconds)
+        self.assertLess(seconds, BUDGET_S)
+        for line in done.stdout.splitlines()[:-1]:  # commands that the experiments accept
+            script, *options = line.partition(" s  ")[2].split()
+            listed = subprocess.run(
+                [sys.executable, script, *options, "--ptexp", PTEXP, "--device", "cpu", "--list",
+                 "--quick", "--output", tempfile.gettempdir()],
+                capture_output=True, text=True, check=False)
+            self.assertEqual(listed.returncode, 0, listed.stderr)
+
+    def test_what_it_does_not_know(self):
+        for arguments, text in ((["--only", "toggles,nothing"], "expected some of speed_targets"),
+                                (["--ptexp", "/nowhere/ptexp"], "no program /nowhere/ptexp")):
+            done = reproduce(*arguments)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn(text, done.stderr)
+
+    def test_one_that_fails_stops_no_other(self):
+        with tempfile.TemporaryDirectory(prefix="ptexp reproduce ") as name:
+            folder = Path(name)
+            program = folder / "ptexp"
+            program.write_text(PARTLY_BROKEN.format(folder=folder, program=PTEXP), encoding="utf-8")
+            program.chmod(0o755)
+            command = ["--quick", "--device", "cpu", "--ptexp", program, "--output", folder / "out",
+                       "--only", "toggles,block_size,depth"]
+            first = reproduce(*command)
+            self.assertEqual(first.returncode, 1, first.stderr)
+            for line in (r"toggles +\d+ s  FAILED, exit code 1", r"block_size +\d+ s  needs a GPU",
+                         r"depth +\d+ s  done"):
+                self.assertRegex(first.stdout, line)
+            self.assertRegex(first.stdout, r"=== 3 of 3: depth  \(about \d+ s left over all\)")
+            self.assertEqual(len(list(folder.glob("out/*/report.html"))), 1)
+            (folder / "mended").touch()
+            second = reproduce(*command)
+            self.assertEqual(second.returncode, 0, second.stdout + second.stderr)
+            self.assertRegex(second.stdout, r"goes on: \d\d of \d\d processes are measured already")
+            self.assertIn("measured already by this program and command", second.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
