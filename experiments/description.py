@@ -42,7 +42,7 @@ class Plot:
     nothing for a row that the picture leaves out."""
     kind: str  # "lines" or "bars"
     title: str
-    x_label: str = ""
+    x_label: str = ""  # "": each panel's axis has the panel's name
     y_label: str = "kernel time [ms]"
     y: str = "kernel_ms"  # the columns y_median, then y_low, y_high or else y_min, y_max
     log_y: bool = True

@@ -91,7 +91,7 @@ def conclude(rows, _arguments):
 
 EXPERIMENT = Experiment(
     "growth", __doc__.splitlines()[0], configurations,
-    Plot("lines", "Growth: spheres (depth 50), terrain and lamps (depth 8)", "number"),
+    Plot("lines", "Growth: spheres (depth 50), terrain and lamps (depth 8)"),
     finish=finish, conclude=conclude, image_check="--width 256 --height 256 --spp 4")
 
 if __name__ == "__main__":

@@ -135,7 +135,8 @@ def draw(path):
     for axes in all_axes.flat[len(panels):]:
         axes.set_visible(False)
     for axes, (panel, members) in zip(all_axes.flat, panels.items()):
-        {"lines": draw_lines, "bars": draw_bars}[style["kind"]](axes, members, style)
+        {"lines": draw_lines, "bars": draw_bars}[style["kind"]](
+            axes, members, {**style, "x_label": style["x_label"] or panel})
         axes.set_title(panel, fontsize="medium")
         axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)
     title = f"{style['title']}{' (quick: small images)' if facts['quick'] else ''}"

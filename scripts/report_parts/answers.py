@@ -105,6 +105,37 @@ def effect(idea, where, default, value, source):
             f"{with_interval(quotient(value, default))}</td>", verdict_cell(word), source]
 
 
+def steps(device):
+    """Each rung of the ladder against the one before it."""
+    table = device.to_judge("ladder")
+    for scene, rows in (in_groups(table.measured, "panel").items() if table else ()):
+        for before, row in zip(rows, rows[1:]):
+            yield effect(f"rung {row['x']}", f"{scene}, after {before['x']}",
+                         interval(before, "kernel_ms"), interval(row, "kernel_ms"), "ladder")
+
+
+# table, label of the choice, the choice, what it is compared with, labels of equal rows
+COMPARED = (("random_numbers", "x", "XORWOW", "Philox", ("panel",)),
+            ("random_numbers", "x", "Sobol, kernels for all scenes",
+             "Philox, kernels for all scenes", ("panel",)),
+            ("pool_size", "series", "regenerated", "filled when empty", ("panel", "pool")),
+            ("scene_memory", "series", "constant", "global", ("panel", "x")),
+            ("scene_memory", "series", "shared", "global", ("panel", "x")))
+
+
+def against_others(device):
+    for name, label, choice, base, places in COMPARED:
+        table = device.to_judge(name)
+        for row in table.measured if table else ():
+            other = next((one for one in table.measured if one[label] == base
+                          and all(one[place] == row[place] for place in places)), None)
+            if row[label] == choice and other:
+                unit = {"scene_memory": " spheres", "pool_size": " paths"}.get(name, "")
+                where = ", ".join(row[place] for place in places) + unit
+                yield effect(f"{choice}, against {base}", where, interval(other, "kernel_ms"),
+                             interval(row, "kernel_ms"), name)
+
+
 def effects(device):
     table = device.to_judge("toggles")
     for mode, rows in (in_groups(table.measured, "panel").items() if table else ()):
@@ -113,6 +144,8 @@ def effects(device):
             value = interval(row, "kernel_ms")
             if row["x"] != "default" and value:
                 yield effect(row["x"], mode, default, value, "toggles")
+    yield from steps(device)
+    yield from against_others(device)
     for name, scene, _commit, rows in scene_rows(device):
         if name not in ("shading", "dial"):
             continue
@@ -127,9 +160,10 @@ def effects(device):
 def each_idea(device):
     lines = list(effects(device))
     if not lines:
-        return paragraph(NOT_MEASURED.format("of toggles, shading or dial"))
+        return paragraph(NOT_MEASURED.format("of toggles, ladder, shading or dial"))
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
-                     "defaults; of one kernel over unordered surfaces for shading): above 1 the "
+                     "defaults; of one kernel over unordered surfaces for shading; of the rung "
+                     "before it for the ladder): above 1 the "
                      "choice costs, below 1 it gains. The interval follows from the extremes of "
                      "both.") + html_table(
                          ["choice", "where", "time ratio", "verdict", "table"], lines)

@@ -2,7 +2,7 @@
 from . import axes, svg
 from .plot_bars import draw_bars
 from .plot_lines import draw_lines
-from .tables import in_groups, interval, is_measured
+from .tables import in_groups, interval, is_measured, style_of
 
 
 def values_of(rows, table):
@@ -25,7 +25,7 @@ def draw_panels(table, shared=None):
     shared = shared or domains([table])
     series = list(in_groups(table.drawn, "series"))
     draw = draw_bars if table.plot["kind"] == "bars" else draw_lines
-    return [(panel, *draw(rows, table.plot, series, shared[panel]))
+    return [(panel, *draw(rows, style_of(table, panel), series, shared[panel]))
             for panel, rows in in_groups(table.drawn, "panel").items() if panel in shared]
 
 

@@ -96,6 +96,11 @@ def in_groups(rows, *labels):
     return groups
 
 
+def style_of(table, panel):
+    """How a panel is drawn: an axis without a label has the panel's name."""
+    return {**table.plot, "x_label": table.plot.get("x_label") or panel}
+
+
 def give_ray_sets_a_plot(table):
     """Tables of `ptexp trace` have no description of a plot: bars, a panel for each set of rays."""
     for row in table.rows:

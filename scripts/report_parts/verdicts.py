@@ -1,5 +1,5 @@
 """What a plot's numbers mean, in sentences. A difference is one only where intervals are apart."""
-from .tables import in_groups, interval, is_measured, number
+from .tables import in_groups, interval, is_measured, number, style_of
 from .words import (change, exponent, listed, plain, relation, show, unit_of, versus,
                     with_interval)
 
@@ -120,7 +120,7 @@ def meaning(table):
     if {"gain", "equal"} <= set(table.columns):
         found = about_gains(table)
     elif table.plot:
-        found = [(panel, about_panel(rows, table.plot))
+        found = [(panel, about_panel(rows, style_of(table, panel)))
                  for panel, rows in in_groups(table.drawn, "panel").items()]
     else:
         return []

@@ -17,7 +17,7 @@ REPORT = ROOT / "scripts" / "report"
 RESULTS = ROOT / "results" / "nvidia-h200"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
-from report_parts import claims, verdicts, words  # noqa: E402
+from report_parts import answers, claims, verdicts, words  # noqa: E402
 from report_parts.axes import Scale  # noqa: E402
 from report_parts.tables import Interval, interval, read_device, read_table  # noqa: E402
 
@@ -103,6 +103,13 @@ def sampling(uniform, ours):
                                                      ("nee off", ours))]
 
 
+def places():
+    """A table of scene_memory."""
+    return [{**toggle("megakernel, brute", "", 0.98 * ms, ms, 1.02 * ms), "series": memory,
+             "x": count} for count, times in ((50, (2.0, 1.0)), (1000, (2.0, 2.04)))
+            for memory, ms in zip(("global", "shared"), times)]
+
+
 class Page(HTMLParser):
     """Reads a page and finds tags that do not match, references, ids and the texts of cells."""
 
@@ -152,7 +159,10 @@ class Report(unittest.TestCase):
     def make(self, **tables):
         plots = {"toggles": TOGGLES, "image_size": SIZES,
                  "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
-                 "sampling": {**SIZES, "y": "relmse"}}
+                 "sampling": {**SIZES, "y": "relmse"}, "ladder": TOGGLES,
+                 "random_numbers": TOGGLES, "pool_size": SIZES,
+                 "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
+                 "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
         for name, rows in tables.items():
             write(self.folder, name, rows, facts(name, plots[name]))
         self.run_report(self.folder)
@@ -266,6 +276,44 @@ class Report(unittest.TestCase):
         nothing = self.judged(toggles=toggles()[:1])
         self.assertEqual(set(nothing.values()), {"not measured"})
         self.assertEqual(len(nothing), 7)
+
+    def test_shared_memory_is_judged_where_spheres_grow(self):
+        self.make(scene_memory=places())
+        _, _, verdict, numbers, source = claims.audit(read_device(self.folder))[2]
+        self.assertEqual((verdict, source), ("refuted", "scene_memory"))
+        self.assertEqual(numbers, "megakernel, brute, times global memory: 50 spheres 0.500 "
+                                  "(faster), 1,000 spheres 1.02 (no significant difference).")
+
+    def test_ideas_are_held_against_what_they_replace(self):
+        rungs = [toggle("s", name, 0.99 * ms, ms, 1.01 * ms)
+                 for name, ms in (("0 mega", 1.0), ("1 split", 4.0), ("2 soa", 2.0))]
+        numbers = [toggle("s", name, 0.99 * ms, ms, 1.01 * ms)
+                   for name, ms in (("Philox", 1.0), ("XORWOW", 1.5))]
+        pools = [{**one, "panel": "s", "series": series, "x": 64, "pool": "64K"} for one, series in
+                 ((toggle("s", "a", 3.9, 4.0, 4.1), "filled when empty"),
+                  (toggle("s", "b", 0.9, 1.0, 1.1), "regenerated"))]
+        self.make(ladder=rungs, random_numbers=numbers, scene_memory=places(), pool_size=pools)
+        found = [(idea, where, re.sub("<.*?>", "", ratio).split(" ")[0],
+                  re.sub("<.*?>", "", verdict), source) for idea, where, ratio, verdict, source
+                 in answers.effects(read_device(self.folder))]
+        self.assertEqual(found, [
+            ("rung 1 split", "s, after 0 mega", "4.00", "slower", "ladder"),
+            ("rung 2 soa", "s, after 1 split", "0.500", "faster", "ladder"),
+            ("XORWOW, against Philox", "s", "1.50", "slower", "random_numbers"),
+            ("regenerated, against filled when empty", "s, 64K paths", "0.250", "faster",
+             "pool_size"),
+            ("shared, against global", "megakernel, brute, 50 spheres", "0.500", "faster",
+             "scene_memory"),
+            ("shared, against global", "megakernel, brute, 1000 spheres", "1.02",
+             "no significant difference", "scene_memory")])
+
+    def test_an_axis_without_a_label_is_named_by_its_panel(self):
+        rows = [{**toggle("triangles", "", 0.99 * ms, ms, 1.01 * ms), "series": "megakernel",
+                 "x": count} for count, ms in ((10, 1), (1000, 100))]
+        text = self.make(growth=rows)
+        self.assertIn("100 times the triangles take 100 times as long (time grows as "
+                      "triangles^1.00)", text)
+        self.assertRegex(text, r'class="axis middle"[^>]*>triangles</text>')
 
     def test_quick_tables_are_shown_but_not_judged(self):
         write(self.folder, "toggles", toggles(), facts("toggles", TOGGLES, quick=True))
