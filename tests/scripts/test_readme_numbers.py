@@ -1,0 +1,49 @@
+"""README.md's measured numbers are those of the tables in results/."""
+import csv
+import re
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+RESULTS = ROOT / "results" / "nvidia-h200"
+
+# What README.md says, with the number's place and format; table, row and column of the number, and
+# what the column is multiplied with.
+NUMBERS = [
+    ("takes the megakernel {:.1f} ms", "speed_targets",
+     "megakernel, spheres 600x300, 50 samples, depth 50", "kernel_ms_median", 1),
+    ("the wavefront {:.1f} ms", "speed_targets",
+     "wavefront, spheres 600x300, 50 samples, depth 50", "kernel_ms_median", 1),
+    ("one CPU thread needs {:.1f} s for 100 samples", "image_size", "serial, CPU 600x300",
+     "image_ms_median", 1e-3),
+    ("{:.0f} million paths a second in the megakernel", "scenes",
+     "statue:1M: megakernel, bvh2, sah", "mpaths_per_s", 1),
+    ("{:.0f} million paths a second in the wavefront", "scenes",
+     "statue:1M: wavefront, cwbvh, sah", "mpaths_per_s", 1),
+]
+MEASURED = r"[\d.,]+ (?:ms|s|million paths a second)\b"  # what README.md may not say unless listed
+
+
+def number(table, name, column):
+    with open(RESULTS / f"{table}.csv", newline="", encoding="utf-8") as file:
+        row, = (row for row in csv.DictReader(file) if row["name"] == name)
+    return float(row[column])
+
+
+class ReadmeNumbers(unittest.TestCase):
+    def setUp(self):
+        text = (ROOT / "README.md").read_text(encoding="utf-8")
+        self.text = re.sub(r"\s+", " ", text)
+        self.expected = [text.format(number(*cell) * factor) for text, *cell, factor in NUMBERS]
+
+    def test_numbers_are_those_of_the_tables(self):
+        for expected, (_, *cell, _) in zip(self.expected, NUMBERS):
+            self.assertIn(expected, self.text, f"README.md, by {' | '.join(cell)}")
+
+    def test_every_measured_number_is_listed(self):
+        listed = {found for text in self.expected for found in re.findall(MEASURED, text)}
+        self.assertEqual(set(re.findall(MEASURED, self.text)), listed)
+
+
+if __name__ == "__main__":
+    unittest.main()
