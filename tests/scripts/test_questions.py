@@ -127,6 +127,14 @@ class ImageSize(unittest.TestCase):
         self.assertNotIn("image_ms_mean_of_3", two)
 
 
+    def test_cpu_and_gpu_promise_an_image_each(self):
+        arguments = types.SimpleNamespace(quick=False, cpu_spp=0, cpu_repeat=1, cpu_warmup=0)
+        groups = {}
+        for made in experiment("image_size").configurations(arguments, CUDA):
+            groups.setdefault(made.same_image, set()).add(made.device)
+        self.assertCountEqual(groups.values(), [{""}, {"cpu"}])
+
+
 class SceneMemory(unittest.TestCase):
     def test_sentences(self):
         rows = [row(ms, panel="m", x=50, series=memory)
