@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cub/device/device_partition.cuh>
+#include <cub/device/device_select.cuh>
 
 #include "common/device/cuda_check.cuh"
 #include "common/device/stage_stamp.cuh"
@@ -29,16 +30,21 @@ struct HasTag {
   }
 };
 
-cudaError_t partition(void* storage, std::size_t& storage_bytes, const CompactionRequest& request,
-                      StageClock* clock, cudaStream_t stream) {
-  // Three classes: the first queue, the second, and the slots that wait for neither. No slot waits
-  // for `idle`.
-  const bool two = request.queues_wanted > 1;
-  return cub::DevicePartition::If(
-      storage, storage_bytes, thrust::counting_iterator<std::uint32_t>(0), request.queues[0],
-      request.queues[two ? 1 : 0], thrust::discard_iterator<>(), request.counts,
-      static_cast<int>(request.slot_count), HasTag{request.tags, request.wanted[0], clock},
-      HasTag{request.tags, two ? request.wanted[1] : StageId::idle, nullptr}, stream);
+/// Fills one queue or two; without `storage` it only says how much of it that takes.
+cudaError_t gather(void* storage, std::size_t& storage_bytes, const CompactionRequest& request,
+                   StageClock* clock, cudaStream_t stream) {
+  const thrust::counting_iterator<std::uint32_t> slots(0);
+  const int count = static_cast<int>(request.slot_count);
+  const auto first = HasTag{request.tags, request.wanted[0], clock};
+  if (request.queues_wanted == 1) {
+    return cub::DeviceSelect::If(storage, storage_bytes, slots, request.queues[0], request.counts,
+                                 count, first, stream);
+  }
+  // Three classes: the first queue, the second, and the slots that wait for neither.
+  return cub::DevicePartition::If(storage, storage_bytes, slots, request.queues[0],
+                                  request.queues[1], thrust::discard_iterator<>(), request.counts,
+                                  count, first, HasTag{request.tags, request.wanted[1], nullptr},
+                                  stream);
 }
 
 /// How many slots have each tag.
@@ -63,8 +69,11 @@ CudaCompactor::CudaCompactor(TagPass pass, std::uint32_t slot_count_max, CudaMem
   if (pass != TagPass::gather) return;
   CompactionRequest request;
   request.slot_count = slot_count_max;
-  check_cuda(partition(nullptr, cub_storage_bytes_, request, nullptr, nullptr),
-             "cub::DevicePartition::If");
+  for (request.queues_wanted = 1; request.queues_wanted <= 2; ++request.queues_wanted) {
+    std::size_t bytes = 0;
+    check_cuda(gather(nullptr, bytes, request, nullptr, nullptr), "CUB's storage");
+    cub_storage_bytes_ = std::max(cub_storage_bytes_, bytes);
+  }
   cub_storage_ = memory.allocate<char>("compaction", cub_storage_bytes_);
 }
 
@@ -81,7 +90,7 @@ void CudaCompactor::enqueue(const CompactionRequest& request, StageClock* clock,
                   " queues wanted; expected at most two on CUDA");
     }
     std::size_t bytes = cub_storage_bytes_;
-    check_cuda(partition(cub_storage_, bytes, request, clock, stream), "cub::DevicePartition::If");
+    check_cuda(gather(cub_storage_, bytes, request, clock, stream), "a compaction by CUB");
   } else {
     check_cuda(
         cudaMemsetAsync(request.counts, 0,

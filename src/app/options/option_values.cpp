@@ -140,7 +140,7 @@ StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
 }
 
 std::uint64_t parse_size(const std::string& name, const std::string& text, const std::string& what,
-                         std::uint64_t highest) {
+                         std::uint64_t most) {
   std::string digits = text;
   int shift = 0;
   if (text.ends_with('K') || text.ends_with('M')) {
@@ -148,10 +148,10 @@ std::uint64_t parse_size(const std::string& name, const std::string& text, const
     digits.pop_back();
   }
   const auto value = whole<std::uint64_t>(digits);
-  if (!value || *value < 1 || *value > highest >> shift)
+  if (!value || *value < 1 || *value > most >> shift)
     refuse_value(name, text,
                  fmt::format("expected {} from 1 to {}, e.g. 512K or 2M (times 2^10, 2^20)", what,
-                             grouped(highest)));
+                             grouped(most)));
   return *value << shift;
 }
 

@@ -32,9 +32,9 @@ BlockSize parse_block(const std::string& name, const std::string& text);  ///< "
 /// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
 StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
                                StageBlocks blocks);
-/// A number from 1 to `highest`, "K" and "M" standing for 2^10 and 2^20; `what` they count.
+/// A number from 1 to `most`, "K" and "M" standing for 2^10 and 2^20; `what` they count.
 std::uint64_t parse_size(const std::string& name, const std::string& text, const std::string& what,
-                         std::uint64_t highest);
+                         std::uint64_t most);
 /// "auto" (0) or a number of paths, likewise.
 std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
 
