@@ -32,6 +32,10 @@ if(NOT PTEXP_CUDA STREQUAL "OFF")
 endif()
 
 if(PTEXP_CUDA_FOUND)
+  # Headers only: --counters loads CUPTI's library when it is asked for. Some toolkits have them in
+  # a folder of their own.
+  find_path(PTEXP_CUPTI_INCLUDE cupti_range_profiler.h
+            HINTS ${CUDAToolkit_INCLUDE_DIRS} ${CUDAToolkit_LIBRARY_ROOT}/extras/CUPTI/include)
   message(STATUS "Building for the CPU and CUDA (architectures: ${CMAKE_CUDA_ARCHITECTURES})")
   if(NOT DEFINED CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25 does not know nvcc's
     set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")

@@ -39,7 +39,7 @@ LAYERS = [
     # Plain data that the user chooses and that is measured; errors and build facts.
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stage_info.h", "common/render/compaction_info.h",
-                 "common/render/stats.h"], ["choices"]),
+                 "common/render/stats.h", "common/render/hardware_counters.*"], ["choices"]),
     ("choices", ["common/sampling/choices.h"], ["platform"]),
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
                "common/build_info.h"], []),

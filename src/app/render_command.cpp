@@ -14,6 +14,7 @@
 #include "app/report/csv_file.h"
 #include "app/report/report.h"
 #include "common/device/devices.h"
+#include "common/error.h"
 #include "common/image/atomic_file.h"
 #include "common/image/image_io.h"
 #include "common/image/measure_exposure.h"
@@ -84,6 +85,18 @@ void write_outputs(const Options& options, const Image& image, RenderReport& rep
 
 void warn(const std::string& message) { fmt::print(stderr, "ptexp: warning: {}\n", message); }
 
+/// What could not be counted is no reason to lose what was rendered.
+HardwareCounters count(Renderer& renderer) {
+  try {
+    return renderer.count_hardware();
+  } catch (const Error& error) {
+    warn(std::string("--counters: ") + error.what());
+    HardwareCounters none;
+    none.problem = error.what();
+    return none;
+  }
+}
+
 /// What the scene's file asks for holds where the command line says nothing.
 void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options) {
   const auto apply = [&](const char* name, const std::optional<int>& value, int Options::*field) {
@@ -141,6 +154,7 @@ int render_command(const RenderCommand& command) {
     renderer->describe(report);
     if (is_new && !options.quiet) fmt::print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
+    if (options.counters && !measurement.interrupted) report.counters = count(*renderer);
     report.exposure = exposure_of(options, image, scene.defaults.measure_exposure);
     write_outputs(options, image, report);
   }

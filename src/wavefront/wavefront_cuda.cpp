@@ -51,10 +51,10 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
                           !std::has_single_bit(buffers_.kinds);
   buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind ||
                              (options_.shade == Shade::automatic && order_pays);
-  const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                 !appends, scene_.light_selector.has_tree(), options_.layout};
+  parts_ = {traits_.has_lights(), traits_.geometry == Geometry::mixed, !appends,
+            scene_.light_selector.has_tree(), options_.layout};
   const std::uint64_t bytes_per_slot =
-      PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
+      PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
   if (options_.pool_size == 0) {
     const std::uint64_t wanted =
@@ -74,10 +74,10 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = static_cast<std::uint32_t>(n);
-  pool.allocate_arrays(parts, [&](auto* array, std::uint64_t count) {
+  pool.allocate_arrays(parts_, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
-  buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
+  buffers_.for_each_queue(parts_.lights, [&](auto*& queue) {
     queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(
         "queues", n);
   });
@@ -96,7 +96,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
 }
 
 void WavefrontCuda::compact(const CompactionRequest& request) {
-  if (compactor_ != nullptr) compactor_->enqueue(request, clock(), stream());
+  if (compactor_ == nullptr) return;
+  launch_others("compact", [&] { compactor_->enqueue(request, clock(), stream()); });
 }
 
 // Every slot is free when a batch begins.
@@ -139,12 +140,14 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
                                  bool starts_paths) {
   path_count_ = batch.path_count;
   loop_ = loop;
+  set_wave(static_cast<int>(flows_.size()));
   with_context(batch, [&](auto kinds, const auto& context) {
     enqueue_wave_of<decltype(kinds)>(context, starts_paths);
   });
 }
 
 void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
+  set_wave(static_cast<int>(flows_.size()) - 1);  // the last one, which found no more to do
   with_context(batch, [&](auto kinds, const auto& context) {
     if constexpr (std::is_same_v<decltype(kinds), SphereSceneKinds>) {
       enqueue_finish_of<decltype(kinds)>(context_of(batch, AnySource<CurandState>(context.source)));
@@ -155,7 +158,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
-  if (schedule_ != "graph") return;
+  if (schedule_ != "graph" || is_counting()) return;
   if (graph_exec_ != nullptr && batch == graph_batch_) return;
   destroy_graph();
   build_graph(batch);
@@ -207,19 +210,49 @@ void WavefrontCuda::read_counters() {
 
 void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   start_queues();
+  flows_.clear();
   // A pool that holds the whole batch starts all paths in the first wave.
-  if (!buffers_.reuses_slots) enqueue_wave(batch, 0, true);
-  if (graph_exec_ != nullptr) {
+  if (!buffers_.reuses_slots) {
+    enqueue_wave(batch, 0, true);
+    if (is_counting()) note_flow();
+  }
+  if (graph_exec_ != nullptr && !is_counting()) {
     check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
     read_counters();
   } else {
     do {
       enqueue_wave(batch, 0, buffers_.reuses_slots);
-      read_counters();
+      if (is_counting())
+        note_flow();
+      else
+        read_counters();
     } while (host_counters_->intersect > 0);
   }
   if (options_.finish_paths > 0) enqueue_finish(batch);
   waves_ += host_counters_->waves;
+}
+
+void WavefrontCuda::note_flow() {
+  read_counters();
+  if (!flows_.empty()) flows_.back().continued = host_counters_->live;
+  flows_.push_back(flow_of(*host_counters_));
+}
+
+void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
+  WaveLayout layout;
+  layout.parts = parts_;
+  layout.slots = buffers_.pool.slot_count;
+  layout.has_queues = buffers_.compaction.has_queues;
+  layout.appends = buffers_.compaction.appends;
+  layout.queues_free = buffers_.queue(free_slot) != nullptr;
+  layout.all_lights = traits_.lighting == Lighting::full;
+  layout.persistent = traits_.accel == Accel::cwbvh && traces_queues_here() && layout.appends;
+  layout.shades_by_kind = buffers_.shades_by_kind;
+  for (LaunchCounters& launch : launches) {
+    if (launch.wave < 0) continue;
+    const WaveFlow& flow = flows_.at(static_cast<std::size_t>(launch.wave));
+    launch.predicted = pt::predict_bytes(launch.kernel, flow, layout);
+  }
 }
 
 std::uint64_t WavefrontCuda::take_wave_count() { return std::exchange(waves_, 0); }

@@ -4,6 +4,7 @@
 #include "common/device/cuda_renderer.cuh"
 #include "wavefront/any_source.h"
 #include "wavefront/compaction_cuda.h"
+#include "wavefront/stage_bytes.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -43,6 +44,7 @@ class WavefrontCuda : public CudaRenderer {
   void prepare_batch(const SampleBuffer& batch) override;
   void trace_batch(const SampleBuffer& batch) override;
   std::uint64_t take_wave_count() override;
+  void predict_bytes(std::vector<LaunchCounters>& launches) const override;
 
  private:
   /// Calls function(kinds, context): a list of kinds of scenes that has this one, and what stages
@@ -63,14 +65,16 @@ class WavefrontCuda : public CudaRenderer {
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();
   void read_counters();
-
   void start_queues();
+  void note_flow();
 
+  PathPool::Parts parts_{};
   WaveBuffers buffers_;
   std::uint32_t* all_slots_ = nullptr;  ///< 0, 1, 2, ...: the first queue of free slots
   std::unique_ptr<CudaCompactor> compactor_;
   WaveCounters* host_counters_ = nullptr;  ///< pinned
   std::uint64_t waves_ = 0;
+  std::vector<WaveFlow> flows_;  ///< of the batch's waves so far, where they are counted
   // What the wave being enqueued belongs to:
   std::uint32_t path_count_ = 0;
   cudaGraphConditionalHandle loop_ = 0;

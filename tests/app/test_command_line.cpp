@@ -82,6 +82,7 @@ const std::map<std::string, std::string>& other_values() {
       {"rng", "xorwow"},
       {"repeat", "10"},
       {"warmup", "3"},
+      {"counters", "on"},
       {"stats", "run.json"},
       {"csv", "runs.csv"},
       {"quiet", "on"}};

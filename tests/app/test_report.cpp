@@ -45,6 +45,31 @@ RenderReport make_report() {
   return report;
 }
 
+/// Two launches of one kernel and one of another, in millions of what they count.
+HardwareCounters make_counters() {
+  const auto launch = [](const char* kernel, int wave, double size) {
+    LaunchCounters result{kernel, wave, {}, {}};
+    const auto set = [&](Counter counter, double value) {
+      result.values[static_cast<std::size_t>(counter)] = 1e6 * size * value;
+    };
+    using enum Counter;
+    set(time_ns, 2), set(thread_instructions, 24), set(warp_instructions, 1);
+    set(issue_cycles, 1), set(scheduler_cycles, 4), set(warp_cycles, 32), set(sm_cycles, 1);
+    set(l1_sectors, 8), set(l1_hits, 2), set(l2_hits, 3), set(l2_misses, 1);
+    set(l2_bytes, 400), set(l2_sectors_to_sm, 2), set(l2_sectors_from_sm, 1);
+    set(dram_read_bytes, 5), set(dram_written_bytes, 6);
+    result.predicted = {1e6 * size * 40, 1e6 * size * 20};
+    return result;
+  };
+  HardwareCounters counters;
+  counters.samples = 50, counters.rays = 4'000'000, counters.passes = 3;
+  counters.warps_per_sm = 64;
+  counters.launches = {launch("intersect", 0, 1), launch("shadow", 0, 1),
+                       launch("intersect", 1, 2)};
+  counters.launches[1].predicted = {};
+  return counters;
+}
+
 Options make_options() {
   Options options;
   options.repeat = 3;
@@ -214,6 +239,98 @@ TEST(ReportCsv, Row) {
   EXPECT_EQ(fields["setup_ms"], "2.500000");
   EXPECT_EQ(fields["load_ms"], "6.500000");
   EXPECT_EQ(fields["kernels"], "intersect:61:16:128:256:0.7500;shadow:40:0:0:128:1.0000");
+}
+
+TEST(ReportJson, Counters) {
+  RenderReport report = make_report();
+  EXPECT_TRUE(nlohmann::json::parse(report_json(Options(), report))["counters"].is_null());
+  report.counters = make_counters();
+  const auto json = nlohmann::json::parse(report_json(Options(), report))["counters"];
+  EXPECT_TRUE(json["problem"].is_null());
+  EXPECT_EQ(json["samples"], 50);
+  EXPECT_EQ(json["rays"], 4'000'000);
+  EXPECT_EQ(json["passes"], 3);
+  EXPECT_EQ(json["uncounted_launches"], 0);
+  ASSERT_EQ(json["kernels"].size(), 2u);
+  const auto& kernel = json["kernels"][0];
+  EXPECT_EQ(kernel["kernel"], "intersect");
+  EXPECT_EQ(kernel["launches"], 2);
+  EXPECT_DOUBLE_EQ(kernel["time_ms"], 6);
+  EXPECT_EQ(kernel["threads_per_instruction"], 24);
+  EXPECT_EQ(kernel["issue"], 0.25);
+  EXPECT_EQ(kernel["occupancy"], 0.5);
+  EXPECT_EQ(kernel["l1_hit_rate"], 0.25);
+  EXPECT_EQ(kernel["l2_hit_rate"], 0.75);
+  EXPECT_EQ(kernel["l2_bytes"], 1.2e9);
+  EXPECT_EQ(kernel["l2_read_bytes"], 192e6);
+  EXPECT_EQ(kernel["l2_written_bytes"], 96e6);
+  EXPECT_EQ(kernel["dram_read_bytes"], 15e6);
+  EXPECT_EQ(kernel["dram_written_bytes"], 18e6);
+  EXPECT_EQ(kernel["predicted_read_bytes"], 120e6);
+  EXPECT_EQ(kernel["predicted_written_bytes"], 60e6);
+  EXPECT_EQ(json["total"]["dram_read_bytes"], 20e6);
+  ASSERT_EQ(json["launches"].size(), 3u);
+  EXPECT_EQ(json["launches"][2]["kernel"], "intersect");
+  EXPECT_EQ(json["launches"][2]["wave"], 1);
+  EXPECT_EQ(json["launches"][2]["warp_instructions"], 2e6);
+}
+
+TEST(ReportJson, CountersThatCouldNotBeRead) {
+  RenderReport report = make_report();
+  report.counters = HardwareCounters();
+  report.counters->problem = "no permission";
+  const auto json = nlohmann::json::parse(report_json(Options(), report));
+  EXPECT_EQ(json["counters"], (nlohmann::json{{"problem", "no permission"}}));
+  auto fields = as_map(report_csv_row(Options(), report));
+  EXPECT_EQ(fields["counters_problem"], "no permission");
+  EXPECT_EQ(fields["counted_time_ms"], "");
+  EXPECT_EQ(report_table(Options(), report).find("hardware counters"), std::string::npos);
+}
+
+// A kernel that counted nothing has no ratios, and no number stands for them.
+TEST(ReportJson, RatiosOfNothingAreNull) {
+  RenderReport report = make_report();
+  report.counters = make_counters();
+  report.counters->launches = {{"idle", -1, {}, {}}};
+  const auto json = nlohmann::json::parse(report_json(Options(), report))["counters"];
+  EXPECT_TRUE(json["kernels"][0]["l1_hit_rate"].is_null());
+  EXPECT_TRUE(json["launches"][0]["wave"].is_null());
+  EXPECT_EQ(as_map(report_csv_row(Options(), report))["counted_l1_hit_rate"], "");
+}
+
+TEST(ReportCsv, Counters) {
+  RenderReport report = make_report();
+  EXPECT_EQ(as_map(report_csv_row(Options(), report))["counted_kernels"], "");
+  report.counters = make_counters();
+  auto fields = as_map(report_csv_row(Options(), report));
+  EXPECT_EQ(fields["counters_problem"], "");
+  EXPECT_EQ(fields["counted_samples"], "50");
+  EXPECT_EQ(fields["counted_rays"], "4000000");
+  EXPECT_EQ(fields["counted_time_ms"], "8");
+  EXPECT_EQ(fields["counted_threads_per_instruction"], "24");
+  EXPECT_EQ(fields["counted_dram_written_bytes"], "2.4e+07");
+  EXPECT_EQ(fields["counted_kernels"],
+            "intersect:2:6:24:0.25:0.5:0.25:0.75:1.2e+09:1.92e+08:9.6e+07:1.5e+07:1.8e+07:1.2e+08:"
+            "6e+07;shadow:1:2:24:0.25:0.5:0.25:0.75:4e+08:6.4e+07:3.2e+07:5e+06:6e+06:0:0");
+}
+
+TEST(ReportTable, Counters) {
+  RenderReport report = make_report();
+  report.counters = make_counters();
+  report.counters->launches.push_back({"begin_wave", 0, {}, {}});  // takes no time
+  const std::string table = report_table(make_options(), report);
+  for (const char* part :
+       {"intersect                       2     6.000     24.0    25.0    50.0    25.0    75.0    "
+        "192.00     96.00    120.00     60.00     33.00",
+        "shadow                          1     2.000     24.0    25.0    50.0    25.0    75.0     "
+        "64.00     32.00         -         -     11.00",
+        "bytes per ray: 96 between multiprocessors and L2, 45 predicted, 11 DRAM"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
+  EXPECT_EQ(table.find("begin_wave"), std::string::npos);
+  EXPECT_EQ(table.find("not counted"), std::string::npos);
+  report.counters->uncounted_launches = 7;
+  EXPECT_NE(report_table(make_options(), report).find("the last 7 launches were not counted"),
+            std::string::npos);
 }
 
 TEST(ReportCsv, ColumnsDoNotDependOnTheRun) {

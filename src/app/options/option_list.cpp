@@ -294,6 +294,14 @@ void add_measurement(std::vector<OptionEntry>& list) {
       .add(integer("repeat", &Options::repeat, 1, 1'000'000), "Measured renders of the image")
       .add(integer("warmup", &Options::warmup, 0, 1'000'000),
            "Renders before them that are not measured")
+      .add(custom(
+               "counters", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.counters = true; },
+               [](const Options& o) { return o.counters ? "on" : "off"; }),
+           "Reads the GPU's counters of each kernel (SIMT efficiency,\n"
+           "occupancy, cache hits, bytes), in renders after the measured\n"
+           "ones; docs/experiments.md explains them")
+      .only(parallel, cuda)
       .add(text("stats", "FILE", &Options::stats_file),
            "Writes all options, times, counts and kernels as JSON;\n"
            "docs/statistics.md explains the fields")

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/options/option_list.h"
+#include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/build_info.h"
@@ -102,6 +105,32 @@ void add_scene(CsvRow& row, const SceneFacts& facts) {
   row.emplace_back("build_ms", ms(facts.tree.build_ms));
 }
 
+/// As text; empty where there was nothing to divide by.
+std::string counted(double value) { return std::isnan(value) ? "" : fmt::format("{:.6g}", value); }
+
+std::string counted_kernels(const HardwareCounters& counters) {
+  return joined(sum_by_kernel(counters.launches), [&](const KernelCounters& kernel) {
+    std::string text = fmt::format("{}:{}", kernel.kernel, kernel.launches);
+    for (const auto& field : counter_fields(kernel, counters.warps_per_sm)) {
+      text += ":" + counted(field.second);
+    }
+    return text;
+  });
+}
+
+/// Empty fields where nothing was counted.
+void add_counters(CsvRow& row, const std::optional<HardwareCounters>& counters) {
+  const bool has = counters && counters->problem.empty();
+  const HardwareCounters values = has ? *counters : HardwareCounters();
+  row.emplace_back("counters_problem", counters ? counters->problem : "");
+  row.emplace_back("counted_samples", has ? std::to_string(values.samples) : "");
+  row.emplace_back("counted_rays", has ? std::to_string(values.rays) : "");
+  for (const auto& [name, value] : counter_fields(sum_all(values.launches), values.warps_per_sm)) {
+    row.emplace_back("counted_" + name, has ? counted(value) : "");
+  }
+  row.emplace_back("counted_kernels", has ? counted_kernels(values) : "");
+}
+
 }  // namespace
 
 CsvRow report_csv_row(const Options& options, const RenderReport& report) {
@@ -135,6 +164,7 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
                                         kernel.spill_bytes, kernel.shared_bytes,
                                         kernel.block_threads, kernel.occupancy);
                    }));
+  add_counters(row, report.counters);
   return row;
 }
 

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/option_list.h"
+#include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/build_info.h"
@@ -84,6 +85,51 @@ Json kernels_json(const RenderReport& report) {
   return json;
 }
 
+void add_counter_fields(Json& json, const KernelCounters& kernel, int warps_per_sm) {
+  for (const auto& [name, value] : counter_fields(kernel, warps_per_sm)) json[name] = value;
+}
+
+Json counted_kernels_json(const HardwareCounters& counters) {
+  Json json = Json::array();
+  for (const KernelCounters& kernel : sum_by_kernel(counters.launches)) {
+    Json entry{{"kernel", kernel.kernel}, {"launches", kernel.launches}};
+    add_counter_fields(entry, kernel, counters.warps_per_sm);
+    json.push_back(entry);
+  }
+  return json;
+}
+
+Json counted_launches_json(const HardwareCounters& counters) {
+  Json json = Json::array();
+  for (const LaunchCounters& launch : counters.launches) {
+    Json entry{{"kernel", launch.kernel},
+               {"wave", launch.wave >= 0 ? Json(launch.wave) : Json(nullptr)}};
+    for (std::size_t i = 0; i < launch.values.size(); ++i) {
+      entry[counter_table[i].name] = launch.values[i];
+    }
+    entry["predicted_read_bytes"] = launch.predicted.read;
+    entry["predicted_written_bytes"] = launch.predicted.written;
+    json.push_back(entry);
+  }
+  return json;
+}
+
+Json counters_json(const std::optional<HardwareCounters>& counters) {
+  if (!counters) return nullptr;
+  if (!counters->problem.empty()) return {{"problem", counters->problem}};
+  Json total = Json::object();
+  add_counter_fields(total, sum_all(counters->launches), counters->warps_per_sm);
+  return {{"problem", nullptr},
+          {"samples", counters->samples},
+          {"rays", counters->rays},
+          {"passes", counters->passes},
+          {"warps_per_sm", counters->warps_per_sm},
+          {"uncounted_launches", counters->uncounted_launches},
+          {"total", total},
+          {"kernels", counted_kernels_json(*counters)},
+          {"launches", counted_launches_json(*counters)}};
+}
+
 Json memory_json(const RenderReport& report) {
   Json buffers = Json::array();
   for (const BufferSize& buffer : report.memory)
@@ -153,6 +199,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["counts"] = counts_json(report.counts);
   json["memory"] = memory_json(report);
   json["kernels"] = kernels_json(report);
+  json["counters"] = counters_json(report.counters);
   json["runs"] = runs_json(report);
   // A device's or file's name may hold bytes that are not UTF-8: no reason to lose the rest.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/options/option_values.h"
+#include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/render/option_names.h"
@@ -76,7 +77,8 @@ std::string report_table(const Options& options, const RenderReport& report) {
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",
              report.scene_ms, report.setup_ms,
              report.load_ms > 0 ? fmt::format("loading kernels {:.1f} ms, ", report.load_ms) : "",
-             report.transfer_ms, report.image_write_ms);
+             report.transfer_ms, report.image_write_ms) +
+         (report.counters ? '\n' + counter_rows(*report.counters) : "");
 }
 
 }  // namespace pt

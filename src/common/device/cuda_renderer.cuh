@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "common/device/counter_session_cuda.h"
 #include "common/device/cuda_check.cuh"
 #include "common/device/cuda_memory.cuh"
 #include "common/device/scene_storage.cuh"
@@ -30,6 +33,7 @@ class CudaRenderer : public FilmRenderer {
   ~CudaRenderer() override;
 
   void describe(RenderReport& report) const override;
+  HardwareCounters count_hardware() override;
 
  protected:
   /// Makes everything that a batch needs and that is no part of its time (graphs, for example).
@@ -38,6 +42,13 @@ class CudaRenderer : public FilmRenderer {
   virtual void trace_batch(const SampleBuffer& batch) = 0;
   /// Waves run since the last call; 0 in modes without waves.
   virtual std::uint64_t take_wave_count() { return 0; }
+  /// Fills in what the layout of the data lets expect of each launch of the last batch.
+  virtual void predict_bytes(std::vector<LaunchCounters>& /*launches*/) const {}
+
+  /// Whether the hardware's counters are read: every kernel is then launched by the host.
+  bool is_counting() const { return counters_ != nullptr; }
+  /// What follows belongs to this wave; -1: to none.
+  void set_wave(int wave) { wave_ = wave; }
 
   /// Launches a kernel on stream() inside an NVTX range of its name and notes its resources.
   /// Throws Error when the device cannot run a block of this size.
@@ -47,6 +58,10 @@ class CudaRenderer : public FilmRenderer {
     launch_erased(name, reinterpret_cast<const void*>(kernel), grid, block, shared_bytes,
                   Pack<Parameters...>(arguments...).pointers());
   }
+
+  /// Calls `enqueue`, which launches a library's kernels on stream(), as many whenever the name is
+  /// this one; they are counted under it.
+  void launch_others(const char* name, const std::function<void()>& enqueue);
 
   /// Blocks of `kernel` that the device holds at once.
   std::uint32_t resident_blocks(const void* kernel, int block_threads, std::size_t shared_bytes);
@@ -105,6 +120,7 @@ class CudaRenderer : public FilmRenderer {
     std::array<void*, sizeof...(Parameters)> pointers_{};
   };
 
+  int count_kernels(const std::function<void()>& enqueue) const;
   void launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
                      std::size_t shared_bytes, void** arguments);
   void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
@@ -131,6 +147,9 @@ class CudaRenderer : public FilmRenderer {
   PathTally* tally_ = nullptr;
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
+  std::unique_ptr<CounterSession> counters_;  ///< while they are read
+  std::map<std::string, int> others_;  ///< kernels of a library that one call launches, by name
+  int wave_ = -1;
   std::vector<KernelInfo> kernels_;
   std::vector<const void*> kernel_pointers_;
   double setup_ms_ = 0;

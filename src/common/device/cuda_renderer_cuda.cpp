@@ -177,6 +177,7 @@ void CudaRenderer::launch_erased(const char* name, const void* kernel, dim3 grid
       kernel_pointers_.end()) {
     note_kernel(name, kernel, block, shared_bytes);
   }
+  if (is_counting()) counters_->note_launch(name, wave_);
   nvtxRangePushA(name);
   const cudaError_t status =
       cudaLaunchKernel(kernel, grid, block, arguments, shared_bytes, stream_);
@@ -184,9 +185,64 @@ void CudaRenderer::launch_erased(const char* name, const void* kernel, dim3 grid
   check_cuda(status, name);
 }
 
+// How many kernels a library launches is its own affair: a capture tells.
+int CudaRenderer::count_kernels(const std::function<void()>& enqueue) const {
+  check_cuda(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal),
+             "cudaStreamBeginCapture");
+  enqueue();
+  cudaGraph_t graph{};
+  check_cuda(cudaStreamEndCapture(stream_, &graph), "cudaStreamEndCapture");
+  std::size_t count = 0;
+  check_cuda(cudaGraphGetNodes(graph, nullptr, &count), "cudaGraphGetNodes");
+  std::vector<cudaGraphNode_t> nodes(count);
+  check_cuda(cudaGraphGetNodes(graph, nodes.data(), &count), "cudaGraphGetNodes");
+  int kernels = 0;
+  for (const cudaGraphNode_t node : nodes) {
+    cudaGraphNodeType type{};
+    check_cuda(cudaGraphNodeGetType(node, &type), "cudaGraphNodeGetType");
+    kernels += type == cudaGraphNodeTypeKernel ? 1 : 0;
+  }
+  check_cuda(cudaGraphDestroy(graph), "cudaGraphDestroy");
+  return kernels;
+}
+
+void CudaRenderer::launch_others(const char* name, const std::function<void()>& enqueue) {
+  if (is_counting()) {
+    const auto found = others_.find(name);
+    const int kernels = found != others_.end() ? found->second : count_kernels(enqueue);
+    others_[name] = kernels;
+    for (int i = 0; i < kernels; ++i) counters_->note_launch(name, wave_);
+  }
+  enqueue();
+}
+
+HardwareCounters CudaRenderer::count_hardware() {
+  check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+  const std::uint64_t pixels = image_window().pixel_count();
+  const int count = batch_samples(options_.spp, pixels, batch_paths());
+  const SampleBuffer batch{samples(), image_window(), 0, static_cast<std::uint32_t>(count)};
+  Film film;
+  film.window = image_window();
+  counters_ = std::make_unique<CounterSession>(device_);
+  const std::shared_ptr<void> end(nullptr, [&](void*) { counters_.reset(); });
+  HardwareCounters result = counters_->count([&] {
+    begin_render(film);
+    RenderRun run;
+    render_batch(batch, run);
+    take_wave_count();
+  });
+  predict_bytes(result.launches);
+  const PathCounts counts = summarize(read_tally());
+  result.samples = count;
+  result.rays = counts.rays + counts.shadow_rays;
+  result.warps_per_sm = properties_.maxThreadsPerMultiProcessor / 32;
+  return result;
+}
+
 void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   constexpr int block = 256;
   prepare_batch(batch);
+  set_wave(-1);
   check_cuda(cudaEventRecord(start_, stream_), "cudaEventRecord");
   launch("start_clock", start_clock, 1, 1, 0, clock_);
   if (options_.rng == RngKind::xorwow) {
@@ -194,6 +250,7 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
            batch, options_.seed, clock_);
   }
   trace_batch(batch);
+  set_wave(-1);
   accumulate(batch);
   launch("stop_clock", stop_clock, 1, 1, 0, clock_);
   check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");

@@ -136,6 +136,7 @@ struct Options {
   // Measurement
   int repeat = 1;          ///< measured renders, >= 1
   int warmup = 0;          ///< unmeasured renders before them, >= 0
+  bool counters = false;   ///< read the hardware's counters, in renders of their own
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
   bool quiet = false;

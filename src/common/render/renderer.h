@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "common/error.h"
 #include "common/film/film_data.h"
 #include "common/image/image.h"
 #include "common/render/options.h"
@@ -50,6 +51,11 @@ class Renderer {
   /// last render, memory, kernels, set-up and transfer times). Leaves `runs`, `scene_ms` and
   /// `image_write_ms`.
   virtual void describe(RenderReport& report) const = 0;
+
+  /// Renders the first batch of the image again, several times, and says what the hardware counts
+  /// meanwhile. Forgets the last render: to be called after image() and describe(). Throws Error,
+  /// also where nothing can be counted.
+  virtual HardwareCounters count_hardware() { throw Error("no counters of this device are known"); }
 };
 
 }  // namespace pt

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "common/render/hardware_counters.h"
+
 namespace pt {
 
 struct StageTime {
@@ -97,6 +99,7 @@ struct RenderReport {
   std::vector<RenderRun> runs;  ///< the measured repeats
   std::vector<BufferSize> memory;
   std::vector<KernelInfo> kernels;
+  std::optional<HardwareCounters> counters;  ///< where they were asked for
 };
 
 }  // namespace pt

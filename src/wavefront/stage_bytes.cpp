@@ -1,0 +1,138 @@
+#include "wavefront/stage_bytes.h"
+
+#include <string_view>
+
+namespace pt {
+namespace {
+
+constexpr double record = sizeof(Record), place = sizeof(std::uint32_t), tag = sizeof(StageId);
+constexpr double sample = sizeof(Sample), radiance = sizeof(Color);
+
+class Predictor {
+ public:
+  Predictor(const WaveFlow& flow, const WaveLayout& layout) : flow_(flow), layout_(layout) {}
+
+  PredictedBytes generate() const {
+    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    const double ray_place = layout_.has_queues ? place : 0;
+    const bool has_input = layout_.queues_free || !layout_.has_queues;
+    return {has_input ? find(flow_.generated) : 0,
+            flow_.generated * (2 * record + ray_place + sample_bytes + own_tag())};
+  }
+
+  PredictedBytes intersect() const {
+    const double n = flow_.rays, stored = layout_.persistent ? n : n - flow_.misses;
+    const double sent = layout_.persistent ? 0 : n * send();
+    return {find(n) + n * 2 * record, stored * hit() + sent};
+  }
+
+  PredictedBytes sort_hits() const {
+    return {find(flow_.rays) + flow_.rays * sizeof(StoredHit), flow_.rays * send()};
+  }
+
+  PredictedBytes shade_miss() const {
+    const double n = flow_.misses;
+    const double ray = layout_.all_lights ? 2 * record : record;
+    return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
+  }
+
+  /// `n` of the surfaces.
+  PredictedBytes shade_surface(double n) const {
+    const double share = flow_.surfaces > 0 ? n / flow_.surfaces : 0;
+    const double alive = share * flow_.continued, ended = n - alive;
+    const double shadows = share * flow_.shadows;
+    return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
+            alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
+                shadows * (3 * record + (layout_.appends ? place : 0)) +
+                (layout_.parts.lights && !layout_.appends ? n * tag : 0)};
+  }
+
+  PredictedBytes shadow() const {
+    const double n = flow_.shadows;
+    return {find(n) + n * (3 * record + radiance), n * (radiance + own_tag())};
+  }
+
+  PredictedBytes finish() const {
+    const double n = flow_.finished;
+    return {find(n) + n * (3 * record + receiver() + before()), n * (sample + own_tag())};
+  }
+
+  PredictedBytes count_surfaces() const {
+    return {flow_.surfaces * (place + hit()), flow_.surfaces * sizeof(std::uint8_t)};
+  }
+  PredictedBytes place_surfaces() const {
+    return {flow_.surfaces * (sizeof(std::uint8_t) + place), flow_.surfaces * place};
+  }
+
+ private:
+  /// To find the `n` slots that wait.
+  double find(double n) const { return layout_.has_queues ? n * place : layout_.slots * tag; }
+  /// To send a slot on.
+  double send() const { return layout_.appends ? place : tag; }
+  /// To give a slot back.
+  double free() const {
+    if (!layout_.appends) return tag;
+    return layout_.queues_free ? place : 0;
+  }
+  /// Of stages that append nothing.
+  double own_tag() const { return layout_.appends ? 0 : tag; }
+  double hit() const {
+    return sizeof(StoredHit) + (layout_.parts.instances ? sizeof(std::uint32_t) : 0);
+  }
+  double receiver() const { return layout_.parts.receivers ? sizeof(Receiver) : 0; }
+  /// What has happened to a path; nothing has to a new one.
+  double old_path() const {
+    return flow_.rays > 0 ? record * (1 - flow_.generated / flow_.rays) : 0;
+  }
+  /// The radiance that lights have added.
+  double before() const { return layout_.parts.lights ? radiance : 0; }
+
+  const WaveFlow& flow_;
+  const WaveLayout& layout_;
+};
+
+/// Surfaces that the kernel shades: those of its kind, or what is left.
+double surfaces_of(std::string_view kind, const WaveFlow& flow, const WaveLayout& layout) {
+  if (!layout.shades_by_kind) return flow.surfaces;
+  auto index = static_cast<std::size_t>(several_kinds);
+  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
+    if (kind == Bsdf::name) index = static_cast<std::size_t>(kind_of<Bsdf>);
+  });
+  return flow.kinds[index];
+}
+
+}  // namespace
+
+WaveFlow flow_of(const WaveCounters& counters) {
+  const auto waiting = [&](StageId id) { return counters.waiting[queue_index(id)]; };
+  WaveFlow flow;
+  flow.generated = counters.generate;
+  flow.rays = counters.intersect;
+  flow.misses = waiting(StageId::shade_miss);
+  flow.surfaces = waiting(StageId::shade_surface);
+  flow.shadows = waiting(StageId::shadow);
+  flow.finished = counters.finish;
+  for (int kind = 0; kind < kind_count; ++kind) {
+    flow.kinds[static_cast<std::size_t>(kind)] = counters.kinds.count[kind];
+  }
+  return flow;
+}
+
+PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
+                             const WaveLayout& layout) {
+  const Predictor predict(flow, layout);
+  const std::string stage = kernel.substr(0, kernel.find('/'));
+  const std::string kind = stage.size() < kernel.size() ? kernel.substr(stage.size() + 1) : "";
+  if (stage == "generate") return predict.generate();
+  if (stage == "intersect") return predict.intersect();
+  if (stage == "sort_hits") return predict.sort_hits();
+  if (stage == "shade_miss") return predict.shade_miss();
+  if (stage == "shade_surface") return predict.shade_surface(surfaces_of(kind, flow, layout));
+  if (stage == "shadow") return predict.shadow();
+  if (stage == "finish") return predict.finish();
+  if (stage == "count_surfaces") return predict.count_surfaces();
+  if (stage == "place_surfaces") return predict.place_surfaces();
+  return {};
+}
+
+}  // namespace pt

@@ -1,0 +1,192 @@
+// What stages have to move, against the records by hand and against what the stages write.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <set>
+
+#include "app/make_renderer.h"
+#include "common/scene/prepare_scene.h"
+#include "wavefront/run_stage_cpu.h"
+#include "wavefront/stage_bytes.h"
+
+namespace pt {
+namespace {
+
+/// The defaults on CUDA: queues that are appended to, the whole batch in the pool.
+WaveLayout usual(bool lights = true) {
+  WaveLayout layout;
+  layout.parts = {lights, false, false, false};
+  layout.slots = 1000;
+  return layout;
+}
+
+void expect_bytes(const PredictedBytes& found, double read, double written) {
+  EXPECT_DOUBLE_EQ(found.read, read);
+  EXPECT_DOUBLE_EQ(found.written, written);
+}
+
+// The first wave of 100 paths: all are new; 60 meet a surface, where 50 ask a light and 40 go on.
+WaveFlow first_wave() {
+  WaveFlow flow;
+  flow.generated = flow.rays = 100;
+  flow.misses = 40, flow.surfaces = 60, flow.shadows = 50, flow.continued = 40;
+  return flow;
+}
+
+TEST(StageBytes, FirstWaveByHand) {
+  const auto predict = [](const char* kernel) {
+    return predict_bytes(kernel, first_wave(), usual());
+  };
+  // Writes origin and direction, its place in the queue, and a sample of 16 bytes.
+  expect_bytes(predict("generate"), 0, 100 * (16 + 16 + 4 + 16));
+  // Reads its place and the ray; hits have 8 bytes; all are sent on.
+  expect_bytes(predict("intersect"), 100 * (4 + 32), 60 * 8 + 100 * 4);
+  // Reads its place, the direction, and what lights have added.
+  expect_bytes(predict("shade_miss"), 40 * (4 + 16 + 12), 40 * 16);
+  // 20 paths end; 40 are stored and queued; shadow rays have three records and a place.
+  expect_bytes(predict("shade_surface"), 60 * (4 + 32 + 8) + 20 * 12,
+               40 * (48 + 4) + 20 * 16 + 50 * (48 + 4));
+  expect_bytes(predict("shadow"), 50 * (4 + 48 + 12), 50 * 12);
+  expect_bytes(predict("begin_wave"), 0, 0);
+  expect_bytes(predict("accumulate"), 0, 0);
+  expect_bytes(predict("megakernel"), 0, 0);
+}
+
+TEST(StageBytes, OldPathsHaveAThroughput) {
+  WaveFlow flow = first_wave();
+  flow.generated = 25;
+  expect_bytes(predict_bytes("shade_miss", flow, usual(false)), 40 * (4 + 16 + 0.75 * 16), 40 * 16);
+}
+
+TEST(StageBytes, WhatAScenesKindAdds) {
+  WaveLayout layout = usual();
+  layout.parts.instances = layout.parts.receivers = layout.all_lights = true;
+  layout.queues_free = true;
+  const auto predict = [&](const char* kernel) {
+    return predict_bytes(kernel, first_wave(), layout);
+  };
+  expect_bytes(predict("generate"), 100 * 4, 100 * (16 + 16 + 4 + 16));
+  expect_bytes(predict("intersect"), 100 * (4 + 32), 60 * (8 + 4) + 100 * 4);
+  expect_bytes(predict("shade_miss"), 40 * (4 + 32 + 12), 40 * (16 + 4));
+  expect_bytes(predict("shade_surface"), 60 * (4 + 32 + 12 + 4) + 20 * 12,
+               40 * (48 + 4 + 4) + 20 * (16 + 4) + 50 * (48 + 4));
+}
+
+TEST(StageBytes, TagsInsteadOfQueues) {
+  WaveLayout layout = usual(false);
+  layout.has_queues = layout.appends = false;
+  layout.parts.tags = true;
+  const auto predict = [&](const char* kernel) {
+    return predict_bytes(kernel, first_wave(), layout);
+  };
+  expect_bytes(predict("generate"), 1000, 100 * (16 + 16 + 1));
+  expect_bytes(predict("intersect"), 1000 + 100 * 32, 60 * 8 + 100);
+  expect_bytes(predict("shade_miss"), 1000 + 40 * 16, 40 * (16 + 1));
+}
+
+TEST(StageBytes, PersistentWarpsStoreAllHits) {
+  WaveLayout layout = usual();
+  layout.persistent = true;
+  expect_bytes(predict_bytes("intersect", first_wave(), layout), 100 * 36, 100 * 8);
+  expect_bytes(predict_bytes("sort_hits", first_wave(), layout), 100 * 12, 100 * 4);
+}
+
+TEST(StageBytes, KindsShareTheSurfaces) {
+  WaveLayout layout = usual();
+  layout.shades_by_kind = true;
+  WaveFlow flow = first_wave();
+  flow.kinds[static_cast<std::size_t>(kind_of<Diffuse>)] = 15;
+  flow.kinds[static_cast<std::size_t>(several_kinds)] = 45;
+  const PredictedBytes all = predict_bytes("shade_surface", first_wave(), usual());
+  const std::string diffuse = std::string("shade_surface/") + Diffuse::name;
+  const PredictedBytes part = predict_bytes(diffuse, flow, layout);
+  const PredictedBytes rest = predict_bytes("shade_surface", flow, layout);
+  EXPECT_DOUBLE_EQ(part.read, all.read / 4);
+  EXPECT_DOUBLE_EQ(part.written, all.written / 4);
+  EXPECT_DOUBLE_EQ(part.read + rest.read, all.read);
+  EXPECT_DOUBLE_EQ(part.written + rest.written, all.written);
+}
+
+TEST(StageBytes, LastPathsAreReadOnceAndEnd) {
+  WaveFlow flow;
+  flow.finished = 10;
+  expect_bytes(predict_bytes("finish", flow, usual()), 10 * (4 + 48 + 12), 10 * 16);
+}
+
+TEST(StageBytes, FlowIsWhatTheCountersSay) {
+  WaveCounters counters{};
+  counters.generate = 3, counters.intersect = 8, counters.finish = 2, counters.live = 5;
+  counters.waiting[queue_of<StageId::shade_miss>] = 1;
+  counters.waiting[queue_of<StageId::shade_surface>] = 7;
+  counters.waiting[queue_of<StageId::shadow>] = 4;
+  counters.kinds.count[1] = 6;
+  const WaveFlow flow = flow_of(counters);
+  EXPECT_EQ(flow.generated, 3);
+  EXPECT_EQ(flow.rays, 8);
+  EXPECT_EQ(flow.misses, 1);
+  EXPECT_EQ(flow.surfaces, 7);
+  EXPECT_EQ(flow.shadows, 4);
+  EXPECT_EQ(flow.finished, 2);
+  EXPECT_EQ(flow.kinds[1], 6);
+}
+
+/// A pool in one block of memory, filled with a pattern that no stage writes.
+class MarkedPool {
+ public:
+  static constexpr unsigned char mark = 0xa5;
+
+  MarkedPool(std::uint32_t slots, const PathPool::Parts& parts) {
+    pool.slot_count = slots;
+    pool.allocate_arrays(parts, [&](auto* array) {
+      blocks_.emplace_back(slots * sizeof *array / sizeof(Record) + 1);
+      std::memset(blocks_.back().data(), mark, blocks_.back().size() * sizeof(Record));
+      return reinterpret_cast<decltype(array)>(blocks_.back().data());
+    });
+  }
+
+  /// Bytes of records of which something was written.
+  std::size_t written_bytes() const {
+    Record unused;
+    std::memset(&unused, mark, sizeof unused);
+    std::size_t bytes = 0;
+    for (const std::vector<Record>& block : blocks_) {
+      for (const Record& r : block) bytes += std::memcmp(&r, &unused, sizeof r) != 0 ? sizeof r : 0;
+    }
+    return bytes;
+  }
+
+  PathPool pool;
+
+ private:
+  std::vector<std::vector<Record>> blocks_;
+};
+
+// The stage itself writes what is predicted, but for queue and sample.
+TEST(StageBytes, GenerateWritesThePredictedRecords) {
+  Options options;
+  options.scene = "cornell";
+  options.width = 8, options.height = 4, options.spp = 1;
+  const SceneData data = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu, 0}));
+  const Scene scene = host_view(data, options.width, options.height);
+  constexpr std::uint32_t n = 32;
+  const PathPool::Parts parts = {true, false, false, false};
+  const MarkedPool marked(n, parts);
+  std::vector<Sample> samples(n);
+  std::vector<std::uint32_t> queue(n);
+  WaveCounters counters{};
+  counters.generate = counters.intersect = n;
+  const SampleBuffer buffer(samples.data(), Window{0, 0, 8, 4}, 0, 1);
+  const GeneratePaths<PhiloxSource> stage{
+      {marked.pool, buffer, PhiloxSource{1}, &counters, queue.data(), {}}, true};
+  for (std::uint32_t slot = 0; slot < n; ++slot) stage(scene, slot, slot);
+  WaveFlow flow;
+  flow.generated = flow.rays = n;
+  WaveLayout layout;
+  layout.parts = parts;
+  const double beside = n * (sizeof(Sample) + sizeof(std::uint32_t));
+  EXPECT_EQ(static_cast<double>(marked.written_bytes()) + beside,
+            predict_bytes("generate", flow, layout).written);
+}
+
+}  // namespace
+}  // namespace pt
