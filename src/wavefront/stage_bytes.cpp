@@ -57,6 +57,9 @@ class Predictor {
     return {find(n) + n * (3 * record + receiver() + before()), n * (sample + own_tag())};
   }
 
+  PredictedBytes order_tiles() const {
+    return {flow_.surfaces * (place + hit()), flow_.surfaces * place};
+  }
   PredictedBytes count_surfaces() const {
     return {flow_.surfaces * (place + hit()), flow_.surfaces * sizeof(std::uint8_t)};
   }
@@ -130,6 +133,7 @@ PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
   if (stage == "shade_surface") return predict.shade_surface(surfaces_of(kind, flow, layout));
   if (stage == "shadow") return predict.shadow();
   if (stage == "finish") return predict.finish();
+  if (stage == "order_tiles") return predict.order_tiles();
   if (stage == "count_surfaces") return predict.count_surfaces();
   if (stage == "place_surfaces") return predict.place_surfaces();
   return {};

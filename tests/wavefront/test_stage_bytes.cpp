@@ -107,6 +107,15 @@ TEST(StageBytes, KindsShareTheSurfaces) {
   EXPECT_DOUBLE_EQ(part.written + rest.written, all.written);
 }
 
+TEST(StageBytes, OrdersOfSurfacesReadTheHits) {
+  const auto predict = [](const char* kernel) {
+    return predict_bytes(kernel, first_wave(), usual());
+  };
+  expect_bytes(predict("order_tiles"), 60 * (4 + 8), 60 * 4);
+  expect_bytes(predict("count_surfaces"), 60 * (4 + 8), 60);
+  expect_bytes(predict("place_surfaces"), 60 * (4 + 1), 60 * 4);
+}
+
 TEST(StageBytes, LastPathsAreReadOnceAndEnd) {
   WaveFlow flow;
   flow.finished = 10;

@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""Counters: what do the kernels do with the hardware?
+
+Renders a few scenes with `ptexp --counters`, by the megakernel and by the wavefront with each way to
+shade and to gather paths. A row is a kernel of one of them, or all together: SIMT efficiency, issue,
+occupancy, hit rates, bytes, and for the wavefront's stages what the layout of the paths predicts
+(docs/experiments.md, "Hardware counters"). A configuration that cannot be counted is a row that
+says why.
+"""
+import json
+import shlex
+import sys
+import tempfile
+from pathlib import Path
+
+import harness
+import program as ptexp
+from harness import Configuration, Experiment, HarnessError
+from provenance import scene_hash
+
+SCENES = ["cornell", "dial:8:0:closed", "dial:8:1:closed", "statue:1M"]
+VARIANTS = {
+    "megakernel": "--mode megakernel",
+    "uber": "--mode wavefront --shade uber",
+    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "by material": "--mode wavefront --shade material",
+    "cub": "--mode wavefront --shade uber --compaction cub",
+    "no queues": "--mode wavefront --shade uber --compaction none",
+}
+DEPTH = 8
+ALL = "all kernels"
+
+
+def add_arguments(parser):
+    parser.set_defaults(repeat=3, rounds=1, warmup=1)
+    parser.add_argument("--size", type=int, default=1024, metavar="N",
+                        help="width and height in pixels [%(default)s]")
+    parser.add_argument("--spp", type=int, default=16, metavar="N",
+                        help="samples per pixel [%(default)s]")
+
+
+def configurations(arguments, _device):
+    size, spp = (24, 1) if arguments.quick else (arguments.size, arguments.spp)
+    scenes = [scene.replace("1M", "1K") for scene in SCENES] if arguments.quick else SCENES
+    return [Configuration(f"{scene}: {variant}",
+                          f"--scene {scene} --width {size} --height {size} --spp {spp} "
+                          f"--max-depth {DEPTH} --counters {options}",
+                          {"scene": scene, "variant": variant})
+            for scene in scenes for variant, options in VARIANTS.items()]
+
+
+def command_of(program, device, configuration, arguments, folder):
+    command = ptexp.command_line(program, configuration, device, arguments.repeat,
+                                 arguments.warmup)
+    return [str(Path(folder, word)) if word in ("image.ppm", "row.csv", "run.json") else word
+            for word in command]
+
+
+def count(command, stats, timeout_s):
+    """(status, message, what --stats has)."""
+    try:
+        ptexp.run_ptexp(*command, timeout_s=timeout_s)
+    except HarnessError as error:
+        return "refused" if isinstance(error, harness.Refused) else "failed", str(error), {}
+    facts = json.loads(Path(stats).read_text(encoding="utf-8"))
+    problem = facts["counters"]["problem"]
+    return ("failed", problem, {}) if problem else ("measured", "", facts)
+
+
+def number(value):
+    return "" if value is None else f"{value:.6g}"
+
+
+def rows_of(configuration, status, message, facts):
+    """A row for each kernel, and one for all together."""
+    common = {"experiment": EXPERIMENT.name, "name": configuration.name, "status": status,
+              "message": message, **configuration.labels,
+              "scene_hash": scene_hash(configuration.arguments)}
+    if status != "measured":
+        return [common]
+    counters = facts["counters"]
+    kernels = [{"kernel": ALL, "launches": sum(k["launches"] for k in counters["kernels"]),
+                **counters["total"]}, *counters["kernels"]]
+    for kernel in kernels:
+        moved = kernel["l2_read_bytes"] + kernel["l2_written_bytes"]
+        predicted = kernel["predicted_read_bytes"] + kernel["predicted_written_bytes"]
+        kernel["l2_bytes_per_ray"] = moved / max(counters["rays"], 1)
+        kernel["predicted_bytes_per_ray"] = predicted / max(counters["rays"], 1)
+    return [{**common, "kernel_ms_median": number(facts["time_ms"]["kernel"]["median"]),
+             "rays": counters["rays"], "kernel": kernel["kernel"], "launches": kernel["launches"],
+             **{name: number(value) for name, value in kernel.items()
+                if name not in ("kernel", "launches")}} for kernel in kernels]
+
+
+def text_of(row):
+    """The row of all kernels as a line."""
+    if row["status"] != "measured":
+        return f"{row['name']:32} {row['status']}: {row['message']}"
+    percent = {name: f"{100 * float(row[name] or 'nan'):5.1f} %"
+               for name in ("issue", "occupancy", "l1_hit_rate", "l2_hit_rate")}
+    return (f"{row['name']:32} {float(row['threads_per_instruction']):5.1f} threads, issue "
+            f"{percent['issue']}, occupancy {percent['occupancy']}, L1 {percent['l1_hit_rate']}, "
+            f"L2 {percent['l2_hit_rate']}, {float(row['l2_bytes_per_ray']):6.0f} B per ray "
+            f"({float(row['predicted_bytes_per_ray']):.0f} predicted)")
+
+
+def run(experiment, arguments):
+    program = harness.find_program(arguments.ptexp)
+    device = harness.find_device(program, arguments.device)
+    chosen = configurations(arguments, device)
+    if arguments.list:
+        for configuration in chosen:
+            print(shlex.join(command_of(program, device, configuration, arguments, ".")))
+        return 0
+    path = harness.table_path(experiment, device, arguments)
+    facts = {**harness.provenance(experiment, program, device, arguments), "date": harness.now(),
+             "configurations": {c.name: c.arguments for c in chosen}}
+    rows = []
+    for configuration in chosen:
+        with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+            command = command_of(program, device, configuration, arguments, folder)
+            of_run = rows_of(configuration, *count(command, Path(folder, "run.json"),
+                                                   arguments.timeout))
+        rows += of_run
+        print(text_of(of_run[0]), flush=True)
+        if any(row["status"] == "measured" for row in rows):  # else the old table stays
+            harness.write_table(path, filled(rows), {**facts, "complete": False})
+    wrong = [row for row in rows if row["status"] != "measured"]
+    if not any(row["status"] == "measured" for row in rows):
+        did = "refused" if all(row["status"] == "refused" for row in rows) else "failed in"
+        raise HarnessError(f"ptexp {did} every configuration, the first with: "
+                           f"{rows[0]['message']}; no result was written")
+    failed = any(row["status"] == "failed" for row in wrong)
+    harness.write_table(path, filled(rows), {**facts, "complete": not failed})
+    print(f"\nwrote {path}")
+    return 1 if failed else 0
+
+
+def filled(rows):
+    """With the same columns in each."""
+    columns = max(rows, key=len)
+    return [{**dict.fromkeys([*columns, *row], ""), **row} for row in rows]
+
+
+EXPERIMENT = Experiment("counters", __doc__.splitlines()[0], configurations, None,
+                        add_arguments=add_arguments)
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT, runner=run))
