@@ -239,6 +239,18 @@ PT_HD std::uint32_t atomic_fetch_add(std::uint32_t* counter, std::uint32_t amoun
 #endif
 }
 
+/// Adds 1 to counters[n - 1] where n lanes of a warp make this call together: once for all of them,
+/// to the counters of the lowest lane. Nothing on the CPU, which has no warps.
+PT_HD void count_active_lanes([[maybe_unused]] std::uint64_t (&counters)[32]) {
+#ifdef __CUDA_ARCH__
+  const unsigned active = __activemask();
+  unsigned lower;
+  asm("mov.u32 %0, %%lanemask_lt;" : "=r"(lower));
+  if ((active & lower) != 0) return;
+  atomicAdd(reinterpret_cast<unsigned long long*>(&counters[__popc(active) - 1]), 1ull);
+#endif
+}
+
 #ifdef __CUDACC__
 /// The least and the largest of a warp's values, by all of its threads.
 __device__ inline std::uint32_t warp_min(std::uint32_t x) {

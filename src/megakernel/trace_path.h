@@ -30,6 +30,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
   while (work.any(working)) {
     bool ended = false;
     if (working) {
+      lanes_of(scene).at(path.rays).count(LanePoint::turn);
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
         ray = generate_camera_path(scene, id.pixel, u);

@@ -150,6 +150,17 @@ struct PathPool {
     if (receiver != nullptr) *at(receiver, slot) = path.receiver;
   }
 
+  /// `lanes` for the next ray of the path.
+  PT_HD LaneCounter path_lanes(const LaneCounter& lanes, std::uint32_t slot) const {
+    if constexpr (counts_lanes) return lanes.at(load_name(slot).rays);
+    return lanes;
+  }
+  /// `lanes` for its shadow ray.
+  PT_HD LaneCounter shadow_lanes(const LaneCounter& lanes, std::uint32_t slot) const {
+    if constexpr (counts_lanes) return lanes.at(load_shadow_rays(slot) - 1).of_shadow_ray();
+    return lanes;
+  }
+
   /// The path's number and rays alone.
   PT_HD PathState load_name(std::uint32_t slot) const {
     PathState path;

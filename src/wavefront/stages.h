@@ -111,7 +111,9 @@ struct IntersectRays {
       const PathState path = pool.load_name(slot);
       key = next_ray_key(mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
     }
-    const Hit hit = intersect_closest<Traits>(scene, pool.load_ray(slot), key);
+    Ray ray = pool.load_ray(slot);
+    set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
+    const Hit hit = intersect_closest<Traits>(scene, ray, key);
     if (parts_misses && hit.is_miss()) return {StageId::shade_miss};
     pool.store_hit(slot, hit);
     return {StageId::shade_surface};
@@ -127,7 +129,8 @@ struct SortHits {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
 
-  PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t) const {
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    pool.path_lanes(lanes_of(scene), slot).count(LanePoint::sort_hits);
     return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };
@@ -214,7 +217,8 @@ struct TraceShadowRays {
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t number, key = 0;
-    const ShadowRay shadow = pool.load_shadow(slot, number);
+    ShadowRay shadow = pool.load_shadow(slot, number);
+    set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     if constexpr (Traits::has_masks) {
       key = shadow_ray_key(mask_key<Traits>(scene, samples.id_of(number)),
                            pool.load_shadow_rays(slot));
@@ -241,6 +245,8 @@ struct FinishPaths {
     const auto& [pool, samples, source, counters, ray_queue, limits] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
+    set_lanes(ray, lanes_of(scene).at(path.rays));
+    lanes_of(ray).count(LanePoint::finish);
     const PathId id_of_path = samples.id_of(path.number);
     auto random = source.open(id_of_path);
     const Color before = Traits::has_lights ? samples.samples[path.number].radiance : Color(0.0f);

@@ -14,6 +14,7 @@ struct QueuedRays {
   PathPool pool;
   StageQueues queues;
   std::uint32_t* next;  ///< of the queue's places: handed out so far
+  PT_LANE_COUNTER;      ///< the scene's
 
   __device__ std::uint32_t slot(std::uint32_t number) const { return queues.slots[number]; }
 
@@ -44,6 +45,10 @@ struct QueuedPaths {
     rays.pool.store_hit(rays.slot(number), query.result());
   }
 
+  __device__ LaneCounter lanes(std::uint32_t number) const {
+    return rays.pool.path_lanes(lanes_of(rays), rays.slot(number));
+  }
+
   /// For masks. `path_key` gives a path's key by its number.
   template <class PathKey>
   __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
@@ -72,6 +77,10 @@ struct QueuedShadowRays {
     std::uint32_t path;
     const ShadowRay shadow = rays.pool.load_shadow(rays.slot(number), path);
     add_radiance(samples, path, shadow.radiance);
+  }
+
+  __device__ LaneCounter lanes(std::uint32_t number) const {
+    return rays.pool.shadow_lanes(lanes_of(rays), rays.slot(number));
   }
 
   template <class PathKey>

@@ -6,6 +6,7 @@
 #include <bit>
 #include <numeric>
 
+#include "common/device/profiler_range.cuh"
 #include "common/error.h"
 #include "common/scene/prepare_materials.h"
 
@@ -212,15 +213,19 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   start_queues();
   flows_.clear();
   // A pool that holds the whole batch starts all paths in the first wave.
+  int wave = 0;
   if (!buffers_.reuses_slots) {
+    const ProfilerRange range(fmt::format("wave {}", wave++));
     enqueue_wave(batch, 0, true);
     if (is_counting()) note_flow();
   }
   if (graph_exec_ != nullptr && !is_counting()) {
+    const ProfilerRange range("waves of a graph");
     check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
     read_counters();
   } else {
     do {
+      const ProfilerRange range(fmt::format("wave {}", wave++));
       enqueue_wave(batch, 0, buffers_.reuses_slots);
       if (is_counting())
         note_flow();

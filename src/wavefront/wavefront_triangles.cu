@@ -21,14 +21,15 @@ void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
 }
 
 void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  trace_persistently(QueuedPaths{{buffers_.pool, queues, &buffers_.counters->traced}}, samples,
-                     StageId::intersect);
+  QueuedPaths paths{{buffers_.pool, queues, &buffers_.counters->traced}};
+  set_lanes(paths.rays, lanes_of(scene_));
+  trace_persistently(paths, samples, StageId::intersect);
 }
 
 void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples) {
-  trace_persistently(
-      QueuedShadowRays{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples},
-      samples, StageId::shadow);
+  QueuedShadowRays shadows{{buffers_.pool, queues, &buffers_.counters->shadow_traced}, samples};
+  set_lanes(shadows.rays, lanes_of(scene_));
+  trace_persistently(shadows, samples, StageId::shadow);
 }
 
 using SamplerContext = StageContext<SamplerSource>;

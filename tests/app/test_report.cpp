@@ -10,6 +10,7 @@
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/build_info.h"
+#include "common/lane_counter.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -179,6 +180,30 @@ TEST(ReportJson, HasEverything) {
   ASSERT_EQ(json["runs"].size(), 3u);
   EXPECT_EQ(json["runs"][0]["kernel_ms"], 4);
   EXPECT_EQ(json["runs"][0]["stages"][1]["time_ms"], 1.5);
+}
+
+/// Two full groups and one of a lane at a node, then two groups of 3.
+RenderReport make_counting_report() {
+  RenderReport report = make_report();
+  report.divergence = {{"node", 0, {}}, {"bsdf", 4, {}}};
+  report.divergence[0].groups[31] = 2;
+  report.divergence[0].groups[0] = 1;
+  report.divergence[1].groups[2] = 2;
+  return report;
+}
+
+TEST(ReportJson, HasActiveLanesOnlyWhereTheyAreCounted) {
+  const auto json = nlohmann::json::parse(report_json(make_options(), make_counting_report()));
+  ASSERT_EQ(json["divergence"].size(), 2u);
+  EXPECT_EQ(json["divergence"][0]["point"], "node");
+  EXPECT_EQ(json["divergence"][0]["bounce"], 0);
+  ASSERT_EQ(json["divergence"][0]["lanes"].size(), 32u);
+  EXPECT_EQ(json["divergence"][0]["lanes"][31], 2);
+  EXPECT_EQ(json["divergence"][0]["lanes"][0], 1);
+  EXPECT_EQ(json["divergence"][1]["bounce"], 4);
+  EXPECT_EQ(json["divergence"][1]["lanes"][2], 2);
+  const auto other = nlohmann::json::parse(report_json(make_options(), make_report()));
+  EXPECT_FALSE(other.contains("divergence"));
 }
 
 TEST(ReportJson, HasEveryOptionWithItsType) {
@@ -416,6 +441,21 @@ TEST(ReportTable, NamesWhatWasMeasured) {
         "set-up 2.5 ms", "transfer 3.5 ms", "image 4.5 ms", "waves", "left out of the image"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
   EXPECT_EQ(table.back(), '\n');
+}
+
+TEST(ReportTable, WarnsOfTimesWhereLanesAreCounted) {
+  const std::string table = report_table(make_options(), make_counting_report());
+  for (const char* part :
+       {"This build counts lanes: its times tell nothing.",
+        "node                         21.67            67.7 %                 3",
+        "bsdf                          3.00             9.4 %                 2"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
+  EXPECT_EQ(report_table(make_options(), make_report()).find("lanes"), std::string::npos);
+}
+
+TEST(Build, NamesItsDivergenceCounters) {
+  const bool is_named = build_info().build_type.find("divergence counters") != std::string::npos;
+  EXPECT_EQ(is_named, counts_lanes);
 }
 
 TEST(ReportMetadata, HasOptionsDeviceBuildAndTimes) {

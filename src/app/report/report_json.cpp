@@ -130,6 +130,14 @@ Json counters_json(const std::optional<HardwareCounters>& counters) {
           {"launches", counted_launches_json(*counters)}};
 }
 
+Json divergence_json(const RenderReport& report) {
+  Json json = Json::array();
+  for (const LaneHistogram& histogram : report.divergence)
+    json.push_back(
+        {{"point", histogram.point}, {"bounce", histogram.bounce}, {"lanes", histogram.groups}});
+  return json;
+}
+
 Json memory_json(const RenderReport& report) {
   Json buffers = Json::array();
   for (const BufferSize& buffer : report.memory)
@@ -200,6 +208,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["memory"] = memory_json(report);
   json["kernels"] = kernels_json(report);
   json["counters"] = counters_json(report.counters);
+  if (!report.divergence.empty()) json["divergence"] = divergence_json(report);
   json["runs"] = runs_json(report);
   // A device's or file's name may hold bytes that are not UTF-8: no reason to lose the rest.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';

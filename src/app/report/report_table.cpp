@@ -6,6 +6,7 @@
 #include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
+#include "common/render/lane_histograms.h"
 #include "common/render/option_names.h"
 
 namespace pt {
@@ -44,6 +45,17 @@ std::string count_rows(const PathCounts& counts, const RunSummary& summary) {
   return text;
 }
 
+std::string divergence_rows(const RenderReport& report) {
+  if (report.divergence.empty()) return "";
+  std::string text = "\nThis build counts lanes: its times tell nothing.\n" +
+                     fmt::format("{:<16}{:>18}{:>18}{:>18}\n", "point", "lanes of 32",
+                                 "SIMT efficiency", "groups of lanes");
+  for (const LaneUse& use : lane_use(report.divergence))
+    text += fmt::format("{:<16}{:>18.2f}{:>16.1f} %{:>18}\n", use.point, use.mean_lanes(),
+                        100 * use.simt_efficiency(), grouped(use.groups));
+  return text;
+}
+
 std::string stop_row(const RunSummary& summary) {
   std::string text;
   if (summary.ended_by != RunEnd::samples) {
@@ -78,7 +90,7 @@ std::string report_table(const Options& options, const RenderReport& report) {
              report.scene_ms, report.setup_ms,
              report.load_ms > 0 ? fmt::format("loading kernels {:.1f} ms, ", report.load_ms) : "",
              report.transfer_ms, report.image_write_ms) +
-         (report.counters ? '\n' + counter_rows(*report.counters) : "");
+         (report.counters ? '\n' + counter_rows(*report.counters) : "") + divergence_rows(report);
 }
 
 }  // namespace pt

@@ -66,6 +66,7 @@ template <class Visit>
 PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t first,
                               std::uint32_t candidates, const Ray& ray, Visit&& visit) {
   while (candidates != 0) {
+    lanes_of(ray).count(LanePoint::primitive);
     const int j = count_leading_zeros(candidates);
     candidates &= ~(0x80000000u >> j);
     if (visit(sphere_distance(load_wide(&primitives.spheres[first + j]), ray), first + j)) {
@@ -91,6 +92,7 @@ PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, V
     if (chunk(first)) return true;
   }
   for (std::uint32_t i = 0; i < primitives.quad_count; ++i) {
+    lanes_of(ray).count(LanePoint::primitive);
     if (visit(quad_distance(primitives.quads[i], ray), primitives.sphere_count + i)) return true;
   }
   return false;

@@ -55,6 +55,7 @@ PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const Primitives& primitives, co
   std::uint32_t current = 0;
   while (current != done) {
     while (!is_leaf(current) && current != done) {
+      lanes_of(ray).count(LanePoint::node);
       const Bvh2Node node = load_wide(&nodes[current]);
       const SlabHit a = intersect_slabs(slab, node.xy[0], node.z.x, node.z.y, t_max);
       const SlabHit b = intersect_slabs(slab, node.xy[1], node.z.z, node.z.w, t_max);
@@ -72,6 +73,7 @@ PT_HD bool traverse_bvh2(const Bvh2Node* nodes, const Primitives& primitives, co
     const std::uint32_t first = leaf_first(current);
     const std::uint32_t end = first + leaf_count(current);
     for (std::uint32_t i = first; i < end; ++i) {
+      lanes_of(ray).count(LanePoint::primitive);
       if (visit(primitive_distance(primitives, i, ray), i, t_max)) return true;
     }
     current = depth > 0 ? stack[--depth] : done;

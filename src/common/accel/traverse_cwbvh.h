@@ -153,6 +153,7 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
   CwbvhGroup nodes = root_group(tree.root, local.octant), leaves{0, 0};
   while (true) {
     if (nodes.has_slots()) {
+      lanes_of(ray).count(LanePoint::node);
       const std::uint32_t child = take_child(nodes, local.octant);
       if (nodes.has_slots()) stack[depth++] = nodes;
       const CwbvhNode node = load_wide(&tree.cwbvh[child]);
@@ -176,11 +177,13 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
         nodes = root_group(tree.instances[instance].root, local.octant);
         leaves.bits = 0;
       } else if (instanced && entered >= 0) {
+        lanes_of(ray).count(LanePoint::primitive);
         if (offer_slots(tree, local.triangles, leaf.first, leaf.count, visit, instance, query)) {
           return;
         }
-      } else if (offer_slots(tree, local.triangles, leaf.first, leaf.count, query)) {
-        return;
+      } else {
+        lanes_of(ray).count(LanePoint::primitive);
+        if (offer_slots(tree, local.triangles, leaf.first, leaf.count, query)) return;
       }
     }
     if (nodes.has_slots()) continue;

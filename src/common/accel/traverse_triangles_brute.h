@@ -16,6 +16,7 @@ PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Qu
       const InstanceVisit visit =
           visit_instance(instance, ray, world, query.t_min(), query.t_max());
       if (visit.is_empty) continue;
+      lanes_of(ray).count(LanePoint::primitive);
       const TriangleRay local = make_triangle_ray(visit.ray.origin, visit.ray.direction);
       if (offer_slots(tree, local, instance.first_slot, instance.slot_count, visit, i, query)) {
         return;
@@ -23,6 +24,7 @@ PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Qu
     }
   }
   if (!instanced || tree.instance_count == 0) {
+    lanes_of(ray).count(LanePoint::primitive);
     const TriangleRay triangle_ray = make_triangle_ray(ray.origin, ray.direction);
     offer_slots(tree, triangle_ray, 0, tree.triangle_count, query);
   }

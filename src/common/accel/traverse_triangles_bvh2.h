@@ -56,6 +56,7 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
   while (current != done) {
     std::uint32_t next = none;
     if (!is_leaf(current)) {
+      lanes_of(ray).count(LanePoint::node);
       const Bvh2Node node = load_wide(&tree.bvh2[current]);
       const bool inside = instanced && entered >= 0;
       const Bvh2Step step = step_bvh2(node, local.slabs, query.t_min(),
@@ -75,13 +76,16 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
         next = tree.instances[instance].root;
       }
     } else if (instanced && entered >= 0) {
+      lanes_of(ray).count(LanePoint::primitive);
       if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current), visit,
                       instance, query)) {
         next = done;
       }
-    } else if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current),
-                           query)) {
-      next = done;
+    } else {
+      lanes_of(ray).count(LanePoint::primitive);
+      if (offer_slots(tree, local.triangles, leaf_first(current), leaf_count(current), query)) {
+        next = done;
+      }
     }
     if (next == none) {
       if (instanced && depth == entered && depth > 0) {

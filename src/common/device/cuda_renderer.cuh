@@ -134,6 +134,7 @@ class CudaRenderer : public FilmRenderer {
   void accumulate(const SampleBuffer& batch);
   PathTally read_tally() const;
   void read_clock(RenderRun& run);
+  std::vector<LaneHistogram> read_lane_counts() const;
 
   int device_;
   std::string driver_;
@@ -150,6 +151,7 @@ class CudaRenderer : public FilmRenderer {
   std::unique_ptr<CounterSession> counters_;  ///< while they are read
   std::map<std::string, int> others_;  ///< kernels of a library that one call launches, by name
   int wave_ = -1;
+  LaneCounts* lane_counts_ = nullptr;  ///< null: this build counts none
   std::vector<KernelInfo> kernels_;
   std::vector<const void*> kernel_pointers_;
   double setup_ms_ = 0;

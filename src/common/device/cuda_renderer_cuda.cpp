@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <nvtx3/nvToolsExt.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,8 +8,10 @@
 #include "common/device/cuda_renderer.cuh"
 #include "common/device/feature_kernels.cuh"
 #include "common/device/film_kernels.cuh"
+#include "common/device/profiler_range.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
+#include "common/render/lane_histograms.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_scene.h"
 #include "common/scene/prepare_triangles.h"
@@ -93,6 +94,10 @@ void CudaRenderer::upload(const SceneData& scene) {
   }
   scene_ = host_view(scene, options_.width, options_.height);
   scene_.mask_seed = mask_seed(options_.seed);
+  if constexpr (counts_lanes) {
+    lane_counts_ = memory_.allocate<LaneCounts>("lane counts", 1);
+    set_lanes(scene_, LaneCounter(lane_counts_));
+  }
   const auto upload_array = [&](auto*& pointer, const auto& values, const char* kind) {
     pointer = memory_.upload(kind, values);
   };
@@ -178,11 +183,8 @@ void CudaRenderer::launch_erased(const char* name, const void* kernel, dim3 grid
     note_kernel(name, kernel, block, shared_bytes);
   }
   if (is_counting()) counters_->note_launch(name, wave_);
-  nvtxRangePushA(name);
-  const cudaError_t status =
-      cudaLaunchKernel(kernel, grid, block, arguments, shared_bytes, stream_);
-  nvtxRangePop();
-  check_cuda(status, name);
+  const ProfilerRange range(name);
+  check_cuda(cudaLaunchKernel(kernel, grid, block, arguments, shared_bytes, stream_), name);
 }
 
 // How many kernels a library launches is its own affair: a capture tells.
@@ -241,6 +243,7 @@ HardwareCounters CudaRenderer::count_hardware() {
 
 void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
   constexpr int block = 256;
+  const ProfilerRange range(fmt::format("batch of {} paths", batch.path_count));
   prepare_batch(batch);
   set_wave(-1);
   check_cuda(cudaEventRecord(start_, stream_), "cudaEventRecord");
@@ -266,9 +269,11 @@ void CudaRenderer::accumulate(const SampleBuffer& batch) {
   const SamplerSource source = sampler_source_of(options_);
   if (film_.features != nullptr) {
     constexpr int feature_block = 128;
+    Scene scene = scene_;
+    set_lanes(scene, {});  // these camera rays belong to no path
     launch("features", feature_kernel(traits_),
            (batch.pixel_count.divisor() + feature_block - 1) / feature_block, feature_block, 0,
-           scene_, film_, batch, source, clock_);
+           scene, film_, batch, source, clock_);
   }
   if (plan_.is_radiance_alone()) {
     launch("accumulate", accumulate_film, grid, block, 0, film_.pixels, batch, tally_, clock_);
@@ -318,6 +323,9 @@ void CudaRenderer::begin_render(const Film& film) {
       cudaMemcpyAsync(tally_, &film.tally, sizeof(PathTally), cudaMemcpyHostToDevice, stream_),
       "cudaMemcpyAsync");
   check_cuda(cudaMemsetAsync(clock_, 0, sizeof(StageClock), stream_), "cudaMemset");
+  if (lane_counts_ != nullptr) {
+    check_cuda(cudaMemsetAsync(lane_counts_, 0, sizeof(LaneCounts), stream_), "cudaMemset");
+  }
 }
 
 void CudaRenderer::end_render(RenderRun& run) {
@@ -341,6 +349,14 @@ PathTally CudaRenderer::read_tally() const {
   PathTally tally;
   check_cuda(cudaMemcpy(&tally, tally_, sizeof tally, cudaMemcpyDeviceToHost), "cudaMemcpy");
   return tally;
+}
+
+std::vector<LaneHistogram> CudaRenderer::read_lane_counts() const {
+  if (lane_counts_ == nullptr) return {};
+  const auto counts = std::make_unique<LaneCounts>();
+  check_cuda(cudaMemcpy(counts.get(), lane_counts_, sizeof *counts, cudaMemcpyDeviceToHost),
+             "reading lane counts");
+  return lane_histograms(*counts);
 }
 
 void CudaRenderer::read_clock(RenderRun& run) {
@@ -369,6 +385,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.counts = summarize(read_tally());
   report.memory = memory_.buffers();
   report.kernels = kernels_;
+  report.divergence = read_lane_counts();
 }
 
 }  // namespace pt

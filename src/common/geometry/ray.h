@@ -1,6 +1,7 @@
 // Rays and hits.
 #pragma once
 
+#include "common/lane_counter.h"
 #include "common/math/vec.h"
 
 namespace pt {
@@ -9,6 +10,7 @@ namespace pt {
 struct Ray {
   Vec3 origin;
   Vec3 direction;
+  PT_LANE_COUNTER;
 };
 
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;

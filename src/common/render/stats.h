@@ -1,6 +1,7 @@
 // What a render measured. Filled by the renderers, printed and written by report.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -59,6 +60,13 @@ struct KernelInfo {
   double occupancy = 0;  ///< resident warps / the multiprocessor's warps, 0..1
 };
 
+/// How full warps were at a point of the code (lane_counter.h).
+struct LaneHistogram {
+  std::string point;
+  int bounce = 0;  ///< rays that the paths had traced before; the last one stands for more as well
+  std::array<std::uint64_t, 32> groups{};  ///< [n - 1]: how often n lanes were there together
+};
+
 /// The tree over a scene's triangles.
 struct TreeFacts {
   std::string builder;  ///< empty: there is none
@@ -100,6 +108,7 @@ struct RenderReport {
   std::vector<BufferSize> memory;
   std::vector<KernelInfo> kernels;
   std::optional<HardwareCounters> counters;  ///< where they were asked for
+  std::vector<LaneHistogram> divergence;  ///< of the last render, where the build counts lanes
 };
 
 }  // namespace pt

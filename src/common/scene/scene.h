@@ -43,6 +43,7 @@ struct Scene {
   std::uint32_t mask_seed = 0;         ///< of this render
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
+  PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA
 
   bool has_only_triangles() const {
     return primitives.count() == 0 && triangles.instance_count == 0;

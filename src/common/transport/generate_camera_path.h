@@ -10,8 +10,11 @@ namespace pt {
 /// the reconstruction filter: uniformly, for a box. `u`: block 0 of the path's random numbers;
 /// x, y for the point, z, w for the lens.
 PT_HD Ray generate_camera_path(const Scene& scene, std::uint32_t pixel, const Vec4& u) {
-  return camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + scene.filter.offset(u.x),
-                    static_cast<float>(pixel_y(pixel)) + scene.filter.offset(u.y), u.z, u.w);
+  lanes_of(scene).count(LanePoint::generate);
+  Ray ray = camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + scene.filter.offset(u.x),
+                       static_cast<float>(pixel_y(pixel)) + scene.filter.offset(u.y), u.z, u.w);
+  set_lanes(ray, lanes_of(scene));
+  return ray;
 }
 
 }  // namespace pt

@@ -63,6 +63,7 @@ PT_HD bool any_triangle(const Scene& scene, const Ray& ray, float t_max, std::ui
 /// `ray_key` (next_ray_key) decides what masks let through; read in scenes with masks alone.
 template <class Traits>
 PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ray_key = 0) {
+  lanes_of(ray).count(LanePoint::intersect);
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return closest_primitive<Traits>(scene, ray);
   } else {
@@ -81,6 +82,7 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ra
 template <class Traits>
 PT_HD bool intersect_shadow(const Scene& scene, const ShadowRay& shadow,
                             std::uint32_t ray_key = 0) {
+  lanes_of(shadow.ray).count(LanePoint::intersect);
   if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
     return any_primitive<Traits>(scene, shadow.ray, shadow.distance);
   } else {

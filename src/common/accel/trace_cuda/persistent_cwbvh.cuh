@@ -55,12 +55,15 @@ struct PersistentTuning {
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
 ///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
 ///     triangle's mask lets the ray through
+///   LaneCounter lanes(std::uint32_t number)  if its rays' lanes are to be counted
 template <class Query, class Work>
 class PersistentTracer {
  public:
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
                               PersistentWarp& warp, uint2* stack)
       : tree_(tree), work_(work), order_(order), warp_(warp), stack_(stack) {}
+
+  PT_LANE_COUNTER;  ///< of the lane's ray
 
   /// By the whole warp; returns when all rays are done.
   __device__ void run() {
@@ -133,11 +136,16 @@ class PersistentTracer {
     triangle_ray_ = ray.triangles;
     query_ = Query(ray.t_min, ray.t_max);
     warp_.number[threadIdx.x & 31] = ray.number;
+    if constexpr (counts_lanes && requires { work_.lanes(ray.number); }) {
+      set_lanes(*this, work_.lanes(ray.number));
+      lanes_of(*this).count(LanePoint::intersect);
+    }
     const std::uint32_t octant = ray.octant << 8;
     nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
   }
 
   __device__ void step() {
+    lanes_of(*this).count(LanePoint::node);
     const std::uint32_t octant = nodes_.bits & 0x700u;
     const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
     const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
@@ -156,6 +164,7 @@ class PersistentTracer {
 
   /// A single triangle is tested as a pair with itself.
   __device__ void test_leaf() {
+    lanes_of(*this).count(LanePoint::primitive);
     const CwbvhLeaf leaf = take_leaf(leaves_);
     const std::uint32_t last = leaf.first + leaf.count - 1;
     const Triangle a = load_wide(&tree_.triangles[leaf.first]);
