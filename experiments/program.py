@@ -16,12 +16,21 @@ ROOT = Path(__file__).resolve().parent.parent
 PROGRAMS = ["build/release/src/ptexp", "install/bin/ptexp"]  # below ROOT, unless named
 
 
-def find_program(named):
-    """The path of ptexp: --ptexp, else $PTEXP, else what was built or installed here."""
+COUNTS_LANES = "divergence counters"  # in --version of a build with PTEXP_DIVERGENCE
+
+
+def find_program(named, counts_lanes=False):
+    """The path of ptexp: --ptexp, else $PTEXP, else what was built or installed here. A build that
+    counts lanes is an error unless one is asked for, for its times tell nothing."""
     named = named or os.environ.get("PTEXP")
     candidates = [Path(named)] if named else [ROOT / path for path in PROGRAMS]
     for path in candidates:
         if path.is_file() and os.access(path, os.X_OK):
+            if (COUNTS_LANES in output_of(path, "--version")) != counts_lanes:
+                raise HarnessError(f"{path}: expected a build with PTEXP_DIVERGENCE=ON"
+                                   if counts_lanes else
+                                   f"{path}: has {COUNTS_LANES}; expected a build without, for the "
+                                   "times of this one tell nothing")
             return path.resolve()
     raise HarnessError(f"no program {' or '.join(map(str, candidates))}: build it (scripts/render) "
                        "or name it with --ptexp")

@@ -33,6 +33,7 @@ SCRIPTS = sorted(path.stem for path in (ROOT / "experiments").glob("*.py")
 NEED_GPU = ["block_size", "counters"]
 GPU_IN_PART = ["scene_memory"]  # more than half of its rows are refused on a CPU
 NEED_TWO_BUILDS = ["compare_builds"]  # test_harness.py runs it
+NEED_COUNTING_BUILD = ["divergence"]
 
 IMAGE = "--width 24 --height 12 --spp 2"
 
@@ -189,6 +190,10 @@ class Experiments(unittest.TestCase):
              "--repeat", "2", "--rounds", "1", "--warmup", "0", "--ptexp", PTEXP,
              "--output", self.folder / "out"],
             capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
+        if script in NEED_COUNTING_BUILD:
+            self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
+            self.assertIn("expected a build with PTEXP_DIVERGENCE=ON", run.stderr)
+            return
         if script in NEED_GPU:
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
             self.assertIn("refused every configuration", run.stderr)
@@ -277,6 +282,46 @@ class Dial(unittest.TestCase):
         for configuration in self.dial.configurations(arguments, None):
             groups.setdefault(configuration.same_image, []).append(configuration)
         self.assertEqual(set(map(len, groups.values())), {len(self.dial.VARIANTS)})
+
+
+class Divergence(unittest.TestCase):
+    def setUp(self):
+        self.divergence = importlib.import_module("divergence")
+
+    def statistics(self, rays=70):
+        """Two full warps and one of six lanes trace camera rays; of two groups one is full."""
+        def part(point, bounce, **groups):
+            counts = [0] * 32
+            for lanes, count in groups.items():
+                counts[int(lanes[1:]) - 1] = count
+            return {"point": point, "bounce": bounce, "lanes": counts}
+        return {"counts": {"paths": 70, "rays": rays, "shadow_rays": 0}, "divergence": [
+            part("generate", 0, n32=2, n6=1), part("intersect", 0, n32=2, n6=1),
+            part("bsdf", 0, n32=1, n8=1), part("bsdf", 1, n4=2)]}
+
+    def test_rows_by_hand(self):
+        one = Configuration("room: m", "", {"scene": "room", "variant": "m"})
+        rows = self.divergence.rows_of(one, self.statistics())
+        found = [(row["point"], row["bounce"], row["x"], row["groups"], row["lanes"],
+                  row["mean_lanes"], row["simt_efficiency"]) for row in rows]
+        self.assertEqual(found, [("generate", 0, "", 3, 70, "23.3333", "0.72917"),
+                                 ("intersect", 0, "", 3, 70, "23.3333", "0.72917"),
+                                 ("bsdf", 0, 1, 2, 40, "20.0000", "0.62500"),
+                                 ("bsdf", 1, 2, 2, 8, "4.0000", "0.12500")])
+        self.assertEqual(rows[2]["groups_of"], "0;0;0;0;0;0;0;1" + ";0" * 23 + ";1")
+        self.assertEqual(self.divergence.table_text(rows).splitlines(), [
+            "mean lanes           all     0     1", "generate            23.3  23.3",
+            "intersect           23.3  23.3", "bsdf                12.0  20.0   4.0"])
+        self.assertFalse([column for column in rows[0] if "ms" in column])
+
+    def test_rays_that_are_not_counted_are_an_error(self):
+        self.divergence.check_sums("room", self.statistics())
+        with self.assertRaisesRegex(harness.HarnessError, "70 lanes at intersect, but 71 rays"):
+            self.divergence.check_sums("room", self.statistics(rays=71))
+        statistics = self.statistics()
+        statistics["counts"]["shadow_rays"] = 1
+        with self.assertRaisesRegex(harness.HarnessError, "0 lanes at shadow, but 1 shadow_rays"):
+            self.divergence.check_sums("room", statistics)
 
 
 class Sampling(unittest.TestCase):

@@ -225,6 +225,20 @@ class Harness(unittest.TestCase):
         self.run_seeds("--repeat", "4")
         self.assertEqual(len(self.log()), 6)
 
+    def test_a_build_that_counts_lanes_is_refused(self):
+        self.fake("a", version="abc\nbuild Release with divergence counters, GNU")
+        status, _, errors = self.run_seeds()
+        self.assertEqual((status, len(errors.splitlines())), (2, 1), errors)
+        self.assertIn("has divergence counters; expected a build without", errors)
+        self.assertEqual(list(self.folder.glob("out/*/*")), [])
+        self.assertEqual(harness.find_program(self.program, counts_lanes=True),
+                         self.program.resolve())
+        self.fake("b")
+        self.assertEqual(self.compare_builds()[0], 2)
+        self.fake("a")
+        with self.assertRaisesRegex(harness.HarnessError, "expected a build with PTEXP_DIV"):
+            harness.find_program(self.program, counts_lanes=True)
+
     def test_ctrl_c(self):
         self.fake("a", wrong={"2": 130})
         status, _, errors = self.run_seeds()
