@@ -1,6 +1,7 @@
 // Hardware counters of kernels of which it is known what they do.
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "common/device/counter_session_cuda.h"
 #include "cuda_test.h"
@@ -27,6 +28,13 @@ class CudaCounterSession : public CudaTest {
  protected:
   static constexpr int count = 1 << 22;  // 64 MiB
 
+  void SetUp() override {
+    CudaTest::SetUp();
+    if (IsSkipped()) return;
+    from.emplace(std::size_t{count});
+    to.emplace(std::size_t{count});
+  }
+
   /// Skips where the driver or the machine does not let us count, and says why.
   HardwareCounters measure(CounterReplay replay = CounterReplay::user) {
     HardwareCounters result;
@@ -41,17 +49,16 @@ class CudaCounterSession : public CudaTest {
 
   void launch_all(CounterSession& session) {
     session.note_launch("copy", 0);
-    copy_wide<<<count / block, block>>>(from.data(), to.data(), count);
+    copy_wide<<<count / block, block>>>(from->data(), to->data(), count);
     session.note_launch("lanes", 1);
-    work_in_lanes<<<count / block, block>>>(reinterpret_cast<float*>(to.data()), 8, 200);
+    work_in_lanes<<<count / block, block>>>(reinterpret_cast<float*>(to->data()), 8, 200);
     session.note_launch("copy", 2);
-    copy_wide<<<count / block, block>>>(from.data(), to.data(), count);
+    copy_wide<<<count / block, block>>>(from->data(), to->data(), count);
     check_cuda(cudaDeviceSynchronize(), "running a test's kernel");
   }
 
   std::string problem;
-  DeviceArray<uint4> from{has_cuda_device() ? std::size_t{count} : 0};
-  DeviceArray<uint4> to{has_cuda_device() ? std::size_t{count} : 0};
+  std::optional<DeviceArray<uint4>> from, to;
 };
 
 /// Sums of the copies and of the other kernel.
@@ -110,7 +117,7 @@ TEST_F(CudaCounterSession, VeryManyLaunchesAreCutOff) {
     counters = session.count([&] {
       for (std::size_t i = 0; i < CounterSession::launches_max + 3; ++i) {
         session.note_launch("lanes", -1);
-        work_in_lanes<<<1, 32>>>(reinterpret_cast<float*>(to.data()), 32, 1);
+        work_in_lanes<<<1, 32>>>(reinterpret_cast<float*>(to->data()), 32, 1);
       }
       check_cuda(cudaDeviceSynchronize(), "running a test's kernel");
     });
@@ -130,7 +137,7 @@ TEST_F(CudaCounterSession, OtherLaunchesInEachPassAreAnError) {
   const auto render = [&] {
     for (int i = 0; i <= renders % 2; ++i) {
       session.note_launch("lanes", -1);
-      work_in_lanes<<<1, 32>>>(reinterpret_cast<float*>(to.data()), 32, 1);
+      work_in_lanes<<<1, 32>>>(reinterpret_cast<float*>(to->data()), 32, 1);
     }
     ++renders;
     check_cuda(cudaDeviceSynchronize(), "running a test's kernel");
