@@ -98,7 +98,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
 
 void WavefrontCuda::compact(const CompactionRequest& request) {
   if (compactor_ == nullptr) return;
-  launch_others("compact", [&] { compactor_->enqueue(request, clock(), stream()); });
+  launch_others("compact", request.queues_wanted,
+                [&] { compactor_->enqueue(request, clock(), stream()); });
 }
 
 // Every slot is free when a batch begins.

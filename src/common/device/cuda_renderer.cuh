@@ -59,9 +59,9 @@ class CudaRenderer : public FilmRenderer {
                   Pack<Parameters...>(arguments...).pointers());
   }
 
-  /// Calls `enqueue`, which launches a library's kernels on stream(), as many whenever the name is
-  /// this one; they are counted under it.
-  void launch_others(const char* name, const std::function<void()>& enqueue);
+  /// Calls `enqueue`, which launches a library's kernels on stream(), as many in each call of one
+  /// kind; they are counted under this name.
+  void launch_others(const char* name, int kind, const std::function<void()>& enqueue);
 
   /// Blocks of `kernel` that the device holds at once.
   std::uint32_t resident_blocks(const void* kernel, int block_threads, std::size_t shared_bytes);
@@ -148,8 +148,8 @@ class CudaRenderer : public FilmRenderer {
   PathTally* tally_ = nullptr;
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
-  std::unique_ptr<CounterSession> counters_;  ///< while they are read
-  std::map<std::string, int> others_;  ///< kernels of a library that one call launches, by name
+  std::unique_ptr<CounterSession> counters_;           ///< while they are read
+  std::map<std::pair<std::string, int>, int> others_;  ///< kernels of launch_others, by its call
   int wave_ = -1;
   LaneCounts* lane_counts_ = nullptr;  ///< null: this build counts none
   std::vector<KernelInfo> kernels_;

@@ -208,12 +208,12 @@ int CudaRenderer::count_kernels(const std::function<void()>& enqueue) const {
   return kernels;
 }
 
-void CudaRenderer::launch_others(const char* name, const std::function<void()>& enqueue) {
+// Only the first time, before a profiler looks at what is launched.
+void CudaRenderer::launch_others(const char* name, int kind, const std::function<void()>& enqueue) {
   if (is_counting()) {
-    const auto found = others_.find(name);
-    const int kernels = found != others_.end() ? found->second : count_kernels(enqueue);
-    others_[name] = kernels;
-    for (int i = 0; i < kernels; ++i) counters_->note_launch(name, wave_);
+    const auto [entry, is_new] = others_.try_emplace({name, kind}, 0);
+    if (is_new) entry->second = count_kernels(enqueue);
+    for (int i = 0; i < entry->second; ++i) counters_->note_launch(name, wave_);
   }
   enqueue();
 }
