@@ -146,10 +146,10 @@ class MarkedPool {
 
   MarkedPool(std::uint32_t slots, const PathPool::Parts& parts) {
     pool.slot_count = slots;
-    pool.allocate_arrays(parts, [&](auto* array) {
-      blocks_.emplace_back(slots * sizeof *array / sizeof(Record) + 1);
+    pool.allocate_arrays(parts, [&]<class T>(T*, std::uint64_t count) {
+      blocks_.emplace_back(count * sizeof(T) / sizeof(Record) + 1);
       std::memset(blocks_.back().data(), mark, blocks_.back().size() * sizeof(Record));
-      return reinterpret_cast<decltype(array)>(blocks_.back().data());
+      return reinterpret_cast<T*>(blocks_.back().data());
     });
   }
 
