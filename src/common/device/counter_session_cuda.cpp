@@ -261,10 +261,8 @@ void initialize_cupti() {
   PT_CUPTI(cuptiProfilerInitialize, params);
 }
 
-}  // namespace
-
-/// The range profiler of one context.
-struct CounterSession::Profiler {
+/// The range profiler of the current context.
+struct Profiler {
   Profiler(int device, CounterReplay replay_mode)
       : context((initialize_cupti(), current_context())),
         host(chip_name(device), counter_availability(context)),
@@ -372,6 +370,8 @@ struct CounterSession::Profiler {
   CUpti_RangeProfiler_Object* object = nullptr;
 };
 
+}  // namespace
+
 std::vector<std::string> metrics_of_chip(const std::string& chip) {
   return MetricHost(chip).names();
 }
@@ -384,56 +384,48 @@ HardwareCounters CounterSession::count(const std::function<void()>& render) {
   result.launches = expected;
   if (expected.size() > launches_max) result.launches.resize(launches_max);
   result.uncounted_launches = expected.size() - result.launches.size();
-  profiler_->prepare(result.launches.size());
-  const int passes_max = profiler_->passes();
+  Profiler profiler(device_, replay_);
+  profiler.prepare(result.launches.size());
+  const int passes_max = 2 * profiler.passes() + 2;  // whatever else CUPTI may want
   for (bool done = false; !done;) {
     if (++result.passes > passes_max) {
-      throw CountersUnavailable(
-          fmt::format("CUPTI: wants more than the {} passes that it announced", passes_max));
+      throw CountersUnavailable(fmt::format("CUPTI: is not content with {} passes; it announced {}",
+                                            passes_max, profiler.passes()));
     }
-    profiler_->start();
+    profiler.start();
     launches_.clear();
     render();
     check_cuda(cudaDeviceSynchronize(), "rendering under the profiler");
-    done = profiler_->stop();
+    done = profiler.stop();
     check_launches(expected);
   }
-  const std::size_t ranges = profiler_->decode();
+  const std::size_t ranges = profiler.decode();
   if (ranges != result.launches.size()) {
     throw CountersUnavailable(fmt::format("CUPTI: counted {} launches, the render made {}", ranges,
                                           result.launches.size()));
   }
   for (std::size_t range = 0; range < ranges; ++range) {
-    result.launches.at(profiler_->launch_of(range)).values =
-        profiler_->host.evaluate(profiler_->data, range);
+    result.launches.at(profiler.launch_of(range)).values =
+        profiler.host.evaluate(profiler.data, range);
   }
   return result;
 }
 
 #else  // without the headers
 
-struct CounterSession::Profiler {
-  Profiler(int, CounterReplay) { throw_missing(); }
-  [[noreturn]] static void throw_missing() {
-    throw CountersUnavailable(
-        fmt::format("this program was built without CUPTI's range profiler: CUDA {}.{} has no "
-                    "cupti_range_profiler.h, expected 12.6 or newer",
-                    CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10));
-  }
-};
-
 std::vector<std::string> metrics_of_chip(const std::string&) {
-  CounterSession::Profiler::throw_missing();
+  throw CountersUnavailable(
+      fmt::format("this program was built without CUPTI's range profiler: CUDA {}.{} has no "
+                  "cupti_range_profiler.h, expected 12.6 or newer",
+                  CUDART_VERSION / 1000, CUDART_VERSION % 1000 / 10));
 }
 
-HardwareCounters CounterSession::count(const std::function<void()>&) { return {}; }
+HardwareCounters CounterSession::count(const std::function<void()>&) {
+  metrics_of_chip("");
+  return {};
+}
 
 #endif
-
-CounterSession::CounterSession(int device, CounterReplay replay)
-    : profiler_(std::make_unique<Profiler>(device, replay)) {}
-
-CounterSession::~CounterSession() = default;
 
 void CounterSession::note_launch(const char* kernel, int wave) {
   launches_.push_back({kernel, wave, {}, {}});

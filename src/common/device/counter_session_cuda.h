@@ -10,7 +10,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,9 +44,9 @@ class CounterSession {
   /// Launches beyond so many are not counted.
   static constexpr std::size_t launches_max = 4000;
 
-  /// On the current CUDA device. Throws CountersUnavailable.
-  explicit CounterSession(int device, CounterReplay replay = CounterReplay::user);
-  ~CounterSession();
+  /// Of kernels on the current CUDA device, which is this one.
+  explicit CounterSession(int device, CounterReplay replay = CounterReplay::user)
+      : device_(device), replay_(replay) {}
 
   /// To be called for each of the render's launches, in their order. `wave`: see LaunchCounters.
   void note_launch(const char* kernel, int wave);
@@ -58,10 +57,10 @@ class CounterSession {
   HardwareCounters count(const std::function<void()>& render);
 
  private:
-  struct Profiler;
   void check_launches(const std::vector<LaunchCounters>& expected) const;
 
-  std::unique_ptr<Profiler> profiler_;
+  int device_;
+  CounterReplay replay_;
   std::vector<LaunchCounters> launches_;  ///< noted in this pass
 };
 
