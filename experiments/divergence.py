@@ -137,7 +137,7 @@ def run(experiment, arguments):
 
 EXPERIMENT = Experiment(
     "divergence", __doc__.splitlines()[0], configurations,
-    Plot("lines", "Active lanes: 1024 x 1024, 4 samples, depth 8", "ray of a path",
+    Plot("lines", "Active lanes: 1024 x 1024, 4 samples, depth 8", "rays of a path",
          "active lanes of 32, mean", y="mean_lanes", log_y=False),
     add_arguments=add_scene_files)
 

@@ -192,6 +192,7 @@ struct ShadeSurface {
     const PathPool& pool = context.pool;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
+    set_lanes(ray, lanes_of(scene).at(path.rays));
     ++path.rays;
     const Scattering scattering =
         scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);

@@ -92,8 +92,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   // The paper's kernels stay lean: what they cannot do is done by the others (scene_options.h).
   const MisHeuristic mis = full ? limits.mis : MisHeuristic::power;
   const DirectionSampling directions = full ? limits.directions : DirectionSampling::bsdf;
-  const LaneCounter lanes = lanes_of(scene).at(path.rays - 1u);
-  lanes.count(LanePoint::shade_surface);
+  lanes_of(ray).count(LanePoint::shade_surface);
   Surface surface = surface_at<Traits>(scene, ray, hit);
   Scattering result;
   if constexpr (has_lights) {
@@ -112,7 +111,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const Vec3 from = spawn_origin(surface.point, -ray.direction);
   IncidentLight incident;
   if (asks) {
-    lanes.count(LanePoint::light);
+    lanes_of(ray).count(LanePoint::light);
     path.receiver = receiver_of<Traits>(surface, ray);
     incident = sample_light<Traits>(scene, from, path.receiver, light);
   }
@@ -121,7 +120,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   BsdfValue value;
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
-    lanes.count(LanePoint::bsdf);
+    lanes_of(ray).count(LanePoint::bsdf);
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
     if (asks) {
       const Vec3 wi = frame.to_local(incident.wi);
@@ -142,7 +141,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if constexpr (has_lights) {
     path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
     result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
-    set_lanes(result.shadow.ray, lanes.of_shadow_ray());
+    set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
