@@ -10,6 +10,7 @@ import harness
 from harness import Configuration, Experiment, Plot
 from promises import judge_best
 from scene_files import add_scene_files, scene_files, short_name
+from sentences import against, in_groups
 
 # scene, samples, and the promise in 10^6 samples/s that the best way keeps on an H200
 BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed", 16, None)]
@@ -48,11 +49,21 @@ def configurations(arguments, _device):
     return rows
 
 
+def conclude(rows, _arguments):
+    """Each way against one kernel for all materials in any order."""
+    lines = []
+    for scene, mine in in_groups(rows, "panel").items():
+        plain = next((row for row in mine if row["x"] == "uber"), None)
+        lines += [f"{scene}, {row['x']}: {against(plain, row, 'uber')}"
+                  for row in mine if plain and row is not plain]
+    return lines
+
+
 EXPERIMENT = Experiment(
     "shading", __doc__.splitlines()[0], configurations,
     Plot("bars", "Ways to shade: 1024 x 1024, depth 8", log_y=False),
     add_arguments=add_scene_files, finish=judge_best,
-    table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
+    conclude=conclude, table=("mpaths_per_s", "target_msamples_per_s", "verdict"))
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT))

@@ -8,6 +8,7 @@ import sys
 
 import harness
 from harness import Configuration, Experiment, Plot
+from sentences import against, in_groups
 
 BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["reduced"]),
         ("rng", ["xorwow"])]
@@ -43,11 +44,20 @@ def finish(rows, _arguments):
             row["relative_to_default"] = f"{relative:.3f}"
 
 
+def conclude(rows, _arguments):
+    lines = []
+    for mode, mine in in_groups(rows, "panel").items():
+        default = next((row for row in mine if row["x"] == "default"), None)
+        lines += [f"{mode}, {row['x']}: {against(default, row, 'the default')}"
+                  for row in mine if default and row is not default]
+    return lines
+
+
 EXPERIMENT = Experiment(
     "toggles", __doc__.splitlines()[0], configurations,
     Plot("bars", "The paper's toggles, each alone: spheres, 600x300, 50 samples, depth 50",
          log_y=False),
-    finish=finish, table=("relative_to_default",))
+    finish=finish, conclude=conclude, table=("relative_to_default",))
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT))

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from functools import partial
 from pathlib import Path
 from statistics import median
 from unittest import mock
@@ -341,9 +342,9 @@ class Harness(unittest.TestCase):
         self.fake("b", images={"": "other"}, version="d")
         self.assertEqual(self.compare_builds()[0], 2)
 
-    def trace(self, _program, rays, *_):
+    def trace(self, _experiment, _program, rays, *_):
         """Stands for the measurement of a set of rays; Ctrl-C at the third."""
-        name = Path(rays).name
+        name = Path(rays.rays).name
         self.traced.append(name)
         if len(self.traced) == 3:
             raise KeyboardInterrupt
@@ -351,14 +352,15 @@ class Harness(unittest.TestCase):
                  "mrays_per_s": "1"}]
 
     def test_ray_sets_go_on(self):
-        ray_sets, self.traced = importlib.import_module("ray_sets"), []
+        ray_sets, traced_sets = map(importlib.import_module, ("ray_sets", "traced_sets"))
+        self.traced = []
 
         def run():
             with contextlib.redirect_stdout(io.StringIO()), \
                     contextlib.redirect_stderr(io.StringIO()), \
-                    mock.patch.object(ray_sets, "measure", self.trace):
-                return harness.main(ray_sets.EXPERIMENT, self.options("--quick"),
-                                    runner=ray_sets.run)
+                    mock.patch.object(traced_sets, "measure", self.trace):
+                return harness.main(ray_sets.EXPERIMENT, self.options("--quick"), runner=partial(
+                    traced_sets.run, sets_of=ray_sets.ray_sets))
         self.assertEqual(run(), 130)
         path, = self.folder.glob("out/*/ray_sets-quick.csv")
         self.assertEqual(len(path.read_text().splitlines()), 1 + 2)
@@ -366,6 +368,8 @@ class Harness(unittest.TestCase):
         self.assertEqual(len(path.read_text().splitlines()), 1 + 6)
         self.assertEqual(self.traced[2], self.traced[3])  # the one that was cut off
         self.assertEqual(len(self.traced), 6 + 1)
+        self.assertEqual(run(), 0)
+        self.assertEqual(len(self.traced), 6 + 1)  # a complete table is not measured again
 
     def test_intervals_are_drawn(self):
         try:

@@ -1,7 +1,10 @@
 """What experiments make of their rows: labels and sentences, from numbers that are known."""
 import importlib
+import itertools
+import random
 import struct
 import sys
+import tempfile
 import types
 import unittest
 from pathlib import Path
@@ -90,6 +93,14 @@ class Ladder(unittest.TestCase):
     def test_no_graph_on_a_cpu(self):
         self.assertFalse([made for made in self.ladder.configurations(FULL, CPU)
                           if "graph" in made.arguments])
+
+
+class Toggles(unittest.TestCase):
+    def test_each_against_what_it_replaces(self):
+        for name, base, said in (("toggles", "default", "the default"), ("shading", "uber", "uber")):
+            rows = [row(ms, panel="p", x=x) for ms, x in ((4, "a"), (2, base), (1, "b"))]
+            self.assertEqual(experiment(name).conclude(rows, None), [
+                f"p, a: 2.00 times as slow as {said}", f"p, b: 2.00 times as fast as {said}"])
 
 
 class BlockSize(unittest.TestCase):
@@ -186,6 +197,81 @@ class Scenes(unittest.TestCase):
             "s, both as usually written, wavefront: 2.00 times as slow as the megakernel",
             "s, megakernel at its best: 2.00 times as fast as what is usual",
             "s, wavefront at its best: 8.00 times as fast as what is usual"])
+
+
+class RayFiles(unittest.TestCase):
+    def setUp(self):
+        self.files = experiment("ray_files")
+        folder = tempfile.TemporaryDirectory(prefix="ptexp rays ")
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name, "a.rays")
+        draw = random.Random(7)
+        # Origins at the corners of the cells of a grid that the sort uses, too.
+        self.rays = [(*(float(draw.randrange(1024)) for _ in range(3)), 0.0,
+                      *(draw.uniform(-1, 1) for _ in range(3)), 9.0) for _ in range(500)]
+        self.rays += [(0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 9.0),
+                      (1023.0, 1023.0, 1023.0, 0.0, 1.0, 1.0, 1.0, 9.0)]
+
+    def write(self, magic=b"TRBRAYS1"):
+        self.path.write_bytes(struct.pack("<8sQIIII", magic, len(self.rays), 1, 0, 0, 0)
+                              + b"".join(struct.pack("<8f", *ray) for ray in self.rays))
+
+    def reordered(self, order):
+        self.write()
+        before = self.path.read_bytes()
+        self.files.reorder(self.path, order)
+        after = self.path.read_bytes()
+        self.assertEqual(before[:32], after[:32])
+        records = [[content[at:at + 32] for at in range(32, len(content), 32)]
+                   for content in (before, after)]
+        self.assertCountEqual(*records)
+        return [struct.unpack("<8f", record) for record in records[1]]
+
+    @staticmethod
+    def comes_before(a, b):
+        """Along the Morton curve, whose highest bit is z's: by the axis of the highest bit in which
+        the two differ (Chan 2002, 'Closest-point problems simplified on the RAM')."""
+        axis, highest = 0, 0
+        for candidate in (2, 1, 0):
+            difference = int(a[candidate]) ^ int(b[candidate])
+            if highest.bit_length() < difference.bit_length():
+                axis, highest = candidate, difference
+        return a[axis] <= b[axis]
+
+    def test_by_origin(self):
+        rays = self.reordered("origin")
+        self.assertTrue(all(self.comes_before(a, b) for a, b in zip(rays, rays[1:])))
+
+    def test_by_direction(self):
+        rays = self.reordered("direction")
+        ways = [tuple(x < 0 for x in ray[4:7]) for ray in rays]
+        self.assertEqual(len([way for way, _ in itertools.groupby(ways)]), len(set(ways)))
+        for a, b in zip(rays, rays[1:]):
+            same = all((x < 0) == (y < 0) for x, y in zip(a[4:7], b[4:7]))
+            self.assertTrue(not same or self.comes_before(a, b))
+
+    def test_shuffled(self):
+        rays = self.reordered("shuffled")
+        self.assertLess(sum(a == b for a, b in zip(rays, self.rays)), 20)
+
+    def test_another_file_is_left_alone(self):
+        self.write(magic=b"TRBHITS1")
+        before = self.path.read_bytes()
+        with self.assertRaisesRegex(ValueError, "a.rays: not a file of rays"):
+            self.files.reorder(self.path, "origin")
+        self.assertEqual(self.path.read_bytes(), before)
+
+
+class RayOrder(unittest.TestCase):
+    def test_what_a_sort_may_cost(self):
+        def traced(ms, label):
+            return {"panel": "p", "x": label, "rays": "1000", "time_ms": str(ms),
+                    "time_min_ms": str(0.99 * ms), "time_max_ms": str(1.01 * ms), "repeat": "7"}
+        rows = [traced(4, "as made"), traced(8, "shuffled"), traced(3, "by origin")]
+        self.assertEqual(experiment("ray_order").conclude(rows, None), [
+            "p, shuffled: 2.00 times the time as made (slower)",
+            "p, by origin: 0.750 times the time as made (faster); it pays if sorting takes less "
+            "than 1,000 ns a ray"])
 
 
 class LampScene(unittest.TestCase):
