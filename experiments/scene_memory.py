@@ -27,7 +27,7 @@ def configurations(arguments, _device):
         f"{mode}, {accel}, {count} spheres: {memory}",
         f"--mode {mode} --accel {accel} --spheres {count} --scene-memory {memory} {image}",
         {"panel": f"{mode}, {accel}", "series": memory, "x": count, "occupancy": ""},
-        same_image=f"{count} spheres")
+        same_image=f"{count} spheres, {accel}")
             for mode, accel, counts in SERIES for count in counts for memory in MEMORIES]
 
 

@@ -274,6 +274,19 @@ class RayOrder(unittest.TestCase):
             "than 1,000 ns a ray"])
 
 
+class SameImages(unittest.TestCase):
+    def test_structures_promise_one_image_of_triangles_alone(self):
+        for name in ("scenes", "scene_memory", "growth"):
+            arguments = types.SimpleNamespace(quick=True, list=True, scenes=[], output=Path("."))
+            groups = {}
+            for made in experiment(name).configurations(arguments, CUDA):
+                if not any(f"--scene {scene}" in made.arguments for scene in (
+                        "statue", "boxes", "instances", "terrain", "/")):
+                    groups.setdefault(made.same_image, set()).add(option(made, "--accel"))
+            self.assertTrue(groups)
+            self.assertEqual(set(map(len, groups.values())), {1}, name)
+
+
 class LampScene(unittest.TestCase):
     def test_lamps_look_down_and_stay_as_bright(self):
         lamps = experiment("lamp_scene")
