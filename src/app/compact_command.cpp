@@ -53,7 +53,7 @@ class CompactRun {
     m.strategy = strategy;
     m.waiting = count_waiting(tags);
     m.bytes = moved_bytes(strategy, slots.items, m.waiting);
-    m.plan = plan_passes(device_.items_per_time(), slots.items, m.bytes, command_.runs.cold);
+    m.plan = device_.plan(slots.items, m.bytes, command_.runs.cold);
     m.time_ms =
         spread(device_.time_compaction(strategy, tags, slots.queues, m.plan, command_.runs));
     m.copy = copy_of(m.bytes, m.plan);

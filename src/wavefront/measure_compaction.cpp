@@ -8,14 +8,6 @@
 namespace pt {
 namespace {
 
-// More than the caches of today's devices hold.
-constexpr std::uint64_t cold_bytes = std::uint64_t{1} << 28;
-// Of short passes, for which launching counts and memory does not.
-constexpr std::uint64_t sets_max = 4096;
-constexpr std::uint64_t passes_max = 256;
-
-std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
-
 /// What is wrong with a queue of which `expected` are the slots, in ascending order.
 std::string queue_breach(const CompactionInfo& strategy, std::uint32_t count,
                          const std::vector<std::uint32_t>& queue,
@@ -76,12 +68,13 @@ std::string contract_breach(Compaction strategy, const std::vector<StageId>& tag
   return "";
 }
 
-PassPlan plan_passes(std::uint64_t items_per_time, std::uint64_t items, std::uint64_t bytes,
-                     bool cold) {
-  const std::uint64_t sets =
-      cold ? std::min(divide_up(cold_bytes, std::max<std::uint64_t>(bytes, 1)), sets_max) : 1;
-  const std::uint64_t passes = std::clamp<std::uint64_t>(items_per_time / items, 1, passes_max);
-  return {static_cast<std::uint32_t>(std::max(passes, sets)), static_cast<std::uint32_t>(sets)};
+std::uint32_t count_passes(std::uint64_t items_per_time, std::uint64_t items) {
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(items_per_time / items, 1, 256));
+}
+
+std::uint32_t count_sets(std::uint64_t cold_bytes, std::uint64_t bytes) {
+  return static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>((cold_bytes + bytes - 1) / bytes, 1, 4096));
 }
 
 }  // namespace pt

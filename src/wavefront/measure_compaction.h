@@ -57,10 +57,12 @@ struct PassPlan {
   std::uint32_t sets = 1;    ///< of memory, which they take in turn
 };
 
-/// Passes that each move so many bytes of so many items. `items_per_time`: of all passes together,
-/// at least.
-PassPlan plan_passes(std::uint64_t items_per_time, std::uint64_t items, std::uint64_t bytes,
-                     bool cold);
+/// Passes of so many items each that make `items_per_time` together, but at most 256.
+std::uint32_t count_passes(std::uint64_t items_per_time, std::uint64_t items);
+
+/// Sets of memory that have `cold_bytes` together where a pass moves `bytes` of each; at most 4096,
+/// for with short passes memory does not count.
+std::uint32_t count_sets(std::uint64_t cold_bytes, std::uint64_t bytes);
 
 enum class CopyWay {
   memcpy,  ///< the library's
@@ -73,8 +75,8 @@ class CompactionDevice {
   virtual ~CompactionDevice() = default;
 
   virtual std::vector<CopyWay> copy_ways() const = 0;
-  /// How many items make a time that is long enough to be measured.
-  virtual std::uint64_t items_per_time() const = 0;
+  /// For passes that each move so many bytes of so many items.
+  virtual PassPlan plan(std::uint64_t items, std::uint64_t bytes, bool cold) const = 0;
   virtual int threads() const = 0;  ///< of the CPU; 0 on CUDA
 
   /// One pass. `strategy`: none that orders surfaces.

@@ -10,6 +10,8 @@ namespace pt {
 namespace {
 
 constexpr int block_threads = 256;  // as --stage-block has it
+constexpr std::uint64_t items_per_time = std::uint64_t{1} << 28;
+constexpr std::uint64_t cold_bytes = std::uint64_t{1} << 28;  // more than the L2 caches of today
 
 /// What a stage does with slots that it has finished.
 template <int streams>
@@ -161,7 +163,11 @@ class CompactionCuda : public CompactionDevice {
   explicit CompactionCuda(int index) : stream_(on_device(index)) {}
 
   std::vector<CopyWay> copy_ways() const override { return {CopyWay::memcpy, CopyWay::kernel}; }
-  std::uint64_t items_per_time() const override { return std::uint64_t{1} << 28; }
+  /// The graph of a time goes through all sets.
+  PassPlan plan(std::uint64_t items, std::uint64_t bytes, bool cold) const override {
+    const std::uint32_t sets = count_sets(cold ? cold_bytes : 0, bytes);
+    return {std::max(count_passes(items_per_time, items), sets), sets};
+  }
   int threads() const override { return 0; }
 
   CompactionResult compact(Compaction strategy, const std::vector<StageId>& tags,

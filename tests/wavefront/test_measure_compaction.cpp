@@ -106,19 +106,19 @@ TEST(CompactionBytes, AreTagsAndNumbers) {
   EXPECT_EQ(moved_bytes(Compaction::none, 1000, 250), 1000u);
 }
 
-TEST(CompactionPlan, PassesTakeTurnsWithMoreThanCachesHold) {
-  const auto expect_plan = [](std::uint64_t items, std::uint64_t bytes, bool cold,
-                              std::uint32_t passes, std::uint32_t sets) {
-    const PassPlan plan = plan_passes(1 << 28, items, bytes, cold);
-    EXPECT_EQ(plan.passes, passes) << items;
-    EXPECT_EQ(plan.sets, sets) << items;
-  };
-  expect_plan(1 << 24, 3 << 24, false, 16, 1);
-  expect_plan(1 << 24, 3 << 24, true, 16, 6);
-  expect_plan(1 << 18, 3 << 18, true, 342, 342);
-  expect_plan(1 << 10, 3 << 10, true, 4096, 4096);
-  expect_plan(1 << 10, 3 << 10, false, 256, 1);
-  expect_plan(1 << 30, 5ull << 30, true, 1, 1);
+TEST(CompactionPlan, MakesTimesLongAndCachesUseless) {
+  EXPECT_EQ(count_passes(1 << 28, 1 << 24), 16u);
+  EXPECT_EQ(count_passes(1 << 28, 1 << 10), 256u);
+  EXPECT_EQ(count_passes(1 << 28, 1 << 30), 1u);
+  EXPECT_EQ(count_sets(1 << 28, 3 << 24), 6u);
+  EXPECT_EQ(count_sets(1 << 28, 1 << 28), 1u);
+  EXPECT_EQ(count_sets(1 << 28, 5ull << 30), 1u);
+  EXPECT_EQ(count_sets(1 << 28, 1 << 10), 4096u);
+  EXPECT_EQ(count_sets(0, 1 << 10), 1u) << "warm";
+  const PassPlan plan = make_compaction_cpu()->plan(1 << 20, 3 << 20, true);
+  EXPECT_EQ(plan.passes, 4u);
+  EXPECT_EQ(plan.sets, 22u);
+  EXPECT_EQ(make_compaction_cpu()->plan(1 << 20, 3 << 20, false).sets, 1u);
 }
 
 TEST(CompactionOnTheCpu, KeepsTheContract) {

@@ -11,6 +11,16 @@ constexpr Compaction strategies[] = {Compaction::cub, Compaction::atomic, Compac
 
 class CudaMeasureCompaction : public CudaTest {};
 
+TEST_F(CudaMeasureCompaction, AGraphGoesThroughAllSets) {
+  const auto device = make_compaction_cuda(0);
+  for (const std::uint64_t items : {1u << 10, 1u << 18, 1u << 24}) {
+    const PassPlan plan = device->plan(items, 3 * items, true);
+    EXPECT_GE(plan.passes, plan.sets);
+    EXPECT_TRUE(plan.sets == 4096 || 3 * items * plan.sets >= 1u << 28);
+    EXPECT_EQ(device->plan(items, 3 * items, false).sets, 1u);
+  }
+}
+
 TEST_F(CudaMeasureCompaction, KeepsTheContract) {
   const auto device = make_compaction_cuda(0);
   for (const Compaction strategy : strategies) {
