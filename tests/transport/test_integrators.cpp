@@ -133,14 +133,14 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
   b.pool.slot_count = slots;
   b.slot_count = &b.pool.slot_count;
   std::vector<std::shared_ptr<void>> arrays;
-  const auto array = [&](auto* p) {
+  const auto array = [&](auto* p, std::uint64_t count) {
     using T = std::remove_pointer_t<decltype(p)>;
-    const auto memory = std::make_shared<std::vector<T>>(slots);
+    const auto memory = std::make_shared<std::vector<T>>(count);
     arrays.push_back(memory);
     return memory->data();
   };
   b.pool.allocate_arrays({true, false, false, false}, array);
-  b.for_each_queue(true, [&](auto*& queue) { queue = array(queue); });
+  b.for_each_queue(true, [&](auto*& queue) { queue = array(queue, slots); });
   std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;
 
