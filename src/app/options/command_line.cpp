@@ -28,8 +28,8 @@ constexpr const char* trace_text =
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
 constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* compact_text =
-    "Measures how fast the wavefront's compaction strategies gather waiting slots, each checked\n"
-    "first. Exit code 0: done, 2: an error, or a result that is wrong.";
+    "Measures the wavefront's compaction strategies by themselves, beside a copy.\n"
+    "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C; the\n"
