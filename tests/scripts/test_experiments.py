@@ -184,6 +184,23 @@ class Experiments(unittest.TestCase):
             with self.subTest(script=script):
                 self.check_script(script)
 
+    def test_compaction_is_judged_where_it_is_large_and_cold(self):
+        compaction = importlib.import_module("compaction")
+
+        def verdicts(*rows):
+            return compaction.conclude([
+                {"series": f"{strategy}, 1 queue", "strategy": strategy, "cache": cache,
+                 "items": str(items), "copy_share": str(share), "time_ms": "0.0125"}
+                for strategy, cache, items, share in rows])
+        self.assertEqual(verdicts(("cub", "warm", 1 << 24, 0.1), ("none", "cold", 1 << 24, 0.1)),
+                         [])
+        large = [("cub", "cold", 1 << 24, 0.8), ("cub", "cold", 1 << 25, 0.95)]
+        self.assertEqual(verdicts(*large), ["cub, 1 queue: 80 to 95 % of a copy's bandwidth from "
+                                            "16 M items on (target 80 %: reached)"])
+        self.assertIn("MISS", verdicts(*large, ("cub", "cold", 1 << 26, 0.79))[0])
+        self.assertEqual(verdicts(("atomic", "cold", 1 << 20, 0.1), ("atomic", "cold", 1 << 22, 0)),
+                         ["atomic, 1 queue: 12.5 to 12.5 us below 4 M items"])
+
     def check_script(self, script):
         run = subprocess.run(
             [sys.executable, ROOT / "experiments" / f"{script}.py", "--quick", "--device", "cpu",
@@ -207,6 +224,11 @@ class Experiments(unittest.TestCase):
 
     def check_counts(self, script, rows):
         """What an experiment's columns say must follow from what ptexp counted."""
+        if script == "compaction":
+            self.assertEqual({row["strategy"] for row in rows}, {"cub", "atomic", "none"})
+            for row in rows:
+                gathered = 0 if row["strategy"] == "none" else int(row["waiting"])
+                self.assertEqual(int(row["bytes"]), int(row["x"]) + 4 * gathered, row["name"])
         if script == "growth":
             counts = {"samples": "spp", "spheres": "primitives", "triangles": "triangles",
                       "lights": "lights"}
