@@ -86,10 +86,12 @@ def rows_of(configuration, status, message, facts):
         predicted = kernel["predicted_read_bytes"] + kernel["predicted_written_bytes"]
         kernel["l2_bytes_per_ray"] = moved / max(counters["rays"], 1)
         kernel["predicted_bytes_per_ray"] = predicted / max(counters["rays"], 1)
-    return [{**common, "kernel_ms_median": number(facts["time_ms"]["kernel"]["median"]),
+    # Not `time_ms`: these are counted, and the report takes that for times to compare.
+    return [{**common, "render_ms": number(facts["time_ms"]["kernel"]["median"]),
              "rays": counters["rays"], "kernel": kernel["kernel"], "launches": kernel["launches"],
+             "counted_ms": number(kernel["time_ms"]),
              **{name: number(value) for name, value in kernel.items()
-                if name not in ("kernel", "launches")}} for kernel in kernels]
+                if name not in ("kernel", "launches", "time_ms")}} for kernel in kernels]
 
 
 def text_of(row):

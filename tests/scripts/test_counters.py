@@ -87,7 +87,7 @@ class Counters(unittest.TestCase):
         self.assertEqual(measured[1]["launches"], "7")
         self.assertEqual(measured[1]["l1_hit_rate"], "")
         self.assertEqual(measured[0]["l1_hit_rate"], "4")
-        self.assertEqual(measured[0]["kernel_ms_median"], "2.5")
+        self.assertEqual(measured[0]["render_ms"], "2.5")
         # fields 7 and 8 are moved, 11 and 12 predicted, by 100 rays
         self.assertEqual(measured[0]["l2_bytes_per_ray"], "0.15")
         self.assertEqual(measured[0]["predicted_bytes_per_ray"], "0.23")
