@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
@@ -54,6 +55,11 @@ AGAINST_NCU = load_script("counters_against_ncu")
 
 class Counters(unittest.TestCase):
     def setUp(self):
+        few = {name: counters.VARIANTS[name] for name in ("megakernel", "uber", "cub")}
+        for name, value in (("SCENES", ["cornell", "spheres"]), ("VARIANTS", few)):
+            patch = mock.patch.object(counters, name, value)
+            self.addCleanup(patch.stop)
+            patch.start()
         folder = tempfile.TemporaryDirectory(prefix="ptexp counters ")
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
