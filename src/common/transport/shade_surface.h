@@ -120,8 +120,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   BsdfValue value;
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
-    lanes_of(ray).count(LanePoint::bsdf);
     const Vec3 wo = frame.to_local(-ray.direction);  // a BSDF may need a part of it
+    lanes_of(ray).count(LanePoint::bsdf);
     if (asks) {
       const Vec3 wi = frame.to_local(incident.wi);
       value = bsdf.evaluate(wo, wi);
