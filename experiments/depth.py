@@ -63,7 +63,7 @@ def conclude(rows, _arguments):
 
 EXPERIMENT = Experiment(
     "depth", __doc__.splitlines()[0], configurations,
-    Plot("lines", "Depth: the time over the most rays of a path", "rays of a path at most"),
+    Plot("lines", "Depth: the time over the most rays of a path", "rays at most"),
     finish=finish, conclude=conclude, table=("rays_per_path",))
 
 if __name__ == "__main__":

@@ -49,7 +49,7 @@ def configurations(arguments, _device):
 def configuration(mode, scene, width, height, spp, depth, quick):
     targets = TARGETS.get((scene, width, height, spp), {}) if depth == 50 else {}
     if quick:
-        width, height, spp = width // 10, height // 10, spp // 5
+        width, height, spp = width // 20, height // 20, spp // 10
     paths = width * height * spp
     target = targets.get(mode, "")
     return Configuration(

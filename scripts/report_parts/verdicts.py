@@ -115,10 +115,23 @@ def about_gains(table):
             for (panel, equal), rows in in_groups(table.measured, "panel", "equal").items()]
 
 
+def about_steps(table):
+    """The rungs of a ladder are compared with those before them."""
+    for panel, rows in in_groups(table.measured, "panel").items():
+        pairs = pairs_of(rows, "kernel_ms", "x")
+        steps = [(name, *change(before, value)) for (_, before), (name, value)
+                 in zip(pairs, pairs[1:])]
+        yield panel, "Time against the rung before: " + listed(
+            f"{name} x{show(ratio)}" + (f" ({word})" if word not in ("faster", "slower") else "")
+            for name, word, ratio in steps) + "."
+
+
 def meaning(table):
     """[(panel, sentences)]"""
     if {"gain", "equal"} <= set(table.columns):
         found = about_gains(table)
+    elif {"gain", "panel"} <= set(table.columns):
+        found = list(about_steps(table))
     elif table.plot:
         found = [(panel, about_panel(rows, style_of(table, panel)))
                  for panel, rows in in_groups(table.drawn, "panel").items()]

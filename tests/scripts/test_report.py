@@ -292,6 +292,8 @@ class Report(unittest.TestCase):
         pools = [{**one, "panel": "s", "series": series, "x": 64, "pool": "64K"} for one, series in
                  ((toggle("s", "a", 3.9, 4.0, 4.1), "filled when empty"),
                   (toggle("s", "b", 0.9, 1.0, 1.1), "regenerated"))]
+        text = self.make(ladder=[{**rung, "gain": ""} for rung in rungs])
+        self.assertIn("Time against the rung before: 1 split x4.00 and 2 soa x0.500.", text)
         self.make(ladder=rungs, random_numbers=numbers, scene_memory=places(), pool_size=pools)
         found = [(idea, where, re.sub("<.*?>", "", ratio).split(" ")[0],
                   re.sub("<.*?>", "", verdict), source) for idea, where, ratio, verdict, source
