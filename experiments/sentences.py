@@ -1,12 +1,13 @@
-"""What tables show, in the report's words: two times differ only where their intervals are apart."""
+"""What tables show, in the words of the report: two times differ only if intervals are apart."""
 import sys
 
 from program import ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
-from report_parts.claims import idle_share  # noqa: E402,F401 pylint: disable=wrong-import-position
-from report_parts.tables import in_groups, interval  # noqa: E402,F401 pylint: disable=wrong-import-position
-from report_parts.words import change, exponent, listed, show  # noqa: E402,F401 pylint: disable=wrong-import-position
+# pylint: disable=wrong-import-position
+from report_parts.claims import idle_share  # noqa: E402,F401
+from report_parts.tables import in_groups, interval  # noqa: E402,F401
+from report_parts.words import change, exponent, listed, show  # noqa: E402,F401
 
 
 def time_of(row):

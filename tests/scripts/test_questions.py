@@ -163,11 +163,16 @@ class RandomNumbers(unittest.TestCase):
         numbers = experiment("random_numbers")
         rows = [row(ms, panel="p", x=x, relmse=error, set_up_ms=set_up, memory_bytes=mib << 20)
                 for ms, x, error, set_up, mib in ((2, numbers.PHILOX, 0.1, "", 100),
-                                                  (4, numbers.XORWOW, 0.1, "0.5", 150))]
+                                                  (4, numbers.XORWOW, 0.1, "0.5", 150),
+                                                  (5, numbers.GENERAL, 0.4, "", 100),
+                                                  (5, numbers.SOBOL, 0.1, "", 100))]
         self.assertEqual(numbers.conclude(rows, None), [
             "p, XORWOW: 2.00 times as slow as Philox; setting up its states takes 0.5 ms of 4; "
             "+50 MiB of memory; 1.00 times less error at equal samples (of one image each, "
-            "without an interval)"])
+            "without an interval)",
+            "p, Sobol, kernels for all scenes: no significant difference to Philox, kernels for all "
+            "scenes (1.00 times its time); +0 MiB of memory; 4.00 times less error at equal samples "
+            "(of one image each, without an interval)"])
         self.assertEqual(numbers.cost(rows[1]), 2 * numbers.cost(rows[0]))
 
 
