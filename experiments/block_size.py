@@ -15,7 +15,7 @@ from sentences import against, best_of, idle_share, in_groups, show
 
 IMAGES = [(600, 300, 50), (2400, 1200, 50)]
 EDGES = [4, 8, 16, 32, 64]
-STAGE_BLOCKS = [16, 32, 64, 128, 256, 512, 1024]
+STAGE_BLOCKS = [16, 32, 64, 256, 1024]
 WARP = 32
 
 # (series, threads per block, options)
