@@ -9,6 +9,10 @@ MEASURES = ["kernel_ms_median", "kernel_ms_low", "kernel_ms_high", "kernel_ms_mi
             "mrays_per_s", "waves", "memory_bytes"]
 RAY_SETS = ["mesh", "ray_file", "accel", "builder", "variant", "build_ms", "bytes_per_triangle"]
 NOT_SHOWN = {"experiment"}
+# Where tables without a schema version, whose columns are their experiment's, say what was measured.
+ORIGIN = {"version", "commit", "build_type", "compiler", "cuda", "fast_math", "command", "device",
+          "device_kind", "threads", "driver", "repeat", "warmup", "scene_hash"}
+MOST_ROWS = 200  # of a table; the file has all
 
 
 def cell(text):
@@ -50,9 +54,11 @@ def is_in_the_name(table, column):
 def columns_shown(table):
     """The experiment's own columns and the measures, without those that say nothing."""
     end = table.columns.index("schema_version") if "schema_version" in table.columns else None
-    if end is None and not ({"kernel_ms_median", "time_ms"} & set(table.columns) and table.facts):
+    if end is None and not table.facts:
         return table.columns
-    own = table.columns[:end] if end is not None else RAY_SETS
+    own = (table.columns[:end] if end is not None else
+           RAY_SETS if "ray_file" in table.columns else
+           [column for column in table.columns if column not in ORIGIN])
     shown = [column for column in own if column in table.columns and column not in NOT_SHOWN
              and not is_in_the_name(table, column)
              and (varies(table, column) or (len(table.rows) == 1 and table.rows[0][column]))]
@@ -62,8 +68,12 @@ def columns_shown(table):
 
 def table_of(table):
     columns = columns_shown(table)
-    return html_table([column.replace("_", " ") for column in columns],
-                      [[row[column] for column in columns] for row in table.rows])
+    text = html_table([column.replace("_", " ") for column in columns],
+                      [[row[column] for column in columns] for row in table.rows[:MOST_ROWS]])
+    if len(table.rows) > MOST_ROWS:
+        text += (f'<p class="note">The first {MOST_ROWS} of {len(table.rows)} rows; '
+                 f"{escape(table.name)}.csv has all.</p>")
+    return text
 
 
 def stages_of(table):
