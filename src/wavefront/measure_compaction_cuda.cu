@@ -22,18 +22,13 @@ __global__ void __launch_bounds__(block_threads)
   Appender appender(shared);
   std::uint32_t *queues[streams], *ends[streams];
   for (int s = 0; s < streams; ++s) queues[s] = request.queues[s], ends[s] = request.counts + s;
-  const std::uint32_t count = request.slot_count;
-  const std::uint32_t tile = turns_of_tile(count, Appender::turns_max()) * blockDim.x;
-  for (std::uint32_t begin = blockIdx.x * tile; begin < count; begin += gridDim.x * tile) {
-    const std::uint32_t end = min(begin + tile, count);
-    for (std::uint32_t turn = begin; turn < end; turn += blockDim.x) {
-      const std::uint32_t slot = turn + threadIdx.x;
-      const StageId tag = slot < count ? request.tags[slot] : StageId::idle;
-      bool wanted[streams];
-      for (int s = 0; s < streams; ++s) wanted[s] = tag == request.wanted[s];
-      appender.append(wanted, slot);
-    }
-    appender.flush(queues, ends);
+  for (std::uint32_t base = blockIdx.x * blockDim.x; base < request.slot_count;
+       base += gridDim.x * blockDim.x) {
+    const std::uint32_t slot = base + threadIdx.x;
+    const StageId tag = slot < request.slot_count ? request.tags[slot] : StageId::idle;
+    bool wanted[streams];
+    for (int s = 0; s < streams; ++s) wanted[s] = tag == request.wanted[s];
+    appender.append(wanted, slot, queues, ends);
   }
 }
 

@@ -22,16 +22,14 @@ class BlockAppender {
     std::uint32_t place[streams];  ///< in the queue, of the first of these
   };
 
-  /// How often each thread may append between two flushes.
-  __device__ static std::uint32_t turns_max() { return capacity / blockDim.x; }
-
   /// Called by all threads of the block.
   __device__ explicit BlockAppender(Shared& shared) : shared_(shared) {
     for (int s = threadIdx.x; s < streams; s += blockDim.x) shared_.count[s] = 0;
     __syncthreads();
   }
 
-  /// Where `wanted[s]`, puts `slot` into queue s. Called by whole warps.
+  /// Where `wanted[s]`, puts `slot` into queue s. Called by whole warps, and no more often than
+  /// `capacity` / threads of the block between two flushes.
   __device__ void append(const bool (&wanted)[streams], std::uint32_t slot) {
     const std::uint32_t lane = threadIdx.x & 31, before = threadIdx.x - lane;
     const std::uint32_t threads = blockDim.x - before;
@@ -103,7 +101,8 @@ class NextQueues<Stage, true> {
   __device__ NextQueues(Shared& shared, const StageQueues& queues)
       : appender_(shared), queues_(queues) {}
 
-  __device__ static std::uint32_t turns_max() { return Appender::turns_max(); }
+  /// How often each thread may append before the block flushes.
+  __device__ static std::uint32_t turns_max() { return Appender::capacity / blockDim.x; }
 
   /// Called by whole warps, with `done` in threads that had a slot.
   __device__ void append(bool done, Next next, std::uint32_t slot) {
