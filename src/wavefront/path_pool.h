@@ -1,7 +1,9 @@
 // The paths in flight, in records of 16 bytes. As a structure of arrays (--layout soa) each record
 // has an array of its own, so that a warp that reads one record of 32 neighbouring slots makes
 // coalesced 128-bit loads; as an array of structures (aos) all that a slot has lies side by side.
-// Nothing outside this file knows the layout.
+// In between (sectors) the two records of a ray, which are always needed together, share a sector
+// of the memory, so that slots that are not neighbours waste nothing. Nothing outside this file
+// knows the layout.
 #pragma once
 
 #include <cstddef>
@@ -36,12 +38,13 @@ struct PathPool {
   /// each has its array, the size of all that a slot has where that lies side by side. Run-time
   /// values, so both layouts are one code: the address of an element is a product and a sum anyway.
   struct Strides {
+    std::uint32_t ray = sizeof(Record);  ///< of a record that is half of a ray
     std::uint32_t record = sizeof(Record), hit = sizeof(StoredHit), word = sizeof(std::uint32_t);
   };
 
   std::uint32_t slot_count = 0;
   Strides strides;
-  // Of slot 0; at(field, slot) is another's.
+  // Of slot 0; at(field, slot) is another's, half_at(field, slot) that of a ray's two records.
   Record* origin = nullptr;      ///< ray origin, density of the BSDF
   Record* direction = nullptr;   ///< ray direction, number of the path | new_path
   Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
@@ -71,14 +74,22 @@ struct PathPool {
     const std::uint64_t n = slot_count;
     if (parts.layout == PoolLayout::aos) {
       const std::uint32_t slot_bytes = fields_bytes(parts);
-      strides = {slot_bytes, slot_bytes, slot_bytes};
+      strides = {slot_bytes, slot_bytes, slot_bytes, slot_bytes};
       std::byte* const slot_0 = allocate(static_cast<std::byte*>(nullptr), n * slot_bytes);
       std::uint32_t end = 0;
       for_each_field(parts, [&]<class T>(T*& field) {
         field = reinterpret_cast<T*>(slot_0 + next_place<T>(end));
       });
     } else {
-      for_each_field(parts, [&](auto*& field) { field = allocate(field, n); });
+      if (parts.layout == PoolLayout::sectors) {
+        strides.ray = 2 * sizeof(Record);
+        for_each_ray(parts, [&](Record*& first, Record*& second) {
+          first = allocate(first, 2 * n), second = first + 1;
+        });
+      }
+      for_each_field(parts, [&](auto*& field) {
+        if (field == nullptr) field = allocate(field, n);
+      });
     }
     for_each_tag(parts, [&](StageId*& tags) { tags = allocate(tags, n); });
   }
@@ -94,9 +105,13 @@ struct PathPool {
     return sum;
   }
 
-  /// Where the slot's element of a field is: at(origin, slot).
+  /// Where the slot's element of a field is: at(throughput, slot).
   PT_HD Record* at(Record* field, std::uint32_t slot) const {
     return step(field, slot, strides.record);
+  }
+  /// Likewise of origin, direction and those of the shadow ray.
+  PT_HD Record* half_at(Record* field, std::uint32_t slot) const {
+    return step(field, slot, strides.ray);
   }
   PT_HD StoredHit* at(StoredHit* field, std::uint32_t slot) const {
     return step(field, slot, strides.hit);
@@ -111,12 +126,12 @@ struct PathPool {
   PT_HD static Vec3 vec(const Record& r) { return {r.x, r.y, r.z}; }
 
   PT_HD Ray load_ray(std::uint32_t slot) const {
-    return {vec(load_wide(at(origin, slot))), vec(load_wide(at(direction, slot)))};
+    return {vec(load_wide(half_at(origin, slot))), vec(load_wide(half_at(direction, slot)))};
   }
 
   /// The path and its ray, of which a miss needs the direction only.
   PT_HD PathState load_path(std::uint32_t slot, Vec3& ray_direction) const {
-    const Record d = load_wide(at(direction, slot));
+    const Record d = load_wide(half_at(direction, slot));
     ray_direction = vec(d);
     PathState path;
     path.number = d.w & ~new_path;
@@ -130,7 +145,7 @@ struct PathPool {
   }
 
   PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
-    const Record o = load_wide(at(origin, slot));
+    const Record o = load_wide(half_at(origin, slot));
     PathState path = load_path(slot, ray.direction);
     ray.origin = vec(o);
     path.bsdf_pdf = bits_to_float(o.w);
@@ -139,13 +154,14 @@ struct PathPool {
   }
 
   PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t number) const {
-    store_wide(at(origin, slot), pack(ray.origin, float_to_bits(PathState::delta_distribution)));
-    store_wide(at(direction, slot), pack(ray.direction, number | new_path));
+    store_wide(half_at(origin, slot),
+               pack(ray.origin, float_to_bits(PathState::delta_distribution)));
+    store_wide(half_at(direction, slot), pack(ray.direction, number | new_path));
   }
 
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
-    store_wide(at(origin, slot), pack(ray.origin, float_to_bits(path.bsdf_pdf)));
-    store_wide(at(direction, slot), pack(ray.direction, path.number));
+    store_wide(half_at(origin, slot), pack(ray.origin, float_to_bits(path.bsdf_pdf)));
+    store_wide(half_at(direction, slot), pack(ray.direction, path.number));
     store_wide(at(throughput, slot), pack(path.beta, path.packed_rays()));
     if (receiver != nullptr) *at(receiver, slot) = path.receiver;
   }
@@ -164,7 +180,7 @@ struct PathPool {
   /// The path's number and rays alone.
   PT_HD PathState load_name(std::uint32_t slot) const {
     PathState path;
-    path.number = at(direction, slot)->w;
+    path.number = half_at(direction, slot)->w;
     if ((path.number & new_path) == 0)
       path.rays = static_cast<std::uint16_t>(at(throughput, slot)->w);
     path.number &= ~new_path;
@@ -182,8 +198,9 @@ struct PathPool {
 
   PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow,
                           const PathState& path) const {
-    store_wide(at(shadow_origin, slot), pack(shadow.ray.origin, float_to_bits(shadow.distance)));
-    store_wide(at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
+    store_wide(half_at(shadow_origin, slot),
+               pack(shadow.ray.origin, float_to_bits(shadow.distance)));
+    store_wide(half_at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
     store_wide(at(shadow_radiance, slot), pack(shadow.radiance, path.rays));
   }
   /// Of the path when it asked.
@@ -191,8 +208,8 @@ struct PathPool {
     return at(shadow_radiance, slot)->w;
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
-    const Record o = load_wide(at(shadow_origin, slot));
-    const Record d = load_wide(at(shadow_direction, slot));
+    const Record o = load_wide(half_at(shadow_origin, slot));
+    const Record d = load_wide(half_at(shadow_direction, slot));
     number = d.w;
     return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(at(shadow_radiance, slot)))};
   }
@@ -206,6 +223,11 @@ struct PathPool {
     if (parts.receivers) function(receiver);
     if (!parts.lights) return;
     function(shadow_origin), function(shadow_direction), function(shadow_radiance);
+  }
+  template <class Function>
+  void for_each_ray(const Parts& parts, Function&& function) {
+    function(origin, direction);
+    if (parts.lights) function(shadow_origin, shadow_direction);
   }
   template <class Function>
   void for_each_tag(const Parts& parts, Function&& function) {

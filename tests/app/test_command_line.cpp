@@ -74,9 +74,7 @@ const std::map<std::string, std::string>& other_values() {
       {"regenerate", "off"},
       {"persistent", "off"},
       {"schedule", "graph"},
-      {"stage-block",
-       "generate=256,intersect=128,sort_hits=256,shade_miss=256,shade_surface=64,shadow=1024,"
-       "finish=256,accumulate=1"},
+      {"stage-block", "256,intersect=128,shade_surface=64,shadow=1024,accumulate=1"},
       {"scene-memory", "constant"},
       {"branching", "reduced"},
       {"rng", "xorwow"},
@@ -191,6 +189,10 @@ TEST(CommandLine, StageBlocksForAllOrByName) {
                          : stage.id == StageId::shade_surface ? 64
                                                               : 256;
     EXPECT_EQ(some[static_cast<std::size_t>(stage.id)], expected) << stage.name;
+  }
+  const auto both = parse_options("--stage-block 32,shadow=64").stage_block;
+  for (const StageInfo& stage : stage_table) {
+    EXPECT_EQ(both[static_cast<std::size_t>(stage.id)], stage.id == StageId::shadow ? 64 : 32);
   }
 }
 

@@ -168,7 +168,7 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
                               {"pool-size", {"auto", "1000", "4096", "6525", "6526"}},
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},
-                              {"layout", {"soa", "aos"}},
+                              {"layout", {"soa", "sectors", "aos"}},
                               {"branching", {"divergent", "reduced"}}};
   if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
   expect_all_same(options("wavefront"), variations(choices, 8, 2), options("serial"));

@@ -78,7 +78,7 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
         {"256", "1", "2", "16", "33", "1024",
          "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
          "accumulate=224"}},
-       {"layout", {"soa", "aos"}}});
+       {"layout", {"soa", "sectors", "aos"}}});
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
@@ -153,7 +153,7 @@ TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},
                                        {"stage-block", {"256", "33", "512"}},
-                                       {"layout", {"soa", "aos"}}};
+                                       {"layout", {"soa", "sectors", "aos"}}};
   expect_all_same(options("wavefront"), variations(choices, 6, 5), options("megakernel"));
 }
 

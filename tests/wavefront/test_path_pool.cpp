@@ -1,4 +1,4 @@
-// The path pool in both layouts: what is stored in a slot is what is loaded from it, and its size
+// The path pool in all layouts: what is stored in a slot is what is loaded from it, and its size
 // is what it says.
 #include <gtest/gtest.h>
 
@@ -108,8 +108,12 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
 }
 
 class PathPoolOf : public testing::TestWithParam<PoolLayout> {};
-INSTANTIATE_TEST_SUITE_P(Layouts, PathPoolOf, testing::Values(PoolLayout::soa, PoolLayout::aos),
-                         [](const auto& layout) { return layout.index == 0 ? "soa" : "aos"; });
+INSTANTIATE_TEST_SUITE_P(Layouts, PathPoolOf,
+                         testing::Values(PoolLayout::soa, PoolLayout::sectors, PoolLayout::aos),
+                         [](const auto& layout) {
+                           const char* const names[] = {"soa", "sectors", "aos"};
+                           return std::string(names[layout.index]);
+                         });
 
 TEST_P(PathPoolOf, KeepsWhatEachSlotHas) {
   constexpr std::uint32_t slot_count = 37;
@@ -158,6 +162,7 @@ TEST(PathPool, SizesInBytes) {
                {{false, false, true, false}, 57, 65},   {{true, true, true, true}, 114, 114}};
   for (const auto& [parts, soa, aos] : cases) {
     EXPECT_EQ(bytes(parts, PoolLayout::soa), soa);
+    EXPECT_EQ(bytes(parts, PoolLayout::sectors), soa);
     EXPECT_EQ(bytes(parts, PoolLayout::aos), aos);
   }
 }
@@ -168,9 +173,22 @@ TEST_P(PathPoolOf, TheLastSlotOfALargePoolIsFarAway) {
   PoolMemory memory;
   const PathPool pool = memory.allocate(parts, 1);
   const auto place = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p); };
-  const std::uint64_t stride = GetParam() == PoolLayout::soa ? 16 : 112;
-  EXPECT_EQ(place(pool.at(pool.shadow_origin, 0x7fffffffu)) - place(pool.shadow_origin),
-            0x7fffffffu * stride);
+  const bool aos = GetParam() == PoolLayout::aos;
+  const std::uint64_t of_ray = aos ? 112 : GetParam() == PoolLayout::sectors ? 32 : 16;
+  EXPECT_EQ(place(pool.half_at(pool.shadow_origin, 0x7fffffffu)) - place(pool.shadow_origin),
+            0x7fffffffu * of_ray);
+  EXPECT_EQ(place(pool.at(pool.throughput, 0x7fffffffu)) - place(pool.throughput),
+            0x7fffffffu * (aos ? 112ull : 16ull));
+}
+
+TEST(PathPool, SectorsHoldWholeRays) {
+  PoolMemory memory;
+  const PathPool pool = memory.allocate({true, false, false, false, PoolLayout::sectors}, 9);
+  for (std::uint32_t slot = 0; slot < 9; ++slot) {
+    EXPECT_EQ(pool.half_at(pool.origin, slot) + 1, pool.half_at(pool.direction, slot));
+    EXPECT_EQ(pool.half_at(pool.shadow_origin, slot) + 1,
+              pool.half_at(pool.shadow_direction, slot));
+  }
 }
 
 }  // namespace

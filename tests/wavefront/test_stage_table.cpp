@@ -43,7 +43,9 @@ TEST(StageTable, StageBlockHasTheStagesThatSayIt) {
       option.set(options, text);
       for (const StageInfo& other : stage_table) {
         EXPECT_EQ(options.stage_block[static_cast<std::size_t>(other.id)],
-                  other.id == stage.id ? 64 : 256);
+                  other.id == stage.id                 ? 64
+                  : other.id == StageId::shade_surface ? 512
+                                                       : 256);
       }
       Options again;
       option.set(again, option.text(options));

@@ -224,8 +224,8 @@ void add_execution(std::vector<OptionEntry>& list) {
            "wavefront: paths in flight; K and M mean 2^10 and 2^20")
       .only(wavefront, any_device)
       .add(choice("layout", &Options::layout),
-           "wavefront: a path's state in arrays by field (soa) or side by\n"
-           "side (aos)")
+           "wavefront: a path's state in arrays by field (soa), with both\n"
+           "records of a ray side by side (sectors), or all (aos)")
       .only(wavefront, any_device)
       .add(choice("shade", &Options::shade),
            "wavefront: surfaces are shaded by one kernel for all, or kind\n"
@@ -262,13 +262,13 @@ void add_execution(std::vector<OptionEntry>& list) {
       .only(wavefront, any_device)
       .only(wavefront, cuda, "graph")
       .add(custom(
-               "stage-block", OptionForm::text, "N|STAGE=N,...",
+               "stage-block", OptionForm::text, "[N,][STAGE=N,...]",
                [](Options& o, const std::string& s) {
                  o.stage_block = parse_stage_blocks("stage-block", s, Options().stage_block);
                },
                [](const Options& o) { return stage_blocks_text(o.stage_block); }),
-           "wavefront on CUDA: threads per block, for all stages or by\n"
-           "name: generate, intersect, shade_miss, shade_surface,\n"
+           "wavefront on CUDA: threads per block, for all stages, by name\n"
+           "or both: generate, intersect, shade_miss, shade_surface,\n"
            "shadow, finish, accumulate; e.g. intersect=128,shadow=64")
       .only(wavefront, cuda);
 }

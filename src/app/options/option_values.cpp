@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <vector>
@@ -122,15 +124,16 @@ BlockSize parse_block(const std::string& name, const std::string& text) {
 
 StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
                                StageBlocks blocks) {
-  if (text.find('=') == std::string::npos) {
-    blocks.fill(parse_stage_threads(name, text));
-    return blocks;
-  }
+  const std::vector<std::string> parts = split(text, ',');
   std::set<StageId> seen;
-  for (const std::string& part : split(text, ',')) {
+  for (const std::string& part : parts) {
     const std::size_t equals = part.find('=');
-    if (equals == std::string::npos)
-      refuse_value(name, text, "expected a number of threads or a list STAGE=THREADS,...");
+    if (equals == std::string::npos) {
+      if (&part != &parts.front())
+        refuse_value(name, text, "expected a number of threads, STAGE=THREADS,... or both");
+      blocks.fill(parse_stage_threads(name, part));
+      continue;
+    }
     const auto stage = parse_name<StageId>(name, part.substr(0, equals));
     if (!seen.insert(stage).second)
       refuse_value(name, text, "names " + to_string(stage) + " twice");
@@ -179,14 +182,17 @@ std::string vector_text(const std::array<float, 3>& value) {
 std::string block_text(const BlockSize& block) { return fmt::format("{}x{}", block.x, block.y); }
 
 std::string stage_blocks_text(const StageBlocks& blocks) {
-  std::set<int> threads;
-  std::string text;
+  std::map<int, int> stages;
+  for (const auto& named : enum_names<StageId>) {
+    ++stages[blocks[static_cast<std::size_t>(named.value)]];
+  }
+  const int usual = std::ranges::max_element(stages, {}, [](auto& s) { return s.second; })->first;
+  std::string text = std::to_string(usual);
   for (const auto& [stage, stage_name] : enum_names<StageId>) {
     const int block = blocks[static_cast<std::size_t>(stage)];
-    threads.insert(block);
-    text += fmt::format("{}{}={}", text.empty() ? "" : ",", stage_name, block);
+    if (block != usual) text += fmt::format(",{}={}", stage_name, block);
   }
-  return threads.size() == 1 ? std::to_string(*threads.begin()) : text;
+  return text;
 }
 
 void parse_definition(const std::string& name, const std::string& text,

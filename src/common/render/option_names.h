@@ -43,8 +43,8 @@ template <>
 inline constexpr auto enum_names<Schedule> = std::to_array<EnumName<Schedule>>(
     {{Schedule::automatic, "auto"}, {Schedule::host, "host"}, {Schedule::graph, "graph"}});
 template <>
-inline constexpr auto enum_names<PoolLayout> =
-    std::to_array<EnumName<PoolLayout>>({{PoolLayout::soa, "soa"}, {PoolLayout::aos, "aos"}});
+inline constexpr auto enum_names<PoolLayout> = std::to_array<EnumName<PoolLayout>>(
+    {{PoolLayout::soa, "soa"}, {PoolLayout::sectors, "sectors"}, {PoolLayout::aos, "aos"}});
 template <>
 inline constexpr auto enum_names<Shade> = std::to_array<EnumName<Shade>>(
     {{Shade::automatic, "auto"}, {Shade::uber, "uber"}, {Shade::material, "material"}});
