@@ -40,6 +40,7 @@ const std::map<std::string, std::string>& other_values() {
       {"mis", "balance"},
       {"sampling", "cosine"},
       {"sampler", "sobol"},
+      {"multiple-scattering", "on"},
       {"shade", "material"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},

@@ -74,6 +74,14 @@ TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
     EXPECT_EQ(refusal("boxes", "accel", value), "");
   }
   EXPECT_EQ(refusal("boxes", "builder", "sbvh"), "");
+  for (const char* scene : {"boxes", "rtow"}) {
+    EXPECT_EQ(refusal(scene, "multiple-scattering", "on"),
+              std::string("--multiple-scattering on: makes up for what rough conductors lose; "
+                          "scene '") +
+                  scene + "' has none");
+    EXPECT_EQ(refusal(scene, "multiple-scattering", "off"), "");
+  }
+  EXPECT_EQ(refusal("dial", "multiple-scattering", "on"), "");
 }
 
 }  // namespace

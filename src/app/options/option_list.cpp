@@ -81,6 +81,15 @@ void add_image(std::vector<OptionEntry>& list) {
            "A pixel's samples: independent, in the cells of a grid, or\n"
            "scrambled Sobol points (best if --spp is a power of two)")
       .add(custom(
+               "multiple-scattering", OptionForm::text, "on|off",
+               [](Options& o, const std::string& s) {
+                 o.multiple_scattering = parse_switch("multiple-scattering", s);
+               },
+               [](const Options& o) { return o.multiple_scattering ? "on" : "off"; }),
+           "Rough conductors reflect light between their facets, which\n"
+           "is lost otherwise. Rough dielectrics, plastics and principled\n"
+           "materials are as they are without it")
+      .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {
                  o.seed = parse_integer("seed", s, 0, UINT64_MAX);

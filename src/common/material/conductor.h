@@ -55,6 +55,9 @@ struct Conductor {
     return {reflectance(fminf(dot(wo, m), 1.0f)) * (density * shown), density};
   }
 
+  /// Of a facet in diffuse light.
+  PT_HD Color average_reflectance() const { return tint * average_fresnel_conductor(eta, k); }
+
  private:
   PT_HD Color reflectance(float cosine) const { return tint * fresnel_conductor(cosine, eta, k); }
 

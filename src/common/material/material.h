@@ -1,6 +1,7 @@
 // Materials: the closed list of BSDFs, a record that names one, and its dispatch.
 #pragma once
 
+#include "common/material/compensated_conductor.h"
 #include "common/material/conductor.h"
 #include "common/material/dielectric.h"
 #include "common/material/diffuse.h"
@@ -20,8 +21,9 @@
 namespace pt {
 
 /// Every BSDF, once. Its place is its MaterialKind.
-using Bsdfs = TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward,
-                       Conductor, RoughDielectric, ThinDielectric, Principled, PrincipledThin>;
+using Bsdfs =
+    TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward, Conductor,
+             RoughDielectric, ThinDielectric, Principled, PrincipledThin, CompensatedConductor>;
 
 /// The first ones, those of the paper's scenes: no others are in kernels without triangles.
 using PaperBsdfs = TypeList<Diffuse, Metal, Dielectric>;

@@ -94,6 +94,7 @@ struct Options {
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
+  bool multiple_scattering = false;  ///< of rough conductors, between their facets
   std::uint64_t seed = 1;
   std::string output = "image.exr";    ///< .exr, .png or .ppm
   ExposureChoice exposure;             ///< for PNG and PPM only

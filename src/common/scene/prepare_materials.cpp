@@ -42,21 +42,23 @@ void pack_node(const MaterialDescription& source, const SceneData& scene, Materi
   if (material.kind != second) material.kind = several_kinds;
 }
 
-void pack_bsdf(const MaterialDescription& source, SceneData& scene, Material& material) {
+void pack_bsdf(const MaterialDescription& source, bool multiple_scattering, SceneData& scene,
+               Material& material) {
   const Parameter* end = source.parameters + parameter_count(source);
-  material.kind = source.kind;
+  const bool compensated = multiple_scattering && is_rough_conductor(source);
+  material.kind = compensated ? kind_of<CompensatedConductor> : source.kind;
   material.flags |= static_cast<std::uint8_t>((is_delta(source) ? Material::delta : 0) |
                                               (uses_tangent(source) ? Material::tangents : 0));
   material.parameters = size32(scene.parameters);
   scene.parameters.insert(scene.parameters.end(), source.parameters + 1, end);
 }
 
-Material pack(const MaterialDescription& source, SceneData& scene) {
+Material pack(const MaterialDescription& source, bool multiple_scattering, SceneData& scene) {
   Material material;
   material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
                                              (source.is_textured() ? Material::textured : 0));
   if (source.node == MaterialNode::none) {
-    pack_bsdf(source, scene, material);
+    pack_bsdf(source, multiple_scattering, scene, material);
   } else {
     pack_node(source, scene, material);
   }
@@ -88,6 +90,11 @@ void list_opacities(SceneData& scene) {
 
 }  // namespace
 
+bool is_rough_conductor(const MaterialDescription& material) {
+  return material.node == MaterialNode::none && material.kind == kind_of<Conductor> &&
+         !is_delta(material);
+}
+
 std::uint32_t kinds_of(const SceneData& scene) {
   static_assert(kind_count <= 32);
   std::uint32_t kinds = 0;
@@ -100,13 +107,13 @@ std::uint32_t kinds_of(const SceneData& scene) {
   return kinds;
 }
 
-void prepare_materials(SceneData& scene) {
+void prepare_materials(SceneData& scene, bool multiple_scattering) {
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
   list_opacities(scene);
   for (const MaterialDescription& m : scene.materials) scene.parameters.push_back(m.parameters[0]);
   for (const MaterialDescription& m : scene.materials) {
-    scene.material_records.push_back(pack(m, scene));
+    scene.material_records.push_back(pack(m, multiple_scattering, scene));
   }
 }
 

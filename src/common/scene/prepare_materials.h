@@ -5,11 +5,15 @@
 
 namespace pt {
 
+/// Whether --multiple-scattering changes it.
+bool is_rough_conductor(const MaterialDescription& material);
+
 /// A bit for each MaterialKind of the materials that surfaces have.
 std::uint32_t kinds_of(const SceneData& scene);
 
 /// Fills material_records, parameters and emissions from the materials: the first parameters by
-/// material and then the others, emissions only of what shines, textures' means measured.
-void prepare_materials(SceneData& scene);
+/// material and then the others, emissions only of what shines, textures' means measured. With
+/// `multiple_scattering` rough conductors become CompensatedConductors.
+void prepare_materials(SceneData& scene, bool multiple_scattering);
 
 }  // namespace pt

@@ -33,7 +33,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
   check_scene_options(options, scene);
-  prepare_materials(scene);
+  prepare_materials(scene, options.multiple_scattering);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
   prepare_filter(scene, filter_of(options, scene));

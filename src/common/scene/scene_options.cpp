@@ -6,25 +6,32 @@
 
 #include "common/error.h"
 #include "common/render/option_names.h"
+#include "common/scene/prepare_materials.h"
 
 namespace pt {
 namespace {
 
-enum class SceneKind { primitives, triangles };
-
 /// The option's value, if it is one that not every scene takes; else empty.
 using Limited = std::string (*)(const Options&);
+
+using Suits = bool (*)(const SceneData&, const Options&);
 
 struct SceneRule {
   const char* option;
   Limited limited;
-  SceneKind scene;      ///< which it is for
+  Suits suits;          ///< which scenes it is for
   const char* problem;  ///< elsewhere; {}: the scene's name
 };
 
 template <class E, class... Usual>
 std::string unless(E value, Usual... usual) {
   return ((value == usual) || ...) ? "" : to_string(value);
+}
+
+bool has_triangles(const SceneData& scene, const Options& o) { return !is_lean(scene, o); }
+
+bool has_rough_conductors(const SceneData& scene, const Options&) {
+  return std::ranges::any_of(scene.materials, is_rough_conductor);
 }
 
 constexpr const char* paper =
@@ -37,27 +44,28 @@ constexpr SceneRule rules[] = {
      [](const Options& o) {
        return unless(o.accel, AccelKind::automatic, AccelKind::brute, AccelKind::bvh2);
      },
-     SceneKind::triangles,
+     has_triangles,
      "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
     {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
-     SceneKind::triangles, "builds trees over triangles; scene '{}' has none"},
+     has_triangles, "builds trees over triangles; scene '{}' has none"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
      },
-     SceneKind::triangles,
+     has_triangles,
      "needs triangles, textures, an environment or lights without extent; scene '{}' has spheres "
      "and quads only, expected uniform"},
     {"scene-memory",
      [](const Options& o) {
        return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
      },
-     SceneKind::primitives,
-     "holds the spheres of scenes without triangles; expected global or auto"},
+     is_lean, "holds the spheres of scenes without triangles; expected global or auto"},
     {"branching", [](const Options& o) { return unless(o.branching, Branching::divergent); },
-     SceneKind::primitives, paper},
-    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); }, SceneKind::primitives,
-     paper},
+     is_lean, paper},
+    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); }, is_lean, paper},
+    {"multiple-scattering",
+     [](const Options& o) { return std::string(o.multiple_scattering ? "on" : ""); },
+     has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
 };
 
 /// Kernels without triangles know the paper's materials alone, which have no back.
@@ -82,10 +90,9 @@ bool has_primitives_only(const SceneData& scene) {
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {
-  const SceneKind kind = is_lean(scene, options) ? SceneKind::primitives : SceneKind::triangles;
   for (const SceneRule& rule : rules) {
     const std::string value = rule.limited(options);
-    if (value.empty() || rule.scene == kind) continue;
+    if (value.empty() || rule.suits(scene, options)) continue;
     throw Error(fmt::format("--{} {}: {}", rule.option, value,
                             fmt::format(fmt::runtime(rule.problem), scene.name)));
   }

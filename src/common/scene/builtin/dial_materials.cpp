@@ -28,7 +28,7 @@ Look look_of(std::uint32_t number, std::uint32_t round) {
 
 using Maker = MaterialDescription (*)(const Look&);
 
-/// One of each BSDF. The numbers make the albedos alike.
+/// One of each BSDF that scenes can have without options. The numbers make the albedos alike.
 constexpr Maker makers[] = {
     [](const Look& l) { return make_diffuse(0.75f * l.hue); },
     [](const Look& l) {
@@ -65,7 +65,8 @@ constexpr Maker makers[] = {
     },
 };
 constexpr std::uint32_t kinds = std::size(makers);
-static_assert(kinds == Bsdfs::size, "a new BSDF belongs in the dial");
+static_assert(kinds == index_in<CompensatedConductor>(Bsdfs{}) && kinds + 1 == Bsdfs::size,
+              "a new BSDF belongs in the dial");
 
 }  // namespace
 
