@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "wavefront/path_pool.h"
@@ -107,13 +108,14 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
   }
 }
 
+std::string name_of(PoolLayout layout) {
+  return layout == PoolLayout::soa ? "soa" : layout == PoolLayout::sectors ? "sectors" : "aos";
+}
+
 class PathPoolOf : public testing::TestWithParam<PoolLayout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, PathPoolOf,
                          testing::Values(PoolLayout::soa, PoolLayout::sectors, PoolLayout::aos),
-                         [](const auto& layout) {
-                           const char* const names[] = {"soa", "sectors", "aos"};
-                           return std::string(names[layout.index]);
-                         });
+                         [](const auto& layout) { return name_of(layout.param); });
 
 TEST_P(PathPoolOf, KeepsWhatEachSlotHas) {
   constexpr std::uint32_t slot_count = 37;
