@@ -2,9 +2,9 @@
 """Counters: what do the kernels do with the hardware?
 
 Renders a few scenes with `ptexp --counters`, by the megakernel and by the wavefront with each way to
-shade and to gather paths. A row is a kernel of one of them, or all together: SIMT efficiency, issue,
-occupancy, hit rates, bytes, and for the wavefront's stages what the layout of the paths predicts
-(docs/experiments.md, "Hardware counters"). A configuration that cannot be counted is a row that
+shade, to gather paths and to lay them out. A row is a kernel of one of them, or all together: SIMT
+efficiency, issue, occupancy, hit rates, bytes, and for the wavefront's stages what their records
+need (docs/experiments.md, "Hardware counters"). A configuration that cannot be counted is a row that
 says why.
 """
 import json
@@ -26,6 +26,8 @@ VARIANTS = {
     "by material": "--mode wavefront --shade material",
     "cub": "--mode wavefront --shade uber --compaction cub",
     "no queues": "--mode wavefront --shade uber --compaction none",
+    "aos": "--mode wavefront --shade uber --layout aos",
+    "sectors": "--mode wavefront --shade uber --layout sectors",
 }
 DEPTH = 8
 ALL = "all kernels"
@@ -86,7 +88,7 @@ def rows_of(configuration, status, message, facts):
         predicted = kernel["predicted_read_bytes"] + kernel["predicted_written_bytes"]
         kernel["l2_bytes_per_ray"] = moved / max(counters["rays"], 1)
         kernel["predicted_bytes_per_ray"] = predicted / max(counters["rays"], 1)
-    # Not `time_ms`: these are counted, and the report takes that for times to compare.
+    # Not `time_ms`, which in other tables is a time that was not counted.
     return [{**common, "render_ms": number(facts["time_ms"]["kernel"]["median"]),
              "rays": counters["rays"], "kernel": kernel["kernel"], "launches": kernel["launches"],
              "counted_ms": number(kernel["time_ms"]),
