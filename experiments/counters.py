@@ -27,7 +27,7 @@ VARIANTS = {
     "cub": "--mode wavefront --shade uber --compaction cub",
     "no queues": "--mode wavefront --shade uber --compaction none",
     "aos": "--mode wavefront --shade uber --layout aos",
-    "sectors": "--mode wavefront --shade uber --layout sectors",
+    "soa": "--mode wavefront --shade uber --layout soa",
 }
 DEPTH = 8
 ALL = "all kernels"

@@ -19,9 +19,10 @@ PLAIN = ("--mode wavefront --compaction none --shade uber --regenerate off --fin
 CUDA, TRIANGLES = "a GPU", "triangles"
 # (rung, what changes against the one before, what it needs)
 STEPS = [
-    ("SoA instead of AoS", "", ()),
+    ("SoA instead of AoS", "--layout soa", ()),
     ("compaction", "--compaction atomic", ()),
     ("material order", "--compaction sort", ()),
+    ("whole rays in sectors", "--layout sectors", ()),
     ("regeneration", "--regenerate on", ()),
     ("CUDA graph", "--schedule graph", (CUDA,)),
     ("last paths in one kernel", "--finish-paths 131072", ()),

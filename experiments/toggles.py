@@ -15,7 +15,7 @@ BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["redu
 TOGGLES = {
     "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
     "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
-                  ("layout", ["sectors", "aos"]), ("finish-paths", ["0"])],
+                  ("layout", ["soa", "aos"]), ("finish-paths", ["0"])],
 }
 
 

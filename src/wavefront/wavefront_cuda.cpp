@@ -25,6 +25,16 @@ constexpr int waves_per_turn = 2;
 
 constexpr double mib = 1024.0 * 1024.0;
 
+/// Whether the surfaces of scenes with these kinds of BSDFs (a bit for each) are shaded faster in
+/// order: where warps would meet many, or one that is much longer than the others. Kernels for each
+/// kind give no more (results/ has the measurement).
+bool order_pays_for(std::uint32_t kinds) {
+  constexpr int few = 5;
+  constexpr std::uint32_t one = 1, long_ones = one << static_cast<int>(kind_of<Principled>) |
+                                               one << static_cast<int>(kind_of<PrincipledThin>);
+  return std::popcount(kinds) > ((kinds & long_ones) != 0 ? 1 : few);
+}
+
 }  // namespace
 
 WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
@@ -46,10 +56,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.kinds = kinds_of(scene);
   buffers_.only_triangles = scene_.has_only_triangles();
   buffers_.shades_by_kind = options_.shade == Shade::material;
-  // An order pays as soon as warps would meet several BSDFs; kernels for each kind give no more
-  // (results/ has the measurement).
   const bool order_pays = traits_.lighting == Lighting::full && buffers_.compaction.has_queues &&
-                          !std::has_single_bit(buffers_.kinds);
+                          order_pays_for(buffers_.kinds);
   buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind ||
                              (options_.shade == Shade::automatic && order_pays);
   parts_ = {traits_.has_lights(), traits_.geometry == Geometry::mixed, !appends,

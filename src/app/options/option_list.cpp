@@ -239,7 +239,8 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(choice("shade", &Options::shade),
            "wavefront: surfaces are shaded by one kernel for all, or kind\n"
            "of BSDF by kind over ranges of an ordered queue, on CUDA by\n"
-           "a kernel for each; auto: by one, on CUDA in order of the kinds")
+           "a kernel for each; auto: by one, on CUDA in order of the\n"
+           "kinds if these are many or long")
       .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",

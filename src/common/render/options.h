@@ -123,8 +123,8 @@ struct Options {
   Work work = Work::persistent;                  ///< megakernel
   BlockSize block;                               ///< megakernel, threads per block
   Compaction compaction = Compaction::atomic;
-  std::uint64_t pool_size = 0;          ///< paths in flight, 0: automatic
-  PoolLayout layout = PoolLayout::soa;  ///< wavefront: of the paths' state
+  std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
+  PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state
   bool regenerate = true;
   bool persistent = true;          ///< warps trace queues where they can (CUDA)
   Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
