@@ -68,21 +68,6 @@ std::optional<float> exposure_of(const Options& options, const Image& image, boo
   return stops;
 }
 
-/// The image, then what there is to tell about it. CSV rows are for comparing: complete runs only.
-void write_outputs(const Options& options, const Image& image, RenderReport& report) {
-  const ToneMapping tone_mapping{report.exposure.value_or(0.0f)};
-  report.image_write_ms = timed_ms(
-      [&] { write_image(options.output, image, report_metadata(options, report), tone_mapping); });
-  if (!options.quiet) {
-    fmt::print("{}wrote {}\n", report_table(options, report), options.output);
-    std::fflush(stdout);
-  }
-  if (!options.stats_file.empty())
-    write_file_atomically(options.stats_file, report_json(options, report));
-  if (!options.csv_file.empty() && is_complete(options, report))
-    append_csv_row(options.csv_file, report_csv_row(options, report));
-}
-
 void warn(const std::string& message) { fmt::print(stderr, "ptexp: warning: {}\n", message); }
 
 /// What could not be counted is no reason to lose what was rendered.
@@ -95,6 +80,24 @@ HardwareCounters count(Renderer& renderer) {
     none.problem = error.what();
     return none;
   }
+}
+
+/// The image, then what there is to tell about it; in between what a profiler does to the process.
+/// CSV rows are for comparing: complete runs only.
+void write_outputs(const Options& options, const Image& image, Renderer& renderer,
+                   RenderReport& report) {
+  const ToneMapping tone_mapping{report.exposure.value_or(0.0f)};
+  report.image_write_ms = timed_ms(
+      [&] { write_image(options.output, image, report_metadata(options, report), tone_mapping); });
+  if (options.counters && is_complete(options, report)) report.counters = count(renderer);
+  if (!options.quiet) {
+    fmt::print("{}wrote {}\n", report_table(options, report), options.output);
+    std::fflush(stdout);
+  }
+  if (!options.stats_file.empty())
+    write_file_atomically(options.stats_file, report_json(options, report));
+  if (!options.csv_file.empty() && is_complete(options, report))
+    append_csv_row(options.csv_file, report_csv_row(options, report));
 }
 
 /// What the scene's file asks for holds where the command line says nothing.
@@ -154,9 +157,8 @@ int render_command(const RenderCommand& command) {
     renderer->describe(report);
     if (is_new && !options.quiet) fmt::print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
-    if (options.counters && !measurement.interrupted) report.counters = count(*renderer);
     report.exposure = exposure_of(options, image, scene.defaults.measure_exposure);
-    write_outputs(options, image, report);
+    write_outputs(options, image, *renderer, report);
   }
   if (!measurement.interrupted) return 0;
   say_interrupted(options, measurement, has_image);

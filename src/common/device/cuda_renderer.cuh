@@ -66,14 +66,12 @@ class CudaRenderer : public FilmRenderer {
   /// Blocks of `kernel` that the device holds at once.
   std::uint32_t resident_blocks(const void* kernel, int block_threads, std::size_t shared_bytes);
 
-  /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres;
-  /// in global instead of constant memory while the hardware's counters are read, because CUPTI's
-  /// range profiler (13.0) crashes where a kernel has so many bytes of parameters.
+  /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres.
   template <class Function>
   void with_scene_storage(Function&& function) const {
     if (scene_memory_ == SceneMemory::shared) {
       function(SceneStorage<SceneMemory::shared>{scene_}, scan_spheres_.size() * sizeof(Sphere));
-    } else if (scene_memory_ == SceneMemory::constant && !is_counting()) {
+    } else if (scene_memory_ == SceneMemory::constant) {
       SceneStorage<SceneMemory::constant> storage{scene_, {}};
       std::copy(scan_spheres_.begin(), scan_spheres_.end(), storage.spheres);
       function(storage, std::size_t{0});
