@@ -64,14 +64,14 @@ constexpr Maker makers[] = {
                                            l.roughness, l.is_beckmann);
     },
 };
-constexpr std::uint32_t kinds = std::size(makers);
-static_assert(kinds == index_in<CompensatedConductor>(Bsdfs{}) && kinds + 1 == Bsdfs::size,
+static_assert(std::size(makers) == dial_kinds && dial_kinds + 1 == Bsdfs::size &&
+                  dial_kinds == index_in<CompensatedConductor>(Bsdfs{}),
               "a new BSDF belongs in the dial");
 
 }  // namespace
 
 MaterialDescription make_dial_material(std::uint32_t number) {
-  return makers[number % kinds](look_of(number, number / kinds));
+  return makers[number % dial_kinds](look_of(number, number / dial_kinds));
 }
 
 }  // namespace pt
