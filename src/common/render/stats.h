@@ -108,7 +108,7 @@ struct RenderReport {
   std::vector<BufferSize> memory;
   std::vector<KernelInfo> kernels;
   std::optional<HardwareCounters> counters;  ///< where they were asked for
-  std::vector<LaneHistogram> divergence;  ///< of the last render, where the build counts lanes
+  std::vector<LaneHistogram> divergence;     ///< of the last render, where the build counts lanes
 };
 
 }  // namespace pt
