@@ -20,6 +20,13 @@ NUMBERS = [
      "statue:1M: megakernel, bvh2, sah", "mpaths_per_s", 1),
     ("{:.0f} million paths a second in the wavefront", "scenes",
      "statue:1M: wavefront, cwbvh, sah", "mpaths_per_s", 1),
+    *[(text, "ladder", f"{scene}: {rung}", "kernel_ms_median", 1) for text, scene, rung in [
+        ("16 materials takes {:.1f} ms in the megakernel", "dial:16:0:closed", "0 megakernel"),
+        ("{:.1f} ms in a plain wavefront", "dial:16:0:closed", "1 split kernels"),
+        ("{:.1f} ms in one with all its steps", "dial:16:0:closed", "11 persistent warps"),
+        ("the paper's spheres {:.1f} ms", "spheres", "0 megakernel"),
+        (", {:.1f} ms and", "spheres", "1 split kernels"),
+        ("and {:.1f} ms. Why", "spheres", "9 pool of the whole batch")]],
 ]
 MEASURED = r"[\d.,]+ (?:ms|s|million paths a second)\b"  # what README.md may not say unless listed
 
