@@ -9,6 +9,7 @@ import shlex
 import sys
 import tempfile
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 import harness
@@ -64,21 +65,6 @@ def measure(program, name, command, arguments):
     return [labelled(row, way) for row in rows]
 
 
-def measure_all(program, commands, arguments, journal, save):
-    """All rows; `save` is called with those so far after every process."""
-    known = {event["name"]: event["rows"] for event in journal.of("items")
-             if all(row["status"] == "measured" for row in event["rows"])}
-    rows = []
-    for name, command in commands.items():
-        if name not in known:
-            known[name] = measure(program, name, command, arguments)
-            journal.add("items", name=name, rows=known[name])
-            print(name, flush=True)
-        rows += known[name]
-        save(rows)
-    return rows
-
-
 def conclude(rows):
     """Sentences about the target and about short passes."""
     sentences = []
@@ -119,7 +105,9 @@ def run(experiment, arguments):
             harness.write_table(path, rows, {**facts, "complete": complete,
                                              "conclusions": conclude(measured)})
         return measured
-    rows = measure_all(program, commands, arguments, journal, save)
+    rows = journal.measure_groups(
+        "items", ((name, partial(measure, program, name, command, arguments))
+                  for name, command in commands.items()), save)
     failed = [row for row in rows if row["status"] == "failed"]
     if len(failed) == len(rows):
         journal.remove()

@@ -62,6 +62,22 @@ class Journal:
         return [{key: value for key, value in one.items() if key != "event"}
                 for one in self.events if one["event"] == event]
 
+    def measure_groups(self, kind, groups, save):
+        """All rows of groups of rows, `groups` being (name, function that measures the rows) in
+        order. Those that the journal has, none of which failed, are not measured again; `save` is
+        called with the rows so far after every group."""
+        known = {event["name"]: event["rows"] for event in self.of(kind)
+                 if all(row["status"] == "measured" for row in event["rows"])}
+        rows = []
+        for name, measure in groups:
+            if name not in known:
+                known[name] = measure()
+                self.add(kind, name=name, rows=known[name])
+                print(name, flush=True)
+            rows += known[name]
+            save(rows)
+        return rows
+
     def processes(self, name):
         """Those that measured a configuration, in order."""
         return self.by_name.get(name, [])

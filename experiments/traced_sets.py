@@ -4,6 +4,7 @@ import json
 import shlex
 import tempfile
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 
 import harness
@@ -77,27 +78,6 @@ def key_of(program, device, sets):
     return hashlib.sha256(facts.encode()).hexdigest()[:16]
 
 
-def measured_sets(journal):
-    """{ray file: rows} of the sets that need not be measured again."""
-    return {event["name"]: event["rows"] for event in journal.of("ray set")
-            if all(row["status"] == "measured" for row in event["rows"])}
-
-
-def measure_all(experiment, program, sets_in, arguments, journal, save):
-    """All rows; `save` is called with those so far after every set of rays."""
-    known, rows = measured_sets(journal), []
-    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
-        for rays in sets_in(folder):
-            name = Path(rays.rays).name
-            if name not in known:
-                known[name] = measure(experiment, program, rays, arguments)
-                journal.add("ray set", name=name, rows=known[name])
-                print(name, flush=True)
-            rows += known[name]
-            save(rows)
-    return rows
-
-
 def table_text(rows):
     lines = []
     for row in rows:
@@ -136,8 +116,10 @@ def run(experiment, arguments, sets_of):
                 **facts, "complete": complete,
                 "conclusions": experiment.conclude(measured, arguments)})
         return measured
-    rows = measure_all(experiment, program, lambda folder: sets_of(device, arguments, folder),
-                       arguments, journal, save)
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        rows = journal.measure_groups(
+            "ray set", ((Path(rays.rays).name, partial(measure, experiment, program, rays, arguments))
+                        for rays in sets_of(device, arguments, folder)), save)
     failed = [row for row in rows if row["status"] == "failed"]
     if len(failed) == len(rows):
         journal.remove()
