@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "common/device/cuda_check.cuh"
 
@@ -152,11 +153,12 @@ using Image = std::vector<std::uint8_t>;
 class MetricHost {
  public:
   /// `availability`: of the device's counters; empty for a chip that CUPTI knows.
-  explicit MetricHost(const std::string& chip, const Image& availability = {}) : chip_(chip) {
+  explicit MetricHost(const std::string& chip, Image availability = {})
+      : chip_(chip), availability_(std::move(availability)) {
     PT_CUPTI_PARAMS(CUpti_Profiler_Host_Initialize_Params, params);
     params.profilerType = CUPTI_PROFILER_TYPE_RANGE_PROFILER;
     params.pChipName = chip_.c_str();
-    params.pCounterAvailabilityImage = availability.empty() ? nullptr : availability.data();
+    params.pCounterAvailabilityImage = availability_.empty() ? nullptr : availability_.data();
     PT_CUPTI(cuptiProfilerHostInitialize, params);
     host_ = params.pHostObject;
     for (const CounterInfo& counter : counter_table) names_.push_back(find_metric(counter));
@@ -221,6 +223,7 @@ class MetricHost {
   }
 
   std::string chip_;
+  Image availability_;  ///< read by later calls, too: CUPTI makes no copy
   CUpti_Profiler_Host_Object* host_ = nullptr;
   std::vector<std::string> names_;
   std::vector<const char*> pointers_;
