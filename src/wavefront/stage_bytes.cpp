@@ -32,7 +32,9 @@ class Predictor {
 
   PredictedBytes shade_miss() const {
     const double n = flow_.misses;
-    const double ray = layout_.all_lights ? 2 * record : record;
+    // The direction alone, but where it shares a sector with the origin both move.
+    const bool whole = layout_.all_lights || layout_.parts.layout == PoolLayout::sectors;
+    const double ray = whole ? 2 * record : record;
     return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
   }
 

@@ -16,11 +16,15 @@ __global__ void copy_wide(const uint4* from, uint4* to, int count) {
   if (i < count) to[i] = from[i];
 }
 
-/// Only the first `lanes` threads of a warp do more than begin.
+/// Only the first `lanes` threads of a warp do more than begin. The loop's own instructions, which
+/// a warp may execute once for all of its threads, are few beside the others.
 __global__ void work_in_lanes(float* out, int lanes, int turns) {
   if (static_cast<int>(threadIdx.x % 32) >= lanes) return;
   float x = static_cast<float>(threadIdx.x);
-  for (int i = 0; i < turns; ++i) x = x * 0.5f + sqrtf(x);
+  for (int i = 0; i < turns; ++i) {
+#pragma unroll
+    for (int k = 0; k < 32; ++k) x = x * 0.5f + static_cast<float>(threadIdx.x + k);
+  }
   out[blockIdx.x * blockDim.x + threadIdx.x] = x;
 }
 

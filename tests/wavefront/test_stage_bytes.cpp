@@ -72,6 +72,12 @@ TEST(StageBytes, WhatAScenesKindAdds) {
                40 * (48 + 4 + 4) + 20 * (16 + 4) + 50 * (48 + 4));
 }
 
+TEST(StageBytes, HalfARayIsASectorWhereBothShareOne) {
+  WaveLayout layout = usual();
+  layout.parts.layout = PoolLayout::sectors;
+  expect_bytes(predict_bytes("shade_miss", first_wave(), layout), 40 * (4 + 32 + 12), 40 * 16);
+}
+
 TEST(StageBytes, TagsInsteadOfQueues) {
   WaveLayout layout = usual(false);
   layout.has_queues = layout.appends = false;
