@@ -13,7 +13,8 @@ struct CompactCommand {
   std::vector<std::uint32_t> items{1u << 20, 1u << 22, 1u << 24};  ///< slots
   std::vector<float> densities{0.1f, 0.5f, 0.9f};                  ///< part of them that waits
   std::vector<int> queues{1, 2};                                   ///< that a pass fills
-  std::vector<Compaction> strategies{Compaction::cub, Compaction::atomic, Compaction::none};
+  std::vector<Compaction> strategies{Compaction::cub, Compaction::scan, Compaction::atomic,
+                                     Compaction::none};
   std::uint32_t run_length = 1;
   DeviceChoice device;
   MeasuredRuns runs{3, 10, true};

@@ -9,6 +9,7 @@
 #include "common/device/stage_stamp.cuh"
 #include "common/error.h"
 #include "wavefront/compaction_cuda.h"
+#include "wavefront/scan_tags.cuh"
 
 namespace pt {
 namespace {
@@ -47,6 +48,36 @@ cudaError_t gather(void* storage, std::size_t& storage_bytes, const CompactionRe
                                   stream);
 }
 
+/// Calls launch(rows) with the rows of a warp as a constant: as few as make no more tiles than a
+/// GPU has room for at once, since every tile reads the counts of all before it.
+template <class Launch>
+void with_rows(std::uint32_t slot_count_max, Launch&& launch) {
+  constexpr std::uint32_t tiles_wanted = 1024;
+  const std::uint32_t most = slot_count_max / tiles_wanted;
+  if (most <= tile_slots(1)) {
+    launch(std::integral_constant<int, 1>());
+  } else if (most <= tile_slots(2)) {
+    launch(std::integral_constant<int, 2>());
+  } else if (most <= tile_slots(4)) {
+    launch(std::integral_constant<int, 4>());
+  } else {
+    launch(std::integral_constant<int, 8>());
+  }
+}
+
+std::uint32_t count_tiles(std::uint32_t slot_count_max, int rows) {
+  return std::max(1u, (slot_count_max + tile_slots(rows) - 1) / tile_slots(rows));
+}
+
+/// Every launch has the tiles of `slot_count_max`, whatever the request's slots: see TileState.
+void scan(const CompactionRequest& request, std::uint32_t slot_count_max, const TileState& tiles,
+          StageClock* clock, cudaStream_t stream) {
+  with_rows(slot_count_max, [&](auto rows) {
+    const auto kernel = request.queues_wanted > 1 ? scan_tags<2, rows()> : scan_tags<1, rows()>;
+    kernel<<<count_tiles(slot_count_max, rows()), scan_threads, 0, stream>>>(request, tiles, clock);
+  });
+}
+
 /// How many slots have each tag.
 __global__ void count_tags(CompactionRequest request, StageClock* clock) {
   if (clock != nullptr) stamp_first_thread(clock, StageId::compact);
@@ -66,6 +97,12 @@ __global__ void count_tags(CompactionRequest request, StageClock* clock) {
 
 CudaCompactor::CudaCompactor(TagPass pass, std::uint32_t slot_count_max, CudaMemory& memory)
     : pass_(pass), slot_count_max_(slot_count_max) {
+  if (pass == TagPass::scan) {
+    std::uint32_t tiles = 0;
+    with_rows(slot_count_max, [&](auto rows) { tiles = count_tiles(slot_count_max, rows()); });
+    tiles_.counts = memory.upload("compaction", std::vector<TagCounts>(tiles));
+    tiles_.tickets = memory.upload("compaction", std::vector<std::uint32_t>(1));
+  }
   if (pass != TagPass::gather) return;
   CompactionRequest request;
   request.slot_count = slot_count_max;
@@ -84,11 +121,16 @@ void CudaCompactor::enqueue(const CompactionRequest& request, StageClock* clock,
     throw Error("compaction: " + std::to_string(request.slot_count) +
                 " slots; expected at most the " + std::to_string(slot_count_max_) + " announced");
   }
-  if (pass_ == TagPass::gather) {
-    if (request.queues_wanted > 2) {
-      throw Error("compaction: " + std::to_string(request.queues_wanted) +
-                  " queues wanted; expected at most two on CUDA");
+  if (pass_ != TagPass::count && request.queues_wanted > 2) {
+    throw Error("compaction: " + std::to_string(request.queues_wanted) +
+                " queues wanted; expected at most two on CUDA");
+  }
+  if (pass_ == TagPass::scan) {
+    if (reinterpret_cast<std::uintptr_t>(request.tags) % 16 != 0) {
+      throw Error("compaction: misaligned tags; expected them at a multiple of 16 bytes");
     }
+    scan(request, slot_count_max_, tiles_, clock, stream);
+  } else if (pass_ == TagPass::gather) {
     std::size_t bytes = cub_storage_bytes_;
     check_cuda(gather(cub_storage_, bytes, request, clock, stream), "a compaction by CUB");
   } else {

@@ -6,6 +6,7 @@
 #include "common/device/cuda_memory.cuh"
 #include "common/device/stage_clock.h"
 #include "wavefront/compaction.h"
+#include "wavefront/tile_state.h"
 
 namespace pt {
 
@@ -15,9 +16,10 @@ class CudaCompactor {
   /// `memory` now, none later.
   CudaCompactor(TagPass pass, std::uint32_t slot_count_max, CudaMemory& memory);
 
-  /// Enqueues the request; its pointers are device memory. TagPass::gather serves two queues at
-  /// most. `clock` may be null. Can be captured into a graph. Throws Error as check_request does,
-  /// or when there are more slots than announced.
+  /// Enqueues the request; its pointers are device memory. Serves two queues at most, but for
+  /// TagPass::count. TagPass::scan wants tags at a multiple of 16 bytes. `clock` may be null. Can
+  /// be captured into a graph. One pass at a time. Throws Error as check_request does, or when
+  /// there are more slots than announced.
   void enqueue(const CompactionRequest& request, StageClock* clock, cudaStream_t stream) const;
 
  private:
@@ -25,6 +27,7 @@ class CudaCompactor {
   std::uint32_t slot_count_max_;
   void* cub_storage_ = nullptr;
   std::size_t cub_storage_bytes_ = 0;
+  TileState tiles_;
 };
 
 }  // namespace pt

@@ -43,8 +43,8 @@ TEST(CompactCommandLine, HasDefaults) {
   EXPECT_EQ(c.items, (std::vector<std::uint32_t>{1 << 20, 4 << 20, 16 << 20}));
   EXPECT_EQ(c.densities, (std::vector<float>{0.1f, 0.5f, 0.9f}));
   EXPECT_EQ(c.queues, (std::vector<int>{1, 2}));
-  EXPECT_EQ(c.strategies,
-            (std::vector<Compaction>{Compaction::cub, Compaction::atomic, Compaction::none}));
+  EXPECT_EQ(c.strategies, (std::vector<Compaction>{Compaction::cub, Compaction::scan,
+                                                   Compaction::atomic, Compaction::none}));
   EXPECT_EQ(c.run_length, 1u);
   EXPECT_TRUE(c.runs.cold);
   EXPECT_EQ(c.runs.repeat, 10);
@@ -62,7 +62,7 @@ TEST(CompactCommandLine, RefusesWhatItCannotDo) {
   refuse({"--density", "nan"}, "--density nan");
   refuse({"--queues", "3"}, "--queues 3");
   refuse({"--run", "0"}, "--run 0");
-  refuse({"--strategy", "cub,fast"}, "--strategy fast: expected one of cub, atomic");
+  refuse({"--strategy", "cub,fast"}, "--strategy fast: expected one of cub, scan");
   refuse({"--strategy", "sort"}, "--strategy sort: orders surfaces");
   refuse({"--cache", "hot"}, "--cache hot");
   refuse({"--repeat", "0"}, "--repeat 0");

@@ -25,7 +25,7 @@ TEST_P(FilmWindowsOf, MakeTheWholeInBothModes) {
                                   reference);
     }
   }
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
     for (const char* schedule : {"graph", "host"}) {
       for (const char* pool : {"auto", "300"}) {
         expect_parts_make_the_whole(

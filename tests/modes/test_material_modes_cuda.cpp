@@ -43,7 +43,7 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
   EXPECT_EQ(expected.counts.nonfinite_samples, 0u);
   for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
-    for (const char* compaction : {"atomic", "cub", "none"}) {
+    for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
       for (const auto& [finish, layout] :
            {std::pair{"0", "aos"}, {"0", "soa"}, {"131072", "sectors"}}) {
         if (std::string(accel) == "brute" && std::string(GetParam().name).starts_with("masked")) {
@@ -67,7 +67,7 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
 TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
   for (const char* shade : {"uber", "material", "auto"}) {
-    for (const char* compaction : {"atomic", "cub", "sort"}) {
+    for (const char* compaction : {"atomic", "cub", "scan", "sort"}) {
       for (const char* pool : {"1000", "auto"}) {
         SCOPED_TRACE(testing::Message() << shade << ", " << compaction << ", " << pool);
         expect_same(render({{"device", "cuda"},

@@ -164,7 +164,7 @@ TEST_P(ModesOf, MegakernelEqualsSerial) {
 
 TEST_P(ModesOf, WavefrontEqualsSerial) {
   std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
-                              {"compaction", {"atomic", "cub", "none", "sort"}},
+                              {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
                               {"pool-size", {"auto", "1000", "4096", "6525", "6526"}},
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},

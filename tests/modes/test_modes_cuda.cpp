@@ -69,7 +69,7 @@ TEST_P(GpuModesOf, MegakernelDoesNotDependOnHow) {
 
 TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
   std::vector<Choice> choices = with_shared(
-      {{"compaction", {"atomic", "cub", "none", "sort"}},
+      {{"compaction", {"atomic", "cub", "scan", "none", "sort"}},
        {"schedule", {"graph", "host"}},
        {"regenerate", {"on", "off"}},
        {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Cuda, GpuTrianglesOf, testing::ValuesIn(triangle_kinds)
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
-  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "none", "sort"}},
+  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none", "sort"}},
                                        {"schedule", {"graph", "host"}},
                                        {"regenerate", {"on", "off"}},
                                        {"persistent", {"on", "off"}},
@@ -376,7 +376,7 @@ TEST_F(CudaModes, PersistentWarpsTakeEveryPath) {
 TEST_F(CudaModes, RenderingAgainGivesTheSame) {
   const Settings image{{"scene", "cornell"}, {"width", width}, {"height", height}, {"spp", spp}};
   std::vector<Options> all{cuda_options("megakernel", image)};
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
     for (const char* schedule : {"graph", "host"}) {
       for (const char* pool : {"auto", "1000"}) {
         all.push_back(

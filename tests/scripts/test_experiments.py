@@ -225,7 +225,7 @@ class Experiments(unittest.TestCase):
     def check_counts(self, script, rows):
         """What an experiment's columns say must follow from what ptexp counted."""
         if script == "compaction":
-            self.assertEqual({row["strategy"] for row in rows}, {"cub", "atomic", "none"})
+            self.assertEqual({row["strategy"] for row in rows}, {"cub", "scan", "atomic", "none"})
             for row in rows:
                 gathered = 0 if row["strategy"] == "none" else int(row["waiting"])
                 self.assertEqual(int(row["bytes"]), int(row["x"]) + 4 * gathered, row["name"])

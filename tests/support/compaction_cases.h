@@ -202,7 +202,7 @@ class PassTest {
     for (int c = 0; c < 2; ++c) {
       const Slots waiting = waiting_slots(roles, static_cast<Role>(c));
       counts.push_back(static_cast<std::uint32_t>(waiting.size()));
-      if (pass_ == TagPass::gather) std::ranges::copy(waiting, contents_[c].begin());
+      if (pass_ != TagPass::count) std::ranges::copy(waiting, contents_[c].begin());
     }
     counts_.expect(counts, "counts");
     expect_contents();
@@ -427,7 +427,7 @@ TYPED_TEST_P(CompactionOf, APassFillsAnyNumberOfQueues) {
   }
   for (const CompactionInfo& strategy : pass_strategies) {
     SCOPED_TRACE(strategy.name);
-    const bool gathers = strategy.pass == TagPass::gather;
+    const bool gathers = strategy.has_queues;
     const int most = gathers ? TypeParam::pass_queues_max : CompactionRequest::queues_max;
     for (int wanted = 1; wanted <= most; ++wanted) {
       SCOPED_TRACE(testing::Message() << wanted << " queues");

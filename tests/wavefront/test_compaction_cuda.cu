@@ -1,6 +1,7 @@
 // Compaction on CUDA; the tests are in compaction_cases.h.
 #include "compaction_cases.h"
 #include "cuda_test.h"
+#include "temp_folder.h"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/stage_kernel.cuh"
 
@@ -80,6 +81,85 @@ TEST_F(CudaCompactorTest, RefusesMoreSlotsThanAnnounced) {
     test.expect_refusal([](CompactionRequest& r) { r.wanted[1] = StageId::shade_miss; },
                         "1000 slots; expected at most the 999 announced");
   }
+}
+
+// A tile's size follows from the slots announced, however few come.
+TEST_F(CudaCompactorTest, ScansTilesOfAllSizes) {
+  CudaDevice device;
+  for (const std::uint32_t announced : {0u, 1u << 23, 1u << 24, 1u << 25, 1u << 26, 1u << 28}) {
+    for (const std::uint32_t n : {0u, 5u, 8193u, 16384u, 70001u}) {
+      SCOPED_TRACE(testing::Message() << n << " slots of " << announced);
+      PassTest<CudaDevice> test(device, TagPass::scan, n, std::max(n, announced));
+      for (const RolePattern& pattern : role_patterns) {
+        test.expect_pass(make_roles(pattern, n), tag_meanings[0]);
+      }
+    }
+  }
+}
+
+// Stores of four slots go to multiples of 16 bytes, wherever a queue begins.
+TEST_F(CudaCompactorTest, ScansToAnyPlace) {
+  constexpr std::uint32_t n = 20000;
+  std::vector<StageId> tags;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    tags.push_back(random_role(i, 0.5) == Role::first ? StageId::shade_miss : free_slot);
+  }
+  const DeviceArray<StageId> device_tags{tags};
+  const DeviceArray<std::uint32_t> counts(2);
+  CudaMemory memory;
+  const CudaCompactor compactor(TagPass::scan, n, memory);
+  CompactionRequest request;
+  request.tags = device_tags.data(), request.slot_count = request.capacity = n;
+  request.queues_wanted = 1, request.wanted[0] = StageId::shade_miss;
+  request.counts = counts.data();
+  for (std::uint32_t offset = 0; offset < 4; ++offset) {
+    const DeviceArray<std::uint32_t> queue{Slots(n + 8, poison)};
+    request.queues[0] = queue.data() + offset;
+    compactor.enqueue(request, nullptr, nullptr);
+    Slots expected(offset, poison);
+    for (std::uint32_t i = 0; i < n; ++i) {
+      if (tags[i] == StageId::shade_miss) expected.push_back(i);
+    }
+    EXPECT_EQ(counts.download()[0], expected.size() - offset);
+    expected.resize(n + 8, poison);
+    expect_equal_arrays(queue.download(), expected, "queue at " + std::to_string(offset));
+  }
+  request.tags += 8;
+  request.slot_count = n - 8;
+  expect_error([&] { compactor.enqueue(request, nullptr, nullptr); }, "a multiple of 16 bytes");
+}
+
+// Nothing resets the state of the tiles between two launches, in a graph neither.
+TEST_F(CudaCompactorTest, ScansInAGraphThatIsLaunchedAgain) {
+  constexpr std::uint32_t n = 100000;
+  const DeviceArray<StageId> tags{std::vector<StageId>(n, free_slot)};
+  const DeviceArray<std::uint32_t> queue(n), counts(2);
+  CudaMemory memory;
+  const CudaCompactor compactor(TagPass::scan, n, memory);
+  CompactionRequest request;
+  request.tags = tags.data(), request.slot_count = request.capacity = n;
+  request.queues_wanted = 1, request.wanted[0] = StageId::shade_miss;
+  request.queues[0] = queue.data(), request.counts = counts.data();
+  cudaStream_t stream = nullptr;
+  cudaGraph_t graph = nullptr;
+  cudaGraphExec_t exec = nullptr;
+  check_cuda(cudaStreamCreate(&stream), "cudaStreamCreate");
+  check_cuda(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "capture");
+  for (int i = 0; i < 3; ++i) compactor.enqueue(request, nullptr, stream);
+  check_cuda(cudaStreamEndCapture(stream, &graph), "capture");
+  check_cuda(cudaGraphInstantiate(&exec, graph, 0), "cudaGraphInstantiate");
+  for (std::uint32_t waiting = 1; waiting <= n; waiting *= 10) {
+    std::vector<StageId> now(n, free_slot);
+    std::fill_n(now.end() - waiting, waiting, StageId::shade_miss);
+    check_cuda(cudaMemcpy(tags.data(), now.data(), n, cudaMemcpyHostToDevice), "upload");
+    check_cuda(cudaGraphLaunch(exec, stream), "cudaGraphLaunch");
+    check_cuda(cudaStreamSynchronize(stream), "scan");
+    EXPECT_EQ(counts.download()[0], waiting);
+    EXPECT_EQ(queue.download()[waiting - 1], n - 1);
+  }
+  cudaGraphExecDestroy(exec);
+  cudaGraphDestroy(graph);
+  cudaStreamDestroy(stream);
 }
 
 // CUB asks each slot once, which is how the clock knows of a pass.

@@ -7,7 +7,8 @@
 namespace pt {
 namespace {
 
-constexpr Compaction strategies[] = {Compaction::cub, Compaction::atomic, Compaction::none};
+constexpr Compaction strategies[] = {Compaction::cub, Compaction::scan, Compaction::atomic,
+                                     Compaction::none};
 
 class CudaMeasureCompaction : public CudaTest {};
 

@@ -52,7 +52,8 @@ std::vector<SubcommandOption<CompactCommand>> compact_options() {
            return static_cast<int>(parse_integer("queues", one, 1, measured_queues_max));
          });
        }},
-      {"strategy", "NAME,... [cub,atomic,none]", "cub, atomic, none, as --compaction has them",
+      {"strategy", "NAME,... [cub,scan,atomic,none]",
+       "cub, scan, atomic, none, as --compaction has them",
        [](C& c, S v) { c.strategies = parse_list(v, parse_strategy); }},
       {"cache", "cold|warm [cold]", "cold: passes take memory in turn; warm: all have the same",
        [](C& c, S v) { c.runs.cold = parse_cold(v); }},

@@ -218,9 +218,10 @@ void add_execution(std::vector<OptionEntry>& list) {
       .only(megakernel, cuda)
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"
-           "cub: a selection in order; atomic: appended in any order;\n"
-           "none: not at all, every stage visits the whole pool; sort:\n"
-           "as atomic, and surfaces are ordered by their kind of BSDF")
+           "cub: a selection in order; scan: the same by a kernel of\n"
+           "ours; atomic: appended in any order; none: not at all, every\n"
+           "stage visits the whole pool; sort: as atomic, and surfaces\n"
+           "are ordered by their kind of BSDF")
       .only(wavefront, any_device)
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",

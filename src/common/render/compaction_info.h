@@ -9,13 +9,15 @@ namespace pt {
 enum class TagPass {
   none,
   count,   ///< how many slots wait for each stage
-  gather,  ///< likewise, and the queues are filled
+  gather,  ///< likewise, and the queues are filled; by CUB on CUDA
+  scan,    ///< as gather; by one kernel of ours on CUDA
 };
 
 //   name, whether stages append to queues (else they write tags), whether there are queues, its
 //   pass, whether the queue of surfaces is ordered by the kind of BSDF
 #define PT_COMPACTIONS(STRATEGY)             \
   STRATEGY(cub, false, true, gather, false)  \
+  STRATEGY(scan, false, true, scan, false)   \
   STRATEGY(atomic, true, true, none, false)  \
   STRATEGY(none, false, false, count, false) \
   STRATEGY(sort, true, true, none, true)
