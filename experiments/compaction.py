@@ -17,7 +17,7 @@ from harness import Experiment, HarnessError, Plot
 from journal import Journal
 from program import failure_of, version_of
 
-ITEMS = ["64K", "256K", "1M", "2M", "4M", "8M", "16M", "32M", "64M"]
+ITEMS = ["64K", "1M", "4M", "16M", "64M"]
 CPU_ITEMS = ["64K", "1M", "4M", "16M"]
 DENSITIES = ["0.1", "0.5", "0.9"]
 # How the waiting slots lie, and whether a cache may hold the memory.

@@ -52,7 +52,7 @@ cudaError_t gather(void* storage, std::size_t& storage_bytes, const CompactionRe
 /// GPU has room for at once, since every tile reads the counts of all before it.
 template <class Launch>
 void with_rows(std::uint32_t slot_count_max, Launch&& launch) {
-  constexpr std::uint32_t tiles_wanted = 1024;
+  constexpr std::uint32_t tiles_wanted = 512;
   const std::uint32_t most = slot_count_max / tiles_wanted;
   if (most <= tile_slots(1)) {
     launch(std::integral_constant<int, 1>());

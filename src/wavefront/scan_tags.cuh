@@ -19,7 +19,7 @@ namespace pt {
 /// Turns over with every launch: a tile is ready whose bit is no more what it was.
 inline constexpr TagCounts tile_ready = 0x80000000u;
 
-inline constexpr int scan_threads = 256;                     ///< of a tile
+inline constexpr int scan_threads = 512;                     ///< of a tile
 inline constexpr std::uint32_t row_slots = 32 * mask_slots;  ///< of a row: a mask for each lane
 
 /// Slots of a tile whose warps have so many rows each.
@@ -35,7 +35,7 @@ __device__ inline void load_tags(const CompactionRequest& request, std::uint32_t
                                  std::uint32_t (&words)[8]) {
   if (first + mask_slots <= request.slot_count) {
     const uint4* const wide = reinterpret_cast<const uint4*>(request.tags + first);
-    const uint4 low = __ldg(wide), high = __ldg(wide + 1);
+    const uint4 low = __ldcs(wide), high = __ldcs(wide + 1);  // each is read once
     words[0] = low.x, words[1] = low.y, words[2] = low.z, words[3] = low.w;
     words[4] = high.x, words[5] = high.y, words[6] = high.z, words[7] = high.w;
     return;
@@ -84,7 +84,7 @@ __device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t pl
       return place >= shift && place < shift + total;
     };
     if (is_inside(i) && is_inside(i + 3)) {
-      *reinterpret_cast<uint4*>(to - shift + i) = slots;
+      __stcs(reinterpret_cast<uint4*>(to - shift + i), slots);
     } else {
       if (is_inside(i)) to[i - shift] = slots.x;
       if (is_inside(i + 1)) to[i + 1 - shift] = slots.y;
