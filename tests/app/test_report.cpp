@@ -22,6 +22,7 @@ RenderRun make_run(double kernel_ms, double intersect_ms) {
           20,
           50,
           RunEnd::samples,
+          {},
           {}};
 }
 

@@ -76,7 +76,7 @@ struct Chains {
     Vec4 u(to_unit_float(b.x), to_unit_float(b.y), to_unit_float(b.z), to_unit_float(b.w));
     if (iteration == bootstrap_iteration || block >= load_wide(&proposals[path]).kept()) return u;
     const Vec4 x = accepted[std::uint64_t{block} * count + path];
-    PT_UNROLL(1)
+    PT_UNROLL(4)
     for (int i = 0; i < 4; ++i) u[i] = mutate(x[i], u[i], size);
     return u;
   }
@@ -88,5 +88,11 @@ struct Chains {
     return {to_unit_float(b.x), to_unit_float(b.y)};
   }
 };
+
+/// Chains::draw, not inlined: kernels that draw for other samplers, too, keep their registers.
+PT_NOINLINE inline Vec4 draw_apart(const Chains* chains, std::uint32_t path,
+                                   std::uint32_t iteration, std::uint32_t block) {
+  return chains->draw(path, iteration, block);
+}
 
 }  // namespace pt

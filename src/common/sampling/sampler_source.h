@@ -34,7 +34,7 @@ struct SamplerSource {
     const Chains* chains;
 
     PT_HD Vec4 draw(std::uint32_t block) {
-      if (chains != nullptr) return chains->draw(philox.pixel, philox.sample, block);
+      if (chains != nullptr) return draw_apart(chains, philox.pixel, philox.sample, block);
       if (sampler.kind == SamplerKind::independent) return philox.draw(block);
       const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits(block, 2);
       if (sampler.kind == SamplerKind::sobol) return sobol_block(philox.sample, pattern);
