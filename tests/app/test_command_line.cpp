@@ -285,6 +285,19 @@ void expect_refused(const std::vector<Refusal>& refusals) {
   }
 }
 
+TEST(Refused, ChainsAndTheirMutations) {
+  expect_refused({
+      {"--integrator mlt --chains 0", "--chains 0: expected auto or a number of chains from 1 to"},
+      {"--integrator mlt --bootstrap 2G", "--bootstrap 2G: expected auto or a number of paths"},
+      {"--integrator mlt --large-step-probability 0",
+       "--large-step-probability 0: expected a number above 0, at most 1"},
+      {"--integrator mlt --large-step-probability 1.01", "expected a number above 0, at most 1"},
+      {"--integrator mlt --mutation-size 0.6", "--mutation-size 0.6: expected a number above 0"},
+      {"--chains 100", "--chains 100: has no effect with --integrator path; it applies to mlt"},
+      {"--bootstrap 1M", "has no effect with --integrator path; it applies to mlt"},
+  });
+}
+
 TEST(Refused, WholeNumbers) {
   for (const char* option : {"width", "height", "max-depth"})
     for (const char* value : {"0", "65536", "-1", "1.5", "ten", "1e3", "+4", "0x10", "''"})

@@ -307,6 +307,20 @@ TEST(MarkovChains, AddUpToTheImage) {
   }
 }
 
+// Sums may be taken at any time: what was not yet added then is not added later.
+TEST(MarkovChains, AddUpToTheSameInParts) {
+  ToyChains whole(500, 6, 0.3, 3), parts(500, 6, 0.3, 3);
+  whole.mutate(40);
+  for (const int steps : {1, 14, 25}) {
+    parts.mutate(steps);
+    parts.finish();
+  }
+  whole.finish();
+  for (std::uint32_t i = 0; i < side * side; ++i) {
+    EXPECT_NEAR(parts.sum(i), whole.sum(i), 1e-9 * whole.sum(i)) << i;
+  }
+}
+
 TEST(MarkovChains, TakeLargeStepsAsOftenAsTheyShould) {
   ToyChains chains(10000, 6, 0.3, 3);
   chains.mutate(20);

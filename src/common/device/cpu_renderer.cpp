@@ -197,8 +197,12 @@ void CpuRenderer::allocate_chains() {
 
 void CpuRenderer::begin_chains(const ChainWindow& window) {
   *chain_arrays_.chains = chains_view(chain_arrays_, window);
+  clear_chain_sums();
+}
+
+void CpuRenderer::clear_chain_sums() {
   *chain_arrays_.tally = {};
-  std::fill_n(chain_arrays_.sums, 3 * std::uint64_t{window.width} * window.height, SplatSum{0});
+  std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
 }
 
 void CpuRenderer::set_proposals(const std::vector<Proposal>& proposals) {
@@ -248,9 +252,11 @@ std::vector<Sample> CpuRenderer::read_chain_samples(std::uint32_t paths) {
   return {sample_memory_.begin(), sample_memory_.begin() + paths};
 }
 
-ChainSums CpuRenderer::read_chain_sums() {
+ChainSums CpuRenderer::take_chain_sums() {
   const std::uint64_t count = 3 * window().pixel_count();
-  return {{chain_arrays_.sums, chain_arrays_.sums + count}, *chain_arrays_.tally};
+  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, *chain_arrays_.tally};
+  clear_chain_sums();
+  return result;
 }
 
 void CpuRenderer::describe(RenderReport& report) const {

@@ -72,7 +72,8 @@ class CpuRenderer : public FilmRenderer {
   void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
   void step_chains(const SampleBuffer& batch, const ChainStep& step);
   std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
-  ChainSums read_chain_sums() override;
+  ChainSums take_chain_sums() override;
+  void clear_chain_sums();
   void init_random_states(const SampleBuffer& batch);
   void accumulate(const SampleBuffer& batch);
   template <class MakeSum>

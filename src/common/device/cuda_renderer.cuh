@@ -137,7 +137,8 @@ class CudaRenderer : public FilmRenderer {
   void set_proposals(const std::vector<Proposal>& proposals) override;
   void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
   std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
-  ChainSums read_chain_sums() override;
+  ChainSums take_chain_sums() override;
+  void clear_chain_sums();
   template <class SomeFilm, class Function>
   void for_each_film_array(SomeFilm& film, Function&& function) const;
   void accumulate(const SampleBuffer& batch);

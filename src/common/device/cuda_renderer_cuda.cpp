@@ -294,9 +294,12 @@ void CudaRenderer::begin_chains(const ChainWindow& window) {
   check_cuda(cudaMemcpyAsync(chain_arrays_.chains, &chains, sizeof chains, cudaMemcpyHostToDevice,
                              stream_),
              "cudaMemcpyAsync");
-  const std::uint64_t count = 3 * std::uint64_t{window.width} * window.height;
-  check_cuda(cudaMemsetAsync(chain_arrays_.sums, 0, count * sizeof(SplatSum), stream_),
-             "cudaMemset");
+  clear_chain_sums();
+}
+
+void CudaRenderer::clear_chain_sums() {
+  const std::uint64_t bytes = 3 * window().pixel_count() * sizeof(SplatSum);
+  check_cuda(cudaMemsetAsync(chain_arrays_.sums, 0, bytes, stream_), "cudaMemset");
   check_cuda(cudaMemsetAsync(chain_arrays_.tally, 0, sizeof(ChainTally), stream_), "cudaMemset");
 }
 
@@ -328,7 +331,7 @@ std::vector<Sample> CudaRenderer::read_chain_samples(std::uint32_t paths) {
   return result;
 }
 
-ChainSums CudaRenderer::read_chain_sums() {
+ChainSums CudaRenderer::take_chain_sums() {
   ChainSums result;
   result.sums.resize(3 * window().pixel_count());
   check_cuda(cudaMemcpy(result.sums.data(), chain_arrays_.sums,
@@ -337,6 +340,7 @@ ChainSums CudaRenderer::read_chain_sums() {
   check_cuda(
       cudaMemcpy(&result.tally, chain_arrays_.tally, sizeof(ChainTally), cudaMemcpyDeviceToHost),
       "cudaMemcpy");
+  clear_chain_sums();
   return result;
 }
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "common/memory_error.h"
 #include "common/render/option_names.h"
@@ -15,20 +15,16 @@ namespace {
 constexpr std::uint64_t bootstrap_batch_max = std::uint64_t{1} << 20;
 /// Longer paths draw the numbers of their last rays afresh: 2 KiB for a chain.
 constexpr std::uint32_t stored_blocks_max = 128;
-/// Of a render: so many splats fit a sum whatever they are, see quanta_per_brightness.
-constexpr std::uint64_t mutations_max = std::uint64_t{1} << 36;
+/// Sums are taken from the device after so many mutations: they fit whatever they are. One mutation
+/// adds less than 2 b / 0.0722 to a channel, the smallest share of one in luminance: below 2^5 b,
+/// all of them in one pixel 2^37 b, or 2^62 quanta.
+constexpr std::uint64_t mutations_per_segment = std::uint64_t{1} << 32;
+constexpr double quanta_per_brightness = 0x1p25;
 /// Small chains between two looks at the clock.
 constexpr std::uint64_t paths_per_turn = std::uint64_t{1} << 16;
 
 std::uint64_t mutations_of(std::uint64_t pixels, int samples) {
   return pixels * static_cast<std::uint64_t>(samples);
-}
-
-/// One mutation adds less than b / 0.0722 to a channel, the smallest share of one in luminance:
-/// below 16 b. With 2^n of them in one pixel a sum stays below 2^(n + 4) b, which are 2^62 quanta
-/// or less.
-double quanta_per_brightness(std::uint64_t mutations) {
-  return std::ldexp(1.0, std::min(28, 58 - static_cast<int>(std::bit_width(mutations))));
 }
 
 void refuse(const std::string& option, const std::string& reason) {
@@ -69,18 +65,39 @@ std::vector<float> run_bootstrap(ChainDevice& device, const ChainPlan& plan, Ren
   return targets;
 }
 
-void fill_film(const ChainSums& sums, double radiance_per_quantum, std::uint64_t samples,
-               Film& film) {
-  film.pixels.resize(film.window.pixel_count());
-  for (std::size_t i = 0; i < film.pixels.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto quanta = static_cast<std::int64_t>(sums.sums[3 * i + c]);
-      film.pixels[i].sum[c] =
-          static_cast<double>(quanta) * radiance_per_quantum * static_cast<double>(samples);
+/// Adds up what chains have added to the device's sums.
+class ChainTotals {
+ public:
+  explicit ChainTotals(std::uint64_t pixels) : quanta_(3 * pixels) {}
+
+  void take(ChainDevice& device, std::uint32_t chains, ChainStep step, RenderRun& run) {
+    step.kind = ChainStep::Kind::finish;
+    device.run_chains(chains, step, run);
+    const ChainSums sums = device.take_chain_sums();
+    for (std::size_t i = 0; i < quanta_.size(); ++i) {
+      quanta_[i] += static_cast<double>(static_cast<std::int64_t>(sums.sums[i]));
     }
-    film.pixels[i].samples = samples;
+    tally_ = tally_ + sums.tally;
   }
-}
+
+  const ChainTally& tally() const { return tally_; }
+
+  /// As sums of so many samples of each pixel.
+  void fill_film(double radiance_per_quantum, std::uint64_t samples, Film& film) const {
+    film.pixels.resize(film.window.pixel_count());
+    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        film.pixels[i].sum[c] =
+            quanta_[3 * i + c] * radiance_per_quantum * static_cast<double>(samples);
+      }
+      film.pixels[i].samples = samples;
+    }
+  }
+
+ private:
+  std::vector<double> quanta_;
+  ChainTally tally_;
+};
 
 double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
@@ -192,13 +209,7 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
                         int samples, const RenderHooks& hooks, Film& film) {
   const Window& w = film.window;
   const std::uint64_t pixels = w.pixel_count();
-  const std::uint64_t wanted = mutations_of(pixels, samples);
-  if (wanted > mutations_max && options.time_limit <= 0) {
-    throw Error(fmt::format("--spp {} with --integrator mlt: {} mutations; expected at most 2^36",
-                            samples, wanted));
-  }
-  const std::uint64_t mutations = std::min(wanted, mutations_max);
-  const std::uint64_t iterations = (mutations + plan.chains - 1) / plan.chains;
+  const std::uint64_t iterations = (mutations_of(pixels, samples) + plan.chains - 1) / plan.chains;
   const ChainWindow window{w.x, w.y, w.width, w.height};
   device.begin_chains(window);
 
@@ -213,37 +224,45 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
     proposals.push_back({path, bootstrap_iteration, 0, 1});
   }
   device.set_proposals(proposals);
-  const double quanta = quanta_per_brightness(iterations * plan.chains);
   const auto chains = static_cast<std::uint32_t>(plan.chains);
   ChainStep step{ChainStep::Kind::start,
                  {starts.brightness, static_cast<double>(options.large_step_probability)},
-                 quanta / starts.brightness,
+                 quanta_per_brightness / starts.brightness,
                  plan.blocks};
   device.run_chains(chains, step, run);
   const double before_ms = run.kernel_ms;
 
   step.kind = ChainStep::Kind::mutate;
   const auto turn = static_cast<int>(std::max<std::uint64_t>(paths_per_turn / plan.chains, 1));
-  const int turns = static_cast<int>(std::min<std::uint64_t>(iterations, (1u << 31) - 1));
-  const BatchRun batches = for_each_batch(turns, turn, plan.chains, hooks, [&](int, int count) {
-    for (int i = 0; i < count; ++i) device.run_chains(chains, step, run);
-  });
+  constexpr std::uint64_t most = std::numeric_limits<int>::max();
+  const auto segment = static_cast<int>(std::min(mutations_per_segment / plan.chains, most));
+  ChainTotals totals(pixels);
+  int in_segment = 0;
+  const auto mutate = [&](int, int count) {
+    for (int i = 0; i < count; ++i, ++in_segment) {
+      if (in_segment == segment) {
+        totals.take(device, chains, step, run);
+        in_segment = 0;
+      }
+      device.run_chains(chains, step, run);
+    }
+  };
+  const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)), turn,
+                                          plan.chains, hooks, mutate);
   const double mutated_ms = run.kernel_ms - before_ms;
-  step.kind = ChainStep::Kind::finish;
-  device.run_chains(chains, step, run);
+  totals.take(device, chains, step, run);
 
-  const ChainSums sums = device.read_chain_sums();
   const auto done = static_cast<std::uint64_t>(batches.samples) * plan.chains;
   run.ended_by = batches.ended_by;
   run.samples_done =
       static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(samples), done / pixels));
-  run.metropolis = statistics_of(plan, starts, sums.tally);
+  run.metropolis = statistics_of(plan, starts, totals.tally());
   run.metropolis->bootstrap_ms = before_ms;
   run.metropolis->mutations_per_s =
       mutated_ms > 0 ? 1e3 * static_cast<double>(done) / mutated_ms : 0;
   const double per_quantum = static_cast<double>(pixels) / (static_cast<double>(done) * step.scale);
   // Less than a mutation per pixel is an image, too.
-  fill_film(sums, per_quantum, static_cast<std::uint64_t>(std::max(run.samples_done, 1)), film);
+  totals.fill_film(per_quantum, static_cast<std::uint64_t>(std::max(run.samples_done, 1)), film);
   return run;
 }
 

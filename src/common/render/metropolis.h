@@ -43,7 +43,7 @@ class ChainDevice {
  public:
   virtual ~ChainDevice() = default;
 
-  /// Before the first batch of a render: over which pixels the chains walk. Forgets all sums.
+  /// Before the first batch of a render: over which pixels the chains walk. Sums are zero.
   virtual void begin_chains(const ChainWindow& window) = 0;
   /// Of the next batch, one for each of its paths.
   virtual void set_proposals(const std::vector<Proposal>& proposals) = 0;
@@ -52,7 +52,8 @@ class ChainDevice {
   virtual void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) = 0;
   /// Those of the last batch.
   virtual std::vector<Sample> read_chain_samples(std::uint32_t paths) = 0;
-  virtual ChainSums read_chain_sums() = 0;
+  /// And leaves them at zero.
+  virtual ChainSums take_chain_sums() = 0;
 };
 
 /// The mean target of the bootstrap paths and its standard error, and for each chain the path at
