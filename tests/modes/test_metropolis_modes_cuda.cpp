@@ -23,10 +23,10 @@ void expect_same_chains(const Rendered& found, const Rendered& expected) {
   EXPECT_EQ(found.run.metropolis->small_acceptance, expected.run.metropolis->small_acceptance);
 }
 
-class CudaMetropolis : public CudaTest, public testing::WithParamInterface<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Of, CudaMetropolis, testing::Values("cornell", "spheres", "boxes"));
+class GpuMetropolis : public CudaTest, public testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Cuda, GpuMetropolis, testing::Values("cornell", "spheres", "boxes"));
 
-TEST_P(CudaMetropolis, OneImageInBothModes) {
+TEST_P(GpuMetropolis, OneImageInBothModes) {
   const auto also = [](Settings more) {
     more.emplace_back("scene", GetParam());
     return more;
