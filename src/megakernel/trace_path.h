@@ -33,7 +33,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
       lanes_of(scene).at(path.rays).count(LanePoint::turn);
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
-        ray = generate_camera_path(scene, id.pixel, u);
+        ray = generate_camera_path(scene, random, id.pixel, u);
       } else {
         const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
         const Scattering scattering =

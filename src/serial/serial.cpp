@@ -29,7 +29,8 @@ class SerialRenderer : public CpuRenderer {
       auto random = source.open(id);
       PathState path;
       path.number = i;
-      const Ray ray = generate_camera_path(scene_, id.pixel, random.draw(scatter_block(0)));
+      const Vec4 u = random.draw(scatter_block(0));
+      const Ray ray = generate_camera_path(scene_, random, id.pixel, u);
       batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
                                             mask_key<Traits>(scene_, id)));
     }

@@ -83,7 +83,8 @@ struct GeneratePaths {
     const std::uint32_t number = counters->first_path + rank;
     const PathId id_of_path = samples.id_of(number);
     auto random = source.open(id_of_path);
-    const Ray ray = generate_camera_path(scene, id_of_path.pixel, random.draw(scatter_block(0)));
+    const Vec4 u = random.draw(scatter_block(0));
+    const Ray ray = generate_camera_path(scene, random, id_of_path.pixel, u);
     source.close(id_of_path, random);
     pool.store_new_path(slot, ray, number);
     if (has_lights) store_wide(&samples.samples[number], Sample{});

@@ -31,7 +31,11 @@ const std::map<std::string, std::string>& other_values() {
   static const std::map<std::string, std::string> values{
       {"width", "65535"},
       {"height", "1"},
-      {"integrator", "path"},
+      {"integrator", "mlt"},
+      {"chains", "4096"},
+      {"large-step-probability", "0.25"},
+      {"mutation-size", "0.125"},
+      {"bootstrap", "100000"},
       {"spp", "2147483647"},
       {"max-depth", "65535"},
       {"rr", "5"},
@@ -92,6 +96,9 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   std::vector<std::string> arguments{"--" + entry.name};
   if (entry.form != OptionForm::flag) arguments.push_back(value);
   if (entry.name == "exposure") arguments.insert(arguments.end(), {"--output", "image.png"});
+  if (entry.group.starts_with("Metropolis")) {
+    arguments.insert(arguments.end(), {"--integrator", "mlt"});
+  }
   if (entry.name == "work" || entry.name == "block")
     arguments.insert(arguments.end(), {"--mode", "megakernel"});
   return arguments;
@@ -115,8 +122,7 @@ TEST(CommandLine, EveryOptionIsParsedAndWrittenBack) {
   for (const OptionEntry& entry : option_list()) {
     ASSERT_TRUE(other_values().contains(entry.name)) << entry.name << " has no test value";
     const std::string value = other_values().at(entry.name);
-    const bool has_others = entry.name != "integrator";  // one so far
-    EXPECT_EQ(entry.text(Options()) != value, has_others) << entry.name;
+    EXPECT_NE(entry.text(Options()), value) << entry.name;
     const auto command = std::get<RenderCommand>(parse_command_line(arguments_for(entry, value)));
     EXPECT_EQ(entry.text(command.options), value) << entry.name;
     EXPECT_TRUE(command.given.contains(entry.name));
@@ -277,6 +283,19 @@ void expect_refused(const std::vector<Refusal>& refusals) {
     SCOPED_TRACE("ptexp " + line);
     expect_error([&line = line] { parse(line); }, message);
   }
+}
+
+TEST(Refused, ChainsAndTheirMutations) {
+  expect_refused({
+      {"--integrator mlt --chains 0", "--chains 0: expected auto or a number of chains from 1 to"},
+      {"--integrator mlt --bootstrap 2G", "--bootstrap 2G: expected auto or a number of paths"},
+      {"--integrator mlt --large-step-probability 0",
+       "--large-step-probability 0: expected a number above 0, at most 1"},
+      {"--integrator mlt --large-step-probability 1.01", "expected a number above 0, at most 1"},
+      {"--integrator mlt --mutation-size 0.6", "--mutation-size 0.6: expected a number above 0"},
+      {"--chains 100", "--chains 100: has no effect with --integrator path; it applies to mlt"},
+      {"--bootstrap 1M", "has no effect with --integrator path; it applies to mlt"},
+  });
 }
 
 TEST(Refused, WholeNumbers) {

@@ -22,6 +22,7 @@ RenderRun make_run(double kernel_ms, double intersect_ms) {
           20,
           50,
           RunEnd::samples,
+          {},
           {}};
 }
 
@@ -206,6 +207,32 @@ TEST(ReportJson, HasActiveLanesOnlyWhereTheyAreCounted) {
   EXPECT_FALSE(other.contains("divergence"));
 }
 
+RenderReport make_metropolis_report() {
+  RenderReport report = make_report();
+  report.runs.back().metropolis =
+      MetropolisStats{4096, 1'000'000, 2000, 0.25, 0.125, 0.3, 0.1, 0.8, 12.5, 3e6};
+  return report;
+}
+
+TEST(ReportJson, HasWhatChainsDid) {
+  const auto json = nlohmann::json::parse(report_json(make_options(), make_metropolis_report()));
+  const auto& chains = json["metropolis"];
+  EXPECT_EQ(chains["chains"], 4096);
+  EXPECT_EQ(chains["mutations"], 1'000'000);
+  EXPECT_EQ(chains["bootstrap"], 2000);
+  EXPECT_EQ(chains["brightness"], 0.25);
+  EXPECT_EQ(chains["brightness_error"], 0.125);
+  EXPECT_EQ(chains["large_share"], 0.3);
+  EXPECT_EQ(chains["large_acceptance"], 0.1);
+  EXPECT_EQ(chains["small_acceptance"], 0.8);
+  EXPECT_EQ(chains["bootstrap_ms"], 12.5);
+  EXPECT_EQ(chains["mmutations_per_s"], 3);
+  EXPECT_EQ(json["runs"].back()["metropolis"], chains);
+  EXPECT_TRUE(json["runs"][0]["metropolis"].is_null());
+  const auto other = nlohmann::json::parse(report_json(make_options(), make_report()));
+  EXPECT_TRUE(other["metropolis"].is_null());
+}
+
 TEST(ReportJson, HasEveryOptionWithItsType) {
   const auto json = nlohmann::json::parse(report_json(make_options(), make_report()));
   const auto& options = json["options"];
@@ -337,6 +364,33 @@ TEST(ReportCsv, Counters) {
   EXPECT_EQ(fields["counted_kernels"],
             "intersect:2:6:24:0.25:0.5:0.25:0.75:1.2e+09:1.92e+08:9.6e+07:1.5e+07:1.8e+07:1.2e+08:"
             "6e+07;shadow:1:2:24:0.25:0.5:0.25:0.75:4e+08:6.4e+07:3.2e+07:5e+06:6e+06:0:0");
+}
+
+TEST(ReportCsv, WhatChainsDid) {
+  auto fields = as_map(report_csv_row(Options(), make_metropolis_report()));
+  EXPECT_EQ(fields["mlt_chains"], "4096");
+  EXPECT_EQ(fields["mlt_mutations"], "1000000");
+  EXPECT_EQ(fields["mlt_bootstrap"], "2000");
+  EXPECT_EQ(fields["mlt_brightness"], "0.25");
+  EXPECT_EQ(fields["mlt_brightness_error"], "0.125");
+  EXPECT_EQ(fields["mlt_large_share"], "0.3");
+  EXPECT_EQ(fields["mlt_large_acceptance"], "0.1");
+  EXPECT_EQ(fields["mlt_small_acceptance"], "0.8");
+  EXPECT_EQ(fields["mlt_bootstrap_ms"], "12.500000");
+  EXPECT_EQ(fields["mlt_mmutations_per_s"], "3");
+  EXPECT_EQ(as_map(report_csv_row(Options(), make_report())).at("mlt_chains"), "");
+}
+
+TEST(ReportTable, HasWhatChainsDid) {
+  const std::string table = report_table(make_options(), make_metropolis_report());
+  for (const char* part :
+       {"mutations                1,000,000        3.00 Mmutations/s",
+        "chains                       4,096  after 2,000 bootstrap paths (12.5 ms)",
+        "brightness b                  0.25  +- 0.12 mean luminance",
+        "large steps                30.00 %", "  accepted                 10.00 %",
+        "small accepted             80.00 %"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
+  EXPECT_EQ(report_table(make_options(), make_report()).find("chains"), std::string::npos);
 }
 
 TEST(ReportTable, Counters) {

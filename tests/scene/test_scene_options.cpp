@@ -57,11 +57,13 @@ TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(
       refusal("boxes", "rng", "xorwow"),
       "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, "
-      "--sampler independent and not --shade material; expected such a scene instead of 'boxes', "
+      "--sampler independent, --integrator path and not --shade material; expected such a scene "
+      "instead of 'boxes', "
       "or other options");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
             "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
-            "--mis power, --sampler independent and not --shade material; expected such a scene "
+            "--mis power, --sampler independent, --integrator path and not --shade material; "
+            "expected such a scene "
             "instead of 'boxes', or other options");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),

@@ -103,9 +103,19 @@ void check_camera(const CameraOverrides& camera) {
                     text("up")(o)));
 }
 
+void check_metropolis_only(const Options& options, const GivenOptions& given) {
+  if (options.integrator == IntegratorKind::mlt) return;
+  for (const char* name : {"chains", "large-step-probability", "mutation-size", "bootstrap"}) {
+    if (!given.contains(name)) continue;
+    throw Error(fmt::format("--{} {}: has no effect with --integrator {}; it applies to mlt", name,
+                            find_option(name).text(options), to_string(options.integrator)));
+  }
+}
+
 }  // namespace
 
 void check_consistent(const Options& options, const GivenOptions& given) {
+  check_metropolis_only(options, given);
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);

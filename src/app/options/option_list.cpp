@@ -54,7 +54,9 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
       .add(choice("integrator", &Options::integrator),
-           "What a path computes, in all modes and on all devices")
+           "path: path tracing, each path on its own; mlt: Metropolis light\n"
+           "transport, paths that are mutations of each other\n"
+           "(docs/metropolis.md)")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
@@ -127,6 +129,33 @@ void add_image(std::vector<OptionEntry>& list) {
            "meet: albedo, shading_normal, normal, depth, position, uv,\n"
            "primitive, instance, material; and of the samples: variance,\n"
            "samples, bounces, rays");
+}
+
+OptionEntry size_or_auto(const std::string& name, std::uint64_t Options::*field,
+                         const std::string& what, std::uint64_t most) {
+  return custom(
+      name, OptionForm::number, "N|auto",
+      [=](Options& o, const std::string& s) {
+        o.*field = s == "auto" ? 0 : parse_size(name, s, "auto or a number of " + what, most);
+      },
+      [=](const Options& o) { return o.*field == 0 ? "auto" : std::to_string(o.*field); });
+}
+
+void add_metropolis(std::vector<OptionEntry>& list) {
+  Group(list, "Metropolis light transport (--integrator mlt; --spp is the mutations per pixel)")
+      .add(size_or_auto("chains", &Options::chains, "chains", 1 << 27),
+           "Markov chains, each a path in flight; auto: enough to fill the\n"
+           "device. Another number, other noise")
+      .add(number("large-step-probability", "P", &Options::large_step_probability,
+                  "a number above 0, at most 1", [](float x) { return x > 0 && x <= 1; }),
+           "Of mutations that draw a path anew")
+      .add(number("mutation-size", "SIZE", &Options::mutation_size, "a number above 0, at most 0.5",
+                  [](float x) { return x > 0 && x <= 0.5f; }),
+           "The largest step of a random number by other mutations; the\n"
+           "smallest is a sixteenth of it")
+      .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
+           "Paths that measure the image's brightness and where chains\n"
+           "begin; auto: 2^20 on CUDA, 2^17 on the CPU");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {
@@ -332,6 +361,7 @@ const std::vector<OptionEntry>& option_list() {
   static const std::vector<OptionEntry> list = [] {
     std::vector<OptionEntry> entries;
     add_image(entries);
+    add_metropolis(entries);
     add_stops(entries);
     add_scene(entries);
     add_camera(entries);

@@ -131,6 +131,24 @@ void add_counters(CsvRow& row, const std::optional<HardwareCounters>& counters) 
   row.emplace_back("counted_kernels", has ? counted_kernels(values) : "");
 }
 
+/// Empty fields without --integrator mlt.
+void add_metropolis(CsvRow& row, const std::optional<MetropolisStats>& stats) {
+  const MetropolisStats s = stats.value_or(MetropolisStats());
+  const auto add = [&](const char* name, const std::string& value) {
+    row.emplace_back(std::string("mlt_") + name, stats ? value : "");
+  };
+  add("chains", std::to_string(s.chains));
+  add("mutations", std::to_string(s.mutations));
+  add("bootstrap", std::to_string(s.bootstrap));
+  add("brightness", fmt::format("{:.9g}", s.brightness));
+  add("brightness_error", fmt::format("{:.6g}", s.brightness_error));
+  add("large_share", fmt::format("{:.6g}", s.large_share));
+  add("large_acceptance", fmt::format("{:.6g}", s.large_acceptance));
+  add("small_acceptance", fmt::format("{:.6g}", s.small_acceptance));
+  add("bootstrap_ms", ms(s.bootstrap_ms));
+  add("mmutations_per_s", fmt::format("{:.6g}", 1e-6 * s.mutations_per_s));
+}
+
 }  // namespace
 
 CsvRow report_csv_row(const Options& options, const RenderReport& report) {
@@ -145,6 +163,7 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   row.emplace_back("ended_by", to_string(summary.ended_by));
   row.emplace_back("relative_error",
                    summary.relative_error ? fmt::format("{:.6g}", *summary.relative_error) : "");
+  add_metropolis(row, summary.metropolis);
   add_spread(row, "kernel", summary.kernel_ms);
   for (const std::string& stage : column_stages()) add_stage(row, stage, summary);
   add_stage(row, "other", summary);

@@ -56,6 +56,21 @@ Json number_or_null(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
+/// By the names of the CSV's columns, which begin with mlt_.
+Json metropolis_json(const std::optional<MetropolisStats>& stats) {
+  if (!stats) return nullptr;
+  return {{"chains", stats->chains},
+          {"mutations", stats->mutations},
+          {"bootstrap", stats->bootstrap},
+          {"brightness", stats->brightness},
+          {"brightness_error", stats->brightness_error},
+          {"large_share", stats->large_share},
+          {"large_acceptance", stats->large_acceptance},
+          {"small_acceptance", stats->small_acceptance},
+          {"bootstrap_ms", stats->bootstrap_ms},
+          {"mmutations_per_s", 1e-6 * stats->mutations_per_s}};
+}
+
 Json runs_json(const RenderReport& report) {
   Json json = Json::array();
   for (const RenderRun& run : report.runs) {
@@ -68,6 +83,7 @@ Json runs_json(const RenderReport& report) {
                     {"samples_done", run.samples_done},
                     {"ended_by", to_string(run.ended_by)},
                     {"relative_error", number_or_null(run.relative_error)},
+                    {"metropolis", metropolis_json(run.metropolis)},
                     {"stages", stages}});
   }
   return json;
@@ -194,6 +210,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["samples_done"] = summary.samples_done;
   json["ended_by"] = to_string(summary.ended_by);
   json["relative_error"] = number_or_null(summary.relative_error);
+  json["metropolis"] = metropolis_json(summary.metropolis);
   json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},
                      {"scene", report.scene_ms},
                      {"setup", report.setup_ms},

@@ -56,6 +56,22 @@ std::string divergence_rows(const RenderReport& report) {
   return text;
 }
 
+std::string metropolis_rows(const std::optional<MetropolisStats>& stats) {
+  if (!stats) return "";
+  const auto percent = [](const char* name, double share) {
+    return fmt::format("{:<16}{:>16.2f} %\n", name, 100 * share);
+  };
+  return fmt::format("{:<16}{:>18}{:>12.2f} Mmutations/s\n", "mutations", grouped(stats->mutations),
+                     1e-6 * stats->mutations_per_s) +
+         fmt::format("{:<16}{:>18}  after {} bootstrap paths ({:.1f} ms)\n", "chains",
+                     grouped(stats->chains), grouped(stats->bootstrap), stats->bootstrap_ms) +
+         fmt::format("{:<16}{:>18.6g}  +- {:.2g} mean luminance\n", "brightness b",
+                     stats->brightness, stats->brightness_error) +
+         percent("large steps", stats->large_share) +
+         percent("  accepted", stats->large_acceptance) +
+         percent("small accepted", stats->small_acceptance);
+}
+
 std::string stop_row(const RunSummary& summary) {
   std::string text;
   if (summary.ended_by != RunEnd::samples) {
@@ -83,7 +99,7 @@ std::string report_table(const Options& options, const RenderReport& report) {
              options.scene, options.width, options.height, summary.samples_done, report.device_name,
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
          stage_rows(report, summary) + '\n' + count_rows(report.counts, summary) +
-         stop_row(summary) +
+         metropolis_rows(summary.metropolis) + stop_row(summary) +
          fmt::format(
              "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",

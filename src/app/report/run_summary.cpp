@@ -56,6 +56,7 @@ RunSummary summarize(const RenderReport& report) {
     summary.samples_done = last.samples_done;
     summary.ended_by = last.ended_by;
     summary.relative_error = last.relative_error;
+    summary.metropolis = last.metropolis;
     for (const StageTime& time : last.stages) summary.launches += time.launches;
   }
   const PathCounts& counts = report.counts;

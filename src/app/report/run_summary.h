@@ -33,6 +33,7 @@ struct RunSummary {
   int samples_done = 0;              ///< per pixel
   RunEnd ended_by = RunEnd::samples;
   std::optional<double> relative_error;
+  std::optional<MetropolisStats> metropolis;
   double mpaths_per_s = 0;  ///< 10^6 paths / median kernel time; 0 where that is 0
   double mrays_per_s = 0;   ///< 10^6 rays of all kinds / median kernel time
 };

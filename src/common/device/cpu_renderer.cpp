@@ -6,6 +6,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <span>
 #include <thread>
@@ -72,7 +73,7 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
   make_samples({"memory", free_host_memory(), plan_.bytes_per_pixel() + image_bytes,
                 sizeof(Sample) + state_bytes, batch_paths_max},
-               [&](std::uint64_t paths) {
+               {}, [&](std::uint64_t paths) {
                  sample_memory_.resize(paths);
                  if (state_bytes > 0) states_.resize(paths);
                  return sample_memory_.data();
@@ -82,6 +83,7 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
   note_memory("film", pixels * plan_.bytes_per_pixel());
   note_memory("samples", sample_memory_.size() * sizeof(Sample));
   if (state_bytes > 0) note_memory("random states", states_.size() * state_bytes);
+  if (has_chains()) allocate_chains();
   setup_ms_ =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -92,7 +94,7 @@ void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
 
 Image CpuRenderer::image() { return develop_window(sums_); }
 
-void CpuRenderer::begin_render(const Film& film) {
+void CpuRenderer::store_film(const Film& film) {
   if (film.is_empty()) {
     sums_.reset(plan_, film.window.pixel_count());
   } else {
@@ -100,6 +102,10 @@ void CpuRenderer::begin_render(const Film& film) {
   }
   first_sample_ = film.first_sample;
   tally_ = film.tally;
+}
+
+void CpuRenderer::begin_render(const Film& film) {
+  store_film(film);
   timer_.reset();
   waves_ = 0;
 }
@@ -176,6 +182,81 @@ void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
       pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
     });
   });
+}
+
+void CpuRenderer::allocate_chains() {
+  std::uint64_t bytes = 0;
+  make_chain_arrays(chain_arrays_, [&]<class T>(T*& pointer, std::uint64_t count) {
+    // operator new aligns for all of them.
+    chain_memory_.emplace_back(count * sizeof(T));
+    pointer = reinterpret_cast<T*>(chain_memory_.back().data());
+    bytes += count * sizeof(T);
+  });
+  note_memory("chains", bytes);
+}
+
+void CpuRenderer::begin_chains(const ChainWindow& window) {
+  *chain_arrays_.chains = chains_view(chain_arrays_, window);
+  clear_chain_sums();
+}
+
+void CpuRenderer::clear_chain_sums() {
+  *chain_arrays_.tally = {};
+  std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
+}
+
+void CpuRenderer::set_proposals(const std::vector<Proposal>& proposals) {
+  std::ranges::copy(proposals, chain_arrays_.proposals);
+}
+
+void CpuRenderer::run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(paths);
+  const auto start = std::chrono::steady_clock::now();
+  arena_.execute([&] {
+    if (step.kind != ChainStep::Kind::finish) trace_batch(batch);
+    if (step.kind == ChainStep::Kind::none) return;
+    timer_.time(to_string(StageId::mutate), [&] { step_chains(batch, step); });
+  });
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  run.kernel_ms += elapsed.count();
+}
+
+void CpuRenderer::step_chains(const SampleBuffer& batch, const ChainStep& step) {
+  struct Tallies {
+    PathTally paths;
+    ChainTally chains;
+  };
+  const auto add = [](SplatSum* sum, SplatSum quanta) {
+    std::atomic_ref<SplatSum>(*sum).fetch_add(quanta, std::memory_order_relaxed);
+  };
+  const tbb::blocked_range<std::uint32_t> chains(0, batch.path_count, 256);
+  const Tallies all = tbb::parallel_reduce(
+      chains, Tallies{},
+      [&](const tbb::blocked_range<std::uint32_t>& range, Tallies sum) {
+        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+          step_chain(
+              chain_arrays_, batch, step, i, sum.paths, sum.chains,
+              [&](int bin) { ++sum.paths.lengths[bin]; }, add);
+        }
+        return sum;
+      },
+      [](const Tallies& a, const Tallies& b) {
+        return Tallies{a.paths + b.paths, a.chains + b.chains};
+      });
+  tally_ = tally_ + all.paths;
+  *chain_arrays_.tally = *chain_arrays_.tally + all.chains;
+}
+
+std::vector<Sample> CpuRenderer::read_chain_samples(std::uint32_t paths) {
+  return {sample_memory_.begin(), sample_memory_.begin() + paths};
+}
+
+ChainSums CpuRenderer::take_chain_sums() {
+  const std::uint64_t count = 3 * window().pixel_count();
+  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, *chain_arrays_.tally};
+  clear_chain_sums();
+  return result;
 }
 
 void CpuRenderer::describe(RenderReport& report) const {

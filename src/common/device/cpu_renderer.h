@@ -49,7 +49,7 @@ class CpuRenderer : public FilmRenderer {
     if (options_.rng == RngKind::xorwow) {
       timer_.time("render_init", [&] { init_random_states(batch); });
     }
-    pt::with_random_source(options_, traits_, states_.data(), function);
+    pt::with_random_source(options_, traits_, states_.data(), chain_arrays_.chains, function);
   }
 
   void note_memory(const char* name, std::uint64_t size_bytes);
@@ -61,10 +61,19 @@ class CpuRenderer : public FilmRenderer {
   std::uint64_t pool_size_ = 0;
 
  private:
+  void allocate_chains();
+  void store_film(const Film& film) override;
   void begin_render(const Film& film) override;
   void render_batch(const SampleBuffer& batch, RenderRun& run) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
+  void begin_chains(const ChainWindow& window) override;
+  void set_proposals(const std::vector<Proposal>& proposals) override;
+  void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  void step_chains(const SampleBuffer& batch, const ChainStep& step);
+  std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
+  ChainSums take_chain_sums() override;
+  void clear_chain_sums();
   void init_random_states(const SampleBuffer& batch);
   void accumulate(const SampleBuffer& batch);
   template <class MakeSum>
@@ -81,6 +90,8 @@ class CpuRenderer : public FilmRenderer {
   FilmSums sums_;  ///< of the film that is rendered, the first of their elements
   std::vector<XorwowState> states_;
   PathTally tally_;
+  ChainArrays chain_arrays_;                     ///< null without --integrator mlt
+  std::vector<std::vector<char>> chain_memory_;  ///< of chain_arrays_
   std::vector<BufferSize> memory_;
 };
 

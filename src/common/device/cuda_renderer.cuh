@@ -83,7 +83,7 @@ class CudaRenderer : public FilmRenderer {
   /// Calls function(source) with the options' random source.
   template <class Function>
   void with_random_source(Function&& function) const {
-    pt::with_random_source(options_, traits_, states_, function);
+    pt::with_random_source(options_, traits_, states_, chain_arrays_.chains, function);
   }
 
   cudaStream_t stream() const { return stream_; }
@@ -125,10 +125,20 @@ class CudaRenderer : public FilmRenderer {
                      std::size_t shared_bytes, void** arguments);
   void note_kernel(const char* name, const void* kernel, dim3 block, std::size_t shared_bytes);
   void load_kernels();
+  void allocate_chains();
+  template <class Enqueue>
+  void time_batch(RenderRun& run, Enqueue&& enqueue);
+  void store_film(const Film& film) override;
   void begin_render(const Film& film) override;
   void render_batch(const SampleBuffer& batch, RenderRun& run) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
+  void begin_chains(const ChainWindow& window) override;
+  void set_proposals(const std::vector<Proposal>& proposals) override;
+  void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
+  ChainSums take_chain_sums() override;
+  void clear_chain_sums();
   template <class SomeFilm, class Function>
   void for_each_film_array(SomeFilm& film, Function&& function) const;
   void accumulate(const SampleBuffer& batch);
@@ -146,6 +156,7 @@ class CudaRenderer : public FilmRenderer {
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
   FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements
   PathTally* tally_ = nullptr;
+  ChainArrays chain_arrays_;  ///< null without --integrator mlt
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
   std::unique_ptr<CounterSession> counters_;           ///< while they are read

@@ -5,6 +5,7 @@
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
+#include "common/device/chain_kernels.cuh"
 #include "common/device/cuda_renderer.cuh"
 #include "common/device/feature_kernels.cuh"
 #include "common/device/film_kernels.cuh"
@@ -24,6 +25,15 @@ namespace {
 
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
+
+/// Some paths for each thread that the device holds at once: waves stay full while paths end. On an
+/// H200 about 2^21.
+ChainDefaults chain_defaults(const cudaDeviceProp& device) {
+  constexpr std::uint64_t paths_per_thread = 8;
+  return {paths_per_thread * static_cast<std::uint64_t>(device.multiProcessorCount) *
+              static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
+          std::uint64_t{1} << 20};
+}
 
 class Stopwatch {
  public:
@@ -127,7 +137,7 @@ void CudaRenderer::allocate_film() {
   const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
   make_samples({"device memory", CudaMemory::free_bytes(), plan_.bytes_per_pixel(),
                 sizeof(Sample) + state_bytes, batch_paths_max},
-               [&](std::uint64_t paths) {
+               chain_defaults(properties_), [&](std::uint64_t paths) {
                  allocate_planes(pixels);
                  Sample* samples = memory_.allocate<Sample>("samples", paths);
                  if (state_bytes > 0) {
@@ -136,6 +146,7 @@ void CudaRenderer::allocate_film() {
                  }
                  return samples;
                });
+  if (has_chains()) allocate_chains();
   tally_ = memory_.allocate<PathTally>("counters", 1);
   clock_ = memory_.allocate<StageClock>("counters", 1);
   check_cuda(cudaMemset(tally_, 0, sizeof(PathTally)), "cudaMemset");
@@ -241,26 +252,96 @@ HardwareCounters CudaRenderer::count_hardware() {
   return result;
 }
 
-void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
-  constexpr int block = 256;
-  const ProfilerRange range(fmt::format("batch of {} paths", batch.path_count));
-  prepare_batch(batch);
+/// Calls `enqueue` between two readings of the clocks.
+template <class Enqueue>
+void CudaRenderer::time_batch(RenderRun& run, Enqueue&& enqueue) {
   set_wave(-1);
   check_cuda(cudaEventRecord(start_, stream_), "cudaEventRecord");
   launch("start_clock", start_clock, 1, 1, 0, clock_);
-  if (options_.rng == RngKind::xorwow) {
-    launch("render_init", render_init, (batch.path_count + block - 1) / block, block, 0, states_,
-           batch, options_.seed, clock_);
-  }
-  trace_batch(batch);
-  set_wave(-1);
-  accumulate(batch);
+  enqueue();
   launch("stop_clock", stop_clock, 1, 1, 0, clock_);
   check_cuda(cudaEventRecord(stop_, stream_), "cudaEventRecord");
   check_cuda(cudaEventSynchronize(stop_), "rendering a batch");
   float elapsed_ms = 0;
   check_cuda(cudaEventElapsedTime(&elapsed_ms, start_, stop_), "cudaEventElapsedTime");
   run.kernel_ms += elapsed_ms;
+}
+
+void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+  constexpr int block = 256;
+  const ProfilerRange range(fmt::format("batch of {} paths", batch.path_count));
+  prepare_batch(batch);
+  time_batch(run, [&] {
+    if (options_.rng == RngKind::xorwow) {
+      launch("render_init", render_init, (batch.path_count + block - 1) / block, block, 0, states_,
+             batch, options_.seed, clock_);
+    }
+    trace_batch(batch);
+    set_wave(-1);
+    accumulate(batch);
+  });
+}
+
+void CudaRenderer::allocate_chains() {
+  make_chain_arrays(chain_arrays_, [&]<class T>(T*& pointer, std::uint64_t count) {
+    pointer = memory_.allocate<T>("chains", count);
+    check_cuda(cudaMemset(pointer, 0, count * sizeof(T)), "cudaMemset");
+  });
+}
+
+void CudaRenderer::begin_chains(const ChainWindow& window) {
+  const Chains chains = chains_view(chain_arrays_, window);
+  check_cuda(cudaMemcpyAsync(chain_arrays_.chains, &chains, sizeof chains, cudaMemcpyHostToDevice,
+                             stream_),
+             "cudaMemcpyAsync");
+  clear_chain_sums();
+}
+
+void CudaRenderer::clear_chain_sums() {
+  const std::uint64_t bytes = 3 * window().pixel_count() * sizeof(SplatSum);
+  check_cuda(cudaMemsetAsync(chain_arrays_.sums, 0, bytes, stream_), "cudaMemset");
+  check_cuda(cudaMemsetAsync(chain_arrays_.tally, 0, sizeof(ChainTally), stream_), "cudaMemset");
+}
+
+void CudaRenderer::set_proposals(const std::vector<Proposal>& proposals) {
+  check_cuda(cudaMemcpyAsync(chain_arrays_.proposals, proposals.data(),
+                             proposals.size() * sizeof(Proposal), cudaMemcpyHostToDevice, stream_),
+             "uploading proposals");
+}
+
+void CudaRenderer::run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) {
+  constexpr int block = 256;
+  const SampleBuffer batch = chain_batch(paths);
+  const bool traces = step.kind != ChainStep::Kind::finish;
+  const ProfilerRange range(fmt::format("batch of {} chains", paths));
+  if (traces) prepare_batch(batch);
+  time_batch(run, [&] {
+    if (traces) trace_batch(batch);
+    set_wave(-1);
+    if (step.kind == ChainStep::Kind::none) return;
+    launch("step_chains", step_chains, (paths + block - 1) / block, block, 0, chain_arrays_, batch,
+           step, tally_, clock_);
+  });
+}
+
+std::vector<Sample> CudaRenderer::read_chain_samples(std::uint32_t paths) {
+  std::vector<Sample> result(paths);
+  check_cuda(cudaMemcpy(result.data(), samples(), paths * sizeof(Sample), cudaMemcpyDeviceToHost),
+             "downloading samples");
+  return result;
+}
+
+ChainSums CudaRenderer::take_chain_sums() {
+  ChainSums result;
+  result.sums.resize(3 * window().pixel_count());
+  check_cuda(cudaMemcpy(result.sums.data(), chain_arrays_.sums,
+                        result.sums.size() * sizeof(SplatSum), cudaMemcpyDeviceToHost),
+             "downloading the film");
+  check_cuda(
+      cudaMemcpy(&result.tally, chain_arrays_.tally, sizeof(ChainTally), cudaMemcpyDeviceToHost),
+      "cudaMemcpy");
+  clear_chain_sums();
+  return result;
 }
 
 void CudaRenderer::accumulate(const SampleBuffer& batch) {
@@ -290,7 +371,13 @@ void CudaRenderer::load_kernels() {
   Window window = image_window();
   window.width = std::min(window.width, 8u), window.height = std::min(window.height, 4u);
   RenderRun run;
-  render_batch({samples(), window, 0, 1}, run);
+  if (has_chains()) {
+    begin_chains({0, 0, 1, 1});
+    set_proposals({Proposal{}});
+    run_chains(1, {}, run);
+  } else {
+    render_batch({samples(), window, 0, 1}, run);
+  }
   take_wave_count();
   load_ms_ = watch.ms();
 }
@@ -304,10 +391,7 @@ void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) cons
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 
-// The copies are in the stream: the kernels wait for them.
-void CudaRenderer::begin_render(const Film& film) {
-  check_cuda(cudaSetDevice(device_), "cudaSetDevice");
-  if (load_ms_ == 0) load_kernels();
+void CudaRenderer::store_film(const Film& film) {
   film_.first_sample = film.first_sample;
   const auto upload_plane = [&](auto* place, const auto& values, std::uint64_t planes) {
     const std::uint64_t bytes = planes * film.window.pixel_count() * sizeof *place;
@@ -322,6 +406,13 @@ void CudaRenderer::begin_render(const Film& film) {
   check_cuda(
       cudaMemcpyAsync(tally_, &film.tally, sizeof(PathTally), cudaMemcpyHostToDevice, stream_),
       "cudaMemcpyAsync");
+  check_cuda(cudaStreamSynchronize(stream_), "uploading the film");
+}
+
+void CudaRenderer::begin_render(const Film& film) {
+  check_cuda(cudaSetDevice(device_), "cudaSetDevice");
+  if (load_ms_ == 0) load_kernels();
+  store_film(film);
   check_cuda(cudaMemsetAsync(clock_, 0, sizeof(StageClock), stream_), "cudaMemset");
   if (lane_counts_ != nullptr) {
     check_cuda(cudaMemsetAsync(lane_counts_, 0, sizeof(LaneCounts), stream_), "cudaMemset");

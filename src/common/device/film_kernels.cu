@@ -1,3 +1,4 @@
+#include "common/device/block_tally.cuh"
 #include "common/device/curand_state.cuh"
 #include "common/device/film_kernels.cuh"
 #include "common/device/stage_stamp.cuh"
@@ -18,37 +19,18 @@ __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64
 
 namespace {
 
-__device__ void add_to(std::uint64_t* sum, std::uint64_t value) {
-  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(value));
-}
-
-// All counts are added up per block first: one address that every thread adds to would be the
-// slowest part of the kernel by far. Called by all threads of a block, which has at most 1024.
+// Called by all threads of a block, which has at most 1024.
 template <class MakeSum>
 __device__ void accumulate_block(const SampleBuffer& batch, PathTally* tally, MakeSum make_sum) {
-  __shared__ std::uint64_t block_rays, block_shadow_rays, block_nonfinite;
-  __shared__ std::uint32_t lengths[path_length_bins];
-  for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) lengths[i] = 0;
-  if (threadIdx.x == 0) block_rays = block_shadow_rays = block_nonfinite = 0;
-  __syncthreads();
+  __shared__ BlockTally block;
+  block.begin();
   const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
   if (pixel < batch.pixel_count.divisor()) {
     PathTally mine;  // its lengths are not used: those of all threads go to shared memory
-    accumulate_pixel(make_sum(pixel), batch, pixel, mine,
-                     [](int bin) { atomicAdd(&lengths[bin], 1u); });
-    add_to(&block_rays, mine.rays);
-    if (mine.shadow_rays > 0) add_to(&block_shadow_rays, mine.shadow_rays);
-    if (mine.nonfinite > 0) add_to(&block_nonfinite, mine.nonfinite);
+    accumulate_pixel(make_sum(pixel), batch, pixel, mine, [](int bin) { block.count(bin); });
+    block.add(mine);
   }
-  __syncthreads();
-  if (threadIdx.x == 0) {
-    add_to(&tally->rays, block_rays);
-    if (block_shadow_rays > 0) add_to(&tally->shadow_rays, block_shadow_rays);
-    if (block_nonfinite > 0) add_to(&tally->nonfinite, block_nonfinite);
-  }
-  for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) {
-    if (lengths[i] > 0) add_to(&tally->lengths[i], lengths[i]);
-  }
+  block.end(tally);
 }
 
 }  // namespace

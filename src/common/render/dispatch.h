@@ -15,6 +15,11 @@ namespace pt {
 /// Every integrator, in the order of IntegratorKind.
 using Integrators = TypeList<PathIntegrator>;
 
+/// Whose kernels trace the paths: Metropolis light transport is a way to draw their numbers.
+constexpr IntegratorKind traced_by(IntegratorKind integrator) {
+  return integrator == IntegratorKind::mlt ? IntegratorKind::path : integrator;
+}
+
 // The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
 // whatever a file can hold shares the rest.
 using BruteSphereKinds =
@@ -54,7 +59,7 @@ void dispatch_traits(TypeList<T...>, SceneTraits traits, IntegratorKind integrat
     using Kind = decltype(kind);
     const bool is_it =
         Kind::value() == traits &&
-        IntegratorKind{index_in<typename Kind::Integrator>(Integrators{})} == integrator;
+        IntegratorKind{index_in<typename Kind::Integrator>(Integrators{})} == traced_by(integrator);
     if (is_it) function(kind);
     return is_it;
   };

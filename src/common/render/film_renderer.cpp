@@ -34,6 +34,7 @@ FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene)
       filter_(scene.filter),
       image_window_(window_of(options)),
       window_(image_window_) {
+  check_metropolis(options, scene.traits, filter_);
   check_random(options, plan_);
 }
 
@@ -73,6 +74,12 @@ void FilmRenderer::check(const Film& film, int samples) const {
                     "--target-error ask for",
                     w.width, w.height));
   }
+  if (has_chains() && !film.is_empty()) {
+    throw Error(
+        fmt::format("a film of {}x{} pixels: has {} mutations per pixel; the chains of "
+                    "--integrator mlt have ended with them, expected a film without samples",
+                    w.width, w.height, film.next_sample - film.first_sample));
+  }
   if (samples < 1 || ~film.next_sample < static_cast<std::uint32_t>(samples)) {
     throw Error(fmt::format("{} samples after {}: expected at least 1, and fewer than 2^32 in all",
                             samples, film.next_sample));
@@ -81,6 +88,7 @@ void FilmRenderer::check(const Film& film, int samples) const {
 
 RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderHooks& hooks) {
   window_ = film.window;
+  if (has_chains()) return add_mutations(film, samples, hooks);
   const std::uint64_t pixels = window_.pixel_count();
   const std::uint32_t before = film.next_sample - film.first_sample;
   const int largest = batch_samples(samples, pixels, batch_paths_);
@@ -98,6 +106,23 @@ RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderH
   run.ended_by = batches.ended_by;
   run.relative_error = batches.relative_error;
   end_render(run);
+  return run;
+}
+
+// The chains' sums become the device's film when they have ended.
+RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const RenderHooks& hooks) {
+  begin_render(film);
+  Film result;
+  result.window = film.window;
+  RenderRun run = render_chains(*this, chain_plan_, options_, samples, hooks, result);
+  end_render(run);
+  Film traced;
+  traced.window = film.window;
+  read_film(traced);
+  result.tally = result.tally + traced.tally;
+  result.parts = {film.window};
+  store_film(result);
+  pixel_samples_ = static_cast<std::uint64_t>(run.samples_done);
   return run;
 }
 

@@ -3,6 +3,7 @@
 
 #include "common/film/film_data.h"
 #include "common/render/batches.h"
+#include "common/render/metropolis.h"
 #include "common/render/path_limits_of.h"
 #include "common/render/renderer.h"
 #include "common/scene/scene_data.h"
@@ -10,7 +11,7 @@
 namespace pt {
 
 /// A device holds the film's pixels and counts while it renders, and after: `film` is the rest.
-class FilmRenderer : public Renderer {
+class FilmRenderer : public Renderer, protected ChainDevice {
  public:
   RenderRun render(const RenderHooks& hooks) final;
   RenderRun render(Film& film, int samples, const RenderHooks& hooks) final;
@@ -21,9 +22,36 @@ class FilmRenderer : public Renderer {
 
   /// To be called once, before a render: `make(paths)` makes a sample buffer for the largest batch.
   template <class Make>
-  void make_samples(const FilmMemory& memory, Make&& make) {
-    batch_paths_ = plan_batches(options_, memory);
+  void make_samples(const FilmMemory& memory, const ChainDefaults& defaults, Make&& make) {
+    if (has_chains()) {
+      chain_plan_ = plan_chains(options_, defaults, memory);
+      batch_paths_ = chain_plan_.batch_paths();
+    } else {
+      batch_paths_ = plan_batches(options_, memory);
+    }
     samples_ = make(batch_paths_);
+  }
+
+  bool has_chains() const { return options_.integrator == IntegratorKind::mlt; }
+  const ChainPlan& chain_plan() const { return chain_plan_; }
+  /// Calls make(pointer's place, count) for each array of the chains.
+  template <class Make>
+  void make_chain_arrays(ChainArrays& arrays, Make&& make) const {
+    arrays.for_each_array(chain_plan_.chains, batch_paths_, chain_plan_.blocks,
+                          image_window_.pixel_count(), make);
+  }
+  /// The chains as what draws their paths' numbers sees them.
+  Chains chains_view(const ChainArrays& arrays, const ChainWindow& window) const {
+    return {arrays.proposals,
+            arrays.accepted,
+            options_.seed,
+            static_cast<std::uint32_t>(chain_plan_.chains),
+            mutation_size(options_.mutation_size),
+            window};
+  }
+  /// A batch of chains: a path's number is its name. --work pixel and sample see a row of pixels.
+  SampleBuffer chain_batch(std::uint32_t paths) const {
+    return {samples_, Window{0, 0, paths, 1}, 0, 1};
   }
 
   /// Of the last render.
@@ -38,7 +66,9 @@ class FilmRenderer : public Renderer {
   std::uint64_t batch_paths() const { return batch_paths_; }
   Sample* samples() const { return samples_; }
 
-  /// Takes the film to the device (no pixels: black ones) and begins to measure.
+  /// Takes the film to the device (no pixels: black ones).
+  virtual void store_film(const Film& film) = 0;
+  /// The same, and begins to measure.
   virtual void begin_render(const Film& film) = 0;
   /// Traces the batch, adds it to the device's film and its time to `run`.
   virtual void render_batch(const SampleBuffer& batch, RenderRun& run) = 0;
@@ -55,12 +85,14 @@ class FilmRenderer : public Renderer {
  private:
   void check(const Film& film, int samples) const;
   RenderRun add_samples(const Film& film, int samples, const RenderHooks& hooks);
+  RenderRun add_mutations(const Film& film, int samples, const RenderHooks& hooks);
   double estimate_error();
 
   Window image_window_;
   Window window_;
   std::uint64_t pixel_samples_ = 0;
   std::uint64_t batch_paths_ = 0;
+  ChainPlan chain_plan_;
   Sample* samples_ = nullptr;
 };
 

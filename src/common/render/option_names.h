@@ -26,8 +26,8 @@ template <>
 inline constexpr auto enum_names<Mode> = std::to_array<EnumName<Mode>>(
     {{Mode::serial, "serial"}, {Mode::megakernel, "megakernel"}, {Mode::wavefront, "wavefront"}});
 template <>
-inline constexpr auto enum_names<IntegratorKind> =
-    std::to_array<EnumName<IntegratorKind>>({{IntegratorKind::path, "path"}});
+inline constexpr auto enum_names<IntegratorKind> = std::to_array<EnumName<IntegratorKind>>(
+    {{IntegratorKind::path, "path"}, {IntegratorKind::mlt, "mlt"}});
 template <>
 inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
     {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});

@@ -20,7 +20,7 @@ enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
 enum class Shade { automatic, uber, material };
 enum class SceneMemory { automatic, global, shared, constant };
-enum class IntegratorKind { path };
+enum class IntegratorKind { path, mlt };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
 enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
@@ -94,7 +94,12 @@ struct Options {
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
-  bool multiple_scattering = false;  ///< of rough conductors, between their facets
+  // Of IntegratorKind::mlt (docs/metropolis.md)
+  std::uint64_t chains = 0;             ///< Markov chains, 0: automatic
+  float large_step_probability = 0.3f;  ///< in (0, 1]
+  float mutation_size = 0.015625f;      ///< largest small step of a number, in (0, 1/2]
+  std::uint64_t bootstrap = 0;          ///< samples before the chains, 0: automatic
+  bool multiple_scattering = false;     ///< of rough conductors, between their facets
   std::uint64_t seed = 1;
   std::string output = "image.exr";    ///< .exr, .png or .ppm
   ExposureChoice exposure;             ///< for PNG and PPM only

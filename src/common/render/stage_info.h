@@ -23,6 +23,7 @@ namespace pt {
   STAGE(finish, intersect, true)            \
   STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \
+  STAGE(mutate, idle, false)                \
   STAGE(compact, idle, false)               \
   STAGE(order_surfaces, idle, false)        \
   STAGE(begin_wave, idle, false)            \

@@ -20,6 +20,20 @@ struct StageTime {
 /// Why a render has the samples that it has.
 enum class RunEnd { samples, time_limit, target_error, interrupted };
 
+/// What the Markov chains of --integrator mlt did (docs/metropolis.md).
+struct MetropolisStats {
+  std::uint64_t chains = 0;
+  std::uint64_t mutations = 0;  ///< of all chains
+  std::uint64_t bootstrap = 0;  ///< paths before them
+  double brightness = 0;        ///< b: the mean luminance of the bootstrap's paths
+  double brightness_error = 0;  ///< its standard error
+  double large_share = 0;       ///< of the mutations, 0..1
+  double large_acceptance = 0;  ///< of large steps, those that were accepted, 0..1
+  double small_acceptance = 0;
+  double bootstrap_ms = 0;     ///< of the kernel time: before the first mutation
+  double mutations_per_s = 0;  ///< by the time of the mutations alone
+};
+
 /// One render of the whole image.
 struct RenderRun {
   double kernel_ms = 0;  ///< from the first stage's start to the last one's end, all batches
@@ -28,6 +42,7 @@ struct RenderRun {
   int samples_done = 0;     ///< per pixel; less than asked for where something ended it before
   RunEnd ended_by = RunEnd::samples;
   std::optional<double> relative_error;  ///< of the image (image_error.h), where it was estimated
+  std::optional<MetropolisStats> metropolis;  ///< of --integrator mlt
 };
 
 /// Neither all samples were taken nor did a stop that was asked for end the render.

@@ -1,6 +1,7 @@
 // Numbers that a sampler places: each sample of a pixel on its own, or all of them together.
 #pragma once
 
+#include "common/sampling/chains.h"
 #include "common/sampling/choices.h"
 #include "common/sampling/random.h"
 #include "common/sampling/sobol.h"
@@ -20,15 +21,20 @@ inline Sampler make_sampler(SamplerKind kind, std::uint32_t samples) {
 
 /// Stateless, as PhiloxSource, whose numbers these are when they are independent. All threads take
 /// the same branch. Samples that know of each other need 128 bits that are a pixel's and a block's.
+/// With chains a path is what one of them proposes: then the stream's `pixel` and `sample` are its
+/// Proposal's `path` and `iteration`.
 struct SamplerSource {
   std::uint64_t seed;
   Sampler sampler;
+  const Chains* chains = nullptr;
 
   struct Stream {
     PhiloxSource::Stream philox;
     Sampler sampler;
+    const Chains* chains;
 
     PT_HD Vec4 draw(std::uint32_t block) {
+      if (chains != nullptr) return draw_apart(chains, philox.pixel, philox.sample, block);
       if (sampler.kind == SamplerKind::independent) return philox.draw(block);
       const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits(block, 2);
       if (sampler.kind == SamplerKind::sobol) return sobol_block(philox.sample, pattern);
@@ -37,8 +43,23 @@ struct SamplerSource {
     }
   };
 
-  PT_HD Stream open(const PathId& id) const { return {PhiloxSource{seed}.open(id), sampler}; }
+  PT_HD Stream open(const PathId& id) const {
+    if (chains == nullptr) return {PhiloxSource{seed}.open(id), sampler, nullptr};
+    const Proposal proposal = load_wide(&chains->proposals[id.index]);
+    return {{seed, proposal.path, proposal.iteration}, sampler, chains};
+  }
   PT_HD void close(const PathId&, const Stream&) const {}
 };
+
+/// Where a path begins whose name says `pixel` and whose block 0 is `u`: there, but for a chain's
+/// path, whose numbers say it themselves.
+template <class Stream>
+PT_HD PixelPoint pixel_point(const Stream&, std::uint32_t pixel, const Vec4& u) {
+  return {pixel, u};
+}
+PT_HD PixelPoint pixel_point(const SamplerSource::Stream& stream, std::uint32_t pixel,
+                             const Vec4& u) {
+  return stream.chains == nullptr ? PixelPoint{pixel, u} : stream.chains->window.point_of(u);
+}
 
 }  // namespace pt

@@ -36,7 +36,8 @@ bool has_rough_conductors(const SceneData& scene, const Options&) {
 
 constexpr const char* paper =
     "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
-    "independent and not --shade material; expected such a scene instead of '{}', or other options";
+    "independent, --integrator path and not --shade material; expected such a scene instead of "
+    "'{}', or other options";
 
 /// The whole policy. What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {
@@ -80,7 +81,7 @@ bool needs_triangles(const MaterialDescription& material) {
 bool is_lean(const SceneData& scene, const Options& o) {
   return has_primitives_only(scene) && o.sampling == DirectionSampling::bsdf &&
          o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent &&
-         o.shade != Shade::material;
+         o.shade != Shade::material && o.integrator != IntegratorKind::mlt;
 }
 
 bool has_primitives_only(const SceneData& scene) {

@@ -1,6 +1,7 @@
 // Step 1: a path begins at the camera.
 #pragma once
 
+#include "common/sampling/sampler_source.h"
 #include "common/scene/scene.h"
 #include "common/transport/path.h"
 
@@ -15,6 +16,14 @@ PT_HD Ray generate_camera_path(const Scene& scene, std::uint32_t pixel, const Ve
                        static_cast<float>(pixel_y(pixel)) + scene.filter.offset(u.y), u.z, u.w);
   set_lanes(ray, lanes_of(scene));
   return ray;
+}
+
+/// The same for the stream of a path's numbers, of which `u` is block 0.
+template <class Stream>
+PT_HD Ray generate_camera_path(const Scene& scene, const Stream& random, std::uint32_t pixel,
+                               const Vec4& u) {
+  const PixelPoint point = pixel_point(random, pixel, u);
+  return generate_camera_path(scene, point.pixel, point.u);
 }
 
 }  // namespace pt
