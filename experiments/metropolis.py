@@ -67,6 +67,7 @@ def settle(arguments):
     if arguments.quick:
         arguments.size, arguments.seeds = 12, 3
         arguments.seconds, arguments.reference_seconds = [0.01, 0.02], 0.1
+        arguments.bootstrap, arguments.chains = "1000", "64"
 
 
 def scenes_of(arguments):
@@ -102,11 +103,13 @@ def configurations(arguments, _device):
     return rows
 
 
-def rate_of(row):
-    """Samples or mutations per pixel and second."""
+def samples_in(row, seconds):
+    """Samples or mutations per pixel in this time, as fast as in the row: after the bootstrap."""
     pixels = int(row["width"]) * int(row["height"])
-    done = float(row.get("mutations") or 0) / pixels or float(row["samples_done"])
-    return 1000 * done / float(row["kernel_ms_median"])
+    done = float(row.get("mlt_mutations") or 0) / pixels or float(row["samples_done"])
+    before = float(row.get("mlt_bootstrap_ms") or 0)
+    took = float(row["kernel_ms_median"]) - before
+    return done * max(1000 * seconds - before, 0) / took
 
 
 def put_samples(rows):
@@ -115,10 +118,11 @@ def put_samples(rows):
     for integrator, mine in in_groups([row for row in rows if row["x"]], "series").items():
         shortest = min(mine, key=lambda row: float(row["seconds"]))
         other = [row for row in rows if row["series"] == f"{integrator}, {OTHER}"]
-        faster = max([rate_of(row) / rate_of(shortest) for row in other] + [1.0])
+        seconds = float(shortest["kernel_ms_median"]) / 1000
+        faster = max([samples_in(row, seconds) / samples_in(shortest, seconds) for row in other]
+                     + [1.0])
         for row in mine:
-            samples = faster * rate_of(row) * float(row["seconds"])
-            row["samples"] = str(max(round(samples), 1))
+            row["samples"] = str(max(round(faster * samples_in(row, float(row["seconds"]))), 1))
 
 
 def longest(rows, integrator):
@@ -286,7 +290,7 @@ def who_wins(name, rows):
 
 
 def about_rates(name, rows, mlt):
-    """Mutations beside paths, and how many were accepted."""
+    """Mutations beside paths, both by all of the time, and how many were accepted."""
     path = longest(rows, PATH)
     text = []
     if path:
@@ -295,9 +299,12 @@ def about_rates(name, rows, mlt):
         text.append(f"{show(ours)} M mutations/s against {show(theirs)} M paths/s "
                     f"({ours / theirs:.0%})")
     accepted = [f"{float(mlt[column]):.0%} of the {size} steps" for column, size in
-                (("small_acceptance", "small"), ("large_acceptance", "large")) if mlt.get(column)]
+                (("mlt_small_acceptance", "small"), ("mlt_large_acceptance", "large"))
+                if mlt.get(column)]
     if accepted:
         text.append(f"accepted are {listed(accepted)}")
+    if mlt.get("mlt_bootstrap_ms"):
+        text.append(f"the bootstrap takes {show(float(mlt['mlt_bootstrap_ms']))} ms")
     return f"{name}: {'; '.join(text)}" if text else ""
 
 

@@ -106,14 +106,19 @@ class Metropolis(unittest.TestCase):
         made += [("path, megakernel", 0.5, "", 80), ("mlt, megakernel", 0.5, "", 60)]
         return [row(2000 * seconds, panel="s", series=series, x=x, seconds=seconds, width=10,
                     height=10, name=f"{series} {seconds}", samples_done=2 * rate * seconds,
-                    mutations="", samples="", **more) for series, seconds, x, rate in made]
+                    mlt_mutations="", samples="", **more) for series, seconds, x, rate in made]
 
     def test_the_faster_mode_says_how_many_samples(self):
         rows = self.rows()
-        rows[2]["mutations"] = str(2 * 50 * 0.5 * 100)  # samples_done may be rounded
+        rows[2]["mlt_mutations"] = str(2 * 50 * 0.5 * 100)  # samples_done may be rounded
         rows[2]["samples_done"] = "1"
         self.metropolis.put_samples(rows)
         self.assertEqual([one["samples"] for one in rows], ["50", "100", "30", "60", "", ""])
+        for one in rows[2:4] + rows[5:]:  # 50 mutations per second and 60, after 400 ms
+            one.update(mlt_bootstrap_ms="400", kernel_ms_median="1400", mlt_mutations="",
+                       samples_done="60" if one["x"] == "" else "50")
+        self.metropolis.put_samples(rows)
+        self.assertEqual([one["samples"] for one in rows[2:4]], ["6", "36"])
 
     def test_both_integrators_have_their_options_at_equal_times(self):
         arguments = types.SimpleNamespace(
@@ -189,10 +194,12 @@ class Metropolis(unittest.TestCase):
     def test_rates_and_acceptance(self):
         rows = self.rows()
         self.metropolis.put_samples(rows)
-        rows[3].update(small_acceptance="0.7", large_acceptance="0.05")
+        rows[3].update(mlt_small_acceptance="0.7", mlt_large_acceptance="0.05",
+                       mlt_bootstrap_ms="12.5")
         self.assertEqual(self.metropolis.about_rates("s", rows, rows[3]),
                          "s: 0.00600 M mutations/s against 0.0100 M paths/s (60%); accepted are "
-                         "70% of the small steps and 5% of the large steps")
+                         "70% of the small steps and 5% of the large steps; the bootstrap takes "
+                         "12.5 ms")
 
 
 class Toggles(unittest.TestCase):
