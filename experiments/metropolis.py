@@ -28,6 +28,7 @@ from statistics import median
 import harness
 from errors import MEASURES, REFERENCE_SEED, errors
 from harness import Configuration, Experiment, Plot
+from image_check import with_options
 from intervals import bootstrap, median_interval
 from scene_files import add_scene_files, scene_files, short_name
 from sentences import in_groups, interval, listed, show, with_interval
@@ -145,8 +146,10 @@ class Renders:
         name, integrator = row["panel"], row["series"]
         image = image_of(name, self.scenes[name], integrator, self.arguments)
         path = str(self.folder / f"{len(self.jobs)}.{kind}")
-        self.jobs[path] = [*shlex.split(image), "--mode", MAIN, "--spp", str(samples), "--seed",
-                           str(seed), "--device", self.device.choice, "--quiet", "--output", path]
+        chains = row.get("mlt_chains")  # their number must not follow from that of the samples
+        self.jobs[path] = [*with_options(image, f"--chains {chains}" if chains else ""), "--mode",
+                           MAIN, "--spp", str(samples), "--seed", str(seed), "--device",
+                           self.device.choice, "--quiet", "--output", path]
         return path
 
     def add_reference(self, row, kind="exr"):
