@@ -153,9 +153,10 @@ double floor_radiance(const SceneData& scene, const Vec3d& p) {
   const Quad& lamp = lamp_of(scene);
   const Vec3d d = Vec3d(lamp.corner) - p;
   const double cosine = glm::normalize(d).y;  // at the lamp and at the floor, which are parallel
-  const MaterialDescription& floor = scene.materials[scene.quad_material[0]];
+  const MaterialDescription& floor = scene.materials[0];  // that is where the scene begins
   const double radiance = scene.materials[1].emission.radiance.x;
-  return floor.color(0).y / pi_double * radiance * lamp.area * cosine * cosine / glm::dot(d, d);
+  const double albedo = (floor.color(0).x + floor.color(0).y + floor.color(0).z) / 3;
+  return albedo / pi_double * radiance * lamp.area * cosine * cosine / glm::dot(d, d);
 }
 
 // A camera that sees nothing but the floor in the ball's shadow, whose darkest part is convex.
@@ -185,6 +186,34 @@ TEST(Caustic, LightSamplingAloneLeavesTheShadowDark) {
   const auto [mean, bright] = sum_of(depth);
   EXPECT_GT(mean, 3 * floor_radiance(scene, focus)) << "the ball does not focus the light";
   EXPECT_LT(bright, 3 * size * size / 2) << "of 16 samples each: chance finds the lamp often";
+}
+
+// The ring's far side throws light back on the floor before it, which the lamp lights, too.
+TEST(Caustic, MirrorsAddLightWithinTheRing) {
+  constexpr int size = 32;
+  SceneData scene = build("caustic");
+  Vec3d center(0);
+  int mirrors = 0;
+  for (std::size_t i = 0; i < scene.quads.size(); ++i) {
+    if (scene.materials[scene.quad_material[i]].kind != kind_of<Metal>) continue;
+    center += Vec3d(scene.quads[i].corner), ++mirrors;
+  }
+  ASSERT_GT(mirrors, 100);
+  center /= mirrors;
+  EXPECT_NEAR(center.y, 0, 1e-6);
+  const Vec3d to_lamp = Vec3d(lamp_of(scene).corner) - center;
+  const Vec3d seen = center - 0.4 * glm::normalize(Vec3d(to_lamp.x, 0, to_lamp.z));
+  scene.camera = {Vec3(seen) + Vec3(0.01f, 0.6f, 0), Vec3(seen), {0, 0, 1}, 12, 0, 1};
+  prepare_scene(scene, {});
+  const auto mean_of = [&](int max_depth) {
+    double sum = 0;
+    const Image image = render(scene, image_options(size, size, 64, max_depth)).image;
+    for (const float value : image.rgb) sum += value;
+    return sum / static_cast<double>(image.rgb.size());
+  };
+  const double direct = mean_of(2), all = mean_of(10);
+  EXPECT_NEAR(direct, floor_radiance(scene, seen), 0.05 * direct);
+  EXPECT_GT(all, 1.2 * direct);
 }
 
 TEST(HiddenLight, ModesAreEqualBitForBit) {
