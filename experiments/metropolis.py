@@ -40,7 +40,7 @@ PATH, MLT = "path", "mlt"
 OPTIONS = {PATH: "--sampler sobol", MLT: "--integrator mlt"}
 MAIN, OTHER = "wavefront", "megakernel"
 MLT_OPTIONS = ["chains", "large-step-probability", "mutation-size", "bootstrap"]
-DIFFER = 4  # times the squared error that noise explains: from there on references disagree
+DIFFER = 4  # times the relMSE that noise explains: beyond it references disagree
 ENDS = ["median", "low", "high"]
 
 
@@ -173,24 +173,32 @@ def put_values(row, label, middle, ends):
     row.update({f"{label}_{end}": f"{value:.6g}" for end, value in zip(ENDS, [middle, *ends])})
 
 
+def scale_error(row):
+    """Of mlt, the relative standard error of the bootstrap's mean luminance: no time lowers it."""
+    brightness = float(row.get("mlt_brightness") or 0)
+    return float(row["mlt_brightness_error"]) / brightness if brightness else 0.0
+
+
 def reference_of(renders, images, rows, references):
     """(the integrator whose reference all images of the longest time are nearer to, whether the two
     differ by no more than their noise: 'agree', 'DISAGREE' or, with one alone, '')"""
     if len(references) < 2:
         return next(iter(references)), ""
-    last = [longest(rows, integrator) for integrator in references]
-    jobs = [(by, row["series"], image) for by in references for row in last
+    last = {integrator: longest(rows, integrator) for integrator in references}
+    jobs = [(by, of, image) for by in references for of, row in last.items()
             for image in images[row["name"]]]
-    squares = {}
-    for (by, of, _), found in zip(jobs, renders.errors([(image, references[by])
-                                                        for by, _, image in jobs])):
-        squares.setdefault((by, of), []).append(found["rmse"] ** 2)
-    best = min(references, key=lambda by: sum(sum(squares[by, of]) for of in references))
-    share = float(last[0]["seconds"]) / renders.arguments.reference_seconds
+    found = {}
+    for (by, of, _), errors_of in zip(jobs, renders.errors([(image, references[by])
+                                                            for by, _, image in jobs])):
+        found.setdefault((by, of), []).append(errors_of)
+    best, other = sorted(references, key=lambda by: sum(
+        one["rmse"] ** 2 for of in references for one in found[by, of]))
+    share = float(last[best]["seconds"]) / renders.arguments.reference_seconds
     # The largest: where light is rare, most images do not know how rare.
-    noise = share * sum(max(squares[best, of]) for of in references)
-    (between,) = renders.errors([tuple(references.values())])
-    return best, "agree" if between["rmse"] ** 2 <= DIFFER * noise else "DISAGREE"
+    noise = sum(share * max(one["relmse"] for one in found[best, of]) + scale_error(row) ** 2
+                for of, row in last.items())
+    (between,) = renders.errors([(references[other], references[best])])
+    return best, "agree" if between["relmse"] <= DIFFER * noise else "DISAGREE"
 
 
 def put_errors(renders, rows, images, references):
@@ -307,7 +315,8 @@ def about_rates(name, rows, mlt):
     if accepted:
         text.append(f"accepted are {listed(accepted)}")
     if mlt.get("mlt_bootstrap_ms"):
-        text.append(f"the bootstrap takes {show(float(mlt['mlt_bootstrap_ms']))} ms")
+        text.append(f"the bootstrap takes {show(float(mlt['mlt_bootstrap_ms']))} ms and knows the "
+                    f"image's scale within {scale_error(mlt):.1%}")
     return f"{name}: {'; '.join(text)}" if text else ""
 
 

@@ -140,10 +140,12 @@ class Metropolis(unittest.TestCase):
         self.assertEqual({frozenset(of) for of in modes.values()},
                          {frozenset(("wavefront", "megakernel"))})
 
-    def compared(self, errors_of, references=("path", "mlt")):
+    def compared(self, errors_of, references=("path", "mlt"), **of_mlt):
         """The rows with their labels, where an image's or reference's square error is known, and
         two that are compared have the sum."""
         rows = self.rows()
+        for one in rows[2:4]:
+            one.update(of_mlt)
         images = {one["name"]: [(one["name"], seed) for seed in range(3)] for one in rows}
 
         def errors(pairs):
@@ -171,6 +173,9 @@ class Metropolis(unittest.TestCase):
         self.assertEqual(rows[0]["references"], "agree")
         rows = self.compared(error({"path": 2.3, "mlt": 0.2}))
         self.assertEqual(rows[0]["references"], "DISAGREE")
+        squares = error({"path": 2.3, "mlt": 0.2})
+        rows = self.compared(squares, mlt_brightness="2", mlt_brightness_error="1")  # a quarter
+        self.assertEqual(rows[0]["references"], "agree")
         rows = self.compared(error({"path": 0.1}), ["path"])
         self.assertEqual((rows[0]["reference"], rows[0]["references"]), ("path", ""))
 
@@ -195,11 +200,12 @@ class Metropolis(unittest.TestCase):
         rows = self.rows()
         self.metropolis.put_samples(rows)
         rows[3].update(mlt_small_acceptance="0.7", mlt_large_acceptance="0.05",
-                       mlt_bootstrap_ms="12.5")
+                       mlt_bootstrap_ms="12.5", mlt_brightness="2",
+                       mlt_brightness_error="0.03")
         self.assertEqual(self.metropolis.about_rates("s", rows, rows[3]),
                          "s: 0.00600 M mutations/s against 0.0100 M paths/s (60%); accepted are "
                          "70% of the small steps and 5% of the large steps; the bootstrap takes "
-                         "12.5 ms")
+                         "12.5 ms and knows the image's scale within 1.5%")
 
 
 class Toggles(unittest.TestCase):
