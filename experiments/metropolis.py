@@ -68,7 +68,8 @@ def settle(arguments):
     if arguments.quick:
         arguments.size, arguments.seeds = 12, 3
         arguments.seconds, arguments.reference_seconds = [0.01, 0.02], 0.1
-        arguments.bootstrap, arguments.chains = "1000", "64"
+        # An iteration of the chains is more than a sample per pixel: the shortest time has one.
+        arguments.bootstrap, arguments.chains = "1000", "256"
 
 
 def scenes_of(arguments):
