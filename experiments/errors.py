@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import program as ptexp
 
 REFERENCE_SEED = 1000003  # other noise than that of the images
+MEASURES = {"rmse": "RMSE", "relmse": "relMSE", "flip": "(?:HDR-)?FLIP"}  # as `compare` prints them
 
 
 class KeptImages:
@@ -37,6 +38,12 @@ class KeptImages:
         shutil.rmtree(self.folder)
 
 
-def relmse(program, image, reference):
+def errors(program, image, reference):
+    """{name: error} of all MEASURES."""
     text = ptexp.run_ptexp(program, "compare", image, reference)
-    return float(re.search(r"(?m)^relMSE\s+(\S+)$", text).group(1))
+    return {name: float(re.search(rf"(?m)^{printed}\s+(\S+)$", text).group(1))
+            for name, printed in MEASURES.items()}
+
+
+def relmse(program, image, reference):
+    return errors(program, image, reference)["relmse"]

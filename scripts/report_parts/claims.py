@@ -1,5 +1,5 @@
 """The student paper's claims, each held against the tables of a device."""
-from .tables import in_groups, interval, number
+from .tables import Interval, in_groups, interval, number
 from .words import change, exponent, listed, plain, show, with_interval
 
 NOT_MEASURED = "not measured"
@@ -151,8 +151,31 @@ def importance_sampling(device):
                      + ". Each error is of one image, without an interval."), "sampling"
 
 
-def metropolis(_device):
-    return NOT_MEASURED, "No table compares Metropolis light transport yet.", ""
+def metropolis(device):
+    """At equal samples: a mutation traces a path, so the gain at equal time times paths by
+    mutations is that at equal numbers of them, as errors fall as 1 / samples."""
+    table = device.to_judge("metropolis")
+    words, lines = [], []
+    for panel, rows in (in_groups(table.measured, "panel").items() if table else ()):
+        both = {row["series"]: row for row in sorted(rows, key=lambda row: float(row["seconds"]))
+                if row["x"]}  # those of the longest time
+        gain = interval(both["mlt"], "gain") if {"mlt", "path"} <= set(both) else None
+        if not gain:
+            continue
+        factor = number(both["path"]["samples"]) / number(both["mlt"]["samples"])
+        gain = Interval(factor * gain.middle, *((factor * gain.low, factor * gain.high)
+                                                if gain.known else (None, None)), gain.kind)
+        words.append("not known" if not gain.known else "fewer" if gain.low > 1 else
+                     "more" if gain.high < 1 else "no significant difference")
+        apart = both["mlt"].get("references") == "DISAGREE"
+        lines.append(f"{panel} {with_interval(gain)} ({words[-1]}"
+                     + (", by a reference that is not sure)" if apart else ")"))
+    if not words:
+        return NOT_MEASURED, "", "metropolis"
+    verdict = ("confirmed" if all(word == "fewer" for word in words) else
+               "refuted" if "fewer" not in words else "depends")
+    return verdict, ("Paths that path tracing needs for the error (relMSE) of one mutation of "
+                     f"Metropolis light transport: {listed(lines)}."), "metropolis"
 
 
 # The claim, the rule of its verdict (else it depends), and who applies it.
@@ -170,7 +193,9 @@ CLAIMS = (
     ("Importance sampling needs fewer samples.",
      "confirmed if the error at equal samples is lower in every scene, refuted if in none",
      importance_sampling),
-    ("Metropolis light transport needs fewer samples.", "", metropolis))
+    ("Metropolis light transport needs fewer samples.",
+     "confirmed if the error at equal samples is lower in every scene, refuted if in none",
+     metropolis))
 
 
 def audit(device):

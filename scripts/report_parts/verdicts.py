@@ -115,6 +115,22 @@ def about_gains(table):
             for (panel, equal), rows in in_groups(table.measured, "panel", "equal").items()]
 
 
+def about_metropolis(table):
+    """At each time, not along the lines."""
+    for panel, rows in in_groups(table.measured, "panel").items():
+        parts = []
+        for row in sorted(rows, key=lambda row: number(row["seconds"])):
+            gain = interval(row, "gain")
+            if gain:
+                winner = ("" if not gain.known else "mlt wins" if gain.low > 1 else
+                          "path tracing wins" if gain.high < 1 else "no significant difference")
+                parts.append(f"{with_interval(gain)} after {row['seconds']} s"
+                             + f" ({winner or 'without a spread'})")
+        if parts:
+            yield panel, ("relMSE of path tracing divided by that of Metropolis light transport at "
+                          f"equal time: {listed(parts)}.")
+
+
 def about_steps(table):
     """The rungs of a ladder are compared with those before them."""
     for panel, rows in in_groups(table.measured, "panel").items():
@@ -128,7 +144,9 @@ def about_steps(table):
 
 def meaning(table):
     """[(panel, sentences)]"""
-    if {"gain", "equal"} <= set(table.columns):
+    if {"gain_median", "seconds"} <= set(table.columns):
+        found = list(about_metropolis(table))
+    elif {"gain", "equal"} <= set(table.columns):
         found = about_gains(table)
     elif {"gain", "panel"} <= set(table.columns):
         found = list(about_steps(table))
@@ -137,7 +155,8 @@ def meaning(table):
                  for panel, rows in in_groups(table.drawn, "panel").items()]
     else:
         return []
-    once = sum(1 for row in table.measured if row.get("repeat") == "1")
+    once = sum(1 for row in table.measured  # `seeds` are more than one
+               if row.get("repeat") == "1" and not row.get("seeds"))
     gone = [row for row in table.rows if not is_measured(row)]
     if gone:
         found.append(("", f"{len(gone)} of {len(table.rows)} configurations were not measured "

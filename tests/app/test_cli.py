@@ -125,7 +125,7 @@ class Information(CommandLine):
 
     def test_scenes_are_listed_and_can_be_rendered(self):
         text = self.run_ok("--list-scenes").stdout
-        for scene in ["spheres", "rtow", "cornell", "furnace"]:
+        for scene in ["spheres", "rtow", "cornell", "furnace", "ajar", "caustic"]:
             self.assertRegex(text, rf"(?m)^\s*{scene}\b")
             self.render_ok("--scene", scene, "--output", f"{scene}.ppm")
             self.assertEqual(read_ppm(self.folder / f"{scene}.ppm")[:2], (24, 12))

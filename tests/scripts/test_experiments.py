@@ -243,6 +243,20 @@ class Experiments(unittest.TestCase):
                 alive = list(map(float, row["alive"].split(";")))
                 self.assertEqual((alive[0], len(alive) <= int(row["max_depth"])), (1, True))
                 self.assertAlmostEqual(sum(alive), float(row["rays_per_path"]), delta=2e-3)
+        if script == "metropolis":
+            compared = [row for row in rows if row["x"]]
+            self.assertEqual(len(compared), 3 * 2 * 2)
+            for row in compared:
+                self.assertEqual((row["seeds"], row["references"] != ""), ("3", True), row["name"])
+                for label in ("rmse", "relmse", "flip"):
+                    low, middle, high = (float(row[f"{label}_{end}"])
+                                         for end in ("low", "median", "high"))
+                    self.assertTrue(0 < low <= middle <= high, (row["name"], label))
+                is_mlt = row["series"] == "mlt"
+                self.assertEqual(row["gain_median"] != "", is_mlt, row["name"])
+                self.assertEqual(row["integrator"] == "mlt", is_mlt, row["name"])
+            pictures = {path.name for path in self.folder.glob("out/*/metropolis-quick-*.png")}
+            self.assertEqual(len(pictures), 2 * 2 * 2)
         if script == "random_numbers":
             errors = {}
             for row in rows:

@@ -95,6 +95,119 @@ class Ladder(unittest.TestCase):
                           if "graph" in made.arguments])
 
 
+class Metropolis(unittest.TestCase):
+    def setUp(self):
+        self.metropolis = experiment("metropolis")
+
+    def rows(self, **more):
+        """A scene of 10x10 pixels: 100 samples per second in paths, 50 in mutations."""
+        made = [(series, seconds, x, rate) for series, rate in (("path", 100), ("mlt", 50))
+                for seconds, x in ((0.5, "500"), (1.0, "1000"))]
+        made += [("path, megakernel", 0.5, "", 80), ("mlt, megakernel", 0.5, "", 60)]
+        return [row(2000 * seconds, panel="s", series=series, x=x, seconds=seconds, width=10,
+                    height=10, name=f"{series} {seconds}", samples_done=2 * rate * seconds,
+                    mlt_mutations="", samples="", **more) for series, seconds, x, rate in made]
+
+    def test_the_faster_mode_says_how_many_samples(self):
+        rows = self.rows()
+        rows[2]["mlt_mutations"] = str(2 * 50 * 0.5 * 100)  # samples_done may be rounded
+        rows[2]["samples_done"] = "1"
+        self.metropolis.put_samples(rows)
+        self.assertEqual([one["samples"] for one in rows], ["50", "100", "30", "60", "", ""])
+        for one in rows[2:4] + rows[5:]:  # 50 mutations per second and 60, after 400 ms
+            one.update(mlt_bootstrap_ms="400", kernel_ms_median="1400", mlt_mutations="",
+                       samples_done="60" if one["x"] == "" else "50")
+        self.metropolis.put_samples(rows)
+        self.assertEqual([one["samples"] for one in rows[2:4]], ["6", "36"])
+
+    def test_both_integrators_have_their_options_at_equal_times(self):
+        arguments = types.SimpleNamespace(
+            quick=False, scenes=[], size=64, seconds=[0.5, 0.1], seeds=2, rounds=2, chains="7",
+            large_step_probability="", mutation_size="0.1", bootstrap="")
+        made = self.metropolis.configurations(arguments, CUDA)
+        self.assertEqual(len(made), 3 * 2 * 3)
+        for one in made:
+            is_mlt = option(one, "--integrator") == "mlt"
+            self.assertEqual((option(one, "--chains"), option(one, "--mutation-size")),
+                             ("7", "0.1") if is_mlt else (None, None))
+            self.assertEqual(option(one, "--sampler"), None if is_mlt else "sobol")
+            self.assertEqual(option(one, "--time-limit"), one.labels["seconds"])
+        self.assertEqual([one.labels["x"] for one in made[:3]], ["100", "500", ""])
+        modes = {one.same_image: set() for one in made}
+        for one in made:
+            modes[one.same_image].add(option(one, "--mode"))
+        self.assertEqual(len(modes), 6)
+        self.assertEqual({frozenset(of) for of in modes.values()},
+                         {frozenset(("wavefront", "megakernel"))})
+
+    def compared(self, errors_of, references=("path", "mlt"), **of_mlt):
+        """The rows with their labels, where an image's or reference's square error is known, and
+        two that are compared have the sum."""
+        rows = self.rows()
+        for one in rows[2:4]:
+            one.update(of_mlt)
+        images = {one["name"]: [(one["name"], seed) for seed in range(3)] for one in rows}
+
+        def errors(pairs):
+            found = [errors_of(image) + errors_of(reference) for image, reference in pairs]
+            return [{"rmse": square**0.5, "relmse": square, "flip": square / 8} for square in found]
+        renders = types.SimpleNamespace(errors=errors,
+                                        arguments=types.SimpleNamespace(reference_seconds=10.0))
+        self.metropolis.put_errors(renders, rows, images, {by: by for by in references})
+        return rows
+
+    def test_the_better_reference_is_taken_and_held_against_the_other(self):
+        def error(squares):
+            return lambda image: squares.get(image, 4.0 if image[0].startswith("path") else 1.0)
+        rows = self.compared(error({"path": 0.4, "mlt": 0.1}))
+        self.assertEqual({(one["reference"], one["references"]) for one in rows if one["x"]},
+                         {("mlt", "agree")})
+        self.assertEqual((rows[0]["relmse_median"], rows[0]["seeds"]), ("4.1", "3"))
+        self.assertEqual((rows[0]["rmse_low"], rows[0]["flip_high"]), ("2.02485", "0.5125"))
+        self.assertEqual((rows[3]["gain_median"], rows[3]["rmse_gain_median"]),
+                         ("3.72727", "1.93061"))
+        self.assertNotIn("gain_median", rows[1])
+        self.assertNotIn("relmse_median", rows[4])
+        # A tenth of (4.2 + 1.2) is what noise explains, and four times that is allowed.
+        rows = self.compared(error({"path": 1.9, "mlt": 0.2}))
+        self.assertEqual(rows[0]["references"], "agree")
+        rows = self.compared(error({"path": 2.3, "mlt": 0.2}))
+        self.assertEqual(rows[0]["references"], "DISAGREE")
+        squares = error({"path": 2.3, "mlt": 0.2})
+        rows = self.compared(squares, mlt_brightness="2", mlt_brightness_error="1")  # a quarter
+        self.assertEqual(rows[0]["references"], "agree")
+        rows = self.compared(error({"path": 0.1}), ["path"])
+        self.assertEqual((rows[0]["reference"], rows[0]["references"]), ("path", ""))
+
+    def test_who_wins(self):
+        def said(*gains):
+            rows = [{"seconds": str(2**i), "gain_low": low, "gain_median": middle,
+                     "gain_high": high} for i, (low, middle, high) in enumerate(gains)]
+            return self.metropolis.who_wins("s", rows)
+        self.assertEqual(said(("2", "3", "4")),
+                         "s: mlt wins: after 1 s path tracing has 3.00 [2.00, 4.00] times its "
+                         "relMSE")
+        self.assertEqual(said(("0.25", "0.5", "0.9"), ("0.2", "0.25", "0.5")),
+                         "s: path tracing wins: after 2 s mlt has 4.00 [2.00, 5.00] times its "
+                         "relMSE; likewise at the other times")
+        self.assertEqual(said(("0.2", "0.5", "0.9"), ("0.9", "1.5", "2")),
+                         "s: no significant difference after 2 s: path tracing has 1.50 "
+                         "[0.900, 2.00] times the relMSE of mlt; lower relMSE: path after 1 s and "
+                         "neither after 2 s")
+        self.assertIn("not known", said(("", "", "")))
+
+    def test_rates_and_acceptance(self):
+        rows = self.rows()
+        self.metropolis.put_samples(rows)
+        rows[3].update(mlt_small_acceptance="0.7", mlt_large_acceptance="0.05",
+                       mlt_bootstrap_ms="12.5", mlt_brightness="2",
+                       mlt_brightness_error="0.03")
+        self.assertEqual(self.metropolis.about_rates("s", rows, rows[3]),
+                         "s: 0.00600 M mutations/s against 0.0100 M paths/s (60%); accepted are "
+                         "70% of the small steps and 5% of the large steps; the bootstrap takes "
+                         "12.5 ms and knows the image's scale within 1.5%")
+
+
 class Toggles(unittest.TestCase):
     def test_each_against_what_it_replaces(self):
         for name, base, said in (("toggles", "default", "the default"), ("shading", "uber", "uber")):

@@ -103,6 +103,29 @@ def sampling(uniform, ours):
                                                      ("nee off", ours))]
 
 
+def metropolis(*scenes, samples=200, references="agree"):
+    """A table of (scene, {seconds: gain in percent, low, high}); a mutation takes half of a path's
+    time where there are twice as many as the 100 paths."""
+    rows = []
+    for scene, gains in scenes:
+        for seconds, (low, middle, high) in gains.items():
+            for series, count in (("path", 100), ("mlt", samples)):
+                error = 1.0 if series == "path" else 1 / middle
+                row = {**toggle(series, 1000 * seconds, 1, 1, 1), "experiment": "metropolis",
+                       "name": f"{scene}: {series}, {seconds:g} s", "panel": scene,
+                       "series": series, "seconds": f"{seconds:g}", "samples": count, "seeds": 5,
+                       "repeat": 1, "references": references,
+                       **{f"relmse_{end}": scale * error for end, scale in
+                          (("low", 0.9), ("median", 1), ("high", 1.1))},
+                       "gain_low": "", "gain_median": "", "gain_high": ""}
+                if series == "mlt":
+                    row |= {"gain_low": low, "gain_median": middle, "gain_high": high}
+                rows.append(row)
+        rows.append({**rows[-1], "x": "", "series": "mlt, megakernel", "seeds": "", "samples": "",
+                     "gain_median": "", "name": f"{scene}: other"})
+    return rows
+
+
 def places():
     """A table of scene_memory."""
     return [{**toggle("megakernel, brute", "", 0.98 * ms, ms, 1.02 * ms), "series": memory,
@@ -160,6 +183,7 @@ class Report(unittest.TestCase):
         plots = {"toggles": TOGGLES, "image_size": SIZES,
                  "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
                  "sampling": {**SIZES, "y": "relmse"}, "ladder": TOGGLES,
+                 "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
                  "random_numbers": TOGGLES, "pool_size": SIZES,
                  "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
                  "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
@@ -276,6 +300,36 @@ class Report(unittest.TestCase):
         nothing = self.judged(toggles=toggles()[:1])
         self.assertEqual(set(nothing.values()), {"not measured"})
         self.assertEqual(len(nothing), 7)
+
+    def test_metropolis_is_judged_at_equal_samples(self):
+        good, bad, unclear = (7.5, 8.0, 9.0), (0.1, 0.2, 0.3), (1.5, 2.0, 2.5)
+        for gains, expected in (((good, good), "confirmed"), ((good, bad), "depends"),
+                                ((bad, unclear), "refuted"), ((good, unclear), "depends")):
+            rows = metropolis(*((f"s{i}", {0.1: bad, 0.5: gain}) for i, gain in enumerate(gains)))
+            self.assertEqual(self.judged(metropolis=rows)["Metropolis"], expected, gains)
+        self.make(metropolis=metropolis(("room", {0.1: bad, 0.5: good}), ("box", {0.5: unclear}),
+                                        references="DISAGREE"))
+        *_, (_, _, verdict, numbers, source) = claims.audit(read_device(self.folder))
+        self.assertEqual((verdict, source), ("depends", "metropolis"))
+        # A time takes 100 paths or 200 mutations: half of the gain is left.
+        self.assertIn("room 4.00 [3.75, 4.50] (fewer, by a reference that is not sure) and box "
+                      "1.00 [0.750, 1.25] (no significant difference, by", numbers)
+        alone = [row for row in metropolis(("room", {0.5: good})) if row["series"] == "path"]
+        self.assertEqual(self.judged(metropolis=alone)["Metropolis"], "not measured")
+
+    def test_metropolis_is_compared_at_equal_time(self):
+        text = self.make(metropolis=metropolis(
+            ("room", {0.5: (2.0, 4.0, 6.0), 0.1: (0.5, 0.6, 0.7)}), ("box", {0.1: (0.9, 1, 1.1)})))
+        found = dict(verdicts.meaning(read_table(self.folder / "metropolis.csv")))
+        self.assertEqual(found["room"], "relMSE of path tracing divided by that of Metropolis "
+                         "light transport at equal time: 0.600 [0.500, 0.700] after 0.1 s (path tracing "
+                         "wins) and 4.00 [2.00, 6.00] after 0.5 s (mlt wins).")
+        self.assertIn("1.00 [0.900, 1.10] after 0.1 s (no significant difference)", found["box"])
+        self.assertIn("2 of 8 configurations were measured once", found[""])
+        drawn = [point for svg in plots_in(text) for point in svg.iter()
+                 if (point.get("class") or "").startswith("point")]
+        self.assertEqual(len(drawn), 6)
+        self.assertTrue(all(point.get("data-low") for point in drawn))
 
     def test_shared_memory_is_judged_where_spheres_grow(self):
         self.make(scene_memory=places())

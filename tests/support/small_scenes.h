@@ -22,7 +22,7 @@ inline std::vector<std::string> small_scenes() {
 
 /// Those of spheres and quads alone.
 inline std::vector<std::string> primitive_scenes() {
-  return {"spheres", "rtow", "cornell", "furnace"};
+  return {"spheres", "rtow", "cornell", "furnace", "ajar", "caustic"};
 }
 
 }  // namespace pt

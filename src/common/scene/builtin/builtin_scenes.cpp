@@ -8,6 +8,7 @@
 #include "common/scene/builtin/generate_forest.h"
 #include "common/scene/builtin/generate_statue.h"
 #include "common/scene/builtin/generate_terrain.h"
+#include "common/scene/builtin/hidden_light_scenes.h"
 #include "common/scene/builtin/quad_scenes.h"
 #include "common/scene/prepare_scene.h"
 
@@ -73,6 +74,10 @@ const std::vector<SceneInfo>& scene_list() {
        [](const SceneRequest&) { return make_cornell_scene(); }},
       {"furnace", "", "a closed box in which every pixel must be 1: the test of energy",
        [](const SceneRequest&) { return make_furnace_scene(); }},
+      {"ajar", "", "a room that gets its light through the gap of a door alone",
+       [](const SceneRequest&) { return make_ajar_scene(); }},
+      {"caustic", "", "light focused on a floor by a glass ball and a ring of mirrors",
+       [](const SceneRequest&) { return make_caustic_scene(); }},
       {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
       {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",
        make_statue},

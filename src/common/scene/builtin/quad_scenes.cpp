@@ -1,26 +1,8 @@
 #include "common/scene/builtin/quad_scenes.h"
 
+#include "common/scene/builtin/quad_shapes.h"
+
 namespace pt {
-namespace {
-
-// A box of six quads whose normals point outward (or inward), turned about the y axis.
-void add_box(SceneData& scene, const Vec3& center, const Vec3& size, float turn_degrees,
-             std::uint32_t material, bool inward = false) {
-  const float angle = turn_degrees * pi / 180.0f;
-  const Vec3 half = 0.5f * size;
-  const Vec3 x = half.x * Vec3(std::cos(angle), 0, -std::sin(angle));
-  const Vec3 y = half.y * Vec3(0, 1, 0);
-  const Vec3 z = half.z * Vec3(std::sin(angle), 0, std::cos(angle));
-  const auto face = [&](const Vec3& out, const Vec3& a, const Vec3& b) {  // cross(a, b) along out
-    const Vec3 corner = center + out - a - b;
-    inward ? scene.add_quad(corner, 2.0f * b, 2.0f * a, material)
-           : scene.add_quad(corner, 2.0f * a, 2.0f * b, material);
-  };
-  face(x, y, z), face(-x, z, y), face(y, z, x), face(-y, x, z), face(z, x, y), face(-z, y, x);
-}
-
-}  // namespace
-
 SceneData make_cornell_scene() {
   SceneData scene;
   const auto white = scene.add_material(make_diffuse({0.73f, 0.73f, 0.73f}));
@@ -33,8 +15,8 @@ SceneData make_cornell_scene() {
   scene.add_quad({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, red);    // left
   scene.add_quad({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, green);   // right
   scene.add_quad({-0.25f, 1.99f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}, lamp);
-  add_box(scene, {-0.35f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, 17.0f, white);
-  add_box(scene, {0.35f, 0.3f, 0.35f}, {0.6f, 0.6f, 0.6f}, -17.0f, white);
+  add_quad_box(scene, {-0.35f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, 17.0f, white);
+  add_quad_box(scene, {0.35f, 0.3f, 0.35f}, {0.6f, 0.6f, 0.6f}, -17.0f, white);
   scene.camera = {{0, 1, 4.8f}, {0, 1, 0}, {0, 1, 0}, 30.0f, 0.0f, 4.8f};
   return scene;
 }
@@ -45,7 +27,7 @@ SceneData make_furnace_scene() {
   const auto most = scene.add_material(make_diffuse(Color(0.8f), Color(0.2f)));
   const auto mirror = scene.add_material(make_metal(Color(1.0f), 0.0f));
   const auto glass = scene.add_material(make_dielectric(Color(1.0f), 1.5f));
-  add_box(scene, {0, 0, 0}, {4, 4, 4}, 0.0f, half, true);
+  add_quad_box(scene, {0, 0, 0}, {4, 4, 4}, 0.0f, half, true);
   scene.add_sphere({-0.9f, -0.5f, 0}, 0.5f, most);
   scene.add_sphere({0.0f, 0.6f, -0.6f}, 0.5f, mirror);
   scene.add_sphere({0.9f, -0.5f, 0}, 0.5f, glass);
