@@ -155,7 +155,8 @@ void add_metropolis(std::vector<OptionEntry>& list) {
            "smallest is a sixteenth of it")
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
            "Paths that measure the image's brightness and where chains\n"
-           "begin; auto: 2^20 on CUDA, 2^17 on the CPU");
+           "begin; auto: a sixteenth of the mutations, at least 2^20 on\n"
+           "CUDA, 2^17 on the CPU, and at most eight times as many");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {

@@ -117,6 +117,14 @@ MetropolisStats statistics_of(const ChainPlan& plan, const ChainStarts& starts,
   return stats;
 }
 
+/// A sixteenth of the mutations, so that b gets better as the rest of the image does, but neither
+/// too few to find rare light nor so many that the host's share of the work is felt.
+std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& defaults,
+                                  std::uint64_t pixels) {
+  if (o.time_limit > 0) return defaults.bootstrap;  // nobody knows how many mutations there will be
+  return std::clamp(mutations_of(pixels, o.spp) / 16, defaults.bootstrap, 8 * defaults.bootstrap);
+}
+
 }  // namespace
 
 void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFilter& filter) {
@@ -152,7 +160,7 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
   const std::uint64_t pixels = window_of(o).pixel_count();
   ChainPlan plan;
   plan.blocks = std::min(used_blocks(static_cast<std::uint32_t>(o.max_depth)), stored_blocks_max);
-  plan.bootstrap = o.bootstrap > 0 ? o.bootstrap : defaults.bootstrap;
+  plan.bootstrap = o.bootstrap > 0 ? o.bootstrap : automatic_bootstrap(o, defaults, pixels);
   plan.bootstrap_batch = std::min(plan.bootstrap, bootstrap_batch_max);
   const std::uint64_t film_bytes = pixels * (memory.bytes_per_pixel + 3 * sizeof(SplatSum));
   const std::uint64_t bytes_per_path = memory.bytes_per_path + sizeof(Proposal);
@@ -254,14 +262,14 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
 
   const auto done = static_cast<std::uint64_t>(batches.samples) * plan.chains;
   run.ended_by = batches.ended_by;
-  run.samples_done =
-      static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(samples), done / pixels));
+  // Less than a mutation per pixel is an image, too.
+  const std::uint64_t whole = std::max<std::uint64_t>(done / pixels, done > 0 ? 1 : 0);
+  run.samples_done = static_cast<int>(std::min<std::uint64_t>(whole, std::uint64_t(samples)));
   run.metropolis = statistics_of(plan, starts, totals.tally());
   run.metropolis->bootstrap_ms = before_ms;
   run.metropolis->mutations_per_s =
       mutated_ms > 0 ? 1e3 * static_cast<double>(done) / mutated_ms : 0;
   const double per_quantum = static_cast<double>(pixels) / (static_cast<double>(done) * step.scale);
-  // Less than a mutation per pixel is an image, too.
   totals.fill_film(per_quantum, static_cast<std::uint64_t>(std::max(run.samples_done, 1)), film);
   return run;
 }

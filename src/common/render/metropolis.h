@@ -22,7 +22,7 @@ struct ChainPlan {
 /// What a device takes where --chains and --bootstrap say nothing.
 struct ChainDefaults {
   std::uint64_t chains = std::uint64_t{1} << 13;
-  std::uint64_t bootstrap = std::uint64_t{1} << 17;
+  std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; a sixteenth of the mutations
 };
 
 /// Throws Error when the memory cannot hold what the options ask for.
