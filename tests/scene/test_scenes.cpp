@@ -180,7 +180,8 @@ TEST(Scenes, LightsAreThePrimitivesThatEmit) {
 
 TEST(Scenes, Errors) {
   expect_error([] { make_scene(scene_options("nowhere")); }, "nowhere");
-  expect_error([] { make_scene(scene_options("nowhere")); }, "spheres, rtow, cornell, furnace, ajar, caustic");
+  expect_error([] { make_scene(scene_options("nowhere")); },
+               "spheres, rtow, cornell, furnace, ajar, caustic");
   SceneData empty;
   empty.name = "void";
   expect_error([&] { prepare_scene(empty, {}); }, "scene 'void' is empty");
