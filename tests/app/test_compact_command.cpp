@@ -118,7 +118,7 @@ class CompactFiles : public testing::Test {
 TEST_F(CompactFiles, HaveARowForEachMeasurement) {
   EXPECT_EQ(compact_command(command_), 0);
   const std::vector<Row> rows = read_rows(command_.csv);
-  ASSERT_EQ(rows.size(), 2u * 2 * 2 * 3);
+  ASSERT_EQ(rows.size(), 2u * 2 * 2 * 4);
   for (Row row : rows) {
     const auto number = [&](const std::string& name) { return std::stod(row.at(name)); };
     SCOPED_TRACE(row["strategy"] + ", " + row["items"] + ", " + row["density"]);
@@ -137,8 +137,9 @@ TEST_F(CompactFiles, HaveARowForEachMeasurement) {
     EXPECT_NEAR(number("gb_per_s") / number("copy_gb_per_s") / number("copy_share"), 1, 1e-4);
   }
   EXPECT_EQ(rows[0].at("strategy"), "cub");
-  EXPECT_EQ(rows[1].at("strategy"), "atomic");
-  EXPECT_EQ(rows[2].at("strategy"), "none");
+  EXPECT_EQ(rows[1].at("strategy"), "scan");
+  EXPECT_EQ(rows[2].at("strategy"), "atomic");
+  EXPECT_EQ(rows[3].at("strategy"), "none");
   EXPECT_EQ(rows[0].at("queues") + rows.back().at("queues"), "12");
 }
 
