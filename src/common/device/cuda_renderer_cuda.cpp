@@ -26,9 +26,9 @@ namespace {
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 
-/// A chain for each thread that the device holds at once, about 2^18 on an H200. Eight times as many
-/// take twice as many mutations a second, but each walks too short a way to leave its start: the
-/// error at equal time was 1.5 to 2 times as large (results/).
+/// A chain for each thread that the device holds at once, about 2^18 on an H200. Eight times as
+/// many take twice as many mutations a second, but each walks too short a way to leave its start:
+/// the error at equal time was 1.5 to 2 times as large (results/).
 ChainDefaults chain_defaults(const cudaDeviceProp& device) {
   return {static_cast<std::uint64_t>(device.multiProcessorCount) *
               static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
