@@ -45,13 +45,15 @@ class BlockAppender {
   }
 
  private:
-  /// ends[s] without an array in local memory.
+  /// ends[s], chosen by arithmetic: indices and even branches end as an array in local memory, which
+  /// every thread writes.
   __device__ static std::uint32_t* pick(std::uint32_t* const (&ends)[streams], int s) {
-    std::uint32_t* end = ends[0];
-    for (int k = 1; k < streams; ++k) {
-      if (s == k) end = ends[k];
+    std::uint64_t end = 0;
+    PT_UNROLL(3)
+    for (int k = 0; k < streams; ++k) {
+      end |= reinterpret_cast<std::uint64_t>(ends[k]) & -static_cast<std::uint64_t>(s == k);
     }
-    return end;
+    return reinterpret_cast<std::uint32_t*>(end);
   }
 
   __device__ static void reserve(std::uint32_t (&votes)[32], std::uint32_t* end) {
