@@ -45,8 +45,8 @@ class BlockAppender {
   }
 
  private:
-  /// ends[s], chosen by arithmetic: indices and even branches end as an array in local memory, which
-  /// every thread writes.
+  /// ends[s], chosen by arithmetic: indices and even branches end as an array in local memory,
+  /// which every thread writes.
   __device__ static std::uint32_t* pick(std::uint32_t* const (&ends)[streams], int s) {
     std::uint64_t end = 0;
     PT_UNROLL(3)
