@@ -107,6 +107,17 @@ PT_HD int length_bin(std::uint32_t rays) {
                                    : path_length_bins - 1;
 }
 
+/// Counts a finished path, its length by count(bin); returns whether its radiance is finite.
+template <class Count>
+PT_HD bool count_sample(const Sample& sample, PathTally& tally, Count&& count) {
+  const bool finite = is_finite(sample.radiance);
+  tally.rays += sample.rays & 0xffffu;
+  tally.shadow_rays += sample.rays >> 16;
+  if (!finite) ++tally.nonfinite;
+  count(length_bin(sample.rays & 0xffffu));
+  return finite;
+}
+
 /// What a film sums of a pixel beyond its radiance, where somebody asks for it.
 struct PixelMoments {
   double luminance_squares = 0;  ///< of the finite samples
@@ -154,13 +165,8 @@ PT_HD void accumulate_pixel(Sum sum, const SampleBuffer& buffer, std::uint32_t p
     PT_UNROLL(8)
     for (std::uint32_t k = 0; k < ahead; ++k) {
       if (first + k >= sample_count) break;
-      const Sample& sample = loaded[k];
-      const bool finite = is_finite(sample.radiance);
-      tally.rays += sample.rays & 0xffffu;
-      tally.shadow_rays += sample.rays >> 16;
-      if (!finite) ++tally.nonfinite;
-      count(length_bin(sample.rays & 0xffffu));
-      sum.add(sample, first + k, finite);
+      const bool finite = count_sample(loaded[k], tally, count);
+      sum.add(loaded[k], first + k, finite);
     }
   }
   sum.store();

@@ -121,12 +121,8 @@ PT_HD void step_chain(const ChainArrays& arrays, const SampleBuffer& batch, cons
     return;
   }
   const Sample sample = load_wide(&batch.samples[chain]);
-  const bool finite = is_finite(sample.radiance);
+  const bool finite = count_sample(sample, paths, count);
   const std::uint32_t rays = sample.rays & 0xffffu;
-  paths.rays += rays;
-  paths.shadow_rays += sample.rays >> 16;
-  if (!finite) ++paths.nonfinite;
-  count(length_bin(rays));
 
   Proposal proposal = load_wide(&arrays.proposals[chain]);
   const float target = finite ? chain_target(sample.radiance) : 0.0f;

@@ -39,14 +39,6 @@ std::vector<Proposal> bootstrap_paths(std::uint64_t first, std::uint64_t count) 
   return proposals;
 }
 
-void count_path(const Sample& sample, PathTally& tally) {
-  const std::uint32_t rays = sample.rays & 0xffffu;
-  tally.rays += rays;
-  tally.shadow_rays += sample.rays >> 16;
-  tally.nonfinite += is_finite(sample.radiance) ? 0 : 1;
-  ++tally.lengths[length_bin(rays)];
-}
-
 /// Traces the bootstrap paths and returns their targets.
 std::vector<float> run_bootstrap(ChainDevice& device, const ChainPlan& plan, RenderRun& run,
                                  PathTally& tally) {
@@ -58,8 +50,8 @@ std::vector<float> run_bootstrap(ChainDevice& device, const ChainPlan& plan, Ren
     device.set_proposals(bootstrap_paths(targets.size(), count));
     device.run_chains(paths, {}, run);
     for (const Sample& sample : device.read_chain_samples(paths)) {
-      count_path(sample, tally);
-      targets.push_back(is_finite(sample.radiance) ? chain_target(sample.radiance) : 0.0f);
+      const bool finite = count_sample(sample, tally, [&](int bin) { ++tally.lengths[bin]; });
+      targets.push_back(finite ? chain_target(sample.radiance) : 0.0f);
     }
   }
   return targets;
