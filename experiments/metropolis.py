@@ -147,10 +147,12 @@ class Renders:
         name, integrator = row["panel"], row["series"]
         image = image_of(name, self.scenes[name], integrator, self.arguments)
         path = str(self.folder / f"{len(self.jobs)}.{kind}")
-        chains = row.get("mlt_chains")  # their number must not follow from that of the samples
-        self.jobs[path] = [*with_options(image, f"--chains {chains}" if chains else ""), "--mode",
-                           MAIN, "--spp", str(samples), "--seed", str(seed), "--device",
-                           self.device.choice, "--quiet", "--output", path]
+        # Their numbers must not follow from that of the samples: they are those of the timed run.
+        fixed = " ".join(f"--{option} {row[f'mlt_{option}']}" for option in ("chains", "bootstrap")
+                         if row.get(f"mlt_{option}"))
+        self.jobs[path] = [*with_options(image, fixed), "--mode", MAIN, "--spp", str(samples),
+                           "--seed", str(seed), "--device", self.device.choice, "--quiet",
+                           "--output", path]
         return path
 
     def add_reference(self, row, kind="exr"):
