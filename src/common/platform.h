@@ -239,6 +239,17 @@ PT_HD std::uint32_t atomic_fetch_add(std::uint32_t* counter, std::uint32_t amoun
 #endif
 }
 
+/// Adds to a sum that other threads add to. On the host side of a .cu file: never from threads.
+PT_HD void atomic_add(std::uint64_t* sum, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(value));
+#elif defined(__CUDACC__)
+  *sum += value;
+#else
+  std::atomic_ref<std::uint64_t>(*sum).fetch_add(value, std::memory_order_relaxed);
+#endif
+}
+
 /// Adds 1 to counters[n - 1] where n lanes of a warp make this call together: once for all of them,
 /// to the counters of the lowest lane. Nothing on the CPU, which has no warps.
 PT_HD void count_active_lanes([[maybe_unused]] std::uint64_t (&counters)[32]) {

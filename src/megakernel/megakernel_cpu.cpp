@@ -14,21 +14,31 @@ namespace {
 /// A thread of the CPU is a warp of one.
 class PathRange {
  public:
-  /// Every `step`-th path of [first, end).
-  PathRange(std::uint32_t first, std::uint32_t end, std::uint32_t step)
-      : next_(first), end_(end), step_(step) {}
+  /// Every `step`-th path of [first, end), or chain where they go on by themselves.
+  PathRange(const ChainRun* chains, const SampleBuffer& batch, std::uint32_t first,
+            std::uint32_t end, std::uint32_t step)
+      : chains_(chains), samples_(batch.samples), next_(first), end_(end), step_(step) {}
 
   bool any(bool value) const { return value; }
 
   bool next(std::uint32_t& number, bool wanted) {
     if (!wanted) return true;
-    if (next_ >= end_) return false;
-    number = next_;
-    next_ = end_ - next_ > step_ ? next_ + step_ : end_;
-    return true;
+    for (; next_ < end_; advance()) {
+      number = next_;
+      if (chains_ == nullptr) {
+        advance();
+        return true;
+      }
+      if (continue_chain_apart(chains_, samples_, number)) return true;
+    }
+    return false;
   }
 
  private:
+  void advance() { next_ = end_ - next_ > step_ ? next_ + step_ : end_; }
+
+  const ChainRun* chains_;
+  Sample* samples_;
   std::uint32_t next_, end_, step_;
 };
 
@@ -47,7 +57,7 @@ class MegakernelCpu : public CpuRenderer {
             dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
-                  PathRange work(first, end, step);
+                  PathRange work(chains(), batch, first, end, step);
                   trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
                 });
               });

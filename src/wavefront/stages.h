@@ -3,6 +3,7 @@
 // its affair.
 #pragma once
 
+#include "common/film/markov_chains.h"
 #include "common/render/options.h"
 #include "common/transport/follow_path.h"
 #include "common/transport/generate_camera_path.h"
@@ -54,6 +55,7 @@ struct StageContext {
   WaveCounters* counters;
   std::uint32_t* ray_queue;  ///< null: there are no queues, and no slot has a place in one
   PathLimits limits;
+  const ChainRun* chains = nullptr;  ///< that go on by themselves: free slots are theirs
 };
 
 /// Ends a path: its sample gets the last radiance and the path's counts. Without lights nothing has
@@ -62,6 +64,18 @@ PT_HD void end_path(const SampleBuffer& samples, const PathState& path, const Co
                     bool has_lights) {
   const Color before = has_lights ? samples.samples[path.number].radiance : Color(0.0f);
   samples.store(path, add_rounded(before, radiance));
+}
+
+/// The camera ray of a path in a free slot.
+template <class Source>
+PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, std::uint32_t slot,
+                      std::uint32_t number) {
+  const PathId id = context.samples.id_of(number);
+  auto random = context.source.open(id);
+  const Vec4 u = random.draw(scatter_block(0));
+  const Ray ray = generate_camera_path(scene, random, id.pixel, u);
+  context.source.close(id, random);
+  context.pool.store_new_path(slot, ray, number);
 }
 
 template <class Source>
@@ -73,22 +87,42 @@ struct GeneratePaths {
   bool has_lights;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t rank) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits] = context;
-    if (ray_queue == nullptr) {
+    WaveCounters* const counters = context.counters;
+    if (context.ray_queue == nullptr) {
       rank = atomic_fetch_add(&counters->ticket, 1);
       if (rank >= counters->generate) return {free_slot};
     } else {
-      ray_queue[counters->live + rank] = slot;  // a new path takes part in this very wave
+      context.ray_queue[counters->live + rank] = slot;  // a new path takes part in this very wave
     }
     const std::uint32_t number = counters->first_path + rank;
-    const PathId id_of_path = samples.id_of(number);
-    auto random = source.open(id_of_path);
-    const Vec4 u = random.draw(scatter_block(0));
-    const Ray ray = generate_camera_path(scene, random, id_of_path.pixel, u);
-    source.close(id_of_path, random);
-    pool.store_new_path(slot, ray, number);
-    if (has_lights) store_wide(&samples.samples[number], Sample{});
+    start_path(scene, context, slot, number);
+    if (has_lights) store_wide(&context.samples.samples[number], Sample{});
     return {StageId::intersect};
+  }
+};
+
+/// In place of GeneratePaths where Markov chains go on by themselves: a slot follows a chain from
+/// path to path, and when that has taken all of its steps the next of its chains, which are those
+/// whose number differs from the slot's by whole pools. Slots whose chains are done wait for
+/// nothing.
+template <class Source>
+struct ContinueChains {
+  static constexpr StageId id = StageId::mutate;
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
+  StageContext<Source> context;
+
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    const SampleBuffer& samples = context.samples;
+    const std::uint32_t step = context.pool.slot_count;
+    for (std::uint64_t chain = slot; chain < samples.path_count; chain += step) {
+      const auto number = static_cast<std::uint32_t>(chain);
+      if (continue_chain(*context.chains, samples.samples, number)) {
+        start_path(scene, context, slot, number);
+        return {StageId::intersect};
+      }
+    }
+    return {free_slot};
   }
 };
 
@@ -244,7 +278,7 @@ struct FinishPaths {
   StageContext<Source> context;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits] = context;
+    const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));

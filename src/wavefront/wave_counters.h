@@ -31,7 +31,8 @@ struct WaveCounters {
 
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
 /// when the waves end: no path is left to start, and no more than `finish_paths` are alive. Without
-/// regeneration the pool is filled again only when all of its paths have ended.
+/// regeneration the pool is filled again only when all of its paths have ended. Chains start their
+/// paths themselves before: they have a path_count of 0.
 PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate,
                       std::uint32_t finish_paths) {
   constexpr int free_queue = queue_of<StageId::generate>, ray_queue = queue_of<StageId::intersect>;
@@ -47,6 +48,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   c.intersect = 0;
   c.ticket = 0;
   c.traced = c.shadow_traced = 0;
+  if (remaining == 0) free = 0;  // nobody waits for what is there
   if (remaining == 0 && c.live <= finish_paths) {
     c.finish = c.live;
     return false;

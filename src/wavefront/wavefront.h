@@ -187,6 +187,17 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
   execute.run(ShadeSurface<Shading, branching, Source>{context}, surfaces);
 }
 
+/// Markov chains whose paths have ended take their steps and begin the next ones, which wait for
+/// rays as those that go on do.
+template <class Source, class Executor>
+void continue_chains(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+  constexpr StageId id = StageId::mutate;
+  execute.compact(b.request<free_slot>(b.pool.tag));
+  StageQueues free = b.stage_queues(id, b.waiting(id), b.pool.tag);
+  free.next[queue_index(free_slot)] = nullptr;
+  execute.run(ContinueChains<Source>{context}, free);
+}
+
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
 /// `starts_paths` it does not look for free slots.
 template <class Traits, Branching branching, class Source, class Executor>
@@ -196,9 +207,12 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   constexpr bool parts_misses = branching == Branching::divergent;
   StageId* tags = b.pool.tag;
 
+  if constexpr (std::is_same_v<Source, SamplerSource>) {
+    if (context.chains != nullptr) continue_chains(execute, b, context);
+  }
   execute.compact(b.request<generate, intersect>(tags));
   execute.begin_wave();
-  if (starts_paths) {
+  if (starts_paths && context.chains == nullptr) {
     execute.run(GeneratePaths<Source>{context, Traits::has_lights},
                 b.stage_queues(generate, &b.counters->generate, tags));
   }

@@ -17,8 +17,9 @@ __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_cou
 }  // namespace
 
 void WavefrontCuda::begin_wave() {
-  launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
-         options_.regenerate, static_cast<std::uint32_t>(options_.finish_paths), loop_, clock());
+  launch(
+      "begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_, options_.regenerate,
+      static_cast<std::uint32_t>(chains() == nullptr ? options_.finish_paths : 0), loop_, clock());
 }
 
 }  // namespace pt

@@ -18,12 +18,13 @@ constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 16;
 class CpuExecutor {
  public:
   CpuExecutor(const Scene& scene, const Options& options, StageTimer& timer, WaveCounters& counters,
-              std::uint32_t path_count)
+              std::uint32_t path_count, bool of_chains)
       : scene_(scene),
         options_(options),
         timer_(timer),
         counters_(counters),
-        path_count_(path_count) {}
+        path_count_(of_chains ? 0 : path_count),
+        finish_paths_(of_chains ? 0 : static_cast<std::uint32_t>(options.finish_paths)) {}
 
   void compact(const CompactionRequest& request) {
     const TagPass pass = compaction_info(options_.compaction).pass;
@@ -32,8 +33,7 @@ class CpuExecutor {
   }
 
   void begin_wave() {
-    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate,
-                           static_cast<std::uint32_t>(options_.finish_paths));
+    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate, finish_paths_);
   }
 
   bool more() const { return more_; }
@@ -59,7 +59,7 @@ class CpuExecutor {
   const Options& options_;
   StageTimer& timer_;
   WaveCounters& counters_;
-  std::uint32_t path_count_;
+  std::uint32_t path_count_, finish_paths_;
   bool more_ = true;
 };
 
@@ -129,10 +129,11 @@ class WavefrontCpu : public CpuRenderer {
       *buffers_.waiting(free_slot) = slot_count_;
     }
     const StageContext<Source> context{
-        buffers_.pool, batch, source, &counters_, buffers_.queue(StageId::intersect), limits_};
-    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count);
+        buffers_.pool, batch,   source, &counters_, buffers_.queue(StageId::intersect),
+        limits_,       chains()};
+    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count, chains() != nullptr);
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
-    run_finish<Traits>(execute, buffers_, context);
+    if (chains() == nullptr) run_finish<Traits>(execute, buffers_, context);
     waves_ += counters_.waves;
   }
 

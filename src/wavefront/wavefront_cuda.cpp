@@ -72,7 +72,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   } else {
     pool_size_ = options_.pool_size;
   }
-  buffers_.reuses_slots = !appends || pool_size_ < batch_paths();
+  buffers_.reuses_slots = !appends || pool_size_ < batch_paths() || has_chains();
   if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
     throw Error(
         fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
@@ -134,8 +134,8 @@ void WavefrontCuda::start_queues() {
 template <class Source>
 StageContext<Source> WavefrontCuda::context_of(const SampleBuffer& batch,
                                                const Source& source) const {
-  return {buffers_.pool, batch, source, buffers_.counters, buffers_.queue(StageId::intersect),
-          limits_};
+  return {buffers_.pool, batch,   source, buffers_.counters, buffers_.queue(StageId::intersect),
+          limits_,       chains()};
 }
 
 template <class Function>
@@ -148,7 +148,7 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
 
 void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
                                  bool starts_paths) {
-  path_count_ = batch.path_count;
+  path_count_ = chains() == nullptr ? batch.path_count : 0;
   loop_ = loop;
   set_wave(static_cast<int>(flows_.size()));
   with_context(batch, [&](auto kinds, const auto& context) {
@@ -169,7 +169,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
   if (schedule_ != "graph" || is_counting()) return;
-  if (graph_exec_ != nullptr && batch == graph_batch_) return;
+  if (graph_exec_ != nullptr && batch == graph_batch_ && chains() == graph_chains_) return;
   destroy_graph();
   build_graph(batch);
 }
@@ -202,6 +202,7 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaGraphUpload(graph_exec_, stream()), "cudaGraphUpload");
   check_cuda(cudaStreamSynchronize(stream()), "cudaGraphUpload");
   graph_batch_ = batch;
+  graph_chains_ = chains();
 }
 
 void WavefrontCuda::destroy_graph() {
@@ -242,7 +243,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
         read_counters();
     } while (host_counters_->intersect > 0);
   }
-  if (options_.finish_paths > 0) enqueue_finish(batch);
+  if (options_.finish_paths > 0 && chains() == nullptr) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 

@@ -82,6 +82,7 @@ class WavefrontCuda : public CudaRenderer {
   cudaGraph_t graph_ = nullptr;
   cudaGraphExec_t graph_exec_ = nullptr;
   SampleBuffer graph_batch_;
+  const ChainRun* graph_chains_ = nullptr;
 };
 
 }  // namespace pt

@@ -162,7 +162,11 @@ class ToyChains {
   double sum(std::uint32_t pixel) const {
     return static_cast<double>(arrays_.sums[3 * pixel + 1]) / step_.scale;
   }
-  const ChainTally& tally() const { return *arrays_.tally; }
+  ChainTally tally() const {
+    ChainSums sums;
+    sums.add(arrays_.counts);
+    return sums.steps;
+  }
   const ChainArrays& arrays() const { return arrays_; }
 
  private:
@@ -195,15 +199,15 @@ class ToyChains {
   }
 
   void take_steps() {
-    const SampleBuffer batch(samples_.data(), {0, 0, arrays_.chains->count, 1}, 0, 1);
     for (std::uint32_t i = 0; i < arrays_.chains->count; ++i) {
-      PathTally paths;
-      ChainTally tally;
-      step_chain(
-          arrays_, batch, step_, i, paths, tally, [](int) {},
-          [](SplatSum* sum, SplatSum quanta) { *sum += quanta; });
-      *arrays_.tally = *arrays_.tally + tally;
-      if (tally.large_accepted + tally.small_accepted > 0) current_[i] = paths_[i];
+      if (step_.kind == ChainStep::Kind::finish) {
+        finish_chain(arrays_, step_, i);
+        continue;
+      }
+      const ChainTally& steps = arrays_.counts[i % ChainCounts::places].steps;
+      const std::uint64_t before = steps.large_accepted + steps.small_accepted;
+      step_chain(arrays_, step_, i, samples_[i]);
+      if (steps.large_accepted + steps.small_accepted > before) current_[i] = paths_[i];
     }
   }
 

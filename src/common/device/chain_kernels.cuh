@@ -1,4 +1,4 @@
-// The kernel in which all Markov chains take their step. Seen from C++, a kernel is the function
+// The kernel in which all Markov chains begin and end. Seen from C++, a kernel is the function
 // that launches it.
 #pragma once
 
@@ -12,7 +12,6 @@ namespace pt {
 /// A thread per chain; blocks of at most 1024.
 __global__ void step_chains(const __grid_constant__ ChainArrays arrays,
                             const __grid_constant__ SampleBuffer batch,
-                            const __grid_constant__ ChainStep step, PathTally* tally,
-                            StageClock* clock);
+                            const __grid_constant__ ChainStep step, StageClock* clock);
 
 }  // namespace pt

@@ -6,7 +6,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <atomic>
 #include <fstream>
 #include <span>
 #include <thread>
@@ -110,18 +109,23 @@ void CpuRenderer::begin_render(const Film& film) {
   waves_ = 0;
 }
 
-void CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+template <class Function>
+void CpuRenderer::time_in_arena(RenderRun& run, Function&& function) {
   const auto start = std::chrono::steady_clock::now();
-  arena_.execute([&] {
+  arena_.execute(function);
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  run.kernel_ms += elapsed.count();
+}
+
+void CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+  time_in_arena(run, [&] {
     trace_batch(batch);
     if (plan_.feature_planes() > 0) {
       timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
     }
     timer_.time("accumulate", [&] { accumulate(batch); });
   });
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  run.kernel_ms += elapsed.count();
 }
 
 void CpuRenderer::end_render(RenderRun& run) {
@@ -201,7 +205,7 @@ void CpuRenderer::begin_chains(const ChainWindow& window) {
 }
 
 void CpuRenderer::clear_chain_sums() {
-  *chain_arrays_.tally = {};
+  std::fill_n(chain_arrays_.counts, ChainCounts::places, ChainCounts{});
   std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
 }
 
@@ -211,41 +215,32 @@ void CpuRenderer::set_proposals(const std::vector<Proposal>& proposals) {
 
 void CpuRenderer::run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) {
   const SampleBuffer batch = chain_batch(paths);
-  const auto start = std::chrono::steady_clock::now();
-  arena_.execute([&] {
+  time_in_arena(run, [&] {
     if (step.kind != ChainStep::Kind::finish) trace_batch(batch);
     if (step.kind == ChainStep::Kind::none) return;
     timer_.time(to_string(StageId::mutate), [&] { step_chains(batch, step); });
   });
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  run.kernel_ms += elapsed.count();
+}
+
+void CpuRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                                RenderRun& run) {
+  if (!lets_chains_go_on()) {
+    while (chain_arrays_.proposals[0].iteration <= last) run_chains(chains, step, run);
+    return;
+  }
+  const SampleBuffer batch = chain_batch(chains);
+  chain_run_ = {chain_arrays_, step, last};
+  std::fill_n(samples(), chains, Sample{});
+  chains_go_on_ = true;
+  time_in_arena(run, [&] { trace_batch(batch); });
+  chains_go_on_ = false;
 }
 
 void CpuRenderer::step_chains(const SampleBuffer& batch, const ChainStep& step) {
-  struct Tallies {
-    PathTally paths;
-    ChainTally chains;
-  };
-  const auto add = [](SplatSum* sum, SplatSum quanta) {
-    std::atomic_ref<SplatSum>(*sum).fetch_add(quanta, std::memory_order_relaxed);
-  };
-  const tbb::blocked_range<std::uint32_t> chains(0, batch.path_count, 256);
-  const Tallies all = tbb::parallel_reduce(
-      chains, Tallies{},
-      [&](const tbb::blocked_range<std::uint32_t>& range, Tallies sum) {
-        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-          step_chain(
-              chain_arrays_, batch, step, i, sum.paths, sum.chains,
-              [&](int bin) { ++sum.paths.lengths[bin]; }, add);
-        }
-        return sum;
-      },
-      [](const Tallies& a, const Tallies& b) {
-        return Tallies{a.paths + b.paths, a.chains + b.chains};
-      });
-  tally_ = tally_ + all.paths;
-  *chain_arrays_.tally = *chain_arrays_.tally + all.chains;
+  tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t chain) {
+    if (step.kind == ChainStep::Kind::finish) return finish_chain(chain_arrays_, step, chain);
+    step_chain(chain_arrays_, step, chain, batch.samples[chain]);
+  });
 }
 
 std::vector<Sample> CpuRenderer::read_chain_samples(std::uint32_t paths) {
@@ -254,7 +249,8 @@ std::vector<Sample> CpuRenderer::read_chain_samples(std::uint32_t paths) {
 
 ChainSums CpuRenderer::take_chain_sums() {
   const std::uint64_t count = 3 * window().pixel_count();
-  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, *chain_arrays_.tally};
+  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, {}, {}};
+  result.add(chain_arrays_.counts);
   clear_chain_sums();
   return result;
 }

@@ -52,6 +52,11 @@ class CpuRenderer : public FilmRenderer {
     pt::with_random_source(options_, traits_, states_.data(), chain_arrays_.chains, function);
   }
 
+  /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
+  virtual bool lets_chains_go_on() const { return true; }
+  /// Null: the batch is of paths. Else it is of chains that go on by themselves (continue_chain).
+  const ChainRun* chains() const { return chains_go_on_ ? &chain_run_ : nullptr; }
+
   void note_memory(const char* name, std::uint64_t size_bytes);
 
   const SceneTraits traits_;
@@ -69,7 +74,11 @@ class CpuRenderer : public FilmRenderer {
   void read_film(Film& film) override;
   void begin_chains(const ChainWindow& window) override;
   void set_proposals(const std::vector<Proposal>& proposals) override;
+  template <class Function>
+  void time_in_arena(RenderRun& run, Function&& function);
   void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                     RenderRun& run) override;
   void step_chains(const SampleBuffer& batch, const ChainStep& step);
   std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
   ChainSums take_chain_sums() override;
@@ -90,7 +99,9 @@ class CpuRenderer : public FilmRenderer {
   FilmSums sums_;  ///< of the film that is rendered, the first of their elements
   std::vector<XorwowState> states_;
   PathTally tally_;
-  ChainArrays chain_arrays_;                     ///< null without --integrator mlt
+  ChainArrays chain_arrays_;  ///< null without --integrator mlt
+  ChainRun chain_run_;
+  bool chains_go_on_ = false;
   std::vector<std::vector<char>> chain_memory_;  ///< of chain_arrays_
   std::vector<BufferSize> memory_;
 };

@@ -45,6 +45,10 @@ class CudaRenderer : public FilmRenderer {
   /// Fills in what the layout of the data lets expect of each launch of the last batch.
   virtual void predict_bytes(std::vector<LaunchCounters>& /*launches*/) const {}
 
+  /// Null: the batch is of paths. Else, in the device's memory, of chains that go on by themselves
+  /// (continue_chain); so it is from prepare_batch on.
+  const ChainRun* chains() const { return chains_go_on_ ? chain_run_ : nullptr; }
+
   /// Whether the hardware's counters are read: every kernel is then launched by the host.
   bool is_counting() const { return counters_ != nullptr; }
   /// What follows belongs to this wave; -1: to none.
@@ -136,6 +140,8 @@ class CudaRenderer : public FilmRenderer {
   void begin_chains(const ChainWindow& window) override;
   void set_proposals(const std::vector<Proposal>& proposals) override;
   void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                     RenderRun& run) override;
   std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
   ChainSums take_chain_sums() override;
   void clear_chain_sums();
@@ -157,6 +163,8 @@ class CudaRenderer : public FilmRenderer {
   FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements
   PathTally* tally_ = nullptr;
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
+  ChainRun* chain_run_ = nullptr;
+  bool chains_go_on_ = false;
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
   std::unique_ptr<CounterSession> counters_;           ///< while they are read

@@ -32,7 +32,7 @@ constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 ChainDefaults chain_defaults(const cudaDeviceProp& device) {
   return {static_cast<std::uint64_t>(device.multiProcessorCount) *
               static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
-          std::uint64_t{1} << 20};
+          std::uint64_t{1} << 20, std::uint64_t{1} << 23};
 }
 
 class Stopwatch {
@@ -287,6 +287,7 @@ void CudaRenderer::allocate_chains() {
     pointer = memory_.allocate<T>("chains", count);
     check_cuda(cudaMemset(pointer, 0, count * sizeof(T)), "cudaMemset");
   });
+  chain_run_ = memory_.allocate<ChainRun>("chains", 1);
 }
 
 void CudaRenderer::begin_chains(const ChainWindow& window) {
@@ -300,7 +301,9 @@ void CudaRenderer::begin_chains(const ChainWindow& window) {
 void CudaRenderer::clear_chain_sums() {
   const std::uint64_t bytes = 3 * window().pixel_count() * sizeof(SplatSum);
   check_cuda(cudaMemsetAsync(chain_arrays_.sums, 0, bytes, stream_), "cudaMemset");
-  check_cuda(cudaMemsetAsync(chain_arrays_.tally, 0, sizeof(ChainTally), stream_), "cudaMemset");
+  check_cuda(
+      cudaMemsetAsync(chain_arrays_.counts, 0, ChainCounts::places * sizeof(ChainCounts), stream_),
+      "cudaMemset");
 }
 
 void CudaRenderer::set_proposals(const std::vector<Proposal>& proposals) {
@@ -320,8 +323,23 @@ void CudaRenderer::run_chains(std::uint32_t paths, const ChainStep& step, Render
     set_wave(-1);
     if (step.kind == ChainStep::Kind::none) return;
     launch("step_chains", step_chains, (paths + block - 1) / block, block, 0, chain_arrays_, batch,
-           step, tally_, clock_);
+           step, clock_);
   });
+}
+
+void CudaRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                                 RenderRun& run) {
+  const SampleBuffer batch = chain_batch(chains);
+  const ProfilerRange range(fmt::format("{} chains up to step {}", chains, last));
+  const ChainRun chain_run{chain_arrays_, step, last};
+  check_cuda(
+      cudaMemcpyAsync(chain_run_, &chain_run, sizeof chain_run, cudaMemcpyHostToDevice, stream_),
+      "cudaMemcpyAsync");
+  check_cuda(cudaMemsetAsync(samples(), 0, chains * sizeof(Sample), stream_), "cudaMemsetAsync");
+  chains_go_on_ = true;
+  prepare_batch(batch);
+  time_batch(run, [&] { trace_batch(batch); });
+  chains_go_on_ = false;
 }
 
 std::vector<Sample> CudaRenderer::read_chain_samples(std::uint32_t paths) {
@@ -337,9 +355,11 @@ ChainSums CudaRenderer::take_chain_sums() {
   check_cuda(cudaMemcpy(result.sums.data(), chain_arrays_.sums,
                         result.sums.size() * sizeof(SplatSum), cudaMemcpyDeviceToHost),
              "downloading the film");
-  check_cuda(
-      cudaMemcpy(&result.tally, chain_arrays_.tally, sizeof(ChainTally), cudaMemcpyDeviceToHost),
-      "cudaMemcpy");
+  std::vector<ChainCounts> counts(ChainCounts::places);
+  check_cuda(cudaMemcpy(counts.data(), chain_arrays_.counts, counts.size() * sizeof counts[0],
+                        cudaMemcpyDeviceToHost),
+             "downloading counts");
+  result.add(counts.data());
   clear_chain_sums();
   return result;
 }
@@ -375,8 +395,9 @@ void CudaRenderer::load_kernels() {
   RenderRun run;
   if (has_chains()) {
     begin_chains({0, 0, 1, 1});
-    set_proposals({Proposal{}});
+    set_proposals({Proposal{0, 1, 0, 1}});
     run_chains(1, {}, run);
+    mutate_chains(1, {}, 0, run);
   } else {
     render_batch({samples(), window, 0, 1}, run);
   }

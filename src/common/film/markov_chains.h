@@ -1,5 +1,5 @@
 // Markov chains over paths and the image that they add up to, in a device's memory
-// (docs/metropolis.md). A batch traces one path of each chain; then every chain takes its step.
+// (docs/metropolis.md). When a chain's path has been traced the chain takes a step.
 #pragma once
 
 #include "common/film/film.h"
@@ -32,6 +32,13 @@ PT_HD ChainTally operator+(const ChainTally& a, const ChainTally& b) {
           a.small_accepted + b.small_accepted};
 }
 
+/// What chains have done. Each has one of a few places to count in, so that threads seldom meet.
+struct ChainCounts {
+  static constexpr std::uint32_t places = 1024;
+  PathTally paths;
+  ChainTally steps;
+};
+
 /// A sum of radiance in fixed point, three channels a pixel: integers add up to the same sum in any
 /// order.
 using SplatSum = std::uint64_t;
@@ -43,8 +50,8 @@ struct ChainArrays {
   Vec4* accepted = nullptr;
   ChainState* states = nullptr;
   ChainSplat* unsplatted = nullptr;
-  SplatSum* sums = nullptr;     ///< [pixel of the window][channel]
-  ChainTally* tally = nullptr;  ///< one
+  SplatSum* sums = nullptr;       ///< [pixel of the window][channel]
+  ChainCounts* counts = nullptr;  ///< [ChainCounts::places]
 
   /// make(pointer's type, count) for each.
   template <class Make>
@@ -56,20 +63,20 @@ struct ChainArrays {
     make(states, chain_count);
     make(unsplatted, chain_count);
     make(sums, 3 * pixels);
-    make(tally, 1);
+    make(counts, ChainCounts::places);
   }
   static constexpr std::uint64_t bytes_per_chain(std::uint64_t blocks) {
     return blocks * sizeof(Vec4) + sizeof(ChainState) + sizeof(ChainSplat);
   }
 };
 
-/// What the chains do after a batch.
+/// What chains do with the paths that have been traced.
 struct ChainStep {
   enum class Kind : std::uint8_t {
-    none,    ///< the batch is of bootstrap paths
-    start,   ///< it is of the paths at which the chains begin
-    mutate,  ///< it is of their proposals
-    finish   ///< nothing was traced: add what is not yet added
+    none,    ///< nothing: they are bootstrap paths
+    start,   ///< begin at them
+    mutate,  ///< accept them or not
+    finish   ///< no path was traced: add what is not yet added
   };
   Kind kind = Kind::none;
   MutationWeights weights;
@@ -77,18 +84,25 @@ struct ChainStep {
   std::uint32_t blocks = 0;  ///< of random numbers that are stored at most
 };
 
+/// Chains that go on by themselves: each traces and mutates until it has taken `last` steps since
+/// its start, and waits for no other.
+struct ChainRun {
+  ChainArrays arrays;
+  ChainStep step;
+  std::uint32_t last = 0;
+};
+
 /// Blocks of random numbers of which a path of so many rays may have asked.
 PT_HD std::uint32_t used_blocks(std::uint32_t rays) { return 2 * rays + 2; }
 
-/// Adds radiance to a pixel by add(sum, quanta), which must be safe among threads.
-template <class Add>
+/// Adds radiance to a pixel.
 PT_HD void splat(const ChainArrays& arrays, const ChainStep& step, std::uint32_t pixel,
-                 const Color& radiance, double weight, Add&& add) {
+                 const Color& radiance, double weight) {
   for (int c = 0; c < 3; ++c) {
     const double quanta = floor(static_cast<double>(radiance[c]) * weight * step.scale + 0.5);
     if (quanta != 0.0) {
-      add(&arrays.sums[std::uint64_t{3} * pixel + static_cast<std::uint32_t>(c)],
-          static_cast<SplatSum>(static_cast<std::int64_t>(quanta)));
+      atomic_add(&arrays.sums[std::uint64_t{3} * pixel + static_cast<std::uint32_t>(c)],
+                 static_cast<SplatSum>(static_cast<std::int64_t>(quanta)));
     }
   }
 }
@@ -106,22 +120,39 @@ PT_HD void move_chain(const ChainArrays& arrays, const Chains& chains, const Pro
   arrays.unsplatted[chain].pixel = pixel;
 }
 
-/// One chain's step after `batch` (see ChainStep), and its next proposal. Adds to `paths` and
-/// `tally`; `count(bin)` and `add` as in accumulate_pixel and splat.
-template <class Count, class Add>
-PT_HD void step_chain(const ChainArrays& arrays, const SampleBuffer& batch, const ChainStep& step,
-                      std::uint32_t chain, PathTally& paths, ChainTally& tally, Count&& count,
-                      Add&& add) {
+/// Counts a finished path; returns whether its radiance is finite.
+PT_HD bool count_path(const Sample& sample, ChainCounts& counts) {
+  PathTally one;
+  const bool finite =
+      count_sample(sample, one, [&](int bin) { atomic_add(&counts.paths.lengths[bin], 1); });
+  atomic_add(&counts.paths.rays, one.rays);
+  if (one.shadow_rays > 0) atomic_add(&counts.paths.shadow_rays, one.shadow_rays);
+  if (!finite) atomic_add(&counts.paths.nonfinite, 1);
+  return finite;
+}
+
+PT_HD void count_step(bool is_large, bool accepted, ChainTally& steps) {
+  atomic_add(is_large ? &steps.large : &steps.small, 1);
+  if (accepted) atomic_add(is_large ? &steps.large_accepted : &steps.small_accepted, 1);
+}
+
+/// A chain adds what its state has not yet added.
+PT_HD void finish_chain(const ChainArrays& arrays, const ChainStep& step, std::uint32_t chain) {
+  ChainSplat& unsplatted = arrays.unsplatted[chain];
+  splat(arrays, step, unsplatted.pixel, load_wide(&arrays.states[chain]).radiance,
+        unsplatted.weight);
+  unsplatted.weight = 0.0;
+}
+
+/// One chain's step (start or mutate) after the path that it proposed, of which `sample` is left,
+/// and its next proposal.
+PT_HD void step_chain(const ChainArrays& arrays, const ChainStep& step, std::uint32_t chain,
+                      const Sample& sample) {
   const Chains& chains = *arrays.chains;
+  ChainCounts& counts = arrays.counts[chain % ChainCounts::places];
   ChainSplat& unsplatted = arrays.unsplatted[chain];
   const ChainState state = load_wide(&arrays.states[chain]);
-  if (step.kind == ChainStep::Kind::finish) {
-    splat(arrays, step, unsplatted.pixel, state.radiance, unsplatted.weight, add);
-    unsplatted.weight = 0.0;
-    return;
-  }
-  const Sample sample = load_wide(&batch.samples[chain]);
-  const bool finite = count_sample(sample, paths, count);
+  const bool finite = count_path(sample, counts);
   const std::uint32_t rays = sample.rays & 0xffffu;
 
   Proposal proposal = load_wide(&arrays.proposals[chain]);
@@ -139,15 +170,13 @@ PT_HD void step_chain(const ChainArrays& arrays, const SampleBuffer& batch, cons
     const bool is_large = proposal.is_large != 0;
     const float a = target > 0.0f ? acceptance(state.target, target) : 0.0f;
     if (target > 0.0f) {
-      splat(arrays, step, pixel, sample.radiance, step.weights.of_proposal(target, a, is_large),
-            add);
+      splat(arrays, step, pixel, sample.radiance, step.weights.of_proposal(target, a, is_large));
     }
     const double weight = unsplatted.weight + step.weights.of_current(state.target, a);
     accepted = decision.x < a;
-    if (accepted) splat(arrays, step, unsplatted.pixel, state.radiance, weight, add);
+    if (accepted) splat(arrays, step, unsplatted.pixel, state.radiance, weight);
     unsplatted.weight = accepted ? 0.0 : weight;
-    ++(is_large ? tally.large : tally.small);
-    if (accepted) ++(is_large ? tally.large_accepted : tally.small_accepted);
+    count_step(is_large, accepted, counts.steps);
   }
   if (accepted) {
     move_chain(arrays, chains, proposal, used, chain, sample.radiance, target, pixel);
@@ -157,6 +186,25 @@ PT_HD void step_chain(const ChainArrays& arrays, const SampleBuffer& batch, cons
   proposal.iteration = iteration + 1;
   proposal.is_large = decision.y < step.weights.large_step_probability ? 1 : 0;
   store_wide(&arrays.proposals[chain], proposal);
+}
+
+/// Lets a chain take the step that its traced path asks for, if there is one, and says whether it
+/// has a next path to trace. `samples`: [chain], of no rays where no path has been traced, which
+/// they are when a run begins and again when it ends.
+PT_HD bool continue_chain(const ChainRun& run, Sample* samples, std::uint32_t chain) {
+  const Sample sample = load_wide(&samples[chain]);
+  if (sample.rays > 0) {
+    step_chain(run.arrays, run.step, chain, sample);
+    store_wide(&samples[chain], Sample{});
+  }
+  return run.arrays.proposals[chain].iteration <= run.last;
+}
+
+/// continue_chain, not inlined: a kernel that follows paths of other kinds, too, keeps its
+/// registers.
+PT_NOINLINE inline bool continue_chain_apart(const ChainRun* run, Sample* samples,
+                                             std::uint32_t chain) {
+  return continue_chain(*run, samples, chain);
 }
 
 }  // namespace pt

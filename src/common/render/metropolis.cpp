@@ -20,8 +20,6 @@ constexpr std::uint32_t stored_blocks_max = 128;
 /// all of them in one pixel 2^37 b, or 2^62 quanta.
 constexpr std::uint64_t mutations_per_segment = std::uint64_t{1} << 32;
 constexpr double quanta_per_brightness = 0x1p25;
-/// Small chains between two looks at the clock.
-constexpr std::uint64_t paths_per_turn = std::uint64_t{1} << 16;
 
 std::uint64_t mutations_of(std::uint64_t pixels, int samples) {
   return pixels * static_cast<std::uint64_t>(samples);
@@ -69,10 +67,11 @@ class ChainTotals {
     for (std::size_t i = 0; i < quanta_.size(); ++i) {
       quanta_[i] += static_cast<double>(static_cast<std::int64_t>(sums.sums[i]));
     }
-    tally_ = tally_ + sums.tally;
+    steps_ = steps_ + sums.steps;
+    paths_ = paths_ + sums.paths;
   }
 
-  const ChainTally& tally() const { return tally_; }
+  const ChainTally& steps() const { return steps_; }
 
   /// As sums of so many samples of each pixel.
   void fill_film(double radiance_per_quantum, std::uint64_t samples, Film& film) const {
@@ -84,11 +83,13 @@ class ChainTotals {
       }
       film.pixels[i].samples = samples;
     }
+    film.tally = film.tally + paths_;
   }
 
  private:
   std::vector<double> quanta_;
-  ChainTally tally_;
+  ChainTally steps_;
+  PathTally paths_;
 };
 
 double ratio(std::uint64_t part, std::uint64_t whole) {
@@ -163,6 +164,7 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
     const std::uint64_t quarter = mutations_of(pixels, o.spp) / 4;
     plan.chains = std::max<std::uint64_t>(std::min({defaults.chains, fitting, quarter}), 1);
   }
+  plan.turn = static_cast<int>(std::max<std::uint64_t>(defaults.turn / plan.chains, 1));
   const std::uint64_t bytes =
       film_bytes + plan.batch_paths() * bytes_per_path + plan.chains * bytes_per_chain;
   if (bytes > memory.free_bytes) {
@@ -172,6 +174,13 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
                        bytes, memory.free_bytes);
   }
   return plan;
+}
+
+void ChainSums::add(const ChainCounts* counts) {
+  for (std::uint32_t i = 0; i < ChainCounts::places; ++i) {
+    steps = steps + counts[i].steps;
+    paths = paths + counts[i].paths;
+  }
 }
 
 ChainStarts choose_starts(const std::vector<float>& targets, std::uint64_t chains, double u) {
@@ -233,22 +242,20 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
   const double before_ms = run.kernel_ms;
 
   step.kind = ChainStep::Kind::mutate;
-  const auto turn = static_cast<int>(std::max<std::uint64_t>(paths_per_turn / plan.chains, 1));
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   const auto segment = static_cast<int>(std::min(mutations_per_segment / plan.chains, most));
   ChainTotals totals(pixels);
-  int in_segment = 0;
-  const auto mutate = [&](int, int count) {
-    for (int i = 0; i < count; ++i, ++in_segment) {
-      if (in_segment == segment) {
-        totals.take(device, chains, step, run);
-        in_segment = 0;
-      }
-      device.run_chains(chains, step, run);
+  std::int64_t in_segment = 0;
+  const auto mutate = [&](int first, int count) {
+    if (in_segment + count > segment) {
+      totals.take(device, chains, step, run);
+      in_segment = 0;
     }
+    device.mutate_chains(chains, step, static_cast<std::uint32_t>(first + count), run);
+    in_segment += count;
   };
-  const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)), turn,
-                                          plan.chains, hooks, mutate);
+  const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)),
+                                          std::min(plan.turn, segment), plan.chains, hooks, mutate);
   const double mutated_ms = run.kernel_ms - before_ms;
   totals.take(device, chains, step, run);
 
@@ -257,7 +264,7 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
   // Less than a mutation per pixel is an image, too.
   const std::uint64_t whole = std::max<std::uint64_t>(done / pixels, done > 0 ? 1 : 0);
   run.samples_done = static_cast<int>(std::min<std::uint64_t>(whole, std::uint64_t(samples)));
-  run.metropolis = statistics_of(plan, starts, totals.tally());
+  run.metropolis = statistics_of(plan, starts, totals.steps());
   run.metropolis->bootstrap_ms = before_ms;
   run.metropolis->mutations_per_s =
       mutated_ms > 0 ? 1e3 * static_cast<double>(done) / mutated_ms : 0;

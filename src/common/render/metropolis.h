@@ -14,6 +14,7 @@ struct ChainPlan {
   std::uint64_t bootstrap = 0;        ///< paths before the chains
   std::uint64_t bootstrap_batch = 0;  ///< of them at once
   std::uint32_t blocks = 0;           ///< of random numbers that each chain stores
+  int turn = 1;                       ///< iterations between two looks at the clock
 
   /// Of the largest batch.
   std::uint64_t batch_paths() const { return std::max(chains, bootstrap_batch); }
@@ -23,6 +24,7 @@ struct ChainPlan {
 struct ChainDefaults {
   std::uint64_t chains = std::uint64_t{1} << 13;
   std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; a sixteenth of the mutations
+  std::uint64_t turn = std::uint64_t{1} << 16;       ///< mutations between two looks at the clock
 };
 
 /// Throws Error when the memory cannot hold what the options ask for.
@@ -35,7 +37,11 @@ void check_metropolis(const Options& options, const SceneTraits& traits, const P
 /// What the chains added up.
 struct ChainSums {
   std::vector<SplatSum> sums;  ///< [pixel of the window][channel]
-  ChainTally tally;
+  ChainTally steps;
+  PathTally paths;
+
+  /// Adds what chains have counted: ChainCounts::places of them.
+  void add(const ChainCounts* counts);
 };
 
 /// What a device does for the chains.
@@ -47,9 +53,13 @@ class ChainDevice {
   virtual void begin_chains(const ChainWindow& window) = 0;
   /// Of the next batch, one for each of its paths.
   virtual void set_proposals(const std::vector<Proposal>& proposals) = 0;
-  /// Traces the batch (ChainStep::Kind::finish: nothing), then each chain takes this step. Adds to
-  /// the run's time.
+  /// Traces a path of each chain (ChainStep::Kind::finish: none), and the chain takes this step.
+  /// Adds to the run's time.
   virtual void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) = 0;
+  /// The same with ChainStep::Kind::mutate until each chain has taken its step number `last` since
+  /// its start.
+  virtual void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                             RenderRun& run) = 0;
   /// Those of the last batch.
   virtual std::vector<Sample> read_chain_samples(std::uint32_t paths) = 0;
   /// And leaves them at zero.

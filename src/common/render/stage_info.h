@@ -15,6 +15,7 @@ namespace pt {
 //   name, in whose queue its slots wait (`idle`: it takes none), whether --stage-block has it
 #define PT_STAGES(STAGE)                    \
   STAGE(generate, generate, true)           \
+  STAGE(mutate, generate, true)             \
   STAGE(intersect, intersect, true)         \
   STAGE(sort_hits, intersect, true)         \
   STAGE(shade_miss, shade_miss, true)       \
@@ -23,7 +24,6 @@ namespace pt {
   STAGE(finish, intersect, true)            \
   STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \
-  STAGE(mutate, idle, false)                \
   STAGE(compact, idle, false)               \
   STAGE(order_surfaces, idle, false)        \
   STAGE(begin_wave, idle, false)            \
