@@ -57,7 +57,7 @@ class Predictor {
   PredictedBytes bounce() const {
     // The pool holds the whole batch, and its first wave begins all paths.
     const bool starts = layout_.appends && !layout_.queues_free && flow_.generated > 0;
-    const double n = flow_.rays, alive = flow_.continued, ended = n - alive;
+    const double n = flow_.rays, alive = flow_.continued, ended = flow_.rays - alive;
     const double loaded = 2 * record + old_path() + receiver() + before();
     const double sample_bytes = layout_.parts.lights ? sample : 0;
     return {starts ? 0 : find(n) + n * loaded,

@@ -257,12 +257,12 @@ struct FollowPaths {
   std::uint32_t rays_max;     ///< that a path gets here, at least 1
   bool starts_paths = false;  ///< in free slots, so that nobody stores their first rays
 
-  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t rank) const {
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const auto& [pool, samples, source, counters, ray_queue, limits] = context;
     Ray ray;
     PathState path;
     if (starts_paths) {
-      path.number = counters->first_path + rank;
+      path.number = slot;  // the pool holds the whole batch
     } else {
       path = pool.load_path(slot, ray);
     }
