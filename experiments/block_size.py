@@ -2,7 +2,7 @@
 """Block size: how many threads should a thread block have?
 
 The paper's second measurement: blocks of 4x4 to 32x32 threads, and 64x64, which no GPU runs. The
-wavefront's kernels have one-dimensional blocks of as many threads. `idle` is the share of threads
+wavefront's kernels, one for each stage, have one-dimensional blocks of as many threads. `idle` is the share of threads
 without a pixel, where each has one; `lanes` the share of a warp's lanes that have a thread: a block
 of 4x4 leaves half of its warp empty. Needs a GPU.
 """
@@ -22,7 +22,7 @@ WARP = 32
 BLOCKS = [(f"megakernel, {work}", edge * edge,
            f"--mode megakernel --work {work} --block {edge}x{edge}")
           for work in ("pixel", "persistent") for edge in EDGES]
-BLOCKS += [("wavefront", threads, f"--mode wavefront --stage-block {threads}")
+BLOCKS += [("wavefront", threads, f"--mode wavefront --stages split --stage-block {threads}")
            for threads in STAGE_BLOCKS]
 
 

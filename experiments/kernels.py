@@ -24,4 +24,4 @@ def kernels_of(row):
 def tracing_kernel(row):
     """That which finds hits; None on the CPU."""
     kernels = kernels_of(row)
-    return kernels.get("megakernel") or kernels.get("intersect")
+    return kernels.get("megakernel") or kernels.get("intersect") or kernels.get("bounce")

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Toggles: what does each of the paper's choices cost or gain, alone?
 
-Every row differs from the defaults of its mode by one option. All but --rng xorwow give the same
-image. (`pool_size` has the sizes of the pool and regeneration.)
+Every row differs from the defaults of its mode by one option; the wavefront's stages are split, as
+the paper's toggles ask, in all rows but one. All but --rng xorwow give the same image. (`pool_size`
+has the sizes of the pool and regeneration.)
 """
 import sys
 
 import harness
 from harness import Configuration, Experiment, Plot
+from image_check import with_options
 from sentences import against, in_groups
 
 BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["reduced"]),
@@ -15,14 +17,17 @@ BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["redu
 TOGGLES = {
     "megakernel": [*BOTH, ("work", ["pixel", "sample"])],
     "wavefront": [*BOTH, ("compaction", ["cub", "none"]), ("schedule", ["host"]),
-                  ("layout", ["soa", "aos"]), ("finish-paths", ["0"])],
+                  ("layout", ["soa", "aos"]), ("finish-paths", ["0"]), ("stages", ["fused"])],
 }
+BASE = {"megakernel": "", "wavefront": "--stages split"}
 
 
 def changes_of(mode):
     """{name: options} of a mode's rows."""
-    return {"default": "", **{f"{option} {value}": f"--{option} {value}"
-                              for option, values in TOGGLES[mode] for value in values}}
+    changes = {f"{option} {value}": f"--{option} {value}"
+               for option, values in TOGGLES[mode] for value in values}
+    return {name: " ".join(with_options(BASE[mode], change))
+            for name, change in {"default": "", **changes}.items()}
 
 
 def configurations(arguments, _device):

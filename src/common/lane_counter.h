@@ -23,6 +23,7 @@ inline constexpr bool counts_lanes = false;
 #define PT_LANE_POINTS(POINT)                                      \
   POINT(turn, "have a path in a turn of the megakernel's loop")    \
   POINT(generate, "begin a path")                                  \
+  POINT(bounce, "trace and shade a ray in one kernel")             \
   POINT(finish, "follow one of a batch's last paths to its end")   \
   POINT(intersect, "begin to trace a ray")                         \
   POINT(node, "visit a node")                                      \

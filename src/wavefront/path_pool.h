@@ -65,6 +65,7 @@ struct PathPool {
   struct Parts {
     bool lights, instances, tags, receivers;
     PoolLayout layout = PoolLayout::soa;
+    bool hits = true;  ///< false: none is stored
   };
 
   /// Sets what a pool of `slot_count` slots needs to allocate(T*{}, count), room for `count` of T,
@@ -218,8 +219,9 @@ struct PathPool {
   // All that a slot has, in the order in which it lies side by side.
   template <class Function>
   void for_each_field(const Parts& parts, Function&& function) {
-    function(origin), function(direction), function(throughput), function(hit);
-    if (parts.instances) function(hit_instance);
+    function(origin), function(direction), function(throughput);
+    if (parts.hits) function(hit);
+    if (parts.hits && parts.instances) function(hit_instance);
     if (parts.receivers) function(receiver);
     if (!parts.lights) return;
     function(shadow_origin), function(shadow_direction), function(shadow_radiance);

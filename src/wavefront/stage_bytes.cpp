@@ -54,6 +54,16 @@ class Predictor {
     return {find(n) + n * (3 * record + radiance), n * (radiance + own_tag())};
   }
 
+  PredictedBytes bounce() const {
+    // The pool holds the whole batch, and its first wave begins all paths.
+    const bool starts = layout_.appends && !layout_.queues_free && flow_.generated > 0;
+    const double n = flow_.rays, alive = flow_.continued, ended = flow_.rays - alive;
+    const double loaded = 2 * record + old_path() + receiver() + before();
+    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    return {starts ? 0 : find(n) + n * loaded,
+            alive * (3 * record + receiver() + sample_bytes + send()) + ended * (sample + free())};
+  }
+
   PredictedBytes finish() const {
     const double n = flow_.finished;
     return {find(n) + n * (3 * record + receiver() + before()), n * (sample + own_tag())};
@@ -134,6 +144,7 @@ PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
   if (stage == "shade_miss") return predict.shade_miss();
   if (stage == "shade_surface") return predict.shade_surface(surfaces_of(kind, flow, layout));
   if (stage == "shadow") return predict.shadow();
+  if (stage == "bounce") return predict.bounce();
   if (stage == "finish") return predict.finish();
   if (stage == "order_tiles") return predict.order_tiles();
   if (stage == "count_surfaces") return predict.count_surfaces();

@@ -110,7 +110,7 @@ __global__ void __launch_bounds__(block_max<Stage>())
                  StageClock* clock) {
   using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
   __shared__ typename Appender::Shared shared;
-  stamp_first_thread(clock, Stage::id);
+  stamp_first_thread(clock, id_of(stage));
   const std::uint32_t count = *queues.count;
   if (blockIdx.x * blockDim.x >= count) return;
   const Scene scene = storage.bind();

@@ -28,10 +28,19 @@ struct StageOutcomes {
 
 /// How a stage reads the spheres; where they may lie decides how many kernels it has.
 enum class SphereAccess {
-  once,       ///< a hit's sphere at most: from global memory
-  scan,       ///< all of them for every ray: where --scene-memory says
-  last_scan,  ///< likewise, by a kernel too short to be copied for shared memory
+  once,  ///< a hit's sphere at most: from global memory
+  scan,  ///< all of them for every ray: where --scene-memory says
 };
+
+/// What the stage runs as: one kernel may be several stages.
+template <class Stage>
+PT_HD StageId id_of(const Stage& stage) {
+  if constexpr (requires { stage.as; }) {
+    return stage.as;
+  } else {
+    return Stage::id;
+  }
+}
 
 /// Most threads of a block on CUDA. Many kinds of lights and materials want registers more than
 /// they want threads (results/ has the measurement): with 512 they get 128.
@@ -39,10 +48,10 @@ template <class Traits>
 inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 512 : 1024;
 
 /// Only brute force scans.
-template <class Traits, SphereAccess access>
+template <class Traits>
 inline constexpr SphereAccess sphere_access =
     Traits::accel == Accel::brute&& Traits::geometry == Geometry::spheres_and_quads
-        ? access
+        ? SphereAccess::scan
         : SphereAccess::once;
 
 /// What the stages that begin and shade paths need. `rank` in their calls is the place of the slot
@@ -92,7 +101,8 @@ struct GeneratePaths {
       rank = atomic_fetch_add(&counters->ticket, 1);
       if (rank >= counters->generate) return {free_slot};
     } else {
-      context.ray_queue[counters->live + rank] = slot;  // a new path takes part in this very wave
+      // A new path takes part in this very wave.
+      context.ray_queue[counters->first_ray + counters->live + rank] = slot;
     }
     const std::uint32_t number = counters->first_path + rank;
     start_path(scene, context, slot, number);
@@ -133,7 +143,7 @@ using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks>;
 template <class Traits>
 struct IntersectRays {
   static constexpr StageId id = StageId::intersect;
-  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
+  static constexpr SphereAccess spheres = sphere_access<Traits>;
   static constexpr StageOutcomes outcomes = {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
@@ -246,7 +256,7 @@ struct ShadeSurface {
 template <class Traits>
 struct TraceShadowRays {
   static constexpr StageId id = StageId::shadow;
-  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::scan>;
+  static constexpr SphereAccess spheres = sphere_access<Traits>;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   PathPool pool;
   SampleBuffer samples;
@@ -266,31 +276,53 @@ struct TraceShadowRays {
   }
 };
 
-/// The last of a batch: when few paths are left, waves cost more than what they do, and one thread
-/// follows each path to its end. The image is the same without the paper's toggles, which therefore
-/// have no kernels of their own here.
+/// One thread follows a path for some rays and stores no hit in between. `bounce`: the fused stages
+/// of a wave. `finish`: the last of a batch, where waves would cost more than what they do. It
+/// always branches and traces shadow rays itself, as the serial mode does.
 template <class Traits, class Source>
-struct FinishPaths {
-  static constexpr StageId id = StageId::finish;
-  static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
-  static constexpr SphereAccess spheres = sphere_access<Traits, SphereAccess::last_scan>;
+struct FollowPaths {
+  static constexpr bool has_lights = Traits::has_lights;
+  static constexpr StageId id = StageId::bounce;
+  static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
+  static constexpr SphereAccess spheres = sphere_access<Traits>;
   static constexpr int block_max = shading_block_max<Traits>;
   StageContext<Source> context;
+  StageId as;                 ///< bounce or finish
+  std::uint32_t rays_max;     ///< that a path gets here, at least 1
+  bool starts_paths = false;  ///< in free slots, so that nobody stores their first rays
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;
     Ray ray;
-    PathState path = pool.load_path(slot, ray);
-    set_lanes(ray, lanes_of(scene).at(path.rays));
-    lanes_of(ray).count(LanePoint::finish);
+    PathState path;
+    if (starts_paths) {
+      path.number = slot;  // the pool holds the whole batch
+    } else {
+      path = pool.load_path(slot, ray);
+    }
     const PathId id_of_path = samples.id_of(path.number);
     auto random = source.open(id_of_path);
-    const Color before = Traits::has_lights ? samples.samples[path.number].radiance : Color(0.0f);
-    const Color radiance = follow_path<Traits>(scene, ray, path, before, limits, random,
-                                               mask_key<Traits>(scene, id_of_path));
+    if (starts_paths) {
+      const Vec4 u = random.draw(scatter_block(0));
+      ray = generate_camera_path(scene, random, id_of_path.pixel, u);
+    }
+    set_lanes(ray, lanes_of(scene).at(path.rays));
+    lanes_of(ray).count(as == StageId::bounce ? LanePoint::bounce : LanePoint::finish);
+    Color radiance(0.0f);
+    if (has_lights && !starts_paths) radiance = load_wide(&samples.samples[path.number]).radiance;
+    const std::uint32_t key = mask_key<Traits>(scene, id_of_path);
+    bool alive = true;
+    for (std::uint32_t traced = 0; alive && traced < rays_max; ++traced) {
+      alive = follow_ray<Traits>(scene, ray, path, radiance, limits, random, key);
+    }
     source.close(id_of_path, random);
-    samples.store(path, radiance);
-    return {free_slot};
+    if (!alive) {
+      samples.store(path, radiance);
+      return {free_slot};
+    }
+    if (has_lights) store_wide(&samples.samples[path.number], Sample{radiance, 0});
+    pool.store_path(slot, ray, path);
+    return {StageId::intersect};
   }
 };
 

@@ -17,6 +17,8 @@ struct KindRanges {
 struct WaveCounters {
   std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; a pass may use the one behind
   std::uint32_t live;                      ///< paths in flight when the wave begins
+  std::uint32_t first_ray;                 ///< place of the first of them in the queue of rays
+  std::uint32_t next_first_ray;            ///< likewise of those that the wave sends on
   std::uint32_t generate;                  ///< paths that it starts, in the first free slots
   std::uint32_t intersect;                 ///< rays that it traces: live + generate
   std::uint32_t finish;                    ///< paths left over when the waves end
@@ -32,9 +34,10 @@ struct WaveCounters {
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
 /// when the waves end: no path is left to start, and no more than `finish_paths` are alive. Without
 /// regeneration the pool is filled again only when all of its paths have ended. Chains start their
-/// paths themselves before: they have a path_count of 0.
+/// paths themselves before: they have a path_count of 0. `half`: where the second half of the queue
+/// of rays begins, if the wave fills one while it reads the other; else 0.
 PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate,
-                      std::uint32_t finish_paths) {
+                      std::uint32_t finish_paths, std::uint32_t half = 0) {
   constexpr int free_queue = queue_of<StageId::generate>, ray_queue = queue_of<StageId::intersect>;
   std::uint32_t& free = c.waiting[free_queue];
   std::uint32_t& rays = c.waiting[ray_queue];
@@ -43,7 +46,8 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
     if (queue != free_queue && queue != ray_queue) c.waiting[queue] = 0;
   }
   for (int kind = 0; kind < kind_count; ++kind) c.kinds.count[kind] = c.kinds.placed[kind] = 0;
-  c.live = rays;
+  c.first_ray = c.next_first_ray;
+  c.live = rays - c.first_ray;
   c.generate = 0;
   c.intersect = 0;
   c.ticket = 0;
@@ -58,7 +62,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   c.first_path = c.next_path;
   c.next_path += c.generate;
   free -= c.generate;
-  rays = 0;
+  rays = c.next_first_ray = c.first_ray == 0 ? half : 0;
   ++c.waves;
   return true;
 }

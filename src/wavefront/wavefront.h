@@ -43,6 +43,8 @@ struct WaveBuffers {
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
   bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
   bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
+  bool fused = false;           ///< --stages
+  std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
   // The order of surfaces:
   bool orders_surfaces = false;
   bool shades_by_kind = false;            ///< --shade material: only where they are ordered
@@ -56,18 +58,21 @@ struct WaveBuffers {
            (shades_by_kind ? sizeof *kind_of_place : 0);
   }
 
-  /// Calls function(queue) for each that this render needs.
+  /// Fused stages send paths on while they read the queue of rays: they fill one half of it and
+  /// read the other in turns. Where the second begins; 0: there is one.
+  std::uint32_t half_ring() const { return fused && compaction.appends ? pool.slot_count : 0; }
+
+  /// Calls function(queue, places) for each that this render needs.
   template <class Function>
   void for_each_queue(bool has_lights, Function&& function) {
     for (const StageInfo& stage : stage_table) {
-      const bool unused = (stage.id == StageId::generate && !reuses_slots) ||
-                          (stage.id == StageId::shadow && !has_lights);
-      if (compaction.has_queues && stage.has_own_queue() && !unused) {
-        function(queues[queue_index(stage.id)]);
-      }
+      if (!compaction.has_queues || !stage.has_own_queue()) continue;
+      if (is_unused(stage.id, has_lights)) continue;
+      const bool twice = stage.id == StageId::intersect && half_ring() > 0;
+      function(queues[queue_index(stage.id)], std::uint64_t{pool.slot_count} * (twice ? 2 : 1));
     }
-    if (orders_surfaces) function(ordered);
-    if (shades_by_kind) function(kind_of_place);
+    if (orders_surfaces) function(ordered, pool.slot_count);
+    if (shades_by_kind) function(kind_of_place, pool.slot_count);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -101,6 +106,9 @@ struct WaveBuffers {
     result.input = input_of(id);
     result.appends = compaction.appends;
     result.slots = queue(id);
+    if (half_ring() > 0 && queue_index(id) == queue_of<StageId::intersect>) {
+      result.first = &counters->first_ray;
+    }
     result.count = result.input == StageInput::tags ? slot_count : count;
     result.tags = tags;
     result.shadow_tags = pool.shadow_tag;
@@ -108,7 +116,32 @@ struct WaveBuffers {
     result.waiting = counters->waiting;
     return result;
   }
+
+ private:
+  bool is_unused(StageId id, bool has_lights) const {
+    switch (id) {
+      case StageId::generate:
+        return !reuses_slots;
+      case StageId::intersect:
+        return false;
+      case StageId::shadow:
+        return fused || !has_lights;
+      default:
+        return fused;
+    }
+  }
 };
+
+/// Whether one kernel traces and shades. It saves the bytes of the hits and of the queues between
+/// them; where rays are dear or BSDFs many its threads would wait for each other.
+inline bool fuses_stages(const Options& options, const SceneTraits& traits) {
+  const bool is_possible = options.branching == Branching::divergent &&
+                           options.shade == Shade::automatic &&
+                           !compaction_info(options.compaction).orders;
+  const bool pays = traits.accel == Accel::brute && traits.geometry == Geometry::spheres_and_quads;
+  return options.stages == Stages::fused ||
+         (options.stages == Stages::automatic && is_possible && pays);
+}
 
 // What follows is written for an Executor, the device's way to do it:
 //   compact(request)         a pass over the tags, where the strategy makes one
@@ -198,6 +231,17 @@ void continue_chains(Executor& execute, const WaveBuffers& b, const StageContext
   execute.run(ContinueChains<Source>{context}, free);
 }
 
+/// Fused stages: every path in flight gets `wave_rays` more rays. With `starts_paths` all of them
+/// are new.
+template <class Traits, class Source, class Executor>
+void bounce_paths(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
+                  bool starts_paths) {
+  StageQueues paths = b.stage_queues(StageId::bounce, &b.counters->intersect, b.pool.tag);
+  if (starts_paths) paths.input = StageInput::every_slot;
+  execute.run(FollowPaths<Traits, Source>{context, StageId::bounce, b.wave_rays, starts_paths},
+              paths);
+}
+
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
 /// `starts_paths` it does not look for free slots.
 template <class Traits, Branching branching, class Source, class Executor>
@@ -212,10 +256,12 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   }
   execute.compact(b.request<generate, intersect>(tags));
   execute.begin_wave();
-  if (starts_paths && context.chains == nullptr) {
+  const bool all_new = b.fused && starts_paths && !b.reuses_slots;
+  if (starts_paths && !all_new && context.chains == nullptr) {
     execute.run(GeneratePaths<Source>{context, Traits::has_lights},
                 b.stage_queues(generate, &b.counters->generate, tags));
   }
+  if (b.fused) return bounce_paths<Traits>(execute, b, context, all_new);
   trace_rays<Traits>(execute, b, context.samples, parts_misses);
 
   execute.compact(b.request<shade_miss, shade_surface>(tags));
@@ -242,8 +288,10 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
 /// After the last wave: the paths that begin_wave left over are followed to their ends.
 template <class Traits, class Source, class Executor>
 void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
-  execute.run(FinishPaths<Traits, Source>{context},
-              b.stage_queues(StageId::finish, &b.counters->finish, b.pool.tag));
+  StageQueues paths = b.stage_queues(StageId::finish, &b.counters->finish, b.pool.tag);
+  for (std::uint32_t*& next : paths.next) next = nullptr;  // nobody comes after it
+  constexpr std::uint32_t to_the_end = ~0u;
+  execute.run(FollowPaths<Traits, Source>{context, StageId::finish, to_the_end}, paths);
 }
 
 std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene);

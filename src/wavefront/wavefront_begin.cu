@@ -7,19 +7,20 @@ namespace {
 /// The decision between two waves, taken on the device. `loop` is the graph's conditional handle,
 /// 0 outside of a graph.
 __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_count, bool regenerate,
-                                  std::uint32_t finish_paths, cudaGraphConditionalHandle loop,
-                                  StageClock* clock) {
+                                  std::uint32_t finish_paths, std::uint32_t half,
+                                  cudaGraphConditionalHandle loop, StageClock* clock) {
   stamp(clock, StageId::begin_wave);
-  const bool more = pt::begin_wave(*counters, path_count, regenerate, finish_paths);
+  const bool more = pt::begin_wave(*counters, path_count, regenerate, finish_paths, half);
   if (loop != 0) cudaGraphSetConditional(loop, more ? 1 : 0);
 }
 
 }  // namespace
 
 void WavefrontCuda::begin_wave() {
-  launch(
-      "begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_, options_.regenerate,
-      static_cast<std::uint32_t>(chains() == nullptr ? options_.finish_paths : 0), loop_, clock());
+  const int finish_paths = chains() == nullptr ? options_.finish_paths : 0;
+  launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
+         options_.regenerate, static_cast<std::uint32_t>(finish_paths), buffers_.half_ring(), loop_,
+         clock());
 }
 
 }  // namespace pt

@@ -18,13 +18,14 @@ constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 16;
 class CpuExecutor {
  public:
   CpuExecutor(const Scene& scene, const Options& options, StageTimer& timer, WaveCounters& counters,
-              std::uint32_t path_count, bool of_chains)
+              std::uint32_t path_count, bool of_chains, std::uint32_t half_ring)
       : scene_(scene),
         options_(options),
         timer_(timer),
         counters_(counters),
         path_count_(of_chains ? 0 : path_count),
-        finish_paths_(of_chains ? 0 : static_cast<std::uint32_t>(options.finish_paths)) {}
+        finish_paths_(of_chains ? 0 : static_cast<std::uint32_t>(options.finish_paths)),
+        half_ring_(half_ring) {}
 
   void compact(const CompactionRequest& request) {
     const TagPass pass = compaction_info(options_.compaction).pass;
@@ -33,7 +34,7 @@ class CpuExecutor {
   }
 
   void begin_wave() {
-    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate, finish_paths_);
+    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate, finish_paths_, half_ring_);
   }
 
   bool more() const { return more_; }
@@ -51,7 +52,7 @@ class CpuExecutor {
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
     if (*queues.count == 0) return;
-    timer_.time(to_string(Stage::id), [&] { run_stage_cpu(stage, scene_, queues); });
+    timer_.time(to_string(id_of(stage)), [&] { run_stage_cpu(stage, scene_, queues); });
   }
 
  private:
@@ -59,7 +60,7 @@ class CpuExecutor {
   const Options& options_;
   StageTimer& timer_;
   WaveCounters& counters_;
-  std::uint32_t path_count_, finish_paths_;
+  std::uint32_t path_count_, finish_paths_, half_ring_;
   bool more_ = true;
 };
 
@@ -71,13 +72,20 @@ class WavefrontCpu : public CpuRenderer {
                                       static_cast<std::uint64_t>(options.spp);
     pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
     buffers_.compaction = compaction_info(options_.compaction);
-    buffers_.shades_by_kind = options.shade == Shade::material;
-    buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind;
+    const bool fused = fuses_stages(options, traits_);
+    buffers_.fused = fused;
+    buffers_.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
+    stages_ = to_string(fused ? Stages::fused : Stages::split);
+    buffers_.shades_by_kind = options.shade == Shade::material && !fused;
+    buffers_.orders_surfaces = (buffers_.compaction.orders && !fused) || buffers_.shades_by_kind;
     buffers_.kinds = kinds_of(scene);
     buffers_.only_triangles = scene_.has_only_triangles();
-    const PathPool::Parts parts = {traits_.has_lights(), traits_.geometry == Geometry::mixed,
-                                   !buffers_.compaction.appends, scene_.light_selector.has_tree(),
-                                   options.layout};
+    const PathPool::Parts parts = {traits_.has_lights() && !fused,
+                                   traits_.geometry == Geometry::mixed,
+                                   !buffers_.compaction.appends,
+                                   scene_.light_selector.has_tree(),
+                                   options.layout,
+                                   !fused};
     const std::uint64_t size_bytes =
         pool_size_ * (PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
@@ -94,8 +102,8 @@ class WavefrontCpu : public CpuRenderer {
     pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
       return array<std::remove_pointer_t<decltype(p)>>(count);
     });
-    buffers_.for_each_queue(parts.lights, [&](auto*& queue) {
-      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(slot_count_);
+    buffers_.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t places) {
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(places);
     });
   }
 
@@ -131,7 +139,8 @@ class WavefrontCpu : public CpuRenderer {
     const StageContext<Source> context{
         buffers_.pool, batch,   source, &counters_, buffers_.queue(StageId::intersect),
         limits_,       chains()};
-    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count, chains() != nullptr);
+    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count, chains() != nullptr,
+                        buffers_.half_ring());
     while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
     if (chains() == nullptr) run_finish<Traits>(execute, buffers_, context);
     waves_ += counters_.waves;

@@ -8,6 +8,7 @@
 
 #include "common/device/profiler_range.cuh"
 #include "common/error.h"
+#include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
 
 namespace pt {
@@ -55,13 +56,21 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
   buffers_.only_triangles = scene_.has_only_triangles();
-  buffers_.shades_by_kind = options_.shade == Shade::material;
+  buffers_.fused = fuses_stages(options_, traits_);
+  buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
+  stages_ = to_string(buffers_.fused ? Stages::fused : Stages::split);
+  buffers_.shades_by_kind = options_.shade == Shade::material && !buffers_.fused;
   const bool order_pays = traits_.lighting == Lighting::full && buffers_.compaction.has_queues &&
                           order_pays_for(buffers_.kinds);
-  buffers_.orders_surfaces = buffers_.compaction.orders || buffers_.shades_by_kind ||
-                             (options_.shade == Shade::automatic && order_pays);
-  parts_ = {traits_.has_lights(), traits_.geometry == Geometry::mixed, !appends,
-            scene_.light_selector.has_tree(), options_.layout};
+  buffers_.orders_surfaces =
+      !buffers_.fused && (buffers_.compaction.orders || buffers_.shades_by_kind ||
+                          (options_.shade == Shade::automatic && order_pays));
+  parts_ = {traits_.has_lights() && !buffers_.fused,
+            traits_.geometry == Geometry::mixed,
+            !appends,
+            scene_.light_selector.has_tree(),
+            options_.layout,
+            !buffers_.fused};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
@@ -86,9 +95,9 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   pool.allocate_arrays(parts_, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
-  buffers_.for_each_queue(parts_.lights, [&](auto*& queue) {
+  buffers_.for_each_queue(parts_.lights, [&](auto*& queue, std::uint64_t places) {
     queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(
-        "queues", n);
+        "queues", places);
   });
   if (appends && buffers_.reuses_slots) {
     std::vector<std::uint32_t> all(n);
@@ -158,13 +167,8 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
 
 void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
   set_wave(static_cast<int>(flows_.size()) - 1);  // the last one, which found no more to do
-  with_context(batch, [&](auto kinds, const auto& context) {
-    if constexpr (std::is_same_v<decltype(kinds), SphereSceneKinds>) {
-      enqueue_finish_of<decltype(kinds)>(context_of(batch, AnySource<CurandState>(context.source)));
-    } else {
-      enqueue_finish_of<decltype(kinds)>(context);
-    }
-  });
+  with_context(
+      batch, [&](auto kinds, const auto& context) { enqueue_finish_of<decltype(kinds)>(context); });
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
@@ -256,6 +260,8 @@ void WavefrontCuda::note_flow() {
 void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
   WaveLayout layout;
   layout.parts = parts_;
+  layout.parts.lights = traits_.has_lights();
+  layout.fused = buffers_.fused;
   layout.slots = buffers_.pool.slot_count;
   layout.has_queues = buffers_.compaction.has_queues;
   layout.appends = buffers_.compaction.appends;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "common/device/cuda_renderer.cuh"
-#include "wavefront/any_source.h"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/stage_bytes.h"
 #include "wavefront/wavefront.h"

@@ -9,8 +9,8 @@ namespace pt {
 
 /// What statistics call the stage's kernel.
 template <class Stage>
-std::string kernel_name() {
-  std::string name = to_string(Stage::id);
+std::string kernel_name(const Stage& stage) {
+  std::string name = to_string(id_of(stage));
   if constexpr (requires { Stage::kind; }) {
     if (Stage::kind != nullptr) name += std::string("/") + Stage::kind;
   }
@@ -19,7 +19,7 @@ std::string kernel_name() {
 
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
-  const int block = options_.stage_block[static_cast<int>(Stage::id)];
+  const int block = options_.stage_block[static_cast<int>(id_of(stage))];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
     constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
@@ -27,23 +27,14 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
         (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
     const std::uint32_t resident =
         resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
-    launch(kernel_name<Stage>().c_str(), kernel, blocks < resident ? blocks : resident, block,
+    launch(kernel_name(stage).c_str(), kernel, blocks < resident ? blocks : resident, block,
            shared_bytes, storage, stage, queues, clock());
   };
-  const auto launch_global = [&] {
-    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
-  };
   if constexpr (Stage::spheres == SphereAccess::once) {
-    launch_global();
+    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
   } else {
-    with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
-      constexpr SceneMemory memory = std::remove_cvref_t<decltype(storage)>::memory;
-      if constexpr (memory == SceneMemory::shared && Stage::spheres != SphereAccess::scan) {
-        launch_global();
-      } else {
-        launch_with(storage, shared_bytes);
-      }
-    });
+    with_scene_storage(
+        [&](const auto& storage, std::size_t shared_bytes) { launch_with(storage, shared_bytes); });
   }
 }
 

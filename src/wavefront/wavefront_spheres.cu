@@ -8,7 +8,7 @@ using XorwowContext = StageContext<XorwowSource<CurandState>>;
 
 template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const PhiloxContext&, bool);
 template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const XorwowContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(
-    const StageContext<AnySource<CurandState>>&);
+template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(const PhiloxContext&);
+template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(const XorwowContext&);
 
 }  // namespace pt

@@ -46,6 +46,8 @@ const std::map<std::string, std::string>& other_values() {
       {"sampler", "sobol"},
       {"multiple-scattering", "on"},
       {"shade", "material"},
+      {"stages", "fused"},
+      {"wave-rays", "2"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},
       {"exposure", "-1.5"},
@@ -99,6 +101,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   if (entry.group.starts_with("Metropolis")) {
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
+  if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
   if (entry.name == "work" || entry.name == "block")
     arguments.insert(arguments.end(), {"--mode", "megakernel"});
   return arguments;
@@ -263,6 +266,7 @@ TEST(OptionNames, RoundTrip) {
   expect_round_trip<Work>("work");
   expect_round_trip<Compaction>("compaction");
   expect_round_trip<Schedule>("schedule");
+  expect_round_trip<Stages>("stages");
   expect_round_trip<SceneMemory>("scene-memory");
   expect_round_trip<Branching>("branching");
   expect_round_trip<RngKind>("rng");
@@ -438,9 +442,27 @@ TEST(Refused, WithoutEffectInTheMode) {
   });
   for (const char* mode : {"serial", "megakernel"})
     for (const char* option : {"compaction none", "pool-size auto", "regenerate on",
-                               "schedule host", "stage-block 128", "layout aos"})
+                               "schedule host", "stage-block 128", "layout aos", "stages split"})
       expect_refused({{std::string("--mode ") + mode + " --" + option,
                        std::string("--") + option + ": has no effect with --mode " + mode}});
+}
+
+TEST(Refused, WhatFusedOrSplitStagesDoNotKnow) {
+  expect_refused({
+      {"--stages fused --shade uber",
+       "--shade uber: has no effect with --stages fused; it applies to split"},
+      {"--stages fused --persistent off", "--persistent off: has no effect with --stages fused"},
+      {"--stages fused --compaction sort", "--compaction sort: has no effect with --stages fused"},
+      {"--stages fused --branching reduced", "--branching reduced: has no effect with --stages"},
+      {"--wave-rays 2", "--wave-rays 2: has no effect with --stages auto; it applies to fused"},
+      {"--stages split --wave-rays 1", "--wave-rays 1: has no effect with --stages split"},
+      {"--stages fused --wave-rays 0", "--wave-rays 0: expected"},
+  });
+  for (const char* line : {"--stages fused --wave-rays 3 --compaction cub",
+                           "--stages split --shade "
+                           "uber",
+                           "--stages auto --branching reduced", "--stages fused"})
+    EXPECT_NO_THROW(parse(line)) << line;
 }
 
 TEST(Refused, WithoutEffectOnTheDevice) {

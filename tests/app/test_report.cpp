@@ -33,6 +33,7 @@ RenderReport make_report() {
   report.device_kind = "cpu";
   report.accel = "bvh2";
   report.schedule = "host";
+  report.stages = "split";
   report.pool_size = 1024;
   report.primitives = 51;
   report.scene_ms = 1.5;
@@ -150,6 +151,7 @@ TEST(ReportJson, HasEverything) {
   EXPECT_EQ(json["device"]["name"], "CPU, 8 threads");
   EXPECT_EQ(json["used"]["accel"], "bvh2");
   EXPECT_EQ(json["used"]["schedule"], "host");
+  EXPECT_EQ(json["used"]["stages"], "split");
   EXPECT_EQ(json["used"]["pool_size"], 1024);
   EXPECT_EQ(json["used"]["primitives"], 51);
   EXPECT_EQ(json["complete"], true);

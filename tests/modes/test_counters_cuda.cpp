@@ -21,10 +21,15 @@ class CountersOf : public CudaTest, public testing::WithParamInterface<ImageKind
 };
 
 const std::vector<ImageKind> kinds{
-    {"wavefront", {{"mode", "wavefront"}, {"finish-paths", "1000"}}},
-    {"pool", {{"mode", "wavefront"}, {"pool-size", "20000"}, {"finish-paths", "0"}}},
-    {"cub", {{"mode", "wavefront"}, {"compaction", "cub"}, {"finish-paths", "0"}}},
-    {"tags", {{"mode", "wavefront"}, {"compaction", "none"}}},
+    {"wavefront", {{"mode", "wavefront"}, {"stages", "split"}, {"finish-paths", "1000"}}},
+    {"pool",
+     {{"mode", "wavefront"}, {"stages", "split"}, {"pool-size", "20000"}, {"finish-paths", "0"}}},
+    {"cub",
+     {{"mode", "wavefront"}, {"stages", "split"}, {"compaction", "cub"}, {"finish-paths", "0"}}},
+    {"tags", {{"mode", "wavefront"}, {"stages", "split"}, {"compaction", "none"}}},
+    {"fused", {{"mode", "wavefront"}, {"stages", "fused"}, {"finish-paths", "1000"}}},
+    {"fused_pool",
+     {{"mode", "wavefront"}, {"stages", "fused"}, {"pool-size", "20000"}, {"finish-paths", "0"}}},
     {"by_material",
      {{"mode", "wavefront"},
       {"scene", "dial:4:0:closed"},
@@ -93,35 +98,38 @@ TEST_P(CountersOf, EveryKernelIsCountedAndTheImageStays) {
 // Misses only, each new: what a wave moves is known to the byte but for the queues' atomics.
 TEST_F(CudaTest, CountersOfAWaveOfMissesAreThosePredicted) {
   if (counts_lanes) GTEST_SKIP() << "a build with PTEXP_DIVERGENCE writes its own counts, too";
-  Options options = cuda_options("wavefront", {{"scene", "spheres"},
-                                               {"spheres", "0"},
-                                               {"look-from", "0,10,0"},
-                                               {"look-at", "0,100,1"},
-                                               {"width", "1024"},
-                                               {"height", "1024"},
-                                               {"spp", "4"},
-                                               {"finish-paths", "0"}});
-  const DeviceInfo device = choose_device(options.device);
-  const SceneData scene = make_scene_for(options, device);
-  const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
-  const Rendered rendered = take_image(*renderer);
-  ASSERT_EQ(rendered.counts.rays, rendered.counts.paths) << "all paths leave the scene";
-  HardwareCounters counters;
-  try {
-    counters = renderer->count_hardware();
-  } catch (const CountersUnavailable& error) {
-    GTEST_SKIP() << error.what();
-  }
-  for (const KernelCounters& kernel : sum_by_kernel(counters.launches)) {
-    if (kernel.kernel != "generate" && kernel.kernel != "intersect" &&
-        kernel.kernel != "shade_miss") {
-      continue;
+  for (const char* stages : {"split", "fused"}) {
+    Options options = cuda_options("wavefront", {{"scene", "spheres"},
+                                                 {"stages", stages},
+                                                 {"spheres", "0"},
+                                                 {"look-from", "0,10,0"},
+                                                 {"look-at", "0,100,1"},
+                                                 {"width", "1024"},
+                                                 {"height", "1024"},
+                                                 {"spp", "4"},
+                                                 {"finish-paths", "0"}});
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
+    const Rendered rendered = take_image(*renderer);
+    ASSERT_EQ(rendered.counts.rays, rendered.counts.paths) << "all paths leave the scene";
+    HardwareCounters counters;
+    try {
+      counters = renderer->count_hardware();
+    } catch (const CountersUnavailable& error) {
+      GTEST_SKIP() << error.what();
     }
-    SCOPED_TRACE(kernel.kernel);
-    const auto& [read, written] = kernel.predicted;
-    EXPECT_GT(written, 4e6);
-    EXPECT_NEAR(bytes_from_sm(kernel.values), written, 0.1 * written);
-    EXPECT_NEAR(bytes_to_sm(kernel.values), read, 0.1 * read + 2e6);
+    for (const KernelCounters& kernel : sum_by_kernel(counters.launches)) {
+      if (kernel.kernel != "generate" && kernel.kernel != "intersect" &&
+          kernel.kernel != "shade_miss" && kernel.kernel != "bounce") {
+        continue;
+      }
+      SCOPED_TRACE(kernel.kernel);
+      const auto& [read, written] = kernel.predicted;
+      EXPECT_GT(written, 4e6);
+      EXPECT_NEAR(bytes_from_sm(kernel.values), written, 0.1 * written);
+      EXPECT_NEAR(bytes_to_sm(kernel.values), read, 0.1 * read + 2e6);
+    }
   }
 }
 

@@ -82,6 +82,8 @@ TEST_F(CudaDivergence, EveryRayCountsOnce) {
       {"megakernel", {{"work", "pixel"}}},
       {"megakernel", {{"work", "sample"}}},
       {"wavefront", {}},
+      {"wavefront", {{"stages", "split"}}},
+      {"wavefront", {{"stages", "fused"}, {"wave-rays", "2"}}},
       {"wavefront", {{"finish-paths", "0"}, {"schedule", "host"}}},
       {"wavefront", {{"finish-paths", "500"}, {"pool-size", "1000"}}},
       {"wavefront", {{"compaction", "none"}}},
@@ -120,7 +122,8 @@ TEST_F(CudaDivergence, BouncesAreThoseOfTheStatistics) {
 
 // Queues are dense: all warps are full but the last one.
 TEST_F(CudaDivergence, StagesOfQueuesHaveFullWarps) {
-  const Counted found = render("spheres", "wavefront", {{"finish-paths", "0"}});
+  const Counted found =
+      render("spheres", "wavefront", {{"stages", "split"}, {"finish-paths", "0"}});
   const auto generate = found.bounces_at("generate");
   ASSERT_EQ(generate.size(), 1u);
   EXPECT_EQ(generate.at(0).groups, camera_rays / 32);

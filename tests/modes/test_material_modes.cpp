@@ -35,6 +35,14 @@ TEST_P(MaterialModes, EqualSerial) {
     wavefront.insert(wavefront.end(), ordered.begin(), ordered.end());
     expect_same(render(wavefront), serial);
   }
+  for (const char* accel : {"bvh2", "brute"}) {
+    expect_same(render({{"mode", "wavefront"},
+                        {"accel", accel},
+                        {"stages", "fused"},
+                        {"finish-paths", "0"},
+                        {"pool-size", "1000"}}),
+                serial);
+  }
 }
 
 }  // namespace

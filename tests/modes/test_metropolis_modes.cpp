@@ -57,12 +57,15 @@ TEST_P(MetropolisModes, EqualSerial) {
   }
   for (const char* compaction : {"atomic", "cub", "none", "sort"}) {
     for (const char* pool : {"auto", "333"}) {
-      SCOPED_TRACE(testing::Message() << compaction << " " << pool);
-      expect_same_chains(render_mlt(also({{"mode", "wavefront"},
-                                          {"compaction", compaction},
-                                          {"pool-size", pool},
-                                          {"finish-paths", "100"}})),
-                         serial);
+      for (const char* stages : {"split", "fused"}) {
+        SCOPED_TRACE(testing::Message() << compaction << " " << pool << " " << stages);
+        expect_same_chains(render_mlt(also({{"mode", "wavefront"},
+                                            {"compaction", compaction},
+                                            {"pool-size", pool},
+                                            {"stages", stages},
+                                            {"finish-paths", "100"}})),
+                           serial);
+      }
     }
   }
   EXPECT_GT(differing_pixels(render_mlt(also({{"seed", "2"}})).image, serial.image), 300u);

@@ -51,6 +51,7 @@ TEST_P(GpuMetropolis, OneImageInBothModes) {
                                     {"schedule", {"graph", "host"}},
                                     {"pool-size", {"auto", "700", "20000", "1M"}},
                                     {"finish-paths", {"131072", "0", "300"}},
+                                    {"stages", {"split", "fused"}},
                                     {"stage-block", {"256", "33", "128,shade_surface=64"}},
                                     {"layout", {"sectors", "soa", "aos"}}};
   for (const Settings& settings : variations(choices, 8, 5)) {

@@ -169,9 +169,54 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},
                               {"layout", {"soa", "sectors", "aos"}},
+                              {"stages", {"split", "auto"}},
                               {"branching", {"divergent", "reduced"}}};
   if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
   expect_all_same(options("wavefront"), variations(choices, 8, 2), options("serial"));
+}
+
+TEST_P(ModesOf, FusedStagesEqualSerial) {
+  std::vector<Choice> choices{{"threads", {"2", "1", "7"}},
+                              {"compaction", {"atomic", "cub", "scan", "none"}},
+                              {"pool-size", {"1000", "auto", "4096", "6525", "6526"}},
+                              {"regenerate", {"on", "off"}},
+                              {"finish-paths", {"0", "1", "700", "131072"}},
+                              {"layout", {"soa", "sectors", "aos"}},
+                              {"wave-rays", {"1", "2", "3", "50"}}};
+  if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
+  expect_all_same(with(options("wavefront"), {{"stages", "fused"}}), variations(choices, 8, 6),
+                  options("serial"));
+}
+
+TEST(Stages, AreFusedWhereRaysAreCheap) {
+  const auto stages = [](const Settings& more) {
+    Options options = with(Options(), {{"device", "cpu"}, {"width", "16"}, {"height", "8"}});
+    apply(options, more);
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    const auto renderer = make_renderer(options, scene, device);
+    renderer->render({});
+    RenderReport report;
+    renderer->describe(report);
+    return report.stages;
+  };
+  for (const char* scene : {"spheres", "cornell"}) {
+    const auto of = [&](Settings more) {
+      more.insert(more.end(), {{"scene", scene}, {"accel", "brute"}});
+      return stages(more);
+    };
+    SCOPED_TRACE(scene);
+    EXPECT_EQ(of({}), "fused");
+    EXPECT_EQ(of({{"stages", "split"}}), "split");
+    EXPECT_EQ(of({{"mode", "megakernel"}}), "");
+    // What fused stages do not know.
+    EXPECT_EQ(of({{"branching", "reduced"}}), "split");
+    EXPECT_EQ(of({{"shade", "uber"}}), "split");
+    EXPECT_EQ(of({{"compaction", "sort"}}), "split");
+  }
+  EXPECT_EQ(stages({{"accel", "bvh2"}}), "split");
+  EXPECT_EQ(stages({{"scene", "boxes"}}), "split");
+  EXPECT_EQ(stages({{"scene", "boxes"}, {"stages", "fused"}}), "fused");
 }
 
 /// Three batches of three samples; with 10, the last is shorter than the others.

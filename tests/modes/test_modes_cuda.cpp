@@ -78,12 +78,32 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
         {"256", "1", "2", "16", "33", "1024",
          "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
          "accumulate=224"}},
-       {"layout", {"soa", "sectors", "aos"}}});
+       {"layout", {"soa", "sectors", "aos"}},
+       {"stages", {"split", "auto"}}});
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
   }
   expect_all_same(options("wavefront"), variations(choices, 24, 4), options("megakernel"));
+}
+
+TEST_P(GpuModesOf, FusedStagesEqualMegakernel) {
+  std::vector<Choice> choices = {
+      {"compaction", {"atomic", "cub", "scan", "none"}},
+      {"schedule", {"graph", "host"}},
+      {"regenerate", {"on", "off"}},
+      {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
+      {"finish-paths", {"0", "1", "700", "131072"}},
+      {"stage-block", {"256", "1", "33", "1024", "generate=32,bounce=96,finish=192"}},
+      {"layout", {"sectors", "soa", "aos"}},
+      {"wave-rays", {"1", "2", "3", "50"}},
+      {"scene-memory", {"auto", "global", "shared", "constant"}}};
+  if (is_tiny()) {
+    choices[3].values = {"7", "1", "64", "455", "auto"};
+    choices[5].values = {"256", "16", "33", "1024"};
+  }
+  expect_all_same(with(options("wavefront"), {{"stages", "fused"}}), variations(choices, 24, 6),
+                  options("megakernel"));
 }
 
 /// Scenes with triangles, in each structure.
@@ -155,6 +175,17 @@ TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
                                        {"stage-block", {"256", "33", "512"}},
                                        {"layout", {"soa", "sectors", "aos"}}};
   expect_all_same(options("wavefront"), variations(choices, 6, 5), options("megakernel"));
+}
+
+TEST_P(GpuTrianglesOf, FusedStagesEqualMegakernel) {
+  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none"}},
+                                       {"schedule", {"graph", "host"}},
+                                       {"pool-size", {"auto", "1000", "4097"}},
+                                       {"wave-rays", {"1", "2"}},
+                                       {"finish-paths", {"0", "700"}},
+                                       {"layout", {"sectors", "soa", "aos"}}};
+  expect_all_same(with(options("wavefront"), {{"stages", "fused"}}), variations(choices, 4, 7),
+                  options("megakernel"));
 }
 
 // The structure and its builder are a matter of speed alone.
@@ -382,6 +413,7 @@ TEST_F(CudaModes, RenderingAgainGivesTheSame) {
         all.push_back(
             with(cuda_options("wavefront", image),
                  {{"compaction", compaction}, {"schedule", schedule}, {"pool-size", pool}}));
+        all.push_back(with(all.back(), {{"stages", "split"}}));
       }
     }
   }
@@ -431,6 +463,7 @@ class CudaBatches : public CudaTest {
       {"wavefront", {{"schedule", "host"}}},
       {"wavefront", {{"compaction", "cub"}}},
       {"wavefront", {{"compaction", "none"}, {"schedule", "host"}}},
+      {"wavefront", {{"stages", "split"}}},
   };
 
  private:

@@ -33,6 +33,13 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
                                     {"layout", {"soa", "sectors", "aos"}},
                                     {"finish-paths", {"0", "100"}}};
   expect_all_same(options({{"mode", "wavefront"}}), variations(choices, 2, 3), serial);
+  const std::vector<Choice> fused{
+      {"accel", {"bvh2", "cwbvh"}},           {"compaction", {"atomic", "cub", "scan", "none"}},
+      {"pool-size", {"333", "auto", "3600"}}, {"regenerate", {"on", "off"}},
+      {"layout", {"soa", "sectors", "aos"}},  {"wave-rays", {"1", "2"}},
+      {"finish-paths", {"0", "100"}}};
+  expect_all_same(options({{"mode", "wavefront"}, {"stages", "fused"}}), variations(fused, 2, 4),
+                  serial);
 }
 
 }  // namespace

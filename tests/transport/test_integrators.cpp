@@ -96,7 +96,8 @@ class Integrators : public testing::Test {
     return result;
   }
 
-  Samples wavefront(std::uint32_t finish_paths) const;
+  Samples wavefront(std::uint32_t finish_paths, std::uint32_t fused_rays = 0,
+                    std::uint32_t slots = 1000) const;
 
   const SceneData data_ = floor_and_wall();
   const Scene view_ = host_view(data_, width, height);
@@ -106,7 +107,7 @@ class Integrators : public testing::Test {
 struct Executor {
   const Scene& scene;
   WaveCounters& counters;
-  std::uint32_t path_count, finish_paths;
+  std::uint32_t path_count, finish_paths, half_ring;
   bool more = true;
 
   static constexpr bool kinds_have_kernels = false;
@@ -115,15 +116,17 @@ struct Executor {
 
   void compact(const CompactionRequest&) {}
   void order_surfaces(const SurfaceOrder& order) { order_surfaces_cpu(scene, order); }
-  void begin_wave() { more = pt::begin_wave(counters, path_count, true, finish_paths); }
+  void begin_wave() { more = pt::begin_wave(counters, path_count, true, finish_paths, half_ring); }
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
     run_stage_cpu(stage, scene, queues);
   }
 };
 
-Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
-  constexpr std::uint32_t slots = 1000;
+/// `fused_rays`: of a path in a wave; 0: tracing and shading are split. A pool that holds the batch
+/// has no queue of free slots, as on CUDA.
+Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uint32_t fused_rays,
+                                            std::uint32_t slots) const {
   Samples result;
   const SampleBuffer batch = buffer(result);
   WaveCounters counters{};
@@ -132,6 +135,8 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
   b.counters = &counters;
   b.pool.slot_count = slots;
   b.slot_count = &b.pool.slot_count;
+  b.fused = fused_rays > 0, b.wave_rays = fused_rays;
+  b.reuses_slots = slots < batch.path_count;
   std::vector<std::shared_ptr<void>> arrays;
   const auto array = [&](auto* p, std::uint64_t count) {
     using T = std::remove_pointer_t<decltype(p)>;
@@ -139,22 +144,28 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths) const {
     arrays.push_back(memory);
     return memory->data();
   };
-  b.pool.allocate_arrays({true, false, false, false}, array);
-  b.for_each_queue(true, [&](auto*& queue) { queue = array(queue, slots); });
-  std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
+  b.pool.allocate_arrays({!b.fused, false, false, false, PoolLayout::soa, !b.fused}, array);
+  b.for_each_queue(true, [&](auto*& queue, std::uint64_t places) { queue = array(queue, places); });
+  if (b.reuses_slots) std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;
 
-  Executor execute{view_, counters, batch.path_count, finish_paths};
+  Executor execute{view_, counters, batch.path_count, finish_paths, b.half_ring()};
   const StageContext<PhiloxSource> context{
       b.pool, batch, source, &counters, b.queue(StageId::intersect), limits};
-  while (execute.more) run_wave<Kind, Branching::divergent>(execute, b, context);
+  for (bool starts = true; execute.more; starts = b.reuses_slots) {
+    run_wave<Kind, Branching::divergent>(execute, b, context, starts);
+  }
   run_finish<Kind>(execute, b, context);
   return result;
 }
 
 TEST_F(Integrators, AnotherOneGivesTheSameBitsInAllModes) {
   const Samples expected = serial();
-  for (const Samples& samples : {megakernel(), wavefront(0), wavefront(1u << 20)}) {
+  constexpr std::uint32_t all = width * height * sample_count;
+  for (const Samples& samples :
+       {megakernel(), wavefront(0), wavefront(1u << 20), wavefront(0, 0, all), wavefront(0, 1),
+        wavefront(0, 2), wavefront(50, 1), wavefront(0, 1, 7), wavefront(0, 1, all),
+        wavefront(0, 3, all), wavefront(1u << 20, 1, all)}) {
     ASSERT_EQ(samples.size(), expected.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
       ASSERT_EQ(samples[i].radiance, expected[i].radiance) << "path " << i;

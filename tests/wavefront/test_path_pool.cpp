@@ -156,12 +156,23 @@ TEST(PathPool, SizesInBytes) {
     parts.layout = layout;
     return PathPool::bytes_per_slot(parts);
   };
+  const auto no_hits = [](bool instances, bool receivers) {  // of fused stages
+    Parts parts{false, instances, false, receivers};
+    parts.hits = false;
+    return parts;
+  };
   const struct {
     Parts parts;
     std::uint64_t soa, aos;
-  } cases[] = {{{false, false, false, false}, 56, 64},  {{false, true, false, true}, 64, 64},
-               {{true, false, false, false}, 104, 112}, {{true, true, false, true}, 112, 112},
-               {{false, false, true, false}, 57, 65},   {{true, true, true, true}, 114, 114}};
+  } cases[] = {{{false, false, false, false}, 56, 64},
+               {{false, true, false, true}, 64, 64},
+               {{true, false, false, false}, 104, 112},
+               {{true, true, false, true}, 112, 112},
+               {{false, false, true, false}, 57, 65},
+               {{true, true, true, true}, 114, 114},
+               {no_hits(false, false), 48, 48},
+               {no_hits(true, false), 48, 48},
+               {no_hits(true, true), 52, 64}};
   for (const auto& [parts, soa, aos] : cases) {
     EXPECT_EQ(bytes(parts, PoolLayout::soa), soa);
     EXPECT_EQ(bytes(parts, PoolLayout::sectors), soa);

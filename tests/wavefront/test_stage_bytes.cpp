@@ -122,6 +122,25 @@ TEST(StageBytes, OrdersOfSurfacesReadTheHits) {
   expect_bytes(predict("place_surfaces"), 60 * (4 + 1), 60 * 4);
 }
 
+TEST(StageBytes, FusedStagesStoreWhatGoesOn) {
+  WaveLayout layout = usual();
+  layout.fused = true;
+  WaveFlow flow = first_wave();
+  flow.misses = flow.surfaces = flow.shadows = 0;  // nobody waits there
+  // A pool of the whole batch: 40 paths go on, with their sample so far; 60 end.
+  expect_bytes(predict_bytes("bounce", flow, layout), 0, 40 * (48 + 16 + 4) + 60 * 16);
+  layout.queues_free = true;  // generate has stored the new ones, which are all
+  expect_bytes(predict_bytes("bounce", flow, layout), 100 * (4 + 32 + 12),
+               40 * (48 + 16 + 4) + 60 * (16 + 4));
+  layout.queues_free = false;
+  flow.generated = 0;  // a later wave, without lights
+  layout.parts.lights = false;
+  expect_bytes(predict_bytes("bounce", flow, layout), 100 * (4 + 48), 40 * (48 + 4) + 60 * 16);
+  layout.appends = false;  // all tags are read, and each path's is written
+  expect_bytes(predict_bytes("bounce", flow, layout), 100 * (4 + 48),
+               40 * (48 + 1) + 60 * (16 + 1));
+}
+
 TEST(StageBytes, LastPathsAreReadOnceAndEnd) {
   WaveFlow flow;
   flow.finished = 10;

@@ -1,6 +1,7 @@
 // What a wave runs, and in which order: the waves are handed an Executor that only takes notes.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "common/render/option_names.h"
@@ -30,8 +31,10 @@ class Notes {
   }
   void begin_wave() { ran.push_back(StageId::begin_wave); }
   template <class Stage>
-  void run(const Stage&, const StageQueues& queues) {
-    ran.push_back(Stage::id);
+  void run(const Stage& stage, const StageQueues& queues) {
+    ran.push_back(id_of(stage));
+    queues_of[id_of(stage)] = queues;
+    if constexpr (requires { stage.starts_paths; }) starts_paths |= stage.starts_paths;
     inputs.push_back(queues.input);
     if constexpr (requires { Stage::kind; }) {
       shaded.push_back({Stage::kind == nullptr ? "all" : Stage::kind, queues});
@@ -49,6 +52,8 @@ class Notes {
   bool here = true;  ///< the scene is one that they can trace
   std::vector<StageId> ran, traced, wanted;
   std::vector<StageInput> inputs;
+  std::map<StageId, StageQueues> queues_of;
+  bool starts_paths = false;  ///< a stage that follows paths begins them, too
   SurfaceOrder order;
   std::vector<std::pair<std::string, StageQueues>> shaded;  ///< by which kernels, and what
 
@@ -56,9 +61,12 @@ class Notes {
   void note_traced() { ran.push_back(traced.back()); }
 };
 
+/// What the waves of these tests have: fewer than any stage asks for, since none runs.
+constexpr std::uint32_t few_slots = 3;
+
 template <class Traits, Branching branching, bool persistent>
 Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true,
-                           bool here = true) {
+                           bool here = true, bool fused = false, bool starts_paths = true) {
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
@@ -66,12 +74,20 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   buffers.counters = &counters;
   buffers.slot_count = &slot_count;
   buffers.reuses_slots = reuses_slots;
+  buffers.fused = fused;
+  buffers.pool.slot_count = few_slots;
   const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
   Notes<persistent> notes;
   notes.here = here;
-  run_wave<Traits, branching>(notes, buffers, context);
+  run_wave<Traits, branching>(notes, buffers, context, starts_paths);
   run_finish<Traits>(notes, buffers, context);
   return notes;
+}
+
+/// Likewise of fused stages.
+Notes<false> fused_notes(Compaction strategy, bool reuses_slots, bool starts_paths = true) {
+  return notes_of<TriangleScene, Branching::divergent, false>(
+      compaction_info(strategy), reuses_slots, true, true, starts_paths);
 }
 
 using Ids = std::vector<StageId>;
@@ -141,6 +157,79 @@ TEST(WaveOrder, ReducedBranchingHasNoStageForMisses) {
             (Ids{compact, begin_wave, generate, intersect, compact, shade_surface, finish}));
 }
 
+TEST(WaveOrder, FusedStagesTraceAndShadeInOneKernel) {
+  using enum StageId;
+  for (const Compaction strategy : {Compaction::atomic, Compaction::cub, Compaction::none}) {
+    SCOPED_TRACE(to_string(strategy));
+    const Notes<false> notes = fused_notes(strategy, true);
+    EXPECT_EQ(notes.ran, (Ids{compact, begin_wave, generate, bounce, finish}));
+    EXPECT_EQ(notes.wanted, (Ids{generate, intersect}));
+    EXPECT_FALSE(notes.starts_paths);
+  }
+}
+
+// A pool that holds the whole batch: nobody stores the camera rays, and later waves start no path.
+TEST(WaveOrder, FusedStagesOfAWholeBatchStartItsPaths) {
+  using enum StageId;
+  const Notes<false> first = fused_notes(Compaction::atomic, false);
+  EXPECT_EQ(first.ran, (Ids{compact, begin_wave, bounce, finish}));
+  EXPECT_TRUE(first.starts_paths);
+  EXPECT_EQ(first.inputs[0], StageInput::every_slot);
+  const Notes<false> later = fused_notes(Compaction::atomic, false, false);
+  EXPECT_EQ(later.ran, first.ran);
+  EXPECT_FALSE(later.starts_paths);
+  EXPECT_EQ(later.inputs[0], StageInput::queue);
+}
+
+// Who appends to the queue that it reads needs two halves of it; who writes tags does not.
+TEST(WaveOrder, FusedStagesReadOneHalfOfTheQueueAndFillTheOther) {
+  const auto bounce_of = [](Compaction strategy) {
+    return fused_notes(strategy, true).queues_of.at(StageId::bounce);
+  };
+  EXPECT_NE(bounce_of(Compaction::atomic).first, nullptr);
+  EXPECT_EQ(bounce_of(Compaction::cub).first, nullptr);
+  WaveCounters counters{};
+  std::uint32_t& rays = counters.waiting[queue_of<StageId::intersect>];
+  counters.waiting[queue_of<free_slot>] = 10;
+  EXPECT_TRUE(begin_wave(counters, 12, true, 1, 10));
+  EXPECT_EQ(counters.first_ray, 0u);
+  EXPECT_EQ(counters.intersect, 10u);
+  EXPECT_EQ(rays, 10u) << "the second half begins";
+  rays += 7, counters.waiting[queue_of<free_slot>] += 3;
+  EXPECT_TRUE(begin_wave(counters, 12, true, 1, 10));
+  EXPECT_EQ(counters.first_ray, 10u);
+  EXPECT_EQ(counters.live, 7u);
+  EXPECT_EQ(counters.intersect, 9u);
+  EXPECT_EQ(rays, 0u);
+  rays = 1;
+  for (int again = 0; again < 2; ++again) {  // a wave after the last finds the same
+    EXPECT_FALSE(begin_wave(counters, 12, true, 1, 10));
+    EXPECT_EQ(counters.first_ray, 0u);
+    EXPECT_EQ(counters.finish, 1u);
+  }
+}
+
+TEST(WaveOrder, TheLastPathsAreSentNowhere) {
+  const StageQueues last = fused_notes(Compaction::atomic, true).queues_of.at(StageId::finish);
+  for (const std::uint32_t* queue : last.next) EXPECT_EQ(queue, nullptr);
+}
+
+TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
+  WaveBuffers buffers;
+  buffers.compaction = compaction_info(Compaction::atomic);
+  buffers.pool.slot_count = few_slots;
+  const auto places_of = [&](bool fused, bool reuses_slots) {
+    buffers.fused = fused, buffers.reuses_slots = reuses_slots;
+    std::uint64_t all = 0;
+    buffers.for_each_queue(true, [&](auto*&, std::uint64_t places) { all += places; });
+    return all / few_slots;
+  };
+  EXPECT_EQ(places_of(false, true), 5u);
+  EXPECT_EQ(places_of(false, false), 4u);
+  EXPECT_EQ(places_of(true, true), 3u);  // rays twice, free slots
+  EXPECT_EQ(places_of(true, false), 2u);
+}
+
 TEST(WaveOrder, EachKindOfTheSceneIsShadedOverItsRangeOfTheOrderedQueue) {
   const auto bit = [](MaterialKind kind) { return 1u << static_cast<int>(kind); };
   OrderedWave wave;
@@ -182,6 +271,8 @@ TEST(WaveOrder, EveryStageOfAWaveIsReached) {
     const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy);
     reached.insert(notes.ran.begin(), notes.ran.end());
   }
+  const auto fused = fused_notes(Compaction::atomic, true);
+  reached.insert(fused.ran.begin(), fused.ran.end());
   for (const StageInfo& stage : stage_table) {
     if (stage.queue == StageId::idle) continue;  // of no wave
     EXPECT_TRUE(reached.contains(stage.id)) << stage.name;

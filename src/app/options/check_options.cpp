@@ -112,10 +112,32 @@ void check_metropolis_only(const Options& options, const GivenOptions& given) {
   }
 }
 
+void refuse_with_stages(const Options& options, const std::string& name, Stages expected) {
+  throw Error(fmt::format("--{} {}: has no effect with --stages {}; it applies to {}", name,
+                          find_option(name).text(options), to_string(options.stages),
+                          to_string(expected)));
+}
+
+/// What one of both ways to divide a wave into kernels does not know.
+void check_stages(const Options& options, const GivenOptions& given) {
+  if (options.stages != Stages::fused) {
+    if (given.contains("wave-rays")) refuse_with_stages(options, "wave-rays", Stages::fused);
+    return;
+  }
+  for (const char* name : {"shade", "persistent"}) {
+    if (given.contains(name)) refuse_with_stages(options, name, Stages::split);
+  }
+  if (compaction_info(options.compaction).orders)
+    refuse_with_stages(options, "compaction", Stages::split);
+  if (options.branching == Branching::reduced)
+    refuse_with_stages(options, "branching", Stages::split);
+}
+
 }  // namespace
 
 void check_consistent(const Options& options, const GivenOptions& given) {
   check_metropolis_only(options, given);
+  check_stages(options, given);
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);

@@ -273,6 +273,16 @@ void add_execution(std::vector<OptionEntry>& list) {
            "a kernel for each; auto: by one, on CUDA in order of the\n"
            "kinds if these are many or long")
       .only(wavefront, any_device)
+      .add(choice("stages", &Options::stages),
+           "wavefront: tracing and shading are stages of their own, or\n"
+           "one kernel does both and no hit is stored; auto: one where\n"
+           "rays are cheap, in scenes that --accel brute traces, of\n"
+           "spheres and quads")
+      .only(wavefront, any_device)
+      .add(integer("wave-rays", &Options::wave_rays, 1, 65535),
+           "wavefront with --stages fused: rays that a path gets in each\n"
+           "wave; as many as --max-depth: nearly the megakernel")
+      .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",
                [](Options& o, const std::string& s) {
@@ -310,7 +320,8 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return stage_blocks_text(o.stage_block); }),
            "wavefront on CUDA: threads per block, for all stages, by name\n"
            "or both: generate, intersect, shade_miss, shade_surface,\n"
-           "shadow, finish, accumulate; e.g. intersect=128,shadow=64")
+           "shadow, bounce (of fused stages), finish, accumulate; e.g.\n"
+           "intersect=128,shadow=64")
       .only(wavefront, cuda);
 }
 

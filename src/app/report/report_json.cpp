@@ -202,6 +202,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
       {"name", report.device_name}, {"kind", report.device_kind}, {"driver", report.driver}};
   json["used"] = {{"accel", report.accel},
                   {"schedule", report.schedule},
+                  {"stages", report.stages},
                   {"pool_size", report.pool_size},
                   {"primitives", report.primitives},
                   {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};

@@ -259,6 +259,7 @@ void CpuRenderer::describe(RenderReport& report) const {
   report.device_kind = "cpu";
   report.device_name = fmt::format("CPU, {} thread{}", threads_, threads_ == 1 ? "" : "s");
   report.accel = accel_name(traits_.accel);
+  report.stages = stages_;
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;
   report.setup_ms = setup_ms_;

@@ -63,6 +63,7 @@ class CpuRenderer : public FilmRenderer {
   const Scene scene_;
   StageTimer timer_;
   std::uint64_t waves_ = 0;
+  std::string stages_;
   std::uint64_t pool_size_ = 0;
 
  private:

@@ -98,7 +98,7 @@ class CudaRenderer : public FilmRenderer {
   CudaMemory memory_;
   cudaDeviceProp properties_{};
   std::uint64_t pool_size_ = 0;
-  std::string schedule_;
+  std::string schedule_, stages_;
 
  private:
   void upload(const SceneData& scene);
@@ -172,7 +172,8 @@ class CudaRenderer : public FilmRenderer {
   int wave_ = -1;
   LaneCounts* lane_counts_ = nullptr;  ///< null: this build counts none
   std::vector<KernelInfo> kernels_;
-  std::vector<const void*> kernel_pointers_;
+  /// Of kernels_; one may run as several stages.
+  std::vector<std::pair<const void*, std::string>> noted_kernels_;
   double setup_ms_ = 0;
   double load_ms_ = 0;  ///< 0: not loaded yet
   double transfer_ms_ = 0;

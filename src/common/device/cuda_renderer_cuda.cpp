@@ -181,7 +181,7 @@ void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
   const std::uint32_t resident = resident_blocks(kernel, threads, shared_bytes);
   const int warps = (threads + 31) / 32 * static_cast<int>(resident);
   const int room = properties_.multiProcessorCount * (properties_.maxThreadsPerMultiProcessor / 32);
-  kernel_pointers_.push_back(kernel);
+  noted_kernels_.emplace_back(kernel, name);
   kernels_.push_back({name, attributes.numRegs, attributes.localSizeBytes,
                       attributes.sharedSizeBytes + shared_bytes, threads,
                       static_cast<double>(warps) / room});
@@ -189,10 +189,10 @@ void CudaRenderer::note_kernel(const char* name, const void* kernel, dim3 block,
 
 void CudaRenderer::launch_erased(const char* name, const void* kernel, dim3 grid, dim3 block,
                                  std::size_t shared_bytes, void** arguments) {
-  if (std::find(kernel_pointers_.begin(), kernel_pointers_.end(), kernel) ==
-      kernel_pointers_.end()) {
-    note_kernel(name, kernel, block, shared_bytes);
-  }
+  const bool is_noted = std::ranges::any_of(noted_kernels_, [&](const auto& noted) {
+    return noted.first == kernel && noted.second == name;
+  });
+  if (!is_noted) note_kernel(name, kernel, block, shared_bytes);
   if (is_counting()) counters_->note_launch(name, wave_);
   const ProfilerRange range(name);
   check_cuda(cudaLaunchKernel(kernel, grid, block, arguments, shared_bytes, stream_), name);
@@ -490,6 +490,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.driver = driver_;
   report.accel = accel_name(traits_.accel);
   report.schedule = schedule_;
+  report.stages = stages_;
   report.pool_size = pool_size_;
   report.primitives = primitive_count_;
   if (tree_facts_.nodes > 0) report.scene.tree = tree_facts_;

@@ -49,6 +49,9 @@ template <>
 inline constexpr auto enum_names<Shade> = std::to_array<EnumName<Shade>>(
     {{Shade::automatic, "auto"}, {Shade::uber, "uber"}, {Shade::material, "material"}});
 template <>
+inline constexpr auto enum_names<Stages> = std::to_array<EnumName<Stages>>(
+    {{Stages::automatic, "auto"}, {Stages::split, "split"}, {Stages::fused, "fused"}});
+template <>
 inline constexpr auto enum_names<SceneMemory> =
     std::to_array<EnumName<SceneMemory>>({{SceneMemory::automatic, "auto"},
                                           {SceneMemory::global, "global"},

@@ -19,6 +19,7 @@ enum class Work { pixel, sample, persistent };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
 enum class Shade { automatic, uber, material };
+enum class Stages { automatic, split, fused };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path, mlt };
 enum class Branching { divergent, reduced };
@@ -131,8 +132,10 @@ struct Options {
   std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
   PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state
   bool regenerate = true;
-  bool persistent = true;          ///< warps trace queues where they can (CUDA)
-  Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
+  bool persistent = true;             ///< warps trace queues where they can (CUDA)
+  Shade shade = Shade::automatic;     ///< wavefront: who shades surfaces
+  Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
+  int wave_rays = 1;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
   int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
   StageBlocks stage_block = default_stage_blocks();

@@ -21,6 +21,7 @@ namespace pt {
   STAGE(shade_miss, shade_miss, true)       \
   STAGE(shade_surface, shade_surface, true) \
   STAGE(shadow, shadow, true)               \
+  STAGE(bounce, intersect, true)            \
   STAGE(finish, intersect, true)            \
   STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \

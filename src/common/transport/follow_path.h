@@ -17,27 +17,36 @@ PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit
   return Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, u, light);
 }
 
+/// Traces one ray of a path, shades what it meets, and adds to the path's radiance. Returns whether
+/// the path goes on: `ray` is then its next one. `path_key` is mask_key().
+template <class Traits, class Stream>
+PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
+                      const PathLimits& limits, Stream& random, std::uint32_t path_key) {
+  const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(path_key, path.rays));
+  ++path.rays;
+  if (hit.is_miss()) {
+    radiance = add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
+                                         scene, ray.direction, path, limits));
+    return false;
+  }
+  const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
+  radiance = add_rounded(radiance, scattering.emitted);
+  if (Traits::has_lights && !is_black(scattering.shadow.radiance) &&
+      !intersect_shadow<Traits>(scene, scattering.shadow, shadow_ray_key(path_key, path.rays))) {
+    radiance = add_rounded(radiance, scattering.shadow.radiance);
+  }
+  ray = scattering.ray;
+  return scattering.alive;
+}
+
 /// Traces `ray` and what follows it. Returns the path's radiance: `radiance`, which it brings
-/// along, and all that is added. `path_key` is mask_key().
+/// along, and all that is added.
 template <class Traits, class Stream>
 PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radiance,
                         const PathLimits& limits, Stream& random, std::uint32_t path_key) {
-  for (;;) {
-    const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(path_key, path.rays));
-    ++path.rays;
-    if (hit.is_miss()) {
-      return add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
-                                       scene, ray.direction, path, limits));
-    }
-    const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
-    radiance = add_rounded(radiance, scattering.emitted);
-    if (Traits::has_lights && !is_black(scattering.shadow.radiance) &&
-        !intersect_shadow<Traits>(scene, scattering.shadow, shadow_ray_key(path_key, path.rays))) {
-      radiance = add_rounded(radiance, scattering.shadow.radiance);
-    }
-    if (!scattering.alive) return radiance;
-    ray = scattering.ray;
+  while (follow_ray<Traits>(scene, ray, path, radiance, limits, random, path_key)) {
   }
+  return radiance;
 }
 
 }  // namespace pt
