@@ -8,7 +8,7 @@ namespace {
 
 using VotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
 
-constexpr int block_max = 256, blocks_least = 2;  // 128 registers for a thread
+constexpr int block_max = 256, blocks_least = 3;  // 80 registers for a thread
 
 /// Of a block with so many threads.
 constexpr std::size_t shared_bytes_of(int threads) {

@@ -16,7 +16,7 @@ namespace pt {
 
 /// When a warp leaves the traversal: lanes of 32 that have a path; of fewer, in proportion.
 struct VotingTuning {
-  static constexpr int shade = 16;  ///< lanes that wait to be shaded
+  static constexpr int shade = 20;  ///< lanes that wait to be shaded
   static constexpr int resume = 4;  ///< lanes whose shadow ray has ended and whose next ray waits
 };
 
