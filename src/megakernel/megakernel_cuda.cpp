@@ -14,6 +14,13 @@ MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, i
     throw Error(fmt::format("--block {}x{}: {} threads; a block has at most {}", options.block.x,
                             options.block.y, threads, properties_.maxThreadsPerBlock));
   }
+  votes_ = options.kernel != MegakernelKind::loop && can_vote();
+  if (options.kernel == MegakernelKind::vote && !votes_) {
+    throw Error(
+        fmt::format("--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 "
+                    "to 256 threads, a multiple of 32; {}x{} has {}",
+                    options.block.x, options.block.y, threads));
+  }
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
 }
 
@@ -24,6 +31,9 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
       constexpr bool in_global =
           std::remove_cvref_t<decltype(storage)>::memory == SceneMemory::global;
       if constexpr (in_global || !std::is_same_v<decltype(source), const SamplerSource&>) {
+        if constexpr (std::is_same_v<decltype(source), const SamplerSource&>) {
+          if (votes_) return launch_voting(source, batch);
+        }
         launch_megakernel(storage, shared_bytes, source, batch);
       } else {  // samplers are for scenes that brute force does not scan
         throw_no_kernel(traits_, options_.integrator);

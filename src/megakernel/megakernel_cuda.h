@@ -1,5 +1,6 @@
-// The megakernel's renderer. Its kernel has 37 variants (scene, branching, random numbers, scene
-// memory), so launching is split into files that compile side by side.
+// The megakernel's renderer. The loop has 39 variants (scene, branching, random numbers, scene
+// memory), so launching is split into files that compile side by side; the kernel that votes is
+// one.
 #pragma once
 
 #include "common/device/cuda_renderer.cuh"
@@ -22,7 +23,12 @@ class MegakernelCuda : public CudaRenderer {
   template <class Kernel>
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
+  /// Whether there is a kernel that votes for this scene and these options.
+  bool can_vote() const;
+  void launch_voting(const SamplerSource& source, const SampleBuffer& batch);
+
   std::uint32_t* next_path_ = nullptr;
+  bool votes_ = false;
 };
 
 }  // namespace pt

@@ -74,6 +74,7 @@ const std::map<std::string, std::string>& other_values() {
       {"builder", "sbvh"},
       {"work", "sample"},
       {"block", "32x4"},
+      {"kernel", "vote"},
       {"compaction", "cub"},
       {"pool-size", "1048576"},
       {"layout", "aos"},
@@ -102,7 +103,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
-  if (entry.name == "work" || entry.name == "block")
+  if (entry.name == "work" || entry.name == "block" || entry.name == "kernel")
     arguments.insert(arguments.end(), {"--mode", "megakernel"});
   return arguments;
 }
@@ -264,6 +265,7 @@ void expect_round_trip(const char* option) {
 TEST(OptionNames, RoundTrip) {
   expect_round_trip<Mode>("mode");
   expect_round_trip<Work>("work");
+  expect_round_trip<MegakernelKind>("kernel");
   expect_round_trip<Compaction>("compaction");
   expect_round_trip<Schedule>("schedule");
   expect_round_trip<Stages>("stages");
@@ -429,11 +431,28 @@ TEST(Refused, Contradictions) {
   });
 }
 
+TEST(Refused, VotesWithoutWholeWarpsThatFetch) {
+  expect_refused({
+      {"--mode megakernel --kernel vote --work pixel",
+       "--kernel vote: its warps fetch paths; expected --work persistent, not pixel"},
+      {"--mode megakernel --kernel vote --accel bvh2",
+       "--kernel vote: traces wide trees; expected --accel cwbvh or auto, not bvh2"},
+      {"--mode megakernel --kernel vote --block 5x3",
+       "--kernel vote: whole warps vote; expected a --block of a multiple of 32 threads, 5x3 has "
+       "15"},
+      {"--mode megakernel --kernel warp", "--kernel warp: expected one of auto, loop, vote"},
+  });
+  for (const char* line : {"--kernel vote --accel cwbvh --block 8x8", "--kernel loop --work pixel",
+                           "--kernel auto --accel bvh2 --block 5x3"})
+    EXPECT_NO_THROW(parse(std::string("--mode megakernel ") + line)) << line;
+}
+
 TEST(Refused, WithoutEffectInTheMode) {
   expect_refused({
       {"--work pixel",
        "--work pixel: has no effect with --mode wavefront; it applies to megakernel"},
       {"--block 8x8", "--block 8x8: has no effect with --mode wavefront"},
+      {"--kernel loop", "--kernel loop: has no effect with --mode wavefront"},
       {"--mode serial --threads 2", "--threads 2: has no effect with --mode serial"},
       {"--mode serial --device cuda:1", "--device cuda:1: has no effect with --mode serial"},
       {"--mode serial --scene-memory shared", "--scene-memory shared: has no effect"},
@@ -471,6 +490,8 @@ TEST(Refused, WithoutEffectOnTheDevice) {
        "--schedule graph: has no effect on the device cpu; it applies to cuda"},
       {"--device cpu --stage-block 64", "--stage-block 64: has no effect on the device cpu"},
       {"--device cpu --mode megakernel --block 8x8", "--block 8x8: has no effect on the device"},
+      {"--device cpu --mode megakernel --kernel vote",
+       "--kernel vote: has no effect on the device"},
       {"--device cpu --scene-memory constant", "--scene-memory constant: has no effect"},
       {"--device cpu --scene-memory shared", "--scene-memory shared: has no effect"},
       {"--device cpu --create-world device", "--create-world device: has no effect"},

@@ -63,6 +63,23 @@ TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   }
 }
 
+class CudaVotingMaterials : public CudaTest {};
+
+// Every BSDF, shaded by lanes that have left the traversal at different times.
+TEST_F(CudaVotingMaterials, EqualTheLoop) {
+  const auto render = [](const char* kernel, const char* max_depth) {
+    return render_small(material_room(false), {{"device", "cuda"},
+                                               {"mode", "megakernel"},
+                                               {"accel", "cwbvh"},
+                                               {"kernel", kernel},
+                                               {"max-depth", max_depth}});
+  };
+  for (const char* max_depth : {"6", "20"}) {
+    const Rendered voted = render("vote", max_depth);
+    expect_same(voted, render("loop", max_depth));
+  }
+}
+
 // By default a scene of several kinds is shaded by kind.
 TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});

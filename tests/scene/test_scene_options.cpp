@@ -3,6 +3,7 @@
 
 #include "app/options/option_list.h"
 #include "common/error.h"
+#include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare_scene.h"
 #include "common/scene/scene_options.h"
@@ -10,10 +11,15 @@
 namespace pt {
 namespace {
 
-/// Prepares a scene with one option; the message, or nothing.
-std::string refusal(const std::string& scene, const std::string& name, const std::string& value) {
+Options with_scene(const std::string& scene) {
   Options options;
   options.scene = scene;
+  return options;
+}
+
+/// Prepares a scene with one option; the message, or nothing.
+std::string refusal(const std::string& scene, const std::string& name, const std::string& value) {
+  Options options = with_scene(scene);
   find_option(name).set(options, value);
   SceneData data = build_scene(options);
   try {
@@ -42,6 +48,36 @@ TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
   EXPECT_EQ(refusal("spheres", "branching", "reduced"), "");
   for (const char* value : {"auto", "global", "shared", "constant"}) {
     EXPECT_EQ(refusal("spheres", "scene-memory", value), "");
+  }
+}
+
+TEST(SceneOptions, VotesAreForTrianglesAlone) {
+  SceneData masked = build_scene(with_scene("boxes"));
+  masked.materials[0].opacity.offset = 0.5f;
+  Options voting = with_scene("boxes");
+  voting.kernel = MegakernelKind::vote;
+  EXPECT_NO_THROW(check_scene_options(voting, build_scene(voting)));
+  EXPECT_THROW(check_scene_options(voting, masked), Error);
+  for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
+    EXPECT_EQ(refusal(scene, "kernel", "vote"),
+              "--kernel vote: traces triangles alone; scene '" + scene.substr(0, scene.find(':')) +
+                  "' has spheres, instances, masks or no triangles, expected auto or loop");
+    EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
+  }
+}
+
+// Threads that follow rays alone are faster in a binary tree, and warps that vote in a wide one.
+TEST(SceneOptions, VotesTakeAWideTree) {
+  for (const auto& [kernel, accel] : {std::pair{MegakernelKind::vote, Accel::cwbvh},
+                                      {MegakernelKind::loop, Accel::bvh2},
+                                      {MegakernelKind::automatic, Accel::bvh2}}) {
+    Options options = with_scene("boxes");
+    options.device.kind = DeviceChoice::Kind::cuda;
+    options.mode = Mode::megakernel;
+    options.kernel = kernel;
+    SceneData scene = build_scene(options);
+    prepare_scene(scene, options);
+    EXPECT_EQ(scene.traits.accel, accel) << to_string(kernel);
   }
 }
 

@@ -133,6 +133,26 @@ void check_stages(const Options& options, const GivenOptions& given) {
     refuse_with_stages(options, "branching", Stages::split);
 }
 
+/// The kernel that votes needs whole warps that fetch paths, and the tree whose steps they vote on.
+void check_voting(const Options& options) {
+  if (options.kernel != MegakernelKind::vote) return;
+  if (options.work != Work::persistent)
+    throw Error(
+        fmt::format("--kernel vote: its warps fetch paths; expected --work persistent, not "
+                    "{}",
+                    to_string(options.work)));
+  if (options.accel != AccelKind::automatic && options.accel != AccelKind::cwbvh)
+    throw Error(
+        fmt::format("--kernel vote: traces wide trees; expected --accel cwbvh or auto, not "
+                    "{}",
+                    to_string(options.accel)));
+  if (options.block.x * options.block.y % 32 != 0)
+    throw Error(
+        fmt::format("--kernel vote: whole warps vote; expected a --block of a multiple of "
+                    "32 threads, {} has {}",
+                    block_text(options.block), options.block.x * options.block.y));
+}
+
 }  // namespace
 
 void check_consistent(const Options& options, const GivenOptions& given) {
@@ -141,6 +161,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);
+  check_voting(options);
   if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
     throw Error(
         fmt::format("--shade material: takes ranges of an ordered queue; --compaction {} has no "

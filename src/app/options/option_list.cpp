@@ -246,6 +246,12 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return block_text(o.block); }),
            "megakernel on CUDA: threads of a block, at most 1,024")
       .only(megakernel, cuda)
+      .add(choice("kernel", &Options::kernel),
+           "megakernel on CUDA: a loop in which each turn traces a ray of\n"
+           "every lane to its end, or warps that vote on what to do next:\n"
+           "steps down a wide tree, tests of triangles, or shading; auto:\n"
+           "vote with --accel cwbvh in scenes of triangles alone")
+      .only(megakernel, cuda)
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"
            "cub: a selection in order; scan: the same by a kernel of\n"

@@ -32,6 +32,11 @@ template <>
 inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
     {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});
 template <>
+inline constexpr auto enum_names<MegakernelKind> =
+    std::to_array<EnumName<MegakernelKind>>({{MegakernelKind::automatic, "auto"},
+                                             {MegakernelKind::loop, "loop"},
+                                             {MegakernelKind::vote, "vote"}});
+template <>
 inline constexpr auto enum_names<Compaction> = [] {
   std::array<EnumName<Compaction>, std::size(compaction_table)> names{};
   for (std::size_t i = 0; i < names.size(); ++i) {

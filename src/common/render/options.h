@@ -16,6 +16,7 @@ namespace pt {
 
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
+enum class MegakernelKind { automatic, loop, vote };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
 enum class Shade { automatic, uber, material };
@@ -125,9 +126,10 @@ struct Options {
   DeviceChoice device;
   int threads = 0;  ///< CPU threads, 0: all
   AccelKind accel = AccelKind::automatic;
-  TreeBuilder builder = TreeBuilder::automatic;  ///< of trees over triangles
-  Work work = Work::persistent;                  ///< megakernel
-  BlockSize block;                               ///< megakernel, threads per block
+  TreeBuilder builder = TreeBuilder::automatic;       ///< of trees over triangles
+  Work work = Work::persistent;                       ///< megakernel
+  MegakernelKind kernel = MegakernelKind::automatic;  ///< megakernel on CUDA
+  BlockSize block;                                    ///< megakernel, threads per block
   Compaction compaction = Compaction::atomic;
   std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
   PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state

@@ -18,9 +18,11 @@ namespace {
 /// Persistent warps make the most of wide trees; for threads that follow rays alone binary ones are
 /// faster (results/ has the measurement).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
-  const bool persistent = options.device.kind == DeviceChoice::Kind::cuda &&
-                          options.mode == Mode::wavefront && scene.instances.empty() &&
-                          scene.spheres.empty() && compaction_info(options.compaction).appends;
+  const bool warps_persist =
+      (options.mode == Mode::wavefront && compaction_info(options.compaction).appends) ||
+      (options.mode == Mode::megakernel && options.kernel == MegakernelKind::vote);
+  const bool persistent = options.device.kind == DeviceChoice::Kind::cuda && warps_persist &&
+                          scene.instances.empty() && scene.spheres.empty();
   return persistent ? Accel::cwbvh : Accel::bvh2;
 }
 

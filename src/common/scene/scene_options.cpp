@@ -30,6 +30,12 @@ std::string unless(E value, Usual... usual) {
 
 bool has_triangles(const SceneData& scene, const Options& o) { return !is_lean(scene, o); }
 
+bool has_triangles_alone(const SceneData& scene, const Options& o) {
+  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty() &&
+         std::ranges::all_of(scene.materials,
+                             [](const MaterialDescription& m) { return m.opacity.is_opaque(); });
+}
+
 bool has_rough_conductors(const SceneData& scene, const Options&) {
   return std::ranges::any_of(scene.materials, is_rough_conductor);
 }
@@ -49,6 +55,13 @@ constexpr SceneRule rules[] = {
      "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
     {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
      has_triangles, "builds trees over triangles; scene '{}' has none"},
+    {"kernel",
+     [](const Options& o) {
+       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop);
+     },
+     has_triangles_alone,
+     "traces triangles alone; scene '{}' has spheres, instances, masks or no triangles, expected "
+     "auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);

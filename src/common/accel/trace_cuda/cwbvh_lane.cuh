@@ -1,0 +1,129 @@
+// One lane's way through a compressed wide tree, a step or a leaf at a time, so that a warp can
+// vote on what its lanes do together.
+#pragma once
+
+#include "common/accel/trace_cuda/cwbvh_step.cuh"
+#include "common/accel/trace_cuda/prepared_rays.cuh"
+#include "common/accel/trace_cuda/slot_order.cuh"
+
+namespace pt {
+
+/// Inner children that are left to visit: bits 0..7 their slots, 8..10 the ray's octant (so that
+/// bits 0..10 are the place in SlotOrder), 16..23 the node's inner_mask.
+struct SlotGroup {
+  std::uint32_t base;
+  std::uint32_t bits;
+
+  __device__ bool has_slots() const { return (bits & 0xffu) != 0; }
+};
+
+/// What the whole warp does next, of what its lanes want: a test takes longer than a step.
+__device__ inline bool warp_steps(int stepping, int testing) { return stepping >= 2 * testing; }
+
+/// A lane's traversal, which can stop between any two steps and go on later. Query: one with
+/// offer_nearer. A lane that has found leaves tests them before it goes on: without knowing the hit
+/// it would visit nodes behind it. The two triangles of a leaf are tested side by side.
+template <class Query>
+class CwbvhLane {
+ public:
+  __device__ CwbvhLane(const TriangleTree& tree, const SlotOrder& order, uint2* stack)
+      : tree_(tree), order_(order), stack_(stack) {}
+
+  PT_LANE_COUNTER;  ///< of the lane's ray
+
+  __device__ bool wants_test() const { return leaves_.has_slots(); }
+  __device__ bool wants_step() const { return !wants_test() && nodes_.has_slots(); }
+  __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
+  __device__ const Query& query() const { return query_; }
+
+  /// At the root.
+  __device__ void begin(const PreparedRay& ray, const Query& query) {
+    set_ray(ray);
+    query_ = query;
+    const std::uint32_t octant = ray.octant << 8;
+    nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
+  }
+
+  /// What begin() took of the same ray besides the query.
+  __device__ void set_ray(const PreparedRay& ray) {
+    origin_ = ray.origin;
+    inverse_ = ray.inverse;
+    triangle_ray_ = ray.triangles;
+  }
+
+  __device__ void step() {
+    lanes_of(*this).count(LanePoint::node);
+    const std::uint32_t octant = nodes_.bits & 0x700u;
+    const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
+    const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
+    nodes_.bits ^= bit;
+    if (nodes_.has_slots()) stack_[depth_++] = {nodes_.base, nodes_.bits};
+    const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
+    const std::uint32_t hits = hit_slots(node, origin_, inverse_, query_.t_max());
+    const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
+    nodes_ = {node.child_base(), (hits & inner) | octant | inner << 16};
+    leaves_ = {node.triangle_base(), (hits & leaf) | leaf << 8 | node.pair_mask() << 16};
+    if (!nodes_.has_slots() && depth_ > 0) {
+      const uint2 top = stack_[--depth_];
+      nodes_ = {top.x, top.y};
+    }
+  }
+
+  /// A single triangle is tested as a pair with itself. Where Query::has_masks, `work` tells what
+  /// they let through: bool hides(const Query&, std::uint32_t slot, const TriangleHit&).
+  template <class Work>
+  __device__ void test_leaf(const Work& work) {
+    lanes_of(*this).count(LanePoint::primitive);
+    const CwbvhLeaf leaf = take_leaf(leaves_);
+    const std::uint32_t last = leaf.first + leaf.count - 1;
+    const Triangle a = load_wide(&tree_.triangles[leaf.first]);
+    const Triangle b = load_wide(&tree_.triangles[last]);
+    float t_a = intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t;
+    float t_b = intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t;
+    if constexpr (Query::has_masks) {
+      const bool ask_a = is_up_to_mask(query_, a, t_a);
+      const bool ask_b = leaf.count == 2 && is_up_to_mask(query_, b, t_b);
+      drop_hidden(work, leaf, ask_a, ask_b, t_a, t_b);
+    }
+    if (query_.offer_nearer(tree_, {t_a, leaf.first, a.id}, {t_b, last, b.id})) {
+      nodes_.bits = leaves_.bits = 0;
+      depth_ = 0;
+    }
+  }
+
+ private:
+  /// What a mask hides was not met. One loop, so that lanes ask together, be it about their first
+  /// triangle or their second.
+  template <class Work>
+  __device__ void drop_hidden(const Work& work, const CwbvhLeaf& leaf, bool ask_a, bool ask_b,
+                              float& t_a, float& t_b) const {
+    PT_UNROLL(1)
+    while (ask_a || ask_b) {
+      const bool hidden = is_hidden(work, leaf.first + (ask_a ? 0 : 1));
+      if (hidden) (ask_a ? t_a : t_b) = bits_to_float(0x7fffffffu);
+      if (!ask_a) ask_b = false;
+      ask_a = false;
+    }
+    if (leaf.count == 1) t_b = t_a;
+  }
+
+  /// Meets the triangle again: to keep its coordinates would cost all tests registers, which spill.
+  template <class Work>
+  __device__ bool is_hidden(const Work& work, std::uint32_t slot) const {
+    const Triangle triangle = load_wide(&tree_.triangles[slot]);
+    return work.hides(query_, slot,
+                      intersect_triangle(triangle_ray_, triangle.v0, triangle.v1, triangle.v2));
+  }
+
+  const TriangleTree& tree_;
+  const SlotOrder& order_;
+  Query query_{0.0f, 0.0f};
+  Vec3 origin_{}, inverse_{};
+  TriangleRay triangle_ray_{};
+  SlotGroup nodes_{0, 0};
+  CwbvhGroup leaves_{0, 0};
+  uint2* stack_;  ///< no member itself: an array would keep the members beside it out of registers
+  int depth_ = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,58 @@
+// Wide trees of triangles alone, traced by warps that vote (trace_paths_voting.cuh).
+#include "megakernel/megakernel_cuda.h"
+#include "megakernel/megakernel_kernel.cuh"
+#include "megakernel/trace_paths_voting.cuh"
+
+namespace pt {
+namespace {
+
+using VotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
+
+constexpr int block_max = 256, blocks_least = 3;  // 80 registers for a thread
+
+/// Of a block with so many threads.
+constexpr std::size_t shared_bytes_of(int threads) {
+  return sizeof(SlotOrder) + static_cast<std::size_t>(threads) / 32 * sizeof(VotingWarp);
+}
+
+__global__ void __launch_bounds__(block_max, blocks_least)
+    voting_megakernel(const __grid_constant__ Scene scene,
+                      const __grid_constant__ SampleBuffer batch,
+                      const __grid_constant__ WorkDivision division,
+                      const __grid_constant__ SamplerSource source,
+                      const __grid_constant__ PathLimits limits, StageClock* clock) {
+  extern __shared__ uint4 voting_memory[];
+  static_assert(sizeof(SlotOrder) % sizeof(uint4) == 0);
+  SlotOrder& order = *reinterpret_cast<SlotOrder*>(voting_memory);
+  auto* const warps =
+      reinterpret_cast<VotingWarp*>(voting_memory + sizeof(SlotOrder) / sizeof(uint4));
+  stamp_first_thread(clock, StageId::megakernel);
+  order.fill();
+  __syncthreads();
+  ThreadWork work(division, batch);
+  uint2 stack[bvh_depth_max];
+  VotingTracer<VotingTraits, SamplerSource, ThreadWork> tracer(
+      scene, source, batch, limits, work, order, warps[threadIdx.x / 32], threadIdx.x % 32, stack);
+  tracer.run();
+}
+
+}  // namespace
+
+bool MegakernelCuda::can_vote() const {
+  const int threads = options_.block.x * options_.block.y;
+  return traits_ == VotingTraits::value() && options_.work == Work::persistent &&
+         threads % 32 == 0 && threads <= block_max;
+}
+
+void MegakernelCuda::launch_voting(const SamplerSource& source, const SampleBuffer& batch) {
+  const int threads = options_.block.x * options_.block.y;
+  const std::size_t shared_bytes = shared_bytes_of(threads);
+  const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_,
+                              chains()};
+  const std::uint32_t blocks =
+      resident_blocks(reinterpret_cast<const void*>(voting_megakernel), threads, shared_bytes);
+  launch("megakernel", voting_megakernel, blocks, threads, shared_bytes, scene_, batch, division,
+         source, limits_, clock());
+}
+
+}  // namespace pt

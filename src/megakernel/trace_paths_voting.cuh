@@ -1,0 +1,253 @@
+// The megakernel's body for wide trees: a warp votes on what its lanes do next.
+//
+// In trace_path.h a warp waits in every turn for the longest of 32 traversals. Here a lane is a
+// machine: it steps down the tree or tests a leaf until its ray ends, and then waits to be shaded.
+// The warp leaves the traversal when enough lanes wait, shades these together, which begins their
+// shadow rays, their next rays or new paths, and goes on with all. A path meets the same functions
+// in the same order as in the loop, so its radiance is the same, bit for bit.
+#pragma once
+
+#include "common/accel/trace_cuda/cwbvh_lane.cuh"
+#include "common/film/film.h"
+#include "common/transport/generate_camera_path.h"
+#include "common/transport/path_integrator.h"
+
+namespace pt {
+
+/// When a warp leaves the traversal: lanes of 32 that have a path; of fewer, in proportion.
+struct VotingTuning {
+  static constexpr int shade = 20;  ///< lanes that wait to be shaded
+  static constexpr int resume = 4;  ///< lanes whose shadow ray has ended and whose next ray waits
+};
+
+/// The paths of a warp while their rays are traced, by lane, in shared memory: traversal and
+/// shading need all registers. Each lane sees its own alone.
+struct VotingWarp {
+  PreparedRays rays, shadow_rays;
+  float4 direction[32];          ///< of the ray; the path's number
+  float4 throughput[32];         ///< beta; rays and shadow rays
+  float4 radiance[32];           ///< so far; the receiver
+  float shadow_radiance[3][32];  ///< to be added if the shadow ray is free
+  float bsdf_pdf[32];
+};
+
+/// The closest hit of a path's ray, or any of a shadow ray, which ends with it.
+class PathQuery : public ClosestTriangle {
+ public:
+  __device__ PathQuery(float t_min, float t_max, bool is_shadow = false)
+      : ClosestTriangle(t_min, t_max), is_shadow_(is_shadow) {}
+
+  /// As AnyTriangle says: the first hit that counts lies nearer than t_max.
+  __device__ bool offer_nearer(const TriangleTree& tree, const MetTriangle& a,
+                               const MetTriangle& b) {
+    ClosestTriangle::offer_nearer(tree, a, b);
+    return is_shadow_ && !result().is_miss();
+  }
+
+ private:
+  bool is_shadow_;
+};
+
+/// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
+/// opened anew for each draw; Work: see trace_path.h.
+template <class Traits, class Source, class Work>
+class VotingTracer {
+ public:
+  __device__ VotingTracer(const Scene& scene, const Source& source, const SampleBuffer& samples,
+                          const PathLimits& limits, Work& work, const SlotOrder& order,
+                          VotingWarp& warp, unsigned lane, uint2* stack)
+      : scene_(scene),
+        source_(source),
+        samples_(samples),
+        limits_(limits),
+        work_(work),
+        warp_(warp),
+        lane_(lane),
+        ray_(scene.triangles, order, stack) {}
+
+  /// By the whole warp; returns when no paths are left.
+  __device__ __forceinline__ void run() {
+    int live = 32;  // lanes that have a path, or may get one
+    while (true) {
+      const bool tests = ray_.wants_test(), steps = ray_.wants_step();
+      const int testing = __popc(__ballot_sync(whole_warp, tests));
+      const int stepping = __popc(__ballot_sync(whole_warp, steps));
+      const int waiting = live - testing - stepping;
+      const auto are_enough = [&](int lanes, int of_32) { return lanes * 32 >= live * of_32; };
+      if (are_enough(waiting, VotingTuning::resume)) {
+        const bool resumes = state_ == State::shadow_then_ray && !tests && !steps;
+        const int resuming = __popc(__ballot_sync(whole_warp, resumes));
+        const bool shades = are_enough(waiting - resuming, VotingTuning::shade);
+        if (shades || testing + stepping == 0 || are_enough(resuming, VotingTuning::resume)) {
+          if (resumes) resume();
+          if (!shades) continue;
+          shade(state_ != State::idle && !tests && !steps && !resumes);
+          live = __popc(__ballot_sync(whole_warp, state_ != State::idle));
+          if (live == 0) return;
+          continue;
+        }
+      }
+      if (warp_steps(stepping, testing)) {
+        if (steps) ray_.step();
+      } else if (tests) {
+        ray_.test_leaf(work_);
+      }
+    }
+  }
+
+ private:
+  static constexpr unsigned whole_warp = 0xffffffffu;
+  static_assert(VotingTuning::resume <= VotingTuning::shade && VotingTuning::shade <= 32);
+
+  /// What the lane traces, and what comes then.
+  enum class State : std::uint8_t { no_path, ray, shadow_then_ray, shadow_then_end, idle };
+
+  __device__ bool traces_shadow() const {
+    return state_ == State::shadow_then_ray || state_ == State::shadow_then_end;
+  }
+
+  __device__ PathState load_path() const {
+    const float4 beta = warp_.throughput[lane_];
+    const std::uint32_t rays = __float_as_uint(beta.w);
+    PathState path;
+    path.beta = {beta.x, beta.y, beta.z};
+    path.number = __float_as_uint(warp_.direction[lane_].w);
+    path.rays = static_cast<std::uint16_t>(rays);
+    path.shadow_rays = static_cast<std::uint16_t>(rays >> 16);
+    path.bsdf_pdf = warp_.bsdf_pdf[lane_];
+    path.receiver = {__float_as_uint(warp_.radiance[lane_].w)};
+    return path;
+  }
+
+  __device__ Color load_radiance() const {
+    const float4 radiance = warp_.radiance[lane_];
+    return {radiance.x, radiance.y, radiance.z};
+  }
+
+  __device__ void store(const PathState& path, const Color& radiance, const Vec3& direction) {
+    const auto bits = [](std::uint32_t x) { return __uint_as_float(x); };
+    warp_.direction[lane_] = {direction.x, direction.y, direction.z, bits(path.number)};
+    warp_.throughput[lane_] = {path.beta.x, path.beta.y, path.beta.z, bits(path.packed_rays())};
+    warp_.radiance[lane_] = {radiance.x, radiance.y, radiance.z, bits(path.receiver.bits)};
+    warp_.bsdf_pdf[lane_] = path.bsdf_pdf;
+  }
+
+  /// The path's radiance with what its shadow ray has found.
+  __device__ Color lit_radiance() const {
+    const Color radiance = load_radiance();
+    if (!ray_.query().result().is_miss()) return radiance;
+    return add_rounded(radiance,
+                       Color(warp_.shadow_radiance[0][lane_], warp_.shadow_radiance[1][lane_],
+                             warp_.shadow_radiance[2][lane_]));
+  }
+
+  /// The shadow ray has ended; the path's next ray is ready.
+  __device__ void resume() {
+    const Color radiance = lit_radiance();
+    warp_.radiance[lane_] = {radiance.x, radiance.y, radiance.z, warp_.radiance[lane_].w};
+    state_ = State::ray;
+    if constexpr (counts_lanes) {
+      set_lanes(ray_, lanes_of(scene_).at(load_path().rays));
+      lanes_of(ray_).count(LanePoint::intersect);
+    }
+    begin(warp_.rays.load(lane_));
+  }
+
+  __device__ void begin(const PreparedRay& ray) {
+    ray_.begin(ray, PathQuery(0.0f, ray.t_max, traces_shadow()));
+  }
+
+  /// By the whole warp; lanes that wait get something to trace, as far as there are paths.
+  __device__ __forceinline__ void shade(bool waits) {
+    PathState path;
+    Color radiance(0.0f);
+    Ray ray;
+    Hit hit;
+    bool ended = waits && state_ != State::ray;
+    if (waits && state_ == State::shadow_then_end) {
+      samples_.store(load_path(), lit_radiance());
+    } else if (waits && state_ == State::ray) {
+      hit = ray_.query().result();
+      const float4 direction = warp_.direction[lane_];
+      ray = {warp_.rays.load(lane_).origin, {direction.x, direction.y, direction.z}};
+      path = load_path();
+      radiance = load_radiance();
+      set_lanes(ray, lanes_of(scene_).at(path.rays));
+      ++path.rays;
+      if (hit.is_miss()) {
+        samples_.store(path,
+                       add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
+                                                 scene_, ray.direction, path, limits_)));
+        ended = true;
+      }
+    }
+    if (__any_sync(whole_warp, ended)) {
+      std::uint32_t number = 0;
+      const bool has_path = work_.next(number, ended);
+      if (ended) {
+        state_ = has_path ? State::ray : State::idle;
+        path = PathState{};
+        path.number = number;
+        radiance = Color(0.0f);
+      }
+    }
+    const bool works = waits && state_ != State::idle;
+    if (works) go_on(path, radiance, ray, hit);
+    // All lanes: so the rays of those that were traversing need no registers meanwhile.
+    const PreparedRay prepared =
+        traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
+    ray_.set_ray(prepared);
+    if (works && state_ != State::no_path) begin(prepared);
+  }
+
+  /// A path begins at the camera or goes on from a surface.
+  __device__ __forceinline__ void go_on(PathState path, Color radiance, Ray ray, const Hit& hit) {
+    lanes_of(scene_).at(path.rays).count(LanePoint::turn);
+    const PathId id = samples_.id_of(path.number);
+    typename Source::Stream random = source_.open(id);
+    const Vec4 u = random.draw(scatter_block(path.rays));
+    bool alive = true, asks = false;
+    if (path.rays == 0) {
+      ray = generate_camera_path(scene_, random, id.pixel, u);
+    } else {
+      const Vec4 light = random.draw(light_block(path.rays));
+      const Scattering scattering =
+          Traits::Integrator::template surface<Traits>(scene_, ray, hit, path, limits_, u, light);
+      radiance = add_rounded(radiance, scattering.emitted);
+      ray = scattering.ray;
+      alive = scattering.alive;
+      asks = !is_black(scattering.shadow.radiance);
+      if (asks) {
+        const ShadowRay& shadow = scattering.shadow;
+        warp_.shadow_rays.store(
+            lane_, {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance}, 0);
+        for (int c = 0; c < 3; ++c) warp_.shadow_radiance[c][lane_] = shadow.radiance[c];
+        set_lanes(ray_, lanes_of(shadow.ray));
+        lanes_of(ray_).count(LanePoint::intersect);
+      }
+    }
+    if (alive) {
+      warp_.rays.store(lane_, {ray.origin, 0.0f, ray.direction, infinite_distance}, 0);
+      if (!asks) {
+        set_lanes(ray_, lanes_of(ray));
+        lanes_of(ray_).count(LanePoint::intersect);
+      }
+    }
+    if (!alive && !asks) samples_.store(path, radiance);
+    store(path, radiance, ray.direction);
+    state_ = asks ? (alive ? State::shadow_then_ray : State::shadow_then_end)
+                  : (alive ? State::ray : State::no_path);
+  }
+
+  const Scene& scene_;
+  const Source& source_;
+  const SampleBuffer& samples_;
+  const PathLimits& limits_;
+  Work& work_;
+  VotingWarp& warp_;
+  unsigned lane_;
+  CwbvhLane<PathQuery> ray_;
+  State state_ = State::no_path;
+};
+
+}  // namespace pt
