@@ -113,19 +113,19 @@ struct GeneratePaths {
 
 /// In place of GeneratePaths where Markov chains go on by themselves: a slot follows a chain from
 /// path to path, and when that has taken all of its steps the next of its chains, which are those
-/// whose number differs from the slot's by whole pools. Slots whose chains are done wait for
-/// nothing.
+/// whose number differs from the slot's by multiples of `all_slots`. Slots whose chains are done
+/// wait for nothing.
 template <class Source>
 struct ContinueChains {
   static constexpr StageId id = StageId::mutate;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
   StageContext<Source> context;
+  std::uint32_t first_slot, all_slots;  ///< see WaveBuffers
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const SampleBuffer& samples = context.samples;
-    const std::uint32_t step = context.pool.slot_count;
-    for (std::uint64_t chain = slot; chain < samples.path_count; chain += step) {
+    for (std::uint64_t chain = first_slot + slot; chain < samples.path_count; chain += all_slots) {
       const auto number = static_cast<std::uint32_t>(chain);
       if (continue_chain(*context.chains, samples.samples, number)) {
         start_path(scene, context, slot, number);

@@ -45,6 +45,9 @@ struct WaveBuffers {
   bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
   bool fused = false;           ///< --stages
   std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
+  // Pools that share a batch divide its Markov chains among all of their slots:
+  std::uint32_t first_slot = 0;  ///< this pool's, counted through all of them
+  std::uint32_t all_slots = 0;
   // The order of surfaces:
   bool orders_surfaces = false;
   bool shades_by_kind = false;            ///< --shade material: only where they are ordered
@@ -228,7 +231,7 @@ void continue_chains(Executor& execute, const WaveBuffers& b, const StageContext
   execute.compact(b.request<free_slot>(b.pool.tag));
   StageQueues free = b.stage_queues(id, b.waiting(id), b.pool.tag);
   free.next[queue_index(free_slot)] = nullptr;
-  execute.run(ContinueChains<Source>{context}, free);
+  execute.run(ContinueChains<Source>{context, b.first_slot, b.all_slots}, free);
 }
 
 /// Fused stages: every path in flight gets `wave_rays` more rays. With `starts_paths` all of them

@@ -1,7 +1,11 @@
-// The wavefront on the CPU: stages are parallel loops over oneTBB.
+// The wavefront on the CPU. Each thread has a pool of its own, small enough to stay in its caches,
+// and runs waves over it until the batch has no path left: threads share nothing but the number of
+// the next path.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 #include "common/device/cpu_renderer.h"
@@ -12,35 +16,107 @@
 namespace pt {
 namespace {
 
-// Enough paths for every thread of a large machine, few enough to stay in its caches.
-constexpr std::uint64_t auto_pool_size = std::uint64_t{1} << 16;
+// Enough that what a wave costs by itself does not show, few enough for a thread's own cache.
+constexpr std::uint64_t auto_slots_per_thread = 1024;
+
+/// The paths of a batch, handed out in runs of neighbours.
+class PathRuns {
+ public:
+  explicit PathRuns(std::uint32_t path_count) : path_count_(path_count) {}
+
+  bool is_empty() const { return next_.load(std::memory_order_relaxed) >= path_count_; }
+
+  /// Takes up to `length` paths, from `first` on; how many they are.
+  std::uint32_t take(std::uint32_t length, std::uint32_t& first) {
+    const std::uint64_t begin =
+        std::min(next_.fetch_add(length, std::memory_order_relaxed), path_count_);
+    first = static_cast<std::uint32_t>(begin);
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(length, path_count_ - begin));
+  }
+
+ private:
+  std::atomic<std::uint64_t> next_{0};
+  const std::uint64_t path_count_;
+};
+
+/// What a thread has of the pool.
+struct PoolPart {
+  std::uint32_t slot_count = 0;
+  WaveCounters counters{};
+  WaveBuffers buffers;
+  StageTimer timer;
+  std::vector<std::shared_ptr<void>> arrays;
+  // Of one thread: what runs in it waits for nobody, and takes no work of others meanwhile.
+  tbb::task_arena arena{1};
+
+  PoolPart(const WaveBuffers& common, const PathPool::Parts& parts, std::uint32_t slots)
+      : slot_count(slots), buffers(common) {
+    buffers.slot_count = &slot_count;
+    buffers.counters = &counters;
+    buffers.pool.slot_count = slot_count;
+    buffers.pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
+      return array<std::remove_pointer_t<decltype(p)>>(count);
+    });
+    buffers.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t places) {
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(places);
+    });
+  }
+
+  /// Before a batch: every slot is free, as the tags are after the one before.
+  void reset() {
+    counters = {};
+    if (!buffers.compaction.appends) return;
+    std::uint32_t* const free = buffers.queue(free_slot);
+    std::iota(free, free + slot_count, 0u);
+    *buffers.waiting(free_slot) = slot_count;
+  }
+
+ private:
+  // Zero-filled, so every slot is free.
+  template <class T>
+  T* array(std::uint64_t count) {
+    arrays.push_back(
+        std::shared_ptr<void>(new T[count]{}, [](void* p) { delete[] static_cast<T*>(p); }));
+    return static_cast<T*>(arrays.back().get());
+  }
+};
 
 class CpuExecutor {
  public:
-  CpuExecutor(const Scene& scene, const Options& options, StageTimer& timer, WaveCounters& counters,
-              std::uint32_t path_count, bool of_chains, std::uint32_t half_ring)
+  CpuExecutor(const Scene& scene, const Options& options, PoolPart& part, PathRuns& runs,
+              bool of_chains, std::uint32_t finish_paths)
       : scene_(scene),
         options_(options),
-        timer_(timer),
-        counters_(counters),
-        path_count_(of_chains ? 0 : path_count),
-        finish_paths_(of_chains ? 0 : static_cast<std::uint32_t>(options.finish_paths)),
-        half_ring_(half_ring) {}
+        part_(part),
+        runs_(runs),
+        of_chains_(of_chains),
+        finish_paths_(finish_paths) {}
 
   void compact(const CompactionRequest& request) {
     const TagPass pass = compaction_info(options_.compaction).pass;
     if (pass == TagPass::none) return;
-    timer_.time(to_string(StageId::compact), [&] { compact_cpu(pass, request); });
+    part_.timer.time(to_string(StageId::compact), [&] { compact_cpu(pass, request); });
   }
 
   void begin_wave() {
-    more_ = pt::begin_wave(counters_, path_count_, options_.regenerate, finish_paths_, half_ring_);
+    WaveCounters& c = part_.counters;
+    const bool starts_paths = options_.regenerate || c.waiting[queue_of<StageId::intersect>] == 0;
+    const std::uint32_t free = starts_paths ? c.waiting[queue_of<free_slot>] : 0;
+    std::uint32_t left = 0;
+    if (!of_chains_) {
+      // Every free slot gets a path as long as there are some. Where none is to start now, one that
+      // could says that there are more.
+      left = free > 0 ? runs_.take(free, c.next_path) : (runs_.is_empty() ? 0 : 1);
+    }
+    more_ = pt::begin_wave(c, c.next_path + left, starts_paths, finish_paths_,
+                           part_.buffers.half_ring());
   }
 
   bool more() const { return more_; }
 
   void order_surfaces(const SurfaceOrder& order) {
-    timer_.time(to_string(StageId::order_surfaces), [&] { order_surfaces_cpu(scene_, order); });
+    part_.timer.time(to_string(StageId::order_surfaces),
+                     [&] { order_surfaces_cpu(scene_, order); });
   }
 
   // They would take minutes to compile and gain nothing where threads do not run in warps.
@@ -52,15 +128,16 @@ class CpuExecutor {
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
     if (*queues.count == 0) return;
-    timer_.time(to_string(id_of(stage)), [&] { run_stage_cpu(stage, scene_, queues); });
+    part_.timer.time(to_string(id_of(stage)), [&] { run_stage_cpu(stage, scene_, queues); });
   }
 
  private:
   const Scene& scene_;
   const Options& options_;
-  StageTimer& timer_;
-  WaveCounters& counters_;
-  std::uint32_t path_count_, finish_paths_, half_ring_;
+  PoolPart& part_;
+  PathRuns& runs_;
+  bool of_chains_;
+  std::uint32_t finish_paths_;
   bool more_ = true;
 };
 
@@ -70,51 +147,40 @@ class WavefrontCpu : public CpuRenderer {
       : CpuRenderer(options, scene, options.threads) {
     const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
                                       static_cast<std::uint64_t>(options.spp);
-    pool_size_ = options.pool_size > 0 ? options.pool_size : std::min(auto_pool_size, image_paths);
-    buffers_.compaction = compaction_info(options_.compaction);
+    const auto threads = static_cast<std::uint64_t>(this->threads());
+    pool_size_ = options.pool_size > 0 ? options.pool_size
+                                       : std::min(threads * auto_slots_per_thread, image_paths);
     const bool fused = fuses_stages(options, traits_);
-    buffers_.fused = fused;
-    buffers_.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
     stages_ = to_string(fused ? Stages::fused : Stages::split);
-    buffers_.shades_by_kind = options.shade == Shade::material && !fused;
-    buffers_.orders_surfaces = (buffers_.compaction.orders && !fused) || buffers_.shades_by_kind;
-    buffers_.kinds = kinds_of(scene);
-    buffers_.only_triangles = scene_.has_only_triangles();
+    WaveBuffers common;
+    common.compaction = compaction_info(options.compaction);
+    common.fused = fused;
+    common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
+    common.shades_by_kind = options.shade == Shade::material && !fused;
+    common.orders_surfaces = (common.compaction.orders && !fused) || common.shades_by_kind;
+    common.kinds = kinds_of(scene);
+    common.only_triangles = scene_.has_only_triangles();
+    common.all_slots = static_cast<std::uint32_t>(pool_size_);
     const PathPool::Parts parts = {traits_.has_lights() && !fused,
                                    traits_.geometry == Geometry::mixed,
-                                   !buffers_.compaction.appends,
+                                   !common.compaction.appends,
                                    scene_.light_selector.has_tree(),
                                    options.layout,
                                    !fused};
     const std::uint64_t size_bytes =
-        pool_size_ * (PathPool::bytes_per_slot(parts) + buffers_.queue_bytes_per_slot());
+        pool_size_ * (PathPool::bytes_per_slot(parts) + common.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);
-    allocate(parts);
+    const std::uint64_t count = std::min(threads, pool_size_);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      common.first_slot = static_cast<std::uint32_t>(pool_size_ * i / count);
+      const std::uint64_t slots = pool_size_ * (i + 1) / count - common.first_slot;
+      parts_.push_back(
+          std::make_unique<PoolPart>(common, parts, static_cast<std::uint32_t>(slots)));
+    }
   }
 
  private:
-  void allocate(const PathPool::Parts& parts) {
-    PathPool& pool = buffers_.pool;
-    slot_count_ = pool.slot_count = static_cast<std::uint32_t>(pool_size_);
-    buffers_.slot_count = &slot_count_;
-    buffers_.counters = &counters_;
-    pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
-      return array<std::remove_pointer_t<decltype(p)>>(count);
-    });
-    buffers_.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t places) {
-      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(places);
-    });
-  }
-
-  // Zero-filled, so every slot is free.
-  template <class T>
-  T* array(std::uint64_t count) {
-    arrays_.push_back(
-        std::shared_ptr<void>(new T[count]{}, [](void* p) { delete[] static_cast<T*>(p); }));
-    return static_cast<T*>(arrays_.back().get());
-  }
-
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
@@ -122,34 +188,44 @@ class WavefrontCpu : public CpuRenderer {
                       [&](auto traits) {
                         dispatch_branching<decltype(traits)>(
                             options_.branching, [&](auto branching) {
-                              run_waves<decltype(traits), branching()>(source, batch);
+                              run_parts<decltype(traits), branching()>(source, batch);
                             });
                       });
     });
   }
 
   template <class Traits, Branching branching, class Source>
-  void run_waves(const Source& source, const SampleBuffer& batch) {
-    counters_ = {};
-    if (buffers_.compaction.appends) {  // every slot begins in the queue of the free ones
-      std::uint32_t* free = buffers_.queue(free_slot);
-      std::iota(free, free + slot_count_, 0u);
-      *buffers_.waiting(free_slot) = slot_count_;
+  void run_parts(const Source& source, const SampleBuffer& batch) {
+    PathRuns runs(batch.path_count);
+    tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t i) {
+      PoolPart& part = *parts_[i];
+      part.arena.execute([&] { run_waves<Traits, branching>(source, batch, part, runs); });
+    });
+    for (const auto& part : parts_) {
+      waves_ += part->counters.waves;
+      timer_.add(part->timer, 1.0 / static_cast<double>(parts_.size()));
+      part->timer.reset();
     }
-    const StageContext<Source> context{
-        buffers_.pool, batch,   source, &counters_, buffers_.queue(StageId::intersect),
-        limits_,       chains()};
-    CpuExecutor execute(scene_, options_, timer_, counters_, batch.path_count, chains() != nullptr,
-                        buffers_.half_ring());
-    while (execute.more()) run_wave<Traits, branching>(execute, buffers_, context);
-    if (chains() == nullptr) run_finish<Traits>(execute, buffers_, context);
-    waves_ += counters_.waves;
   }
 
-  std::uint32_t slot_count_ = 0;
-  WaveCounters counters_{};
-  WaveBuffers buffers_;
-  std::vector<std::shared_ptr<void>> arrays_;
+  template <class Traits, Branching branching, class Source>
+  void run_waves(const Source& source, const SampleBuffer& batch, PoolPart& part,
+                 PathRuns& runs) const {
+    part.reset();
+    const WaveBuffers& buffers = part.buffers;
+    const bool of_chains = this->chains() != nullptr;
+    const StageContext<Source> context{
+        buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
+        this->limits_, this->chains()};
+    const std::uint64_t finish_paths =
+        of_chains ? 0 : static_cast<std::uint64_t>(options_.finish_paths) / parts_.size();
+    CpuExecutor execute(scene_, options_, part, runs, of_chains,
+                        static_cast<std::uint32_t>(finish_paths));
+    while (execute.more()) run_wave<Traits, branching>(execute, buffers, context);
+    if (!of_chains) run_finish<Traits>(execute, buffers, context);
+  }
+
+  std::vector<std::unique_ptr<PoolPart>> parts_;
 };
 
 }  // namespace

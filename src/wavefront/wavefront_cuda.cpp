@@ -91,7 +91,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   }
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
-  pool.slot_count = static_cast<std::uint32_t>(n);
+  pool.slot_count = buffers_.all_slots = static_cast<std::uint32_t>(n);
   pool.allocate_arrays(parts_, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });

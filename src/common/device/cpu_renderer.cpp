@@ -38,15 +38,21 @@ void check_host_memory(std::uint64_t size_bytes, const std::string& purpose) {
   if (size_bytes > available) throw memory_error("memory", purpose, size_bytes, available);
 }
 
-void StageTimer::add(const std::string& stage, std::chrono::duration<double, std::milli> elapsed) {
+void StageTimer::add(const StageTime& time) {
   for (StageTime& entry : stages_) {
-    if (entry.stage == stage) {
-      entry.time_ms += elapsed.count();
-      ++entry.launches;
+    if (entry.stage == time.stage) {
+      entry.time_ms += time.time_ms;
+      entry.launches += time.launches;
       return;
     }
   }
-  stages_.push_back({stage, elapsed.count(), 1});
+  stages_.push_back(time);
+}
+
+void StageTimer::add(const StageTimer& other, double share) {
+  for (const StageTime& entry : other.stages_) {
+    add({entry.stage, share * entry.time_ms, entry.launches});
+  }
 }
 
 namespace {

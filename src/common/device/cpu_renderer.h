@@ -20,13 +20,17 @@ class StageTimer {
   void time(const std::string& stage, Function&& function) {
     const auto start = std::chrono::steady_clock::now();
     function();
-    add(stage, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start));
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start;
+    add({stage, elapsed.count(), 1});
   }
+  /// Adds the times of another clock, each multiplied by `share`, and its launches.
+  void add(const StageTimer& other, double share);
   void reset() { stages_.clear(); }
   const std::vector<StageTime>& stages() const { return stages_; }
 
  private:
-  void add(const std::string& stage, std::chrono::duration<double, std::milli> elapsed);
+  void add(const StageTime& time);
   std::vector<StageTime> stages_;
 };
 
@@ -58,6 +62,7 @@ class CpuRenderer : public FilmRenderer {
   const ChainRun* chains() const { return chains_go_on_ ? &chain_run_ : nullptr; }
 
   void note_memory(const char* name, std::uint64_t size_bytes);
+  int threads() const { return threads_; }
 
   const SceneTraits traits_;
   const Scene scene_;
