@@ -73,7 +73,7 @@ TEST(Ajar, IsClosedAndItsRoomsMeetInTheDoorwayAlone) {
         << "through the wall at " << crossing.x << ", " << crossing.y;
     // Beyond the door, not its front.
     const double angle = std::atan2(-(o + t * d).z, (o + t * d).x - AjarDoorway::left);
-    others += angle > 0 && angle < 5.9 * pi_double / 180;
+    others += angle > 0 && angle < 1.9 * pi_double / 180;
   }
   EXPECT_GT(others, rays / 10'000) << "the door is shut";
   EXPECT_LT(others, rays / 50) << "the door is wide open";

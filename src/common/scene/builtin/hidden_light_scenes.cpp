@@ -7,7 +7,7 @@ namespace pt {
 namespace {
 
 constexpr float half_width = 2.0f, room_height = 2.6f, front = 4.0f, back = -3.0f;
-constexpr float door_degrees = 6.0f, door_thickness = 0.04f;
+constexpr float door_degrees = 2.0f, door_thickness = 0.04f;
 
 /// Two rooms that share floor, ceiling and side walls, and the wall between them.
 void add_rooms(SceneData& scene) {
@@ -42,7 +42,7 @@ void add_door(SceneData& scene) {
 
 void add_lamp_stand(SceneData& scene) {
   const auto dark = scene.add_material(make_diffuse(Color(0.1f)));
-  const auto lamp = scene.add_material(make_diffuse(Color(0.0f), {9600.0f, 8400.0f, 6600.0f}));
+  const auto lamp = scene.add_material(make_diffuse(Color(0.0f), {28800.0f, 25200.0f, 19800.0f}));
   constexpr float x = 1.1f, z = -1.2f, half = 0.2f, top = AjarDoorway::lamp_height;
   scene.add_quad({x - half, top, z - half}, {0, 0, 2 * half}, {2 * half, 0, 0}, lamp);
   add_quad_box(scene, {x, top - 0.03f, z}, {2 * half, 0.05f, 2 * half}, 0.0f, dark);
