@@ -100,7 +100,8 @@ class CpuExecutor {
 
   void begin_wave() {
     WaveCounters& c = part_.counters;
-    const bool starts_paths = options_.regenerate || c.waiting[queue_of<StageId::intersect>] == 0;
+    const bool is_empty = c.waiting[queue_of<StageId::intersect>] == c.next_first_ray;
+    const bool starts_paths = options_.regenerate || is_empty;
     const std::uint32_t free = starts_paths ? c.waiting[queue_of<free_slot>] : 0;
     std::uint32_t left = 0;
     if (!of_chains_) {
