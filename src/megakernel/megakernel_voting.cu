@@ -30,7 +30,7 @@ __global__ void __launch_bounds__(block_max, blocks_least)
   order.fill();
   __syncthreads();
   ThreadWork work(division, batch);
-  uint2 stack[bvh_depth_max];
+  uint2 stack[voting_stack_size];
   VotingTracer<VotingTraits, SamplerSource, ThreadWork> tracer(
       scene, source, batch, limits, work, order, warps[threadIdx.x / 32], threadIdx.x % 32, stack);
   tracer.run();

@@ -37,6 +37,15 @@ class PathQuery : public ClosestTriangle {
   __device__ PathQuery(float t_min, float t_max, bool is_shadow = false)
       : ClosestTriangle(t_min, t_max), is_shadow_(is_shadow) {}
 
+  /// One that has met nothing nearer than `t`, which is `primitive` or, without one, the end.
+  __device__ static PathQuery resumed(const TriangleTree& tree, float t, std::uint32_t primitive,
+                                      bool is_shadow) {
+    const bool has_hit = primitive != no_primitive;
+    PathQuery query(0.0f, has_hit ? infinite_distance : t, is_shadow);
+    if (has_hit) query.offer(tree, t, primitive, 0);
+    return query;
+  }
+
   /// As AnyTriangle says: the first hit that counts lies nearer than t_max.
   __device__ bool offer_nearer(const TriangleTree& tree, const MetTriangle& a,
                                const MetTriangle& b) {
@@ -47,6 +56,10 @@ class PathQuery : public ClosestTriangle {
  private:
   bool is_shadow_;
 };
+
+/// Of a lane, where it is in the tree and what it has met, while others are shaded: in its stack's
+/// memory, beyond the stack.
+inline constexpr int voting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
 
 /// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
 /// opened anew for each draw; Work: see trace_path.h.
@@ -63,7 +76,8 @@ class VotingTracer {
         work_(work),
         warp_(warp),
         lane_(lane),
-        ray_(scene.triangles, order, stack) {}
+        ray_(scene.triangles, order, stack),
+        parked_(stack + bvh_depth_max) {}
 
   /// By the whole warp; returns when no paths are left.
   __device__ __forceinline__ void run() {
@@ -164,6 +178,7 @@ class VotingTracer {
     Ray ray;
     Hit hit;
     bool ended = waits && state_ != State::ray;
+    park();
     if (waits && state_ == State::shadow_then_end) {
       samples_.store(load_path(), lit_radiance());
     } else if (waits && state_ == State::ray) {
@@ -193,11 +208,23 @@ class VotingTracer {
     }
     const bool works = waits && state_ != State::idle;
     if (works) go_on(path, radiance, ray, hit);
-    // All lanes: so the rays of those that were traversing need no registers meanwhile.
+    unpark();
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
     ray_.set_ray(prepared);
     if (works && state_ != State::no_path) begin(prepared);
+  }
+
+  /// All lanes: so those that were traversing need no registers while others are shaded.
+  __device__ void park() {
+    ray_.park(parked_);
+    volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
+    met.x = __float_as_uint(ray_.query().t_max()), met.y = ray_.query().result().primitive;
+  }
+  __device__ void unpark() {
+    const volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
+    const float t = __uint_as_float(met.x);
+    ray_.unpark(parked_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
   }
 
   /// A path begins at the camera or goes on from a surface.
@@ -247,6 +274,7 @@ class VotingTracer {
   VotingWarp& warp_;
   unsigned lane_;
   CwbvhLane<PathQuery> ray_;
+  volatile uint2* parked_;
   State state_ = State::no_path;
 };
 

@@ -60,7 +60,7 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   EXPECT_THROW(check_scene_options(voting, masked), Error);
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
     EXPECT_EQ(refusal(scene, "kernel", "vote"),
-              "--kernel vote: traces triangles alone; scene '" + scene.substr(0, scene.find(':')) +
+              "--kernel vote: traces triangles alone; scene '" + scene +
                   "' has spheres, instances, masks or no triangles, expected auto or loop");
     EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
   }

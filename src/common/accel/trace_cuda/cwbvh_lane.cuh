@@ -51,6 +51,24 @@ class CwbvhLane {
     triangle_ray_ = ray.triangles;
   }
 
+  /// So many places park() needs.
+  static constexpr int parked_size = 3;
+
+  /// Puts away where the lane is in the tree, for code between two steps that needs all registers.
+  /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
+  /// step changes them.
+  __device__ void park(volatile uint2* place) const {
+    place[0].x = nodes_.base, place[0].y = nodes_.bits;
+    place[1].x = leaves_.base, place[1].y = leaves_.bits;
+    place[2].x = static_cast<std::uint32_t>(depth_);
+  }
+  __device__ void unpark(const volatile uint2* place, const Query& query) {
+    nodes_ = {place[0].x, place[0].y};
+    leaves_ = {place[1].x, place[1].y};
+    depth_ = static_cast<int>(place[2].x);
+    query_ = query;
+  }
+
   __device__ void step() {
     lanes_of(*this).count(LanePoint::node);
     const std::uint32_t octant = nodes_.bits & 0x700u;
