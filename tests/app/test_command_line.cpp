@@ -377,7 +377,7 @@ TEST(Refused, Blocks) {
       {"--stage-block 0", "--stage-block 0: expected a whole number of threads from 1 to 1,024"},
       {"--stage-block 1025", "--stage-block 1025: expected a whole number of threads"},
       {"--stage-block intersect=0", "--stage-block 0: expected a whole number of threads"},
-      {"--stage-block trace=64", "--stage-block trace: expected one of generate, intersect"},
+      {"--stage-block trace=64", "--stage-block trace: expected one of generate, mutate"},
       {"--stage-block shadow=64,64", "--stage-block shadow=64,64: expected a number"},
       {"--stage-block shadow=64,shadow=32", "names shadow twice"},
   });
