@@ -138,9 +138,26 @@ PT_HD CwbvhLeaf take_leaf(CwbvhGroup& group) {
           (group.bits >> 16 & lowest) != 0 ? 2u : 1u};
 }
 
+/// How nodes and leaves are tested: one box, one triangle after the other.
+struct CwbvhTests {
+  PT_HD static CwbvhNode load(const CwbvhNode* node) { return load_wide(node); }
+  PT_HD static std::uint32_t node(const CwbvhNode& node, const CwbvhRay& ray, float t_min,
+                                  float t_max) {
+    return intersect_cwbvh_node(node, ray, t_min, t_max);
+  }
+
+  /// Offers `leaf` to the query, and as many of `leaves`, which it takes out, as it likes to test
+  /// with it; true: the traversal ends.
+  template <class Query>
+  PT_HD static bool offer(const TriangleTree& tree, const TriangleRay& ray, const CwbvhLeaf& leaf,
+                          CwbvhGroup& /*leaves*/, Query& query) {
+    return offer_slots(tree, ray, leaf.first, leaf.count, query);
+  }
+};
+
 /// `instanced`: the tree may have instances.
-template <bool instanced, class Query>
-PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query) {
+template <bool instanced, class Tests, class Query>
+PT_HD void traverse_cwbvh_by(const TriangleTree& tree, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || tree.triangle_count == 0) return;
   constexpr int in_world = -1, only_level = -2;
   CwbvhGroup stack[instanced ? 2 * bvh_depth_max + 2 : bvh_depth_max];
@@ -156,10 +173,10 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
       lanes_of(ray).count(LanePoint::node);
       const std::uint32_t child = take_child(nodes, local.octant);
       if (nodes.has_slots()) stack[depth++] = nodes;
-      const CwbvhNode node = load_wide(&tree.cwbvh[child]);
+      const auto& node = Tests::load(&tree.cwbvh[child]);
       const bool inside = instanced && entered >= 0;
-      const std::uint32_t hits = intersect_cwbvh_node(
-          node, local, query.t_min(), inside ? visit.limit(query.t_max()) : query.t_max());
+      const std::uint32_t hits = Tests::node(node, local, query.t_min(),
+                                             inside ? visit.limit(query.t_max()) : query.t_max());
       nodes = inner_group(node, hits, local.octant);
       leaves = leaf_group(node, hits);
     }
@@ -183,7 +200,7 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
         }
       } else {
         lanes_of(ray).count(LanePoint::primitive);
-        if (offer_slots(tree, local.triangles, leaf.first, leaf.count, query)) return;
+        if (Tests::offer(tree, local.triangles, leaf, leaves, query)) return;
       }
     }
     if (nodes.has_slots()) continue;
@@ -195,6 +212,11 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
     const CwbvhGroup group = stack[--depth];
     (group.is_of_leaves() ? leaves : nodes) = group;
   }
+}
+
+template <bool instanced, class Query>
+PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query) {
+  traverse_cwbvh_by<instanced, CwbvhTests>(tree, ray, query);
 }
 
 /// The closest hit with t_min < t < t_max; t_min >= 0.

@@ -12,10 +12,15 @@ namespace pt {
 Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 
-/// By threads that follow a ray each; not for embree, which has traversals of its own.
+// Of traverse_cwbvh_avx2.cpp, likewise; without has_avx2() they must not be called.
+bool has_avx2();
+Hit closest_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);
+bool any_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);
+
+/// By threads that follow a ray each; not for those that have traversals of their own.
 template <Accel accel, bool instanced, class Query>
 PT_HD void traverse_triangles(const TriangleTree& tree, const Ray& ray, Query& query) {
-  static_assert(accel != Accel::embree);
+  static_assert(accel != Accel::embree && accel != Accel::cwbvh_avx2);
   if constexpr (accel == Accel::brute) traverse_triangles_brute<instanced>(tree, ray, query);
   if constexpr (accel == Accel::bvh2) traverse_triangles_bvh2<instanced>(tree, ray, query);
   if constexpr (accel == Accel::cwbvh) traverse_cwbvh<instanced>(tree, ray, query);
@@ -30,6 +35,8 @@ PT_HD Hit closest_triangle(const TriangleTree& tree, const Ray& ray, float t_min
     return closest_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
   } else if constexpr (accel == Accel::cwbvh) {
     return closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::cwbvh_avx2) {
+    return closest_triangle_avx2(tree, ray, t_min, t_max);
   } else {
     return closest_triangle_embree(*tree.embree, ray, t_min, t_max);
   }
@@ -44,6 +51,8 @@ PT_HD bool any_triangle(const TriangleTree& tree, const Ray& ray, float t_min, f
     return any_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
   } else if constexpr (accel == Accel::cwbvh) {
     return any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
+  } else if constexpr (accel == Accel::cwbvh_avx2) {
+    return any_triangle_avx2(tree, ray, t_min, t_max);
   } else {
     return any_triangle_embree(*tree.embree, ray, t_min, t_max);
   }

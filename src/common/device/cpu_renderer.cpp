@@ -63,11 +63,19 @@ Scene seeded_view(const SceneData& scene, const Options& options) {
   return view;
 }
 
+/// The scene's, and what this processor makes of its wide tree; masks have no such kernels.
+SceneTraits cpu_traits(SceneTraits traits) {
+  if (traits.accel == Accel::cwbvh && !traits.has_masks && has_avx2()) {
+    traits.accel = Accel::cwbvh_avx2;
+  }
+  return traits;
+}
+
 }  // namespace
 
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
     : FilmRenderer(options, scene),
-      traits_(scene.traits),
+      traits_(cpu_traits(scene.traits)),
       scene_(seeded_view(scene, options)),
       threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
       arena_(threads_),

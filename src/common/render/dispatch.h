@@ -37,7 +37,9 @@ using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lig
                                     Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
                                     Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
 using CpuTriangleSceneKinds = decltype(concatenate(
-    TriangleSceneKinds{}, TypeList<Traits<Accel::embree, Geometry::mixed, Lighting::full>,
+    TriangleSceneKinds{}, TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
+                                   Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,
+                                   Traits<Accel::embree, Geometry::mixed, Lighting::full>,
                                    Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
 using CpuSceneKinds = decltype(concatenate(SphereSceneKinds{}, CpuTriangleSceneKinds{}));
 

@@ -6,6 +6,7 @@
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/error.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
@@ -15,14 +16,20 @@
 namespace pt {
 namespace {
 
-/// Persistent warps make the most of wide trees; for threads that follow rays alone binary ones are
-/// faster (results/ has the measurement).
+bool is_on_cuda(const Options& options) {
+  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+}
+
+/// Persistent warps and AVX2 make the most of wide trees; for threads that follow rays alone binary
+/// ones are faster (results/ and docs/cpu.md have the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
+  if (!is_on_cuda(options)) {
+    return has_avx2() && scene.opacities.empty() ? Accel::cwbvh : Accel::bvh2;
+  }
   const bool warps_persist =
       (options.mode == Mode::wavefront && compaction_info(options.compaction).appends) ||
       (options.mode == Mode::megakernel && options.kernel == MegakernelKind::vote);
-  const bool persistent = options.device.kind == DeviceChoice::Kind::cuda && warps_persist &&
-                          scene.instances.empty() && scene.spheres.empty();
+  const bool persistent = warps_persist && scene.instances.empty() && scene.spheres.empty();
   return persistent ? Accel::cwbvh : Accel::bvh2;
 }
 
@@ -39,10 +46,6 @@ Accel structure_of(const SceneData& scene, const Options& options) {
     default:
       return automatic_structure(scene, options);
   }
-}
-
-bool is_on_cuda(const Options& options) {
-  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
 }
 
 /// All meshes' attributes as one array of vertices; triangles are numbered through the meshes.
