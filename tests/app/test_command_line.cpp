@@ -47,7 +47,7 @@ const std::map<std::string, std::string>& other_values() {
       {"multiple-scattering", "on"},
       {"shade", "material"},
       {"stages", "fused"},
-      {"wave-rays", "2"},
+      {"wave-rays", "3"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},
       {"exposure", "-1.5"},

@@ -155,8 +155,8 @@ void add_metropolis(std::vector<OptionEntry>& list) {
            "smallest is a sixteenth of it")
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
            "Paths that measure the image's brightness and where chains\n"
-           "begin; auto: a sixteenth of the mutations, at least 2^20 on\n"
-           "CUDA, 2^17 on the CPU, and at most eight times as many");
+           "begin; auto: half of the mutations, at least 2^20 on CUDA,\n"
+           "2^17 on the CPU, and at most 64 times as many");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {
@@ -250,7 +250,8 @@ void add_execution(std::vector<OptionEntry>& list) {
            "megakernel on CUDA: a loop in which each turn traces a ray of\n"
            "every lane to its end, or warps that vote on what to do next:\n"
            "steps down a wide tree, tests of triangles, or shading; auto:\n"
-           "vote with --accel cwbvh in scenes of triangles alone")
+           "vote in scenes of triangles alone, if they have one kind of\n"
+           "BSDF or --accel is cwbvh")
       .only(megakernel, cuda)
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"

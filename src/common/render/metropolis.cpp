@@ -110,12 +110,13 @@ MetropolisStats statistics_of(const ChainPlan& plan, const ChainStarts& starts,
   return stats;
 }
 
-/// A sixteenth of the mutations, so that b gets better as the rest of the image does, but neither
-/// too few to find rare light nor so many that the host's share of the work is felt.
+/// Half of the mutations, within bounds. Where light is hard to find chains seldom leave the path
+/// at which they begin, so that many beginnings are worth more than many steps (results/).
 std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& defaults,
                                   std::uint64_t pixels) {
-  if (o.time_limit > 0) return defaults.bootstrap;  // nobody knows how many mutations there will be
-  return std::clamp(mutations_of(pixels, o.spp) / 16, defaults.bootstrap, 8 * defaults.bootstrap);
+  const std::uint64_t least = defaults.bootstrap;
+  if (o.time_limit > 0) return 8 * least;  // nobody knows how many mutations there will be
+  return std::clamp(mutations_of(pixels, o.spp) / 2, least, 64 * least);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct ChainPlan {
 /// What a device takes where --chains and --bootstrap say nothing.
 struct ChainDefaults {
   std::uint64_t chains = std::uint64_t{1} << 13;
-  std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; a sixteenth of the mutations
+  std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; half of the mutations
   std::uint64_t turn = std::uint64_t{1} << 16;       ///< mutations between two looks at the clock
 };
 

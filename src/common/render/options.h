@@ -99,7 +99,7 @@ struct Options {
   // Of IntegratorKind::mlt (docs/metropolis.md)
   std::uint64_t chains = 0;             ///< Markov chains, 0: automatic
   float large_step_probability = 0.3f;  ///< in (0, 1]
-  float mutation_size = 0.015625f;      ///< largest small step of a number, in (0, 1/2]
+  float mutation_size = 0.00390625f;    ///< largest small step of a number, in (0, 1/2]
   std::uint64_t bootstrap = 0;          ///< samples before the chains, 0: automatic
   bool multiple_scattering = false;     ///< of rough conductors, between their facets
   std::uint64_t seed = 1;
@@ -137,7 +137,7 @@ struct Options {
   bool persistent = true;             ///< warps trace queues where they can (CUDA)
   Shade shade = Shade::automatic;     ///< wavefront: who shades surfaces
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
-  int wave_rays = 1;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
+  int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
   int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
   StageBlocks stage_block = default_stage_blocks();

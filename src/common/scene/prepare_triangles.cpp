@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
@@ -11,6 +12,7 @@
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
+#include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
 
 namespace pt {
@@ -18,6 +20,16 @@ namespace {
 
 bool is_on_cuda(const Options& options) {
   return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+}
+
+/// Whether the megakernel's warps vote if nobody says how they work. They win where a ray costs
+/// more than its shading: with several kinds of BSDFs they wait for these (results/ has the
+/// measurement).
+bool votes_by_itself(const SceneData& scene, const Options& options) {
+  const int threads = options.block.x * options.block.y;
+  return options.kernel == MegakernelKind::automatic && options.work == Work::persistent &&
+         threads % 32 == 0 && threads <= 256 && scene.opacities.empty() &&
+         std::has_single_bit(kinds_of(scene));
 }
 
 /// Persistent warps and AVX2 make the most of wide trees; for threads that follow rays alone binary
@@ -28,7 +40,8 @@ Accel automatic_structure(const SceneData& scene, const Options& options) {
   }
   const bool warps_persist =
       (options.mode == Mode::wavefront && compaction_info(options.compaction).appends) ||
-      (options.mode == Mode::megakernel && options.kernel == MegakernelKind::vote);
+      (options.mode == Mode::megakernel &&
+       (options.kernel == MegakernelKind::vote || votes_by_itself(scene, options)));
   const bool persistent = warps_persist && scene.instances.empty() && scene.spheres.empty();
   return persistent ? Accel::cwbvh : Accel::bvh2;
 }
