@@ -3,7 +3,6 @@
 
 #include "common/device/bind_scene.cuh"
 #include "common/device/stage_stamp.cuh"
-#include "common/film/markov_chains.h"
 #include "megakernel/trace_path.h"
 
 namespace pt {
@@ -13,7 +12,6 @@ struct WorkDivision {
   Work work;
   std::uint32_t width, height;
   std::uint32_t* next_path;  ///< persistent: paths handed out so far
-  const ChainRun* chains;    ///< that go on by themselves, whatever `work` says; else null
 };
 
 /// Paths that a persistent warp fetches at once: few atomic operations, and an even end.
@@ -24,8 +22,7 @@ class ThreadWork {
  public:
   __device__ ThreadWork(const WorkDivision& division, const SampleBuffer& batch)
       : division_(division), batch_(batch), warp_(__activemask()) {
-    if (division.chains != nullptr) next_ = thread_number();
-    if (division.chains != nullptr || division.work == Work::persistent) return;
+    if (division.work == Work::persistent) return;
     // pixel: a thread for every pixel, its samples one after the other.
     // sample: the third dimension of the grid is the sample.
     const std::uint32_t x = blockIdx.x * blockDim.x + threadIdx.x;
@@ -39,7 +36,6 @@ class ThreadWork {
   __device__ bool any(bool value) const { return __any_sync(warp_, value); }
 
   __device__ bool next(std::uint32_t& number, bool wanted) {
-    if (division_.chains != nullptr) return continue_chains(number, wanted);
     if (division_.work == Work::persistent) return fetch(number, wanted);
     if (!wanted) return true;
     if (next_ >= end_) return false;
@@ -49,20 +45,6 @@ class ThreadWork {
   }
 
  private:
-  __device__ static std::uint32_t thread_number() {
-    return (blockIdx.x * blockDim.y + threadIdx.y) * blockDim.x + threadIdx.x;
-  }
-
-  /// A thread follows a chain from path to path, then the next of its chains.
-  __device__ bool continue_chains(std::uint32_t& number, bool wanted) {
-    if (!wanted) return true;
-    for (; next_ < batch_.path_count; next_ += gridDim.x * blockDim.y * blockDim.x) {
-      number = next_;
-      if (continue_chain_apart(division_.chains, batch_.samples, number)) return true;
-    }
-    return false;
-  }
-
   /// The warp owns the paths [next_, end_), the same in all of its threads; when they run out in
   /// the middle of a request, one of them fetches more for all.
   __device__ bool fetch(std::uint32_t& number, bool wanted) {

@@ -10,7 +10,7 @@ namespace pt {
 template <class Kernel>
 dim3 MegakernelCuda::grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes,
                                const SampleBuffer& batch) {
-  if (options_.work == Work::persistent || chains() != nullptr) {
+  if (options_.work == Work::persistent) {
     return dim3(resident_blocks(reinterpret_cast<const void*>(kernel),
                                 static_cast<int>(block.x * block.y), shared_bytes));
   }
@@ -24,8 +24,7 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        std::size_t shared_bytes, const Source& source,
                                        const SampleBuffer& batch) {
   const dim3 block(options_.block.x, options_.block.y);
-  const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_,
-                              chains()};
+  const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
   // Only where brute force scans the spheres do they lie elsewhere than in global memory.
   using Kinds = std::conditional_t<memory == SceneMemory::global,
                                    KindsWith<Source, TriangleSceneKinds>, BruteSphereKinds>;

@@ -47,8 +47,7 @@ bool MegakernelCuda::can_vote() const {
 void MegakernelCuda::launch_voting(const SamplerSource& source, const SampleBuffer& batch) {
   const int threads = options_.block.x * options_.block.y;
   const std::size_t shared_bytes = shared_bytes_of(threads);
-  const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_,
-                              chains()};
+  const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_};
   const std::uint32_t blocks =
       resident_blocks(reinterpret_cast<const void*>(voting_megakernel), threads, shared_bytes);
   launch("megakernel", voting_megakernel, blocks, threads, shared_bytes, scene_, batch, division,

@@ -21,7 +21,7 @@ struct BlockTally {
     __syncthreads();
   }
 
-  __device__ void count(int bin, std::uint32_t paths = 1) { atomicAdd(&lengths[bin], paths); }
+  __device__ void count(int bin) { atomicAdd(&lengths[bin], 1u); }
 
   /// All but the lengths.
   __device__ void add(const PathTally& mine) {

@@ -45,6 +45,8 @@ class CudaRenderer : public FilmRenderer {
   /// Fills in what the layout of the data lets expect of each launch of the last batch.
   virtual void predict_bytes(std::vector<LaunchCounters>& /*launches*/) const {}
 
+  /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
+  virtual bool lets_chains_go_on() const { return true; }
   /// Null: the batch is of paths. Else, in the device's memory, of chains that go on by themselves
   /// (continue_chain); so it is from prepare_batch on.
   const ChainRun* chains() const { return chains_go_on_ ? chain_run_ : nullptr; }
@@ -165,6 +167,7 @@ class CudaRenderer : public FilmRenderer {
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
   ChainRun* chain_run_ = nullptr;
   bool chains_go_on_ = false;
+  std::uint32_t chain_steps_ = 0;  ///< that each chain has taken where none goes on by itself
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
   std::unique_ptr<CounterSession> counters_;           ///< while they are read

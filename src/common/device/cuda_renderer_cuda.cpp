@@ -295,6 +295,7 @@ void CudaRenderer::begin_chains(const ChainWindow& window) {
   check_cuda(cudaMemcpyAsync(chain_arrays_.chains, &chains, sizeof chains, cudaMemcpyHostToDevice,
                              stream_),
              "cudaMemcpyAsync");
+  chain_steps_ = 0;
   clear_chain_sums();
 }
 
@@ -329,6 +330,10 @@ void CudaRenderer::run_chains(std::uint32_t paths, const ChainStep& step, Render
 
 void CudaRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                                  RenderRun& run) {
+  if (!lets_chains_go_on()) {
+    for (; chain_steps_ < last; ++chain_steps_) run_chains(chains, step, run);
+    return;
+  }
   const SampleBuffer batch = chain_batch(chains);
   const ProfilerRange range(fmt::format("{} chains up to step {}", chains, last));
   const ChainRun chain_run{chain_arrays_, step, last};

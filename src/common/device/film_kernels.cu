@@ -19,29 +19,6 @@ __global__ void render_init(CurandState* states, SampleBuffer batch, std::uint64
 
 namespace {
 
-/// How many paths of a few rays a thread has met. Most paths are so short, and lanes that add to
-/// one address of shared memory wait for each other.
-class ShortPaths {
- public:
-  /// False: the path is a longer one.
-  __device__ bool count(int bin) {
-    PT_UNROLL(3)
-    for (int k = 0; k < bins; ++k) counts_[k] += bin == k ? 1 : 0;
-    return bin < bins;
-  }
-
-  __device__ void add_to(BlockTally& block) const {
-    PT_UNROLL(3)
-    for (int k = 0; k < bins; ++k) {
-      if (counts_[k] > 0) block.count(k, counts_[k]);
-    }
-  }
-
- private:
-  static constexpr int bins = 3;
-  std::uint32_t counts_[bins] = {};
-};
-
 // Called by all threads of a block, which has at most 1024.
 template <class MakeSum>
 __device__ void accumulate_block(const SampleBuffer& batch, PathTally* tally, MakeSum make_sum) {
@@ -50,11 +27,7 @@ __device__ void accumulate_block(const SampleBuffer& batch, PathTally* tally, Ma
   const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
   if (pixel < batch.pixel_count.divisor()) {
     PathTally mine;  // its lengths are not used: those of all threads go to shared memory
-    ShortPaths short_paths;
-    accumulate_pixel(make_sum(pixel), batch, pixel, mine, [&](int bin) {
-      if (!short_paths.count(bin)) block.count(bin);
-    });
-    short_paths.add_to(block);
+    accumulate_pixel(make_sum(pixel), batch, pixel, mine, [](int bin) { block.count(bin); });
     block.add(mine);
   }
   block.end(tally);
