@@ -28,7 +28,9 @@ SceneData lamp_row() {
   scene.instances.push_back({1, translate({-4, 1, 0}) * scale(Vec3(1.5f, 1, 1))});
   scene.instances.push_back({1, translate({-1, 1, 0}) * scale(Vec3(0.5f, 1, 0.6f))});
   scene.add_sphere({5, 1, 0}, 0.4f, glow[0]);
-  prepare_scene(scene, Options());
+  Options options;
+  options.accel = AccelKind::bvh2;  // as the kernels' traits below
+  prepare_scene(scene, options);
   return scene;
 }
 

@@ -16,6 +16,7 @@ Options mlt_options(const Settings& more) {
                                {"spp", "20"},
                                {"max-depth", "6"},
                                {"chains", "997"},
+                               {"mutation-size", "0.015625"},
                                {"bootstrap", "5000"}}),
               more);
 }

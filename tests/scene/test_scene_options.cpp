@@ -66,19 +66,26 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   }
 }
 
-// Threads that follow rays alone are faster in a binary tree, and warps that vote in a wide one.
+// Threads that follow rays alone are faster in a binary tree, and warps that vote in a wide one;
+// these decide by themselves where all surfaces have one kind of BSDF and the blocks suit them.
 TEST(SceneOptions, VotesTakeAWideTree) {
-  for (const auto& [kernel, accel] : {std::pair{MegakernelKind::vote, Accel::cwbvh},
-                                      {MegakernelKind::loop, Accel::bvh2},
-                                      {MegakernelKind::automatic, Accel::bvh2}}) {
-    Options options = with_scene("boxes");
+  const auto accel_of = [](const char* name, MegakernelKind kernel, BlockSize block = {}) {
+    Options options = with_scene(name);
     options.device.kind = DeviceChoice::Kind::cuda;
     options.mode = Mode::megakernel;
     options.kernel = kernel;
+    options.block = block;
     SceneData scene = build_scene(options);
     prepare_scene(scene, options);
-    EXPECT_EQ(scene.traits.accel, accel) << to_string(kernel);
-  }
+    return scene.traits.accel;
+  };
+  using enum MegakernelKind;
+  EXPECT_EQ(accel_of("boxes", vote), Accel::cwbvh);
+  EXPECT_EQ(accel_of("boxes", loop), Accel::bvh2);
+  EXPECT_EQ(accel_of("boxes", automatic), Accel::cwbvh);
+  EXPECT_EQ(accel_of("boxes", automatic, {5, 3}), Accel::bvh2);
+  EXPECT_EQ(accel_of("dial:2", automatic), Accel::bvh2);
+  EXPECT_EQ(accel_of("dial:2", vote), Accel::cwbvh);
 }
 
 TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
