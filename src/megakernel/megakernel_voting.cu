@@ -1,4 +1,5 @@
 // Wide trees of triangles alone, traced by warps that vote (trace_paths_voting.cuh).
+#include "common/scene/scene_options.h"
 #include "megakernel/megakernel_cuda.h"
 #include "megakernel/megakernel_kernel.cuh"
 #include "megakernel/trace_paths_voting.cuh"
@@ -8,14 +9,14 @@ namespace {
 
 using VotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
 
-constexpr int block_max = 256, blocks_least = 3;  // 80 registers for a thread
+constexpr int blocks_least = 3;  // 80 registers for a thread
 
 /// Of a block with so many threads.
 constexpr std::size_t shared_bytes_of(int threads) {
   return sizeof(SlotOrder) + static_cast<std::size_t>(threads) / 32 * sizeof(VotingWarp);
 }
 
-__global__ void __launch_bounds__(block_max, blocks_least)
+__global__ void __launch_bounds__(voting_threads_max, blocks_least)
     voting_megakernel(const __grid_constant__ Scene scene,
                       const __grid_constant__ SampleBuffer batch,
                       const __grid_constant__ WorkDivision division,
@@ -39,9 +40,7 @@ __global__ void __launch_bounds__(block_max, blocks_least)
 }  // namespace
 
 bool MegakernelCuda::can_vote() const {
-  const int threads = options_.block.x * options_.block.y;
-  return traits_ == VotingTraits::value() && options_.work == Work::persistent &&
-         threads % 32 == 0 && threads <= block_max;
+  return traits_ == VotingTraits::value() && may_vote(options_);
 }
 
 void MegakernelCuda::launch_voting(const SamplerSource& source, const SampleBuffer& batch) {

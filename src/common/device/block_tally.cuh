@@ -6,10 +6,6 @@
 
 namespace pt {
 
-__device__ inline void add_to(std::uint64_t* sum, std::uint64_t value) {
-  atomicAdd(reinterpret_cast<unsigned long long*>(sum), static_cast<unsigned long long>(value));
-}
-
 /// In shared memory. All threads of the block call begin() and end() together.
 struct BlockTally {
   std::uint64_t rays, shadow_rays, nonfinite;
@@ -25,20 +21,20 @@ struct BlockTally {
 
   /// All but the lengths.
   __device__ void add(const PathTally& mine) {
-    add_to(&rays, mine.rays);
-    if (mine.shadow_rays > 0) add_to(&shadow_rays, mine.shadow_rays);
-    if (mine.nonfinite > 0) add_to(&nonfinite, mine.nonfinite);
+    atomic_add(&rays, mine.rays);
+    if (mine.shadow_rays > 0) atomic_add(&shadow_rays, mine.shadow_rays);
+    if (mine.nonfinite > 0) atomic_add(&nonfinite, mine.nonfinite);
   }
 
   __device__ void end(PathTally* tally) {
     __syncthreads();
     if (threadIdx.x == 0) {
-      add_to(&tally->rays, rays);
-      if (shadow_rays > 0) add_to(&tally->shadow_rays, shadow_rays);
-      if (nonfinite > 0) add_to(&tally->nonfinite, nonfinite);
+      atomic_add(&tally->rays, rays);
+      if (shadow_rays > 0) atomic_add(&tally->shadow_rays, shadow_rays);
+      if (nonfinite > 0) atomic_add(&tally->nonfinite, nonfinite);
     }
     for (int i = threadIdx.x; i < path_length_bins; i += blockDim.x) {
-      if (lengths[i] > 0) add_to(&tally->lengths[i], lengths[i]);
+      if (lengths[i] > 0) atomic_add(&tally->lengths[i], lengths[i]);
     }
   }
 };

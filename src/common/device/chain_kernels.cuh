@@ -1,5 +1,5 @@
-// The kernel in which all Markov chains begin and end. Seen from C++, a kernel is the function
-// that launches it.
+// The kernel in which all Markov chains take a step together: they begin, they end, and where none
+// goes on by itself they mutate. Seen from C++, a kernel is the function that launches it.
 #pragma once
 
 #include <cuda_runtime_api.h>

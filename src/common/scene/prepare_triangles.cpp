@@ -14,6 +14,7 @@
 #include "common/scene/list_lights.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
+#include "common/scene/scene_options.h"
 
 namespace pt {
 namespace {
@@ -26,10 +27,8 @@ bool is_on_cuda(const Options& options) {
 /// more than its shading: with several kinds of BSDFs they wait for these (results/ has the
 /// measurement).
 bool votes_by_itself(const SceneData& scene, const Options& options) {
-  const int threads = options.block.x * options.block.y;
-  return options.kernel == MegakernelKind::automatic && options.work == Work::persistent &&
-         threads % 32 == 0 && threads <= 256 && scene.opacities.empty() &&
-         std::has_single_bit(kinds_of(scene));
+  return options.kernel == MegakernelKind::automatic && may_vote(options) &&
+         scene.opacities.empty() && std::has_single_bit(kinds_of(scene));
 }
 
 /// Persistent warps and AVX2 make the most of wide trees; for threads that follow rays alone binary
