@@ -83,6 +83,7 @@ struct ToyPath {
 
 constexpr std::uint32_t side = 4;  // pixels
 constexpr double toy_mean = 0.7;
+constexpr std::uint32_t bootstrap_begin = 1u << 30;  // names that no chain began at
 
 /// 0.7 in the mean over all numbers; (0.2 + x) 2 v for short paths, (0.2 + y) 3 v^2 for long ones.
 ToyPath follow_toy(SamplerSource::Stream& random) {
@@ -130,19 +131,39 @@ class ToyChains {
       std::uint32_t count, std::uint32_t blocks, double large, std::uint64_t seed,
       std::function<float(float)> target = [](float f) { return f; })
       : target_(std::move(target)), samples_(count), paths_(count) {
-    arrays_.for_each_array(count, count, blocks, side * side,
+    arrays_.for_each_array(count, count, 0, blocks, side * side,
                            [&]<class T>(T*& pointer, std::uint64_t n) {
                              memory_.emplace_back(n * sizeof(T));
                              pointer = reinterpret_cast<T*>(memory_.back().data());
                            });
     *arrays_.chains = {arrays_.proposals,     arrays_.accepted,  seed, count,
                        mutation_size(0.125f), {0, 0, side, side}};
-    step_.weights = {toy_mean, large};
+    step_.weights = {toy_mean, toy_mean, large, 0};
     step_.scale = 0x1p40;
     step_.blocks = blocks;
     start();
   }
 
+  /// Weighs for as many bootstrap paths for each mutation, by a brightness that is only expected,
+  /// and returns what `paths` of them add to the image: [pixel], in units of `share` / paths.
+  std::vector<double> bootstrap(double expected, double share, std::uint32_t paths) {
+    step_.weights.expected = expected;
+    step_.weights.bootstrap_share = share;
+    const SamplerSource source{arrays_.chains->seed, {}, arrays_.chains};
+    const Proposal state = arrays_.proposals[0];
+    for (std::uint32_t i = 0; i < paths; ++i) {
+      arrays_.proposals[0] = bootstrap_path(bootstrap_begin + i);
+      SamplerSource::Stream stream = source.open({0, 0, 0});
+      const ToyPath path = follow_toy(stream);
+      splat_bootstrap(arrays_, step_, arrays_.proposals[0],
+                      {Color(target_(path.radiance)), path.rays});
+    }
+    arrays_.proposals[0] = state;
+    std::vector<double> sums;
+    for (std::uint32_t pixel = 0; pixel < side * side; ++pixel) sums.push_back(sum(pixel));
+    std::fill_n(arrays_.sums, 3 * side * side, SplatSum{0});
+    return sums;
+  }
   void mutate(int iterations) {
     step_.kind = ChainStep::Kind::mutate;
     for (int i = 0; i < iterations; ++i) turn();
@@ -311,6 +332,34 @@ TEST(MarkovChains, AddUpToTheImage) {
   }
 }
 
+// Whatever brightness the weights expected, and however many bootstrap paths there were.
+TEST(MarkovChains, AddUpToTheImageWithTheirBootstrap) {
+  for (const double expected : {0.2, 0.7, 3.0}) {
+    std::vector<MeanEstimate> pixels(side * side), of_bootstrap(side * side);
+    constexpr std::uint32_t chains_each = 200, paths = 4000;
+    constexpr int steps = 40;
+    constexpr double share = 0.5;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      ToyChains chains(chains_each, 6, 0.3, 100 * seed + 7);
+      const std::vector<double> bootstrap = chains.bootstrap(expected, share, paths);
+      chains.mutate(steps);
+      chains.finish();
+      for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+        const double part = side * side * bootstrap[i] * share / paths;
+        of_bootstrap[i].add(part);
+        pixels[i].add(part + side * side * chains.sum(i) / (chains_each * steps));
+      }
+    }
+    for (std::uint32_t i = 0; i < pixels.size(); ++i) {
+      const double x = (i % side + 0.5) / side, y = (i / side + 0.5) / side;
+      const double mean = 0.5 * (0.2 + x) + 0.5 * (0.2 + y);
+      EXPECT_NEAR(pixels[i].mean(), mean, 5 * pixels[i].sigma()) << expected << " pixel " << i;
+      EXPECT_LT(pixels[i].sigma(), 0.04 * mean);
+      EXPECT_GT(of_bootstrap[i].mean(), 0.05 * mean);
+    }
+  }
+}
+
 // Sums may be taken at any time: what was not yet added then is not added later.
 TEST(MarkovChains, AddUpToTheSameInParts) {
   ToyChains whole(500, 6, 0.3, 3), parts(500, 6, 0.3, 3);
@@ -355,27 +404,78 @@ TEST(MarkovChains, StayWhereEverythingElseIsBlack) {
   }
 }
 
+/// Where so many chains begin among bootstrap paths of these targets.
+struct Begun {
+  ChainStarts starts;
+  std::vector<std::uint32_t> paths;
+};
+Begun begin_chains(std::vector<float> targets, std::uint32_t chains, double u) {
+  const auto count = static_cast<std::uint32_t>(targets.size());
+  std::vector<TargetSum> groups(Bootstrap::group_count(count));
+  Bootstrap bootstrap{targets.data(), groups.data(), nullptr};
+  for (std::uint32_t g = 0; g < groups.size(); ++g) groups[g] = sum_group(bootstrap, g, count);
+  Begun begun{choose_starts(groups, count, chains, u), {}};
+  bootstrap.below = begun.starts.below.data();
+  for (std::uint32_t i = 0; i < chains; ++i) {
+    begun.paths.push_back(start_of(bootstrap, begun.starts.places, i));
+  }
+  return begun;
+}
+
 TEST(ChainStarts, AreInProportionToTheTarget) {
-  const std::vector<float> targets{0, 1, 0, 2, 5, 0};
   for (const double u : {0.0, 0.3, 0.999}) {
-    const ChainStarts starts = choose_starts(targets, 8, u);
+    const Begun begun = begin_chains({0, 1, 0, 2, 5, 0}, 8, u);
     std::vector<int> counts(6);
-    for (const std::uint32_t path : starts.paths) ++counts[path];
+    for (const std::uint32_t path : begun.paths) ++counts[path];
     EXPECT_EQ(counts, (std::vector<int>{0, 1, 0, 2, 5, 0})) << u;
-    EXPECT_DOUBLE_EQ(starts.brightness, 8.0 / 6);
-    EXPECT_NEAR(starts.brightness_error, std::sqrt((30 - 64.0 / 6) / 5 / 6), 1e-12);
+    EXPECT_DOUBLE_EQ(begun.starts.brightness, 8.0 / 6);
+    EXPECT_NEAR(begun.starts.brightness_error, std::sqrt((30 - 64.0 / 6) / 5 / 6), 1e-12);
   }
   std::vector<double> counts(3);
-  for (int i = 0; i < 1000; ++i) ++counts[choose_starts({1, 3, 1}, 1, (i + 0.5) / 1000).paths[0]];
+  for (int i = 0; i < 1000; ++i) ++counts[begin_chains({1, 3, 1}, 1, (i + 0.5) / 1000).paths[0]];
   EXPECT_EQ(counts, (std::vector<double>{200, 600, 200}));
 }
 
+// Many groups of paths, some without light, and targets whose sums are rounded: each path has the
+// chains that one walk over all of them in double precision gives it.
+TEST(ChainStarts, AreThoseOfOneWalkOverAllPaths) {
+  TestRandom random;
+  for (const std::uint32_t count : {255u, 256u, 257u, 5000u}) {
+    std::vector<float> targets(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const bool is_dark = i / 256 % 3 == 1 || i + 300 > count || random.unit() < 0.7f;
+      if (!is_dark) targets[i] = std::pow(random.unit() + 1e-3f, -3.0f);
+    }
+    if (count < 1000) targets[count / 2] = 1;
+    for (const double u : {0.0, 0.37, std::nextafter(1.0, 0.0)}) {
+      const std::uint32_t chains = 3000;
+      const Begun begun = begin_chains(targets, chains, u);
+      double sum = 0;
+      for (const float target : targets) sum += target;
+      std::vector<double> found(count);
+      for (const std::uint32_t path : begun.paths) ++found[path];
+      std::uint32_t last = 0;
+      for (const std::uint32_t path : begun.paths) {
+        EXPECT_GE(path, last);
+        last = path;
+      }
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const double share = chains * targets[i] / sum;
+        EXPECT_LT(std::abs(found[i] - share), 1 + 1e-9) << count << " " << i;
+        if (targets[i] == 0) {
+          EXPECT_EQ(found[i], 0) << count << " " << i;
+        }
+      }
+    }
+  }
+}
+
 TEST(ChainStarts, OfOnePathAndOfNone) {
-  const ChainStarts one = choose_starts({2}, 3, 0.5);
+  const Begun one = begin_chains({2}, 3, 0.5);
   EXPECT_EQ(one.paths, (std::vector<std::uint32_t>{0, 0, 0}));
-  EXPECT_EQ(one.brightness, 2);
-  EXPECT_EQ(one.brightness_error, 0);
-  EXPECT_THROW(choose_starts({0, 0}, 3, 0.5), Error);
+  EXPECT_EQ(one.starts.brightness, 2);
+  EXPECT_EQ(one.starts.brightness_error, 0);
+  EXPECT_THROW(begin_chains({0, 0}, 3, 0.5), Error);
 }
 
 }  // namespace

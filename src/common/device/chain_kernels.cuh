@@ -1,5 +1,6 @@
-// The kernel in which all Markov chains take a step together: they begin, they end, and where none
-// goes on by itself they mutate. Seen from C++, a kernel is the function that launches it.
+// The kernels around the paths of Markov chains: of their bootstrap, of their start and end, and of
+// steps that all chains take together, where none goes on by itself. A thread per path, chain or
+// group; blocks of at most 1024. Seen from C++, a kernel is the function that launches it.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -9,9 +10,34 @@
 
 namespace pt {
 
-/// A thread per chain; blocks of at most 1024.
+/// Proposes the bootstrap paths [first, first + count).
+__global__ void propose_bootstrap(Proposal* proposals, std::uint32_t first, std::uint32_t count,
+                                  StageClock* clock);
+
+/// Counts the paths of the batch, and keeps their targets: `targets` is the first one's place.
+__global__ void keep_targets(float* targets, const __grid_constant__ SampleBuffer batch,
+                             PathTally* tally, StageClock* clock);
+
+/// Adds the bootstrap paths of the batch to the sums.
+__global__ void splat_bootstrap_paths(const __grid_constant__ ChainArrays arrays,
+                                      const __grid_constant__ SampleBuffer batch,
+                                      const __grid_constant__ ChainStep step, StageClock* clock);
+
+/// Sums the groups of the first `paths` targets.
+__global__ void sum_groups(const __grid_constant__ Bootstrap bootstrap, std::uint32_t paths,
+                           StageClock* clock);
+
+/// Proposes the paths at which the chains begin.
+__global__ void propose_starts(const __grid_constant__ ChainArrays arrays,
+                               const __grid_constant__ ChainPlaces places, StageClock* clock);
+
+/// ChainStep::Kind::start and mutate: the batch has a path of each chain.
 __global__ void step_chains(const __grid_constant__ ChainArrays arrays,
                             const __grid_constant__ SampleBuffer batch,
                             const __grid_constant__ ChainStep step, StageClock* clock);
+
+/// ChainStep::Kind::finish.
+__global__ void finish_all_chains(const __grid_constant__ ChainArrays arrays, std::uint32_t chains,
+                                  const __grid_constant__ ChainStep step, StageClock* clock);
 
 }  // namespace pt

@@ -223,16 +223,81 @@ void CpuRenderer::clear_chain_sums() {
   std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
 }
 
-void CpuRenderer::set_proposals(const std::vector<Proposal>& proposals) {
-  std::ranges::copy(proposals, chain_arrays_.proposals);
+/// In parallel, within the time of the stage `mutate`.
+template <class Function>
+void CpuRenderer::for_each_path(std::uint32_t count, Function&& function) {
+  timer_.time(to_string(StageId::mutate), [&] {
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 64), [&](const auto& range) {
+      for (std::uint32_t i = range.begin(); i < range.end(); ++i) function(i);
+    });
+  });
 }
 
-void CpuRenderer::run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) {
-  const SampleBuffer batch = chain_batch(paths);
+void CpuRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(count);
   time_in_arena(run, [&] {
-    if (step.kind != ChainStep::Kind::finish) trace_batch(batch);
-    if (step.kind == ChainStep::Kind::none) return;
-    timer_.time(to_string(StageId::mutate), [&] { step_chains(batch, step); });
+    for_each_path(count,
+                  [&](std::uint32_t i) { chain_arrays_.proposals[i] = bootstrap_path(first + i); });
+    trace_batch(batch);
+    for_each_path(count, [&](std::uint32_t i) {
+      chain_arrays_.bootstrap.targets[first + i] = target_of(batch.samples[i]);
+    });
+    count_paths(batch);
+  });
+}
+
+void CpuRenderer::count_paths(const SampleBuffer& batch) {
+  const tbb::blocked_range<std::uint32_t> paths(0, batch.path_count, 4096);
+  tally_ =
+      tally_ + tbb::parallel_reduce(
+                   paths, PathTally{},
+                   [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
+                     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                       count_sample(batch.samples[i], sum, [&](int bin) { ++sum.lengths[bin]; });
+                     }
+                     return sum;
+                   },
+                   [](const PathTally& a, const PathTally& b) { return a + b; });
+}
+
+void CpuRenderer::splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) {
+  time_in_arena(run, [&] {
+    for_each_path(count, [&](std::uint32_t i) {
+      pt::splat_bootstrap(chain_arrays_, step, chain_arrays_.proposals[i], samples()[i]);
+    });
+  });
+}
+
+std::vector<TargetSum> CpuRenderer::sum_targets(std::uint32_t paths, RenderRun& run) {
+  const auto groups = static_cast<std::uint32_t>(Bootstrap::group_count(paths));
+  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
+  time_in_arena(run, [&] {
+    for_each_path(groups, [&](std::uint32_t group) {
+      bootstrap.groups[group] = sum_group(bootstrap, group, paths);
+    });
+  });
+  return {bootstrap.groups, bootstrap.groups + groups};
+}
+
+void CpuRenderer::start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) {
+  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
+  std::ranges::copy(starts.below, bootstrap.below);
+  time_in_arena(run, [&] {
+    for_each_path(starts.places.chains, [&](std::uint32_t chain) {
+      chain_arrays_.proposals[chain] = bootstrap_path(start_of(bootstrap, starts.places, chain));
+    });
+  });
+  run_chains(starts.places.chains, step, run);
+}
+
+/// Traces a path of each chain, and the chain takes this step.
+void CpuRenderer::run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(chains);
+  time_in_arena(run, [&] {
+    trace_batch(batch);
+    for_each_path(chains, [&](std::uint32_t chain) {
+      step_chain(chain_arrays_, step, chain, batch.samples[chain]);
+    });
   });
 }
 
@@ -250,15 +315,10 @@ void CpuRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std
   chains_go_on_ = false;
 }
 
-void CpuRenderer::step_chains(const SampleBuffer& batch, const ChainStep& step) {
-  tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t chain) {
-    if (step.kind == ChainStep::Kind::finish) return finish_chain(chain_arrays_, step, chain);
-    step_chain(chain_arrays_, step, chain, batch.samples[chain]);
+void CpuRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  time_in_arena(run, [&] {
+    for_each_path(chains, [&](std::uint32_t chain) { finish_chain(chain_arrays_, step, chain); });
   });
-}
-
-std::vector<Sample> CpuRenderer::read_chain_samples(std::uint32_t paths) {
-  return {sample_memory_.begin(), sample_memory_.begin() + paths};
 }
 
 ChainSums CpuRenderer::take_chain_sums() {

@@ -78,15 +78,20 @@ class CpuRenderer : public FilmRenderer {
   void render_batch(const SampleBuffer& batch, RenderRun& run) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
-  void begin_chains(const ChainWindow& window) override;
-  void set_proposals(const std::vector<Proposal>& proposals) override;
   template <class Function>
   void time_in_arena(RenderRun& run, Function&& function);
-  void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  void begin_chains(const ChainWindow& window) override;
+  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override;
+  void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) override;
+  std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) override;
+  void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) override;
   void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                      RenderRun& run) override;
-  void step_chains(const SampleBuffer& batch, const ChainStep& step);
-  std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
+  void finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) override;
+  void run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run);
+  void count_paths(const SampleBuffer& batch);
+  template <class Function>
+  void for_each_path(std::uint32_t count, Function&& function);
   ChainSums take_chain_sums() override;
   void clear_chain_sums();
   void init_random_states(const SampleBuffer& batch);

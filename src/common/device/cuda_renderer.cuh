@@ -140,13 +140,19 @@ class CudaRenderer : public FilmRenderer {
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
   void begin_chains(const ChainWindow& window) override;
-  void set_proposals(const std::vector<Proposal>& proposals) override;
-  void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) override;
+  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override;
+  void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) override;
+  std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) override;
+  void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) override;
   void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                      RenderRun& run) override;
-  std::vector<Sample> read_chain_samples(std::uint32_t paths) override;
+  void finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) override;
   ChainSums take_chain_sums() override;
   void clear_chain_sums();
+  void run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run);
+  template <class... Parameters, class... Arguments>
+  void launch_each(const char* name, void (*kernel)(Parameters...), std::uint32_t count,
+                   const Arguments&... arguments);
   template <class SomeFilm, class Function>
   void for_each_film_array(SomeFilm& film, Function&& function) const;
   void accumulate(const SampleBuffer& batch);

@@ -307,24 +307,67 @@ void CudaRenderer::clear_chain_sums() {
       "cudaMemset");
 }
 
-void CudaRenderer::set_proposals(const std::vector<Proposal>& proposals) {
-  check_cuda(cudaMemcpyAsync(chain_arrays_.proposals, proposals.data(),
-                             proposals.size() * sizeof(Proposal), cudaMemcpyHostToDevice, stream_),
-             "uploading proposals");
+/// Launches a kernel of a thread for each of `count`.
+template <class... Parameters, class... Arguments>
+void CudaRenderer::launch_each(const char* name, void (*kernel)(Parameters...), std::uint32_t count,
+                               const Arguments&... arguments) {
+  constexpr std::uint32_t block = 256;
+  launch(name, kernel, (count + block - 1) / block, block, 0, arguments...);
 }
 
-void CudaRenderer::run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) {
-  constexpr int block = 256;
-  const SampleBuffer batch = chain_batch(paths);
-  const bool traces = step.kind != ChainStep::Kind::finish;
-  const ProfilerRange range(fmt::format("batch of {} chains", paths));
-  if (traces) prepare_batch(batch);
+void CudaRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(count);
+  const ProfilerRange range(fmt::format("{} bootstrap paths", count));
+  prepare_batch(batch);
   time_batch(run, [&] {
-    if (traces) trace_batch(batch);
+    launch_each("propose_bootstrap", propose_bootstrap, count, chain_arrays_.proposals, first,
+                count, clock_);
+    trace_batch(batch);
     set_wave(-1);
-    if (step.kind == ChainStep::Kind::none) return;
-    launch("step_chains", step_chains, (paths + block - 1) / block, block, 0, chain_arrays_, batch,
-           step, clock_);
+    launch_each("keep_targets", keep_targets, count, chain_arrays_.bootstrap.targets + first, batch,
+                tally_, clock_);
+  });
+}
+
+void CudaRenderer::splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) {
+  time_batch(run, [&] {
+    launch_each("splat_bootstrap", splat_bootstrap_paths, count, chain_arrays_, chain_batch(count),
+                step, clock_);
+  });
+}
+
+std::vector<TargetSum> CudaRenderer::sum_targets(std::uint32_t paths, RenderRun& run) {
+  const auto groups = static_cast<std::uint32_t>(Bootstrap::group_count(paths));
+  time_batch(run, [&] {
+    launch_each("sum_targets", sum_groups, groups, chain_arrays_.bootstrap, paths, clock_);
+  });
+  std::vector<TargetSum> result(groups);
+  check_cuda(cudaMemcpy(result.data(), chain_arrays_.bootstrap.groups, groups * sizeof(TargetSum),
+                        cudaMemcpyDeviceToHost),
+             "downloading sums of targets");
+  return result;
+}
+
+void CudaRenderer::start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) {
+  check_cuda(cudaMemcpyAsync(chain_arrays_.bootstrap.below, starts.below.data(),
+                             starts.below.size() * sizeof(double), cudaMemcpyHostToDevice, stream_),
+             "uploading sums of targets");
+  time_batch(run, [&] {
+    launch_each("propose_starts", propose_starts, starts.places.chains, chain_arrays_,
+                starts.places, clock_);
+  });
+  run_chains(starts.places.chains, step, run);
+}
+
+/// Traces a path of each chain, and the chain takes this step.
+void CudaRenderer::run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(chains);
+  const ProfilerRange range(fmt::format("batch of {} chains", chains));
+  prepare_batch(batch);
+  time_batch(run, [&] {
+    trace_batch(batch);
+    set_wave(-1);
+    launch_each("step_chains", step_chains, chains, chain_arrays_, batch, step, clock_);
   });
 }
 
@@ -347,11 +390,10 @@ void CudaRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, st
   chains_go_on_ = false;
 }
 
-std::vector<Sample> CudaRenderer::read_chain_samples(std::uint32_t paths) {
-  std::vector<Sample> result(paths);
-  check_cuda(cudaMemcpy(result.data(), samples(), paths * sizeof(Sample), cudaMemcpyDeviceToHost),
-             "downloading samples");
-  return result;
+void CudaRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  time_batch(run, [&] {
+    launch_each("finish_chains", finish_all_chains, chains, chain_arrays_, chains, step, clock_);
+  });
 }
 
 ChainSums CudaRenderer::take_chain_sums() {
@@ -400,9 +442,12 @@ void CudaRenderer::load_kernels() {
   RenderRun run;
   if (has_chains()) {
     begin_chains({0, 0, 1, 1});
-    set_proposals({Proposal{0, 1, 0, 1}});
-    run_chains(1, {}, run);
+    trace_bootstrap(0, 1, run);
+    sum_targets(1, run);
+    splat_bootstrap(1, {}, run);
+    start_chains({0, 0, {0.0}, {}}, {}, run);
     mutate_chains(1, {}, 0, run);
+    finish_chains(1, {}, run);
   } else {
     render_batch({samples(), window, 0, 1}, run);
   }

@@ -2,8 +2,8 @@
 // (docs/metropolis.md). When a chain's path has been traced the chain takes a step.
 #pragma once
 
+#include "common/film/bootstrap.h"
 #include "common/film/film.h"
-#include "common/sampling/chains.h"
 #include "common/transport/metropolis.h"
 
 namespace pt {
@@ -52,11 +52,13 @@ struct ChainArrays {
   ChainSplat* unsplatted = nullptr;
   SplatSum* sums = nullptr;       ///< [pixel of the window][channel]
   ChainCounts* counts = nullptr;  ///< [ChainCounts::places]
+  Bootstrap bootstrap;
 
   /// make(pointer's type, count) for each.
   template <class Make>
-  void for_each_array(std::uint64_t chain_count, std::uint64_t path_count, std::uint64_t blocks,
-                      std::uint64_t pixels, Make&& make) {
+  void for_each_array(std::uint64_t chain_count, std::uint64_t path_count,
+                      std::uint64_t bootstrap_paths, std::uint64_t blocks, std::uint64_t pixels,
+                      Make&& make) {
     make(chains, 1);
     make(proposals, path_count);
     make(accepted, chain_count * blocks);
@@ -64,6 +66,7 @@ struct ChainArrays {
     make(unsplatted, chain_count);
     make(sums, 3 * pixels);
     make(counts, ChainCounts::places);
+    bootstrap.for_each_array(bootstrap_paths, make);
   }
   static constexpr std::uint64_t bytes_per_chain(std::uint64_t blocks) {
     return blocks * sizeof(Vec4) + sizeof(ChainState) + sizeof(ChainSplat);
@@ -73,12 +76,11 @@ struct ChainArrays {
 /// What chains do with the paths that have been traced.
 struct ChainStep {
   enum class Kind : std::uint8_t {
-    none,    ///< nothing: they are bootstrap paths
     start,   ///< begin at them
     mutate,  ///< accept them or not
     finish   ///< no path was traced: add what is not yet added
   };
-  Kind kind = Kind::none;
+  Kind kind = Kind::start;
   MutationWeights weights;
   double scale = 1.0;        ///< quanta of a SplatSum per radiance
   std::uint32_t blocks = 0;  ///< of random numbers that are stored at most
@@ -107,6 +109,22 @@ PT_HD void splat(const ChainArrays& arrays, const ChainStep& step, std::uint32_t
   }
 }
 
+/// The target of a path that was traced; 0 for one that is no number.
+PT_HD float target_of(const Sample& sample) {
+  return is_finite(sample.radiance) ? chain_target(sample.radiance) : 0.0f;
+}
+
+/// A bootstrap path adds its share to the image; `proposal` is its own.
+PT_HD void splat_bootstrap(const ChainArrays& arrays, const ChainStep& step,
+                           const Proposal& proposal, const Sample& sample) {
+  const float target = target_of(sample);
+  if (!(target > 0.0f)) return;
+  const Chains& chains = *arrays.chains;
+  const Vec4 camera = chains.draw(proposal.path, proposal.iteration, 0);
+  splat(arrays, step, chains.window.index_of(chains.window.point_of(camera).pixel), sample.radiance,
+        step.weights.of_bootstrap(target));
+}
+
 /// The chain makes the path its state: its numbers, as the path drew them, and where it is.
 PT_HD void move_chain(const ChainArrays& arrays, const Chains& chains, const Proposal& proposal,
                       std::uint32_t blocks, std::uint32_t chain, const Color& radiance,
@@ -120,15 +138,13 @@ PT_HD void move_chain(const ChainArrays& arrays, const Chains& chains, const Pro
   arrays.unsplatted[chain].pixel = pixel;
 }
 
-/// Counts a finished path; returns whether its radiance is finite.
-PT_HD bool count_path(const Sample& sample, ChainCounts& counts) {
+/// Counts a finished path.
+PT_HD void count_path(const Sample& sample, ChainCounts& counts) {
   PathTally one;
-  const bool finite =
-      count_sample(sample, one, [&](int bin) { atomic_add(&counts.paths.lengths[bin], 1); });
+  count_sample(sample, one, [&](int bin) { atomic_add(&counts.paths.lengths[bin], 1); });
   atomic_add(&counts.paths.rays, one.rays);
   if (one.shadow_rays > 0) atomic_add(&counts.paths.shadow_rays, one.shadow_rays);
-  if (!finite) atomic_add(&counts.paths.nonfinite, 1);
-  return finite;
+  if (one.nonfinite > 0) atomic_add(&counts.paths.nonfinite, 1);
 }
 
 PT_HD void count_step(bool is_large, bool accepted, ChainTally& steps) {
@@ -152,11 +168,11 @@ PT_HD void step_chain(const ChainArrays& arrays, const ChainStep& step, std::uin
   ChainCounts& counts = arrays.counts[chain % ChainCounts::places];
   ChainSplat& unsplatted = arrays.unsplatted[chain];
   const ChainState state = load_wide(&arrays.states[chain]);
-  const bool finite = count_path(sample, counts);
+  count_path(sample, counts);
   const std::uint32_t rays = sample.rays & 0xffffu;
 
   Proposal proposal = load_wide(&arrays.proposals[chain]);
-  const float target = finite ? chain_target(sample.radiance) : 0.0f;
+  const float target = target_of(sample);
   const std::uint32_t used = used_blocks(rays) < step.blocks ? used_blocks(rays) : step.blocks;
   const Vec4 camera = chains.draw(proposal.path, proposal.iteration, 0);
   const std::uint32_t pixel = chains.window.index_of(chains.window.point_of(camera).pixel);

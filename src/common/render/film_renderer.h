@@ -37,8 +37,8 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   /// Calls make(pointer's place, count) for each array of the chains.
   template <class Make>
   void make_chain_arrays(ChainArrays& arrays, Make&& make) const {
-    arrays.for_each_array(chain_plan_.chains, batch_paths_, chain_plan_.blocks,
-                          image_window_.pixel_count(), make);
+    arrays.for_each_array(chain_plan_.chains, batch_paths_, chain_plan_.bootstrap,
+                          chain_plan_.blocks, image_window_.pixel_count(), make);
   }
   /// The chains as what draws their paths' numbers sees them.
   Chains chains_view(const ChainArrays& arrays, const ChainWindow& window) const {

@@ -8,16 +8,24 @@
 
 #include "common/memory_error.h"
 #include "common/render/option_names.h"
+#include "common/render/stop_clock.h"
 
 namespace pt {
 namespace {
 
-constexpr std::uint64_t bootstrap_batch_max = std::uint64_t{1} << 20;
+// The image's first guess of its brightness is that of a batch.
+constexpr std::uint64_t bootstrap_batch_least = std::uint64_t{1} << 20;
+constexpr std::uint64_t bootstrap_batch_max = std::uint64_t{1} << 22;
+// With --time-limit: of the time, and the paths for each mutation that are expected to come of it.
+constexpr double bootstrap_time_share = 0.4;
+constexpr double timed_bootstrap_share = 1.0;
+constexpr double least_seconds = 1e-6;  // 0 would be no limit
 /// Longer paths draw the numbers of their last rays afresh: 2 KiB for a chain.
 constexpr std::uint32_t stored_blocks_max = 128;
 /// Sums are taken from the device after so many mutations: they fit whatever they are. One mutation
-/// adds less than 2 b / 0.0722 to a channel, the smallest share of one in luminance: below 2^5 b,
-/// all of them in one pixel 2^37 b, or 2^62 quanta.
+/// adds less than 2 b / 0.0722 to a channel, the smallest share of one in luminance, where b is the
+/// brightness or what was expected, whichever is larger: below 2^5 b, all of them in one pixel 2^37
+/// b, or 2^62 quanta.
 constexpr std::uint64_t mutations_per_segment = std::uint64_t{1} << 32;
 constexpr double quanta_per_brightness = 0x1p25;
 
@@ -29,40 +37,12 @@ void refuse(const std::string& option, const std::string& reason) {
   throw Error(fmt::format("{} with --integrator mlt: {}", option, reason));
 }
 
-std::vector<Proposal> bootstrap_paths(std::uint64_t first, std::uint64_t count) {
-  std::vector<Proposal> proposals(count);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    proposals[i] = {static_cast<std::uint32_t>(first + i), bootstrap_iteration, 0, 1};
-  }
-  return proposals;
-}
-
-/// Traces the bootstrap paths and returns their targets.
-std::vector<float> run_bootstrap(ChainDevice& device, const ChainPlan& plan, RenderRun& run,
-                                 PathTally& tally) {
-  std::vector<float> targets;
-  targets.reserve(plan.bootstrap);
-  while (targets.size() < plan.bootstrap) {
-    const std::uint64_t count = std::min(plan.bootstrap_batch, plan.bootstrap - targets.size());
-    const auto paths = static_cast<std::uint32_t>(count);
-    device.set_proposals(bootstrap_paths(targets.size(), count));
-    device.run_chains(paths, {}, run);
-    for (const Sample& sample : device.read_chain_samples(paths)) {
-      const bool finite = count_sample(sample, tally, [&](int bin) { ++tally.lengths[bin]; });
-      targets.push_back(finite ? chain_target(sample.radiance) : 0.0f);
-    }
-  }
-  return targets;
-}
-
-/// Adds up what chains have added to the device's sums.
-class ChainTotals {
+/// What was splatted on the device, taken from it in parts.
+class SplatTotals {
  public:
-  explicit ChainTotals(std::uint64_t pixels) : quanta_(3 * pixels) {}
+  explicit SplatTotals(std::uint64_t pixels) : quanta_(3 * pixels) {}
 
-  void take(ChainDevice& device, std::uint32_t chains, ChainStep step, RenderRun& run) {
-    step.kind = ChainStep::Kind::finish;
-    device.run_chains(chains, step, run);
+  void take(ChainDevice& device) {
     const ChainSums sums = device.take_chain_sums();
     for (std::size_t i = 0; i < quanta_.size(); ++i) {
       quanta_[i] += static_cast<double>(static_cast<std::int64_t>(sums.sums[i]));
@@ -71,20 +51,9 @@ class ChainTotals {
     paths_ = paths_ + sums.paths;
   }
 
+  double operator[](std::size_t i) const { return quanta_[i]; }
   const ChainTally& steps() const { return steps_; }
-
-  /// As sums of so many samples of each pixel.
-  void fill_film(double radiance_per_quantum, std::uint64_t samples, Film& film) const {
-    film.pixels.resize(film.window.pixel_count());
-    for (std::size_t i = 0; i < film.pixels.size(); ++i) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        film.pixels[i].sum[c] =
-            quanta_[3 * i + c] * radiance_per_quantum * static_cast<double>(samples);
-      }
-      film.pixels[i].samples = samples;
-    }
-    film.tally = film.tally + paths_;
-  }
+  const PathTally& paths() const { return paths_; }
 
  private:
   std::vector<double> quanta_;
@@ -92,16 +61,71 @@ class ChainTotals {
   PathTally paths_;
 };
 
+/// The paths before the chains, and what they have added to the image.
+class BootstrapRun {
+ public:
+  BootstrapRun(ChainDevice& device, const ChainPlan& plan, MutationWeights weights,
+               std::uint64_t pixels)
+      : device_(device), plan_(plan), splats_(pixels) {
+    step_.weights = weights;
+  }
+
+  /// Until `ends()` once the least is there.
+  template <class Ends>
+  void trace(Ends&& ends, RenderRun& run) {
+    while (paths_ < plan_.bootstrap && (paths_ == 0 || !ends())) {
+      const auto count =
+          static_cast<std::uint32_t>(std::min(plan_.bootstrap_batch, plan_.bootstrap - paths_));
+      device_.trace_bootstrap(static_cast<std::uint32_t>(paths_), count, run);
+      paths_ += count;
+      if (!is_lit()) expect_brightness(run);
+      if (is_lit()) device_.splat_bootstrap(count, step_, run);
+    }
+    splats_.take(device_);
+  }
+
+  std::uint32_t paths() const { return static_cast<std::uint32_t>(paths_); }
+  const SplatTotals& splats() const { return splats_; }
+  const ChainStep& step() const { return step_; }
+
+ private:
+  bool is_lit() const { return step_.scale > 0; }
+  /// Batches before the first with light have nothing to add, whatever is expected.
+  void expect_brightness(RenderRun& run) {
+    double sum = 0;
+    for (const TargetSum& group : device_.sum_targets(paths(), run)) sum += group.sum;
+    step_.weights.expected = sum / static_cast<double>(paths_);
+    step_.scale = sum > 0 ? quanta_per_brightness / step_.weights.expected : 0.0;
+  }
+
+  ChainDevice& device_;
+  const ChainPlan& plan_;
+  std::uint64_t paths_ = 0;
+  ChainStep step_{ChainStep::Kind::start, {}, 0.0, 0};
+  SplatTotals splats_;
+};
+
+/// As sums of so many samples of each pixel; `radiance` is that of [pixel][channel].
+template <class Radiance>
+void fill_film(Radiance&& radiance, std::uint64_t samples, Film& film) {
+  film.pixels.resize(film.window.pixel_count());
+  for (std::size_t i = 0; i < film.pixels.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      film.pixels[i].sum[c] = radiance(3 * i + c) * static_cast<double>(samples);
+    }
+    film.pixels[i].samples = samples;
+  }
+}
+
 double ratio(std::uint64_t part, std::uint64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
 }
 
-MetropolisStats statistics_of(const ChainPlan& plan, const ChainStarts& starts,
-                              const ChainTally& tally) {
+MetropolisStats statistics_of(const ChainStarts& starts, const ChainTally& tally) {
   MetropolisStats stats;
-  stats.chains = plan.chains;
+  stats.chains = starts.places.chains;
   stats.mutations = tally.large + tally.small;
-  stats.bootstrap = plan.bootstrap;
+  stats.bootstrap = starts.places.paths;
   stats.brightness = starts.brightness;
   stats.brightness_error = starts.brightness_error;
   stats.large_share = ratio(tally.large, stats.mutations);
@@ -110,13 +134,16 @@ MetropolisStats statistics_of(const ChainPlan& plan, const ChainStarts& starts,
   return stats;
 }
 
-/// Half of the mutations, within bounds. Where light is hard to find chains seldom leave the path
-/// at which they begin, so that many beginnings are worth more than many steps (results/).
+/// As many as mutations, within bounds. Where light is hard to find chains seldom leave the path at
+/// which they begin, so that many beginnings are worth more than many steps (results/).
 std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& defaults,
-                                  std::uint64_t pixels) {
+                                  std::uint64_t pixels, std::uint64_t free_bytes) {
   const std::uint64_t least = defaults.bootstrap;
-  if (o.time_limit > 0) return 8 * least;  // nobody knows how many mutations there will be
-  return std::clamp(mutations_of(pixels, o.spp) / 2, least, 64 * least);
+  const std::uint64_t fitting =
+      free_bytes / 8 / Bootstrap::bytes_per_group * Bootstrap::group_paths;
+  const std::uint64_t most = std::max(std::min(256 * least, fitting), least);
+  // Nobody knows how many mutations there will be.
+  return o.time_limit > 0 ? most : std::clamp(mutations_of(pixels, o.spp), least, most);
 }
 
 }  // namespace
@@ -154,8 +181,11 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
   const std::uint64_t pixels = window_of(o).pixel_count();
   ChainPlan plan;
   plan.blocks = std::min(used_blocks(static_cast<std::uint32_t>(o.max_depth)), stored_blocks_max);
-  plan.bootstrap = o.bootstrap > 0 ? o.bootstrap : automatic_bootstrap(o, defaults, pixels);
-  plan.bootstrap_batch = std::min(plan.bootstrap, bootstrap_batch_max);
+  plan.bootstrap =
+      o.bootstrap > 0 ? o.bootstrap : automatic_bootstrap(o, defaults, pixels, memory.free_bytes);
+  plan.bootstrap_is_timed = o.bootstrap == 0 && o.time_limit > 0;
+  plan.bootstrap_batch = std::min(
+      plan.bootstrap, std::clamp(plan.bootstrap / 16, bootstrap_batch_least, bootstrap_batch_max));
   const std::uint64_t film_bytes = pixels * (memory.bytes_per_pixel + 3 * sizeof(SplatSum));
   const std::uint64_t bytes_per_path = memory.bytes_per_path + sizeof(Proposal);
   const std::uint64_t bytes_per_chain = ChainArrays::bytes_per_chain(plan.blocks);
@@ -166,8 +196,9 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
     plan.chains = std::max<std::uint64_t>(std::min({defaults.chains, fitting, quarter}), 1);
   }
   plan.turn = static_cast<int>(std::max<std::uint64_t>(defaults.turn / plan.chains, 1));
-  const std::uint64_t bytes =
-      film_bytes + plan.batch_paths() * bytes_per_path + plan.chains * bytes_per_chain;
+  const std::uint64_t bytes = film_bytes + plan.batch_paths() * bytes_per_path +
+                              plan.chains * bytes_per_chain +
+                              Bootstrap::group_count(plan.bootstrap) * Bootstrap::bytes_per_group;
   if (bytes > memory.free_bytes) {
     throw memory_error(memory.name,
                        fmt::format("an image of {} pixels by --chains {} --bootstrap {}", pixels,
@@ -184,34 +215,26 @@ void ChainSums::add(const ChainCounts* counts) {
   }
 }
 
-ChainStarts choose_starts(const std::vector<float>& targets, std::uint64_t chains, double u) {
-  const auto n = static_cast<double>(targets.size());
+ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t paths,
+                          std::uint32_t chains, double u) {
+  ChainStarts starts;
   double sum = 0, squares = 0;
-  for (const float target : targets) sum += target;
+  for (const TargetSum& group : groups) {
+    starts.below.push_back(sum);
+    sum += group.sum;
+    squares += group.squares;
+  }
   if (!(sum > 0)) {
     throw Error(
         fmt::format("--integrator mlt: {} bootstrap paths found no light; expected a scene "
                     "that some path of the image finds lit, or more --bootstrap paths",
-                    targets.size()));
+                    paths));
   }
-  ChainStarts starts;
+  const double n = paths;
   starts.brightness = sum / n;
-  for (const float target : targets) {
-    squares += (target - starts.brightness) * (target - starts.brightness);
-  }
-  starts.brightness_error = n > 1 ? std::sqrt(squares / (n * (n - 1))) : 0.0;
-  starts.paths.reserve(chains);
-  double below = 0;  // the targets of the paths before this one
-  std::size_t path = 0, last = 0;
-  for (std::uint64_t chain = 0; chain < chains; ++chain) {
-    const double place = (static_cast<double>(chain) + u) / static_cast<double>(chains) * sum;
-    while (path < targets.size() && below + targets[path] <= place) {
-      below += targets[path++];
-    }
-    // The last step may be lost to rounding; a path without light has no part of the sum.
-    if (path < targets.size()) last = path;
-    starts.paths.push_back(static_cast<std::uint32_t>(last));
-  }
+  const double spread = std::max(squares - sum * starts.brightness, 0.0);
+  starts.brightness_error = n > 1 ? std::sqrt(spread / (n * (n - 1))) : 0.0;
+  starts.places = {paths, chains, sum, u};
   return starts;
 }
 
@@ -219,58 +242,83 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
                         int samples, const RenderHooks& hooks, Film& film) {
   const Window& w = film.window;
   const std::uint64_t pixels = w.pixel_count();
+  const auto chains = static_cast<std::uint32_t>(plan.chains);
   const std::uint64_t iterations = (mutations_of(pixels, samples) + plan.chains - 1) / plan.chains;
-  const ChainWindow window{w.x, w.y, w.width, w.height};
-  device.begin_chains(window);
+  const StopClock clock(hooks.stops);
+  device.begin_chains({w.x, w.y, w.width, w.height});
 
   RenderRun run;
-  const std::vector<float> targets = run_bootstrap(device, plan, run, film.tally);
+  MutationWeights weights;
+  weights.large_step_probability = static_cast<double>(options.large_step_probability);
+  weights.bootstrap_share =
+      plan.bootstrap_is_timed
+          ? timed_bootstrap_share
+          : static_cast<double>(plan.bootstrap) / static_cast<double>(iterations * plan.chains);
+  BootstrapRun bootstrap(device, plan, weights, pixels);
+  const double bootstrap_s = bootstrap_time_share * hooks.stops.seconds;
+  bootstrap.trace(
+      [&] {
+        return (plan.bootstrap_is_timed && clock.elapsed_s() >= bootstrap_s) ||
+               (hooks.stop && hooks.stop());
+      },
+      run);
+
   Chains names;
   names.seed = options.seed;
-  const double u = names.decide(0, bootstrap_iteration).x;
-  const ChainStarts starts = choose_starts(targets, plan.chains, u);
-  std::vector<Proposal> proposals;
-  for (const std::uint32_t path : starts.paths) {
-    proposals.push_back({path, bootstrap_iteration, 0, 1});
-  }
-  device.set_proposals(proposals);
-  const auto chains = static_cast<std::uint32_t>(plan.chains);
-  ChainStep step{ChainStep::Kind::start,
-                 {starts.brightness, static_cast<double>(options.large_step_probability)},
-                 quanta_per_brightness / starts.brightness,
-                 plan.blocks};
-  device.run_chains(chains, step, run);
+  const ChainStarts starts =
+      choose_starts(device.sum_targets(bootstrap.paths(), run), bootstrap.paths(), chains,
+                    names.decide(0, bootstrap_iteration).x);
+  ChainStep step = bootstrap.step();
+  step.blocks = plan.blocks;
+  step.weights.brightness = starts.brightness;
+  step.scale = quanta_per_brightness / std::max(starts.brightness, step.weights.expected);
+  device.start_chains(starts, step, run);
   const double before_ms = run.kernel_ms;
 
-  step.kind = ChainStep::Kind::mutate;
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   const auto segment = static_cast<int>(std::min(mutations_per_segment / plan.chains, most));
-  ChainTotals totals(pixels);
+  SplatTotals splats(pixels);
   std::int64_t in_segment = 0;
+  const auto take = [&] {
+    step.kind = ChainStep::Kind::finish;
+    device.finish_chains(chains, step, run);
+    splats.take(device);
+    in_segment = 0;
+  };
   const auto mutate = [&](int first, int count) {
-    if (in_segment + count > segment) {
-      totals.take(device, chains, step, run);
-      in_segment = 0;
-    }
+    if (in_segment + count > segment) take();
+    step.kind = ChainStep::Kind::mutate;
     device.mutate_chains(chains, step, static_cast<std::uint32_t>(first + count), run);
     in_segment += count;
   };
+  RenderHooks rest = hooks;
+  if (rest.stops.seconds > 0) {
+    rest.stops.seconds = std::max(rest.stops.seconds - clock.elapsed_s(), least_seconds);
+  }
   const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)),
-                                          std::min(plan.turn, segment), plan.chains, hooks, mutate);
+                                          std::min(plan.turn, segment), plan.chains, rest, mutate);
   const double mutated_ms = run.kernel_ms - before_ms;
-  totals.take(device, chains, step, run);
+  take();
 
   const auto done = static_cast<std::uint64_t>(batches.samples) * plan.chains;
   run.ended_by = batches.ended_by;
   // Less than a mutation per pixel is an image, too.
   const std::uint64_t whole = std::max<std::uint64_t>(done / pixels, done > 0 ? 1 : 0);
   run.samples_done = static_cast<int>(std::min<std::uint64_t>(whole, std::uint64_t(samples)));
-  run.metropolis = statistics_of(plan, starts, totals.steps());
+  run.metropolis = statistics_of(starts, splats.steps());
   run.metropolis->bootstrap_ms = before_ms;
   run.metropolis->mutations_per_s =
       mutated_ms > 0 ? 1e3 * static_cast<double>(done) / mutated_ms : 0;
-  const double per_quantum = static_cast<double>(pixels) / (static_cast<double>(done) * step.scale);
-  totals.fill_film(per_quantum, static_cast<std::uint64_t>(std::max(run.samples_done, 1)), film);
+
+  const double bootstrap_weight =
+      weights.bootstrap_share / (static_cast<double>(bootstrap.paths()) * bootstrap.step().scale);
+  const double chains_weight = 1.0 / (static_cast<double>(done) * step.scale);
+  const auto radiance = [&](std::size_t i) {  // the mean of a pixel's channel
+    return static_cast<double>(pixels) *
+           (bootstrap.splats()[i] * bootstrap_weight + splats[i] * chains_weight);
+  };
+  fill_film(radiance, static_cast<std::uint64_t>(std::max(run.samples_done, 1)), film);
+  film.tally = film.tally + splats.paths();
   return run;
 }
 

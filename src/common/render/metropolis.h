@@ -11,8 +11,9 @@ namespace pt {
 /// How many chains there are and what they take.
 struct ChainPlan {
   std::uint64_t chains = 0;
-  std::uint64_t bootstrap = 0;        ///< paths before the chains
+  std::uint64_t bootstrap = 0;        ///< paths before the chains, at most
   std::uint64_t bootstrap_batch = 0;  ///< of them at once
+  bool bootstrap_is_timed = false;    ///< it ends when it has had its share of --time-limit
   std::uint32_t blocks = 0;           ///< of random numbers that each chain stores
   int turn = 1;                       ///< iterations between two looks at the clock
 
@@ -44,39 +45,47 @@ struct ChainSums {
   void add(const ChainCounts* counts);
 };
 
-/// What a device does for the chains.
+/// The mean target of the bootstrap paths and its standard error, and where chains begin.
+struct ChainStarts {
+  double brightness = 0, brightness_error = 0;
+  std::vector<double> below;  ///< [group]: Bootstrap::below
+  ChainPlaces places;
+};
+
+/// Of so many bootstrap paths, of whose targets these are the sums, and of chains that begin in
+/// proportion to the target, all by one number `u` in [0, 1). Throws Error where no path found
+/// light.
+ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t paths,
+                          std::uint32_t chains, double u);
+
+/// What a device does for the chains. What takes time is added to the run's.
 class ChainDevice {
  public:
   virtual ~ChainDevice() = default;
 
   /// Before the first batch of a render: over which pixels the chains walk. Sums are zero.
   virtual void begin_chains(const ChainWindow& window) = 0;
-  /// Of the next batch, one for each of its paths.
-  virtual void set_proposals(const std::vector<Proposal>& proposals) = 0;
-  /// Traces a path of each chain (ChainStep::Kind::finish: none), and the chain takes this step.
-  /// Adds to the run's time.
-  virtual void run_chains(std::uint32_t paths, const ChainStep& step, RenderRun& run) = 0;
-  /// The same with ChainStep::Kind::mutate until each chain has taken its step number `last` since
-  /// its start.
+  /// Traces the bootstrap paths [first, first + count) and keeps their targets.
+  virtual void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) = 0;
+  /// Adds those that were traced last to the sums.
+  virtual void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) = 0;
+  /// The first `paths` targets, summed by groups.
+  virtual std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) = 0;
+  /// Traces the paths at which the chains begin, and they do.
+  virtual void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) = 0;
+  /// Traces a path of each chain and lets it step (ChainStep::Kind::mutate), until each has taken
+  /// its step number `last` since its start.
   virtual void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                              RenderRun& run) = 0;
-  /// Those of the last batch.
-  virtual std::vector<Sample> read_chain_samples(std::uint32_t paths) = 0;
+  /// The chains add what they have not yet added (ChainStep::Kind::finish).
+  virtual void finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) = 0;
   /// And leaves them at zero.
   virtual ChainSums take_chain_sums() = 0;
 };
 
-/// The mean target of the bootstrap paths and its standard error, and for each chain the path at
-/// which it begins: drawn in proportion to the target, all chains by one number `u` in [0, 1)
-/// (systematic resampling). Throws Error where no path found light.
-struct ChainStarts {
-  double brightness = 0, brightness_error = 0;
-  std::vector<std::uint32_t> paths;
-};
-ChainStarts choose_starts(const std::vector<float>& targets, std::uint64_t chains, double u);
-
 /// Renders `samples` mutations per pixel of the film's window, or more, so that all chains are of
-/// the same length. Fills in the film's pixels; adds the bootstrap's paths to its tally.
+/// the same length. Fills in the film's pixels and counts, but for those of the bootstrap's paths,
+/// which the device counts as it does all others.
 RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Options& options,
                         int samples, const RenderHooks& hooks, Film& film);
 

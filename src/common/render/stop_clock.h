@@ -25,9 +25,9 @@ class StopClock {
   /// The samples that there will be in all, for a progress bar.
   std::uint64_t expected(std::uint64_t done, std::uint64_t total,
                          std::optional<double> error) const;
+  double elapsed_s() const;
 
  private:
-  double elapsed_s() const;
   double now_s() const;
 
   const StopRule& rule_;

@@ -20,26 +20,34 @@ PT_HD float acceptance(float current, float proposal) {
   return proposal < current ? proposal / current : 1.0f;
 }
 
-/// How a mutation's path counts towards the image. `brightness`, b: the mean of the target over
-/// all random numbers.
+/// How a path counts towards the image that was drawn in one of three ways: by the chains, whose
+/// density is target / b, by large steps and by the bootstrap, both of density 1. The balance
+/// heuristic (Veach and Guibas 1995) weighs them, as Kelemen et al. (2002, section 5.2) do for the
+/// first two. Whatever `expected` is, the weights of the three add up to 1.
 struct MutationWeights {
-  double brightness = 1.0;
+  double brightness = 1.0;  ///< b: the mean of the target over all random numbers
+  double expected = 1.0;    ///< b as it was known when the weights were needed
   double large_step_probability = 0.3;
+  double bootstrap_share = 0.0;  ///< bootstrap paths for each mutation
 
-  /// Per radiance of a path of this target that stands for `share` mutations: of the chains, whose
-  /// density is target / b, and, in addition, of large steps, whose density is 1: their balance
-  /// heuristic (Kelemen et al. 2002, section 5.2).
+  /// Per radiance of a path of this target that stands for `share` paths drawn with density 1.
   PT_HD double weight(float target, double share) const {
-    return share / (target / brightness + large_step_probability);
+    return share / (target / expected + large_step_probability + bootstrap_share);
+  }
+  /// The same for as many mutations of a chain.
+  PT_HD double of_chain(float target, double mutations) const {
+    return weight(target, mutations * (brightness / expected));
   }
   /// Of a proposal, by its expected value: it is accepted with `accepted`.
   PT_HD double of_proposal(float target, float accepted, bool is_large) const {
-    return weight(target, static_cast<double>(accepted) + (is_large ? 1.0 : 0.0));
+    return of_chain(target, static_cast<double>(accepted)) + (is_large ? weight(target, 1.0) : 0.0);
   }
   /// Of the state that the proposal may replace.
   PT_HD double of_current(float target, float accepted) const {
-    return weight(target, 1.0 - static_cast<double>(accepted));
+    return of_chain(target, 1.0 - static_cast<double>(accepted));
   }
+  /// Of a bootstrap path, in units of `bootstrap_share` / bootstrap paths.
+  PT_HD double of_bootstrap(float target) const { return weight(target, 1.0); }
 };
 
 }  // namespace pt
