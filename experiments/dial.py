@@ -5,7 +5,8 @@ The scene `dial:K:C:F` has K materials with coherence C (0 noise, 1 stripes), op
 (docs/scenes.md). Each variant of the wavefront (one kernel for all materials, the same over a queue
 ordered by kind, a kernel for each kind) is compared with the megakernel, which keeps its
 default work and block; `ratio` is the megakernel's time divided by the variant's, so the crossover
-is where it passes 1. All trace the same structure (--accel), so that shading makes the difference.
+is where it passes 1. All trace the same structure (--accel), so that shading makes the difference,
+but for the megakernel whose warps vote, which exists for wide trees on CUDA alone.
 First, images of all variants are compared: they must be equal bit for bit.
 """
 import math
@@ -13,13 +14,15 @@ import sys
 
 import harness
 from harness import Configuration, Experiment, HarnessError, Plot
+from image_check import with_options
 
 FIGURES = ["open", "closed"]
 MATERIALS = [1, 2, 4, 8, 16, 32]
 COHERENCES = [0, 0.5, 1]
-BASE = "megakernel"
+BASE, VOTING = "megakernel", "voting megakernel"
 VARIANTS = {
     BASE: "--mode megakernel",
+    VOTING: "--mode megakernel --accel cwbvh --kernel vote",
     "uber": "--mode wavefront --shade uber",
     "uber, sorted": "--mode wavefront --shade uber --compaction sort",
     "by material": "--mode wavefront --shade material",
@@ -56,16 +59,18 @@ def scenes_of(arguments):
             for coherence in (coherences if count > 1 else coherences[:1])]
 
 
-def configurations(arguments, _device):
+def configurations(arguments, device):
     size, spp = (24, 1) if arguments.quick else (arguments.size, arguments.spp)
     rows = []
     for figure, materials, coherence in scenes_of(arguments):
         scene = f"dial:{materials}:{coherence}:{figure}"
         image = image_of(scene, size, spp, arguments)
         for variant, options in VARIANTS.items():
+            if variant == VOTING and device.kind != "cuda":
+                continue
             is_base = variant == BASE  # in no plot: the others are drawn relative to it
             rows.append(Configuration(
-                f"{scene}: {variant}", f"{image} {options}",
+                f"{scene}: {variant}", " ".join(with_options(image, options)),
                 {"panel": f"{figure}, {variant}", "series": f"coherence {coherence}",
                  "x": "" if is_base else materials, "figure": figure, "materials": materials,
                  "coherence": coherence, "variant": variant,

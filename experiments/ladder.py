@@ -2,8 +2,10 @@
 """Ladder: from the megakernel to the wavefront step by step: what does each step give?
 
 Each rung has the options of the one before it and one more; `gain` is the time of the rung before,
-divided by its own. The pool has 1M paths up to the last rungs, because regeneration matters where
-slots are used again; triangles are in a binary tree up to there.
+divided by its own. The lowest is the megakernel at its best, with the structure and the kernel that
+it takes by itself; the next one is plain, as the wavefront's first rung is. The pool has 1M paths
+up to the last rungs, because regeneration matters where slots are used again; triangles are in a
+binary tree up to there.
 """
 import sys
 
@@ -14,9 +16,9 @@ from images import images_of
 from scene_files import add_scene_files
 from sentences import against, in_groups, time_of
 
-PLAIN = ("--mode wavefront --compaction none --shade uber --regenerate off --finish-paths 0 "
-         "--schedule host --pool-size 1M")
-CUDA, TRIANGLES = "a GPU", "triangles"
+PLAIN = ("--mode wavefront --stages split --compaction none --shade uber --regenerate off "
+         "--finish-paths 0 --schedule host --pool-size 1M")
+CUDA, TRIANGLES, SPHERES = "a GPU", "triangles", "spheres"
 # (rung, what changes against the one before, what it needs)
 STEPS = [
     ("SoA instead of AoS", "--layout soa", ()),
@@ -30,13 +32,18 @@ STEPS = [
     ("wide tree", "--accel cwbvh --persistent off", (CUDA, TRIANGLES)),
     ("persistent warps", "--persistent on", (CUDA, TRIANGLES)),
 ]
+# Above all of them, for spheres: no compaction or order of the hits is left to choose.
+FUSED = [("fused stages", "--mode wavefront --stages fused --wave-rays 1"),
+         ("two rays a wave", "--mode wavefront --stages fused --wave-rays 2")]
 QUICK = "--pool-size 256"
 
 
 def rungs_of(scene, device):
     """(rung, options besides the image's) from the lowest to the highest."""
-    has = [CUDA] * (device.kind == "cuda") + [TRIANGLES] * (scene != "spheres")
+    has = [CUDA] * (device.kind == "cuda") + [SPHERES if scene == "spheres" else TRIANGLES]
     tree = "--accel bvh2" if TRIANGLES in has else ""
+    if TRIANGLES in has:
+        yield "megakernel at its best", "--mode megakernel"
     yield "megakernel", f"--mode megakernel {tree}"
     options = f"{PLAIN} {tree}"
     yield "split kernels", f"{options} --layout aos"
@@ -44,12 +51,14 @@ def rungs_of(scene, device):
         if set(needs) <= set(has):
             options = " ".join(with_options(options, change))
             yield rung, options
+    if SPHERES in has:
+        yield from FUSED
 
 
 def configurations(arguments, device):
     return [Configuration(
         f"{scene}: {number} {rung}",
-        " ".join(with_options(f"{image} {options}", QUICK if arguments.quick and number else "")),
+        " ".join(with_options(f"{image} {options}", QUICK if arguments.quick and "wavefront" in options else "")),
         {"panel": scene, "x": f"{number} {rung}", "gain": ""}, same_image=scene)
             for scene, image in images_of(arguments).items()
             for number, (rung, options) in enumerate(rungs_of(scene, device))]

@@ -40,6 +40,7 @@ PATH, MLT = "path", "mlt"
 OPTIONS = {PATH: "--sampler sobol", MLT: "--integrator mlt"}
 MAIN, OTHER = "wavefront", "megakernel"
 MLT_OPTIONS = ["chains", "large-step-probability", "mutation-size", "bootstrap"]
+BOOTSTRAP_MOST = 1 << 29  # of a reference: 2 GiB
 DIFFER = 4  # times the relMSE that noise explains: beyond it references disagree
 ENDS = ["median", "low", "high"]
 
@@ -142,15 +143,19 @@ class Renders:
         self.device = harness.find_device(self.program, arguments.device)
         self.jobs, self.scenes = {}, scenes_of(arguments)
 
-    def add(self, row, samples, seed, kind="exr"):
-        """The path of the image of the row's scene and integrator; it is rendered by render()."""
+    def add(self, row, samples, seed, kind="exr", scale=1):
+        """The path of the image of the row's scene and integrator; it is rendered by render().
+        `scale`: times the samples and the bootstrap paths of the row."""
         name, integrator = row["panel"], row["series"]
         image = image_of(name, self.scenes[name], integrator, self.arguments)
         path = str(self.folder / f"{len(self.jobs)}.{kind}")
         # Their numbers must not follow from that of the samples: they are those of the timed run.
-        fixed = " ".join(f"--{option} {row[f'mlt_{option}']}" for option in ("chains", "bootstrap")
-                         if row.get(f"mlt_{option}"))
-        self.jobs[path] = [*with_options(image, fixed), "--mode", MAIN, "--spp", str(samples),
+        fixed = ""
+        if row.get("mlt_chains"):
+            bootstrap_paths = min(round(scale * int(row["mlt_bootstrap"])), BOOTSTRAP_MOST)
+            fixed = f"--chains {row['mlt_chains']} --bootstrap {bootstrap_paths}"
+        self.jobs[path] = [*with_options(image, fixed), "--mode", MAIN, "--spp",
+                           str(max(round(scale * int(samples)), 1)),
                            "--seed", str(seed), "--device", self.device.choice, "--quiet",
                            "--output", path]
         return path
@@ -158,7 +163,7 @@ class Renders:
     def add_reference(self, row, kind="exr"):
         """By the integrator of a row of the longest time."""
         scale = self.arguments.reference_seconds / float(row["seconds"])
-        return self.add(row, max(round(scale * int(row["samples"])), 1), REFERENCE_SEED, kind)
+        return self.add(row, row["samples"], REFERENCE_SEED, kind, scale)
 
     def render(self):
         with ThreadPoolExecutor(self.arguments.parallel) as pool:

@@ -13,9 +13,6 @@
 namespace pt {
 namespace {
 
-// The image's first guess of its brightness is that of a batch.
-constexpr std::uint64_t bootstrap_batch_least = std::uint64_t{1} << 20;
-constexpr std::uint64_t bootstrap_batch_max = std::uint64_t{1} << 22;
 // With --time-limit: of the time, and the paths for each mutation that are expected to come of it.
 constexpr double bootstrap_time_share = 0.4;
 constexpr double timed_bootstrap_share = 1.0;
@@ -184,8 +181,7 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
   plan.bootstrap =
       o.bootstrap > 0 ? o.bootstrap : automatic_bootstrap(o, defaults, pixels, memory.free_bytes);
   plan.bootstrap_is_timed = o.bootstrap == 0 && o.time_limit > 0;
-  plan.bootstrap_batch = std::min(
-      plan.bootstrap, std::clamp(plan.bootstrap / 16, bootstrap_batch_least, bootstrap_batch_max));
+  plan.bootstrap_batch = std::min(plan.bootstrap, defaults.turn);
   const std::uint64_t film_bytes = pixels * (memory.bytes_per_pixel + 3 * sizeof(SplatSum));
   const std::uint64_t bytes_per_path = memory.bytes_per_path + sizeof(Proposal);
   const std::uint64_t bytes_per_chain = ChainArrays::bytes_per_chain(plan.blocks);
