@@ -154,9 +154,9 @@ void add_metropolis(std::vector<OptionEntry>& list) {
            "The largest step of a random number by other mutations; the\n"
            "smallest is a sixteenth of it")
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
-           "Paths that measure the image's brightness and where chains\n"
-           "begin; auto: half of the mutations, at least 2^20 on CUDA,\n"
-           "2^17 on the CPU, and at most 64 times as many");
+           "Paths before the chains, at which these begin; auto: twice the\n"
+           "mutations, at least 2^20 on CUDA, 2^17 on the CPU, and at most\n"
+           "256 times as many, or half of --time-limit");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {

@@ -26,11 +26,11 @@ namespace {
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 
-/// A chain for each thread that the device holds at once, about 2^18 on an H200. Eight times as
-/// many take twice as many mutations a second, but each walks too short a way to leave its start:
-/// the error at equal time was 1.5 to 2 times as large (results/).
+/// Two chains for each thread that the device holds at once, about 2^19 on an H200. More take more
+/// mutations a second, but each walks a shorter way from its start: half as many and twice as many
+/// have a larger error at equal time (results/).
 ChainDefaults chain_defaults(const cudaDeviceProp& device) {
-  return {static_cast<std::uint64_t>(device.multiProcessorCount) *
+  return {2 * static_cast<std::uint64_t>(device.multiProcessorCount) *
               static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
           std::uint64_t{1} << 20, std::uint64_t{1} << 23};
 }

@@ -14,8 +14,8 @@ namespace pt {
 namespace {
 
 // With --time-limit: of the time, and the paths for each mutation that are expected to come of it.
-constexpr double bootstrap_time_share = 0.4;
-constexpr double timed_bootstrap_share = 1.0;
+constexpr double bootstrap_time_share = 0.5;
+constexpr double timed_bootstrap_share = 2.0;
 constexpr double least_seconds = 1e-6;  // 0 would be no limit
 /// Longer paths draw the numbers of their last rays afresh: 2 KiB for a chain.
 constexpr std::uint32_t stored_blocks_max = 128;
@@ -131,8 +131,8 @@ MetropolisStats statistics_of(const ChainStarts& starts, const ChainTally& tally
   return stats;
 }
 
-/// As many as mutations, within bounds. Where light is hard to find chains seldom leave the path at
-/// which they begin, so that many beginnings are worth more than many steps (results/).
+/// Twice as many as mutations, within bounds. Where light is hard to find chains seldom leave the
+/// path at which they begin, so that many beginnings are worth more than many steps (results/).
 std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& defaults,
                                   std::uint64_t pixels, std::uint64_t free_bytes) {
   const std::uint64_t least = defaults.bootstrap;
@@ -140,7 +140,7 @@ std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& default
       free_bytes / 8 / Bootstrap::bytes_per_group * Bootstrap::group_paths;
   const std::uint64_t most = std::max(std::min(256 * least, fitting), least);
   // Nobody knows how many mutations there will be.
-  return o.time_limit > 0 ? most : std::clamp(mutations_of(pixels, o.spp), least, most);
+  return o.time_limit > 0 ? most : std::clamp(2 * mutations_of(pixels, o.spp), least, most);
 }
 
 }  // namespace

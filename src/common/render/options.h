@@ -97,10 +97,10 @@ struct Options {
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
   // Of IntegratorKind::mlt (docs/metropolis.md)
-  std::uint64_t chains = 0;             ///< Markov chains, 0: automatic
-  float large_step_probability = 0.3f;  ///< in (0, 1]
-  float mutation_size = 0.00390625f;    ///< largest small step of a number, in (0, 1/2]
-  std::uint64_t bootstrap = 0;          ///< samples before the chains, 0: automatic
+  std::uint64_t chains = 0;              ///< Markov chains, 0: automatic
+  float large_step_probability = 0.05f;  ///< in (0, 1]
+  float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]
+  std::uint64_t bootstrap = 0;           ///< paths before the chains, 0: automatic
   bool multiple_scattering = false;     ///< of rough conductors, between their facets
   std::uint64_t seed = 1;
   std::string output = "image.exr";    ///< .exr, .png or .ppm
