@@ -252,10 +252,17 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
           : static_cast<double>(plan.bootstrap) / static_cast<double>(iterations * plan.chains);
   BootstrapRun bootstrap(device, plan, weights, pixels);
   const double bootstrap_s = bootstrap_time_share * hooks.stops.seconds;
+  const std::uint64_t in_all = plan.bootstrap + iterations * plan.chains;
   bootstrap.trace(
       [&] {
-        return (plan.bootstrap_is_timed && clock.elapsed_s() >= bootstrap_s) ||
-               (hooks.stop && hooks.stop());
+        const double elapsed = clock.elapsed_s();
+        if (hooks.progress) {
+          const double done = bootstrap.paths();
+          const double ending = elapsed > 0 ? done * hooks.stops.seconds / elapsed : done;
+          hooks.progress(bootstrap.paths(),
+                         plan.bootstrap_is_timed ? static_cast<std::uint64_t>(ending) : in_all);
+        }
+        return (plan.bootstrap_is_timed && elapsed >= bootstrap_s) || (hooks.stop && hooks.stop());
       },
       run);
 
@@ -290,6 +297,11 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
   RenderHooks rest = hooks;
   if (rest.stops.seconds > 0) {
     rest.stops.seconds = std::max(rest.stops.seconds - clock.elapsed_s(), least_seconds);
+  }
+  if (hooks.progress) {
+    rest.progress = [&](std::uint64_t mutated, std::uint64_t wanted) {
+      hooks.progress(bootstrap.paths() + mutated, bootstrap.paths() + wanted);
+    };
   }
   const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)),
                                           std::min(plan.turn, segment), plan.chains, rest, mutate);

@@ -22,8 +22,8 @@ struct StopRule {
 };
 
 struct RenderHooks {
-  /// Called between batches with the samples done and wanted (pixels x spp) of this render. May be
-  /// empty.
+  /// Called between batches with the samples done and wanted (pixels x spp, and the bootstrap's
+  /// paths) of this render. May be empty.
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;
   /// Polled between batches; true ends the render early with the samples that it has. May be empty.
   std::function<bool()> stop;
