@@ -470,6 +470,14 @@ TEST(ChainStarts, AreThoseOfOneWalkOverAllPaths) {
   }
 }
 
+// Beside 2^53 each target of 1 is lost, while their sum is not: the walk ends at the last of them.
+TEST(ChainStarts, HaveLightWhereRoundingEndsTheWalk) {
+  std::vector<float> targets(512);
+  targets[0] = 0x1p53f;
+  for (std::uint32_t i = 256; i < 384; ++i) targets[i] = 1;
+  EXPECT_EQ(begin_chains(targets, 1, std::nextafter(1.0, 0.0)).paths[0], 383u);
+}
+
 TEST(ChainStarts, OfOnePathAndOfNone) {
   const Begun one = begin_chains({2}, 3, 0.5);
   EXPECT_EQ(one.paths, (std::vector<std::uint32_t>{0, 0, 0}));
