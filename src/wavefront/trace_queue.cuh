@@ -2,6 +2,7 @@
 // wait for the slowest of its warp.
 #pragma once
 
+#include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
 #include "common/device/stage_stamp.cuh"
@@ -94,14 +95,14 @@ struct QueuedShadowRays {
 inline constexpr int trace_block = 128;
 inline constexpr int trace_blocks_least = 8;  ///< per multiprocessor: 64 registers for a thread
 
-template <class Rays>
+template <class Lane, class Rays>
 __global__ void __launch_bounds__(trace_block, trace_blocks_least)
     trace_rays_of_queue(const __grid_constant__ TriangleTree tree,
                         const __grid_constant__ Rays rays, StageId stage, StageClock* clock) {
-  __shared__ PersistentMemory<trace_block> memory;
+  __shared__ PersistentMemory<Lane, trace_block> memory;
   stamp_first_thread(clock, stage);
   if (*rays.rays.queues.count == 0) return;
-  trace_persistent<typename Rays::Query>(tree, memory, rays);
+  trace_persistent<Lane>(tree, memory, rays);
 }
 
 }  // namespace pt

@@ -26,15 +26,14 @@ class WavefrontCuda : public CudaRenderer {
   static constexpr bool kinds_have_kernels = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
-  /// Wide trees, where a thread per ray would wait for the slowest of its warp. Masked scenes are
-  /// of one kind, with spheres and instances or without.
+  /// Wide trees, where a thread per ray would wait for the slowest of its warp. Scenes with spheres
+  /// or masks are of the same kinds as some without.
   template <class Traits>
-  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh &&
-                                        (Traits::geometry == Geometry::triangles ||
-                                         Traits::has_masks);
+  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
   bool traces_queues_here() const {
-    return options_.persistent && scene_.has_only_triangles() &&
-           scene_.triangles.triangle_count > 0;
+    return options_.persistent && scene_.primitives.count() == 0 &&
+           scene_.triangles.triangle_count > 0 &&
+           (scene_.triangles.instance_count == 0 || !traits_.has_masks);
   }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
@@ -54,7 +53,7 @@ class WavefrontCuda : public CudaRenderer {
   StageContext<Source> context_of(const SampleBuffer& batch, const Source& source) const;
   template <class Rays>
   void trace_persistently(const Rays& rays, const SampleBuffer& samples, StageId stage);
-  template <class Rays>
+  template <class Lane, class Rays>
   void run_persistent(const Rays& rays, StageId stage);
   template <class Kinds, class Source>
   void enqueue_wave_of(const StageContext<Source>& context, bool starts_paths);

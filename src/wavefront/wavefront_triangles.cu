@@ -7,13 +7,19 @@ namespace pt {
 template <class Rays>
 void WavefrontCuda::trace_persistently(const Rays& rays, const SampleBuffer& samples,
                                        StageId stage) {
-  if (!traits_.has_masks) return run_persistent(rays, stage);
-  run_persistent(MaskedRays<Rays>{rays, scene_, samples}, stage);
+  using Masked = MaskedRays<Rays>;
+  if (traits_.has_masks) {
+    run_persistent<CwbvhLane<typename Masked::Query>>(Masked{rays, scene_, samples}, stage);
+  } else if (scene_.triangles.instance_count > 0) {
+    run_persistent<InstancedLane<typename Rays::Query>>(rays, stage);
+  } else {
+    run_persistent<CwbvhLane<typename Rays::Query>>(rays, stage);
+  }
 }
 
-template <class Rays>
+template <class Lane, class Rays>
 void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
-  constexpr auto kernel = trace_rays_of_queue<Rays>;
+  constexpr auto kernel = trace_rays_of_queue<Lane, Rays>;
   const std::uint32_t blocks =
       resident_blocks(reinterpret_cast<const void*>(kernel), trace_block, 0);
   launch(stage_info(stage).name.data(), kernel, blocks, trace_block, 0, scene_.triangles, rays,

@@ -1,4 +1,5 @@
 #include "common/accel/trace_cuda/beam_cwbvh.cuh"
+#include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/traverse_triangles_brute.h"
 #include "common/accel/traverse_triangles_bvh2.h"
@@ -41,13 +42,13 @@ __global__ void __launch_bounds__(block_size, (resident_least<structure, instanc
   store_result(tree, query, arrays.hits + i);
 }
 
-template <class PersistentQuery>
+template <class Lane>
 __global__ void __launch_bounds__(block_size, blocks_least)
     trace_by_persistent_warps(const __grid_constant__ TriangleTree tree,
                               const __grid_constant__ RayArrays arrays) {
-  __shared__ PersistentMemory<block_size> memory;
+  __shared__ PersistentMemory<Lane, block_size> memory;
   RayQueue<batch> queue(tree, arrays);
-  trace_persistent<PersistentQuery>(tree, memory, queue);
+  trace_persistent<Lane>(tree, memory, queue);
 }
 
 /// Apart from the beam's code: what few warps need must not cost all of them registers. By value:
@@ -94,21 +95,27 @@ Kernel choose_threads(const TriangleTree& tree) {
   return trace_by_threads<Structure::brute, instanced, Query>;
 }
 
-template <class Query, class PersistentQuery>
+template <class Query>
 Kernel choose_kernel(TraceVariant variant, const TriangleTree& tree) {
-  if (variant == TraceVariant::persistent) return trace_by_persistent_warps<PersistentQuery>;
   if (variant == TraceVariant::beam) return trace_by_beams<Query>;
   return tree.instance_count > 0 ? choose_threads<true, Query>(tree)
                                  : choose_threads<false, Query>(tree);
 }
 
+Kernel choose_persistent(RayType type, const TriangleTree& tree) {
+  const bool any = type == RayType::any;
+  if (tree.instance_count > 0) {
+    return any ? trace_by_persistent_warps<InstancedLane<AnyTriangle>>
+               : trace_by_persistent_warps<InstancedLane<ClosestTriangle>>;
+  }
+  return any ? trace_by_persistent_warps<CwbvhLane<AnyTriangle>>
+             : trace_by_persistent_warps<CwbvhLane<ClosestTriangleId>>;
+}
+
 }  // namespace
 
-int persistent_blocks(RayType type) {
-  const void* kernel =
-      type == RayType::any
-          ? reinterpret_cast<const void*>(trace_by_persistent_warps<AnyTriangle>)
-          : reinterpret_cast<const void*>(trace_by_persistent_warps<ClosestTriangleId>);
+int persistent_blocks(RayType type, const TriangleTree& tree) {
+  const void* kernel = reinterpret_cast<const void*>(choose_persistent(type, tree));
   int device = 0, multiprocessors = 0, per_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "cudaGetDevice");
   check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
@@ -122,11 +129,11 @@ int persistent_blocks(RayType type) {
 void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,
                   const RayArrays& rays, int blocks) {
   if (rays.count == 0) return;
-  const Kernel kernel = type == RayType::any
-                            ? choose_kernel<AnyTriangle, AnyTriangle>(variant, tree)
-                            : choose_kernel<ClosestTriangle, ClosestTriangleId>(variant, tree);
-  const auto all = (rays.count + block_size - 1) / block_size;
   const bool is_persistent = variant == TraceVariant::persistent;
+  const Kernel kernel = is_persistent          ? choose_persistent(type, tree)
+                        : type == RayType::any ? choose_kernel<AnyTriangle>(variant, tree)
+                                               : choose_kernel<ClosestTriangle>(variant, tree);
+  const auto all = (rays.count + block_size - 1) / block_size;
   kernel<<<is_persistent ? static_cast<unsigned>(blocks) : all, block_size>>>(tree, rays);
   check_cuda(cudaGetLastError(), "launching the tracing of rays");
 }

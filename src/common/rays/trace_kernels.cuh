@@ -8,10 +8,10 @@
 namespace pt {
 
 /// Blocks that fill the current device with persistent warps; asked for once, before measuring.
-int persistent_blocks(RayType type);
+int persistent_blocks(RayType type, const TriangleTree& tree);
 
 /// In the default stream. `variant` is not automatic; persistent and beam need the nodes of a wide
-/// tree and no instances. Throws Error where the launch fails.
+/// tree, and beam one without instances. Throws Error where the launch fails.
 void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,
                   const RayArrays& rays, int blocks);
 

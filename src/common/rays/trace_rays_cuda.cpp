@@ -20,14 +20,16 @@ TriangleTree upload(const TriangleTreeData& tree, CudaMemory& memory) {
 }
 
 TraceVariant choose_variant(TraceVariant wanted, const TriangleTree& tree, const RayArrays& rays) {
-  const bool is_wide = tree.cwbvh != nullptr && tree.instance_count == 0;
+  const bool is_wide = tree.cwbvh != nullptr, is_plain = tree.instance_count == 0;
   if (wanted == TraceVariant::automatic) {
     if (!is_wide) return TraceVariant::threads;
-    const bool is_coherent = measure_coherence(rays) >= coherent_part;
+    const bool is_coherent = is_plain && measure_coherence(rays) >= coherent_part;
     return is_coherent ? TraceVariant::beam : TraceVariant::persistent;
   }
   if (wanted != TraceVariant::threads && !is_wide)
-    throw Error("--variant: persistent and beam trace a cwbvh without instances");
+    throw Error("--variant: persistent and beam trace a cwbvh");
+  if (wanted == TraceVariant::beam && !is_plain)
+    throw Error("--variant: beam traces a cwbvh without instances");
   return wanted;
 }
 
@@ -39,7 +41,7 @@ TraceResult trace(const TriangleTree& view, const RaySet& set, const TraceRuns& 
                           memory.allocate<std::uint32_t>("counter", 1)};
   TraceResult result;
   result.variant = choose_variant(runs.variant, view, rays);
-  const int blocks = persistent_blocks(set.type);
+  const int blocks = persistent_blocks(set.type, view);
   const CudaEvent begin, end;
   for (int run = -runs.warmup; run < runs.repeat; ++run) {
     check_cuda(cudaMemset(rays.next, 0, sizeof(std::uint32_t)), "cudaMemset");

@@ -23,10 +23,17 @@ __device__ inline bool warp_steps(int stepping, int testing) { return stepping >
 /// A lane's traversal, which can stop between any two steps and go on later. Query: one with
 /// offer_nearer. A lane that has found leaves tests them before it goes on: without knowing the hit
 /// it would visit nodes behind it. The two triangles of a leaf are tested side by side.
-template <class Query>
+template <class QueryType>
 class CwbvhLane {
  public:
-  __device__ CwbvhLane(const TriangleTree& tree, const SlotOrder& order, uint2* stack)
+  using Query = QueryType;
+  using Rays = PreparedRays;
+  struct Memory {};  ///< nothing in shared memory
+  static constexpr bool has_instances = false;
+  static constexpr int stack_size = bvh_depth_max;
+
+  __device__ CwbvhLane(const TriangleTree& tree, const SlotOrder& order, uint2* stack,
+                       const Memory& = {})
       : tree_(tree), order_(order), stack_(stack) {}
 
   PT_LANE_COUNTER;  ///< of the lane's ray

@@ -13,27 +13,37 @@
 namespace pt {
 
 /// What a warp needs now and then, in shared memory: registers are short.
+template <class Lane>
 struct PersistentWarp {
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  PreparedRays rays;
+  typename Lane::Rays rays;
+  typename Lane::Memory lanes;
   int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not handed out
   std::uint32_t number[32];  ///< by lane: of the ray whose result is not written; none
   ReservedRays reserved;
 };
 
 /// What the threads of a block share.
-template <int block_size>
+template <class Lane, int block_size>
 struct PersistentMemory {
   SlotOrder order;
-  PersistentWarp warps[block_size / 32];
+  PersistentWarp<Lane> warps[block_size / 32];
 };
 
 struct PersistentTuning {
   static constexpr int refill = 8;  ///< idle lanes that make the warp hand out rays
 };
 
-/// Traces what `work` hands out, one lane's view. Query: one with offer_nearer. Work has
+/// What the whole warp does next where there are instances, of what its lanes want. Found by
+/// simulation, as warp_steps.
+enum class Turn { step, test, enter };
+__device__ inline Turn choose_turn(int stepping, int testing, int entering) {
+  if (warp_steps(stepping, max(testing, entering))) return Turn::step;
+  return testing >= entering ? Turn::test : Turn::enter;
+}
+
+/// Traces what `work` hands out, one lane's view. Lane: CwbvhLane or InstancedLane. Work has
 ///   std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord&, int& count)  by the whole warp:
 ///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
 ///     first's number; count 0: there is none left
@@ -41,16 +51,18 @@ struct PersistentTuning {
 ///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
 ///     triangle's mask lets the ray through
 ///   LaneCounter lanes(std::uint32_t number)  if its rays' lanes are to be counted
-template <class Query, class Work>
+template <class Lane, class Work>
 class PersistentTracer {
  public:
+  using Warp = PersistentWarp<Lane>;
+
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
-                              PersistentWarp& warp, uint2* stack)
-      : work_(work), warp_(warp), lane_(tree, order, stack) {}
+                              Warp& warp, uint2* stack)
+      : work_(work), warp_(warp), lane_(tree, order, stack, warp.lanes) {}
 
   /// By the whole warp; returns when all rays are done.
   __device__ void run() {
-    warp_.number[threadIdx.x & 31] = PersistentWarp::none;
+    warp_.number[threadIdx.x & 31] = Warp::none;
     warp_.next_ray = warp_.ray_count = 0;
     warp_.reserved = {0, 0};
     __syncwarp();
@@ -60,13 +72,26 @@ class PersistentTracer {
       const unsigned testing = __ballot_sync(whole_warp, tests);
       const unsigned stepping = __ballot_sync(whole_warp, steps);
       const int test_count = __popc(testing), step_count = __popc(stepping);
-      if (test_count + step_count <= (is_drained ? 0 : 32 - PersistentTuning::refill)) {
-        is_drained = !refill(~(testing | stepping));
-        if (is_drained && (testing | stepping) == 0) return;
-      } else if (warp_steps(step_count, test_count)) {
-        if (steps) lane_.step();
-      } else if (tests) {
-        lane_.test_leaf(work_);
+      bool enters = false;
+      unsigned entering = 0;
+      if constexpr (Lane::has_instances) {
+        enters = lane_.wants_enter();
+        entering = __ballot_sync(whole_warp, enters);
+      }
+      const int enter_count = __popc(entering);
+      const int busy_count = test_count + step_count + enter_count;
+      if (busy_count <= (is_drained ? 0 : 32 - PersistentTuning::refill)) {
+        is_drained = !refill(~(testing | stepping | entering));
+        if (is_drained && busy_count == 0) return;
+      } else {
+        const Turn turn = choose_turn(step_count, test_count, enter_count);
+        if (turn == Turn::step) {
+          if (steps) lane_.step();
+        } else if (turn == Turn::test) {
+          if (tests) lane_.test_leaf(work_);
+        } else if constexpr (Lane::has_instances) {
+          if (enters) lane_.enter();
+        }
       }
     }
   }
@@ -77,9 +102,9 @@ class PersistentTracer {
   /// Finishes the rays of idle lanes and hands out others. False: there were none.
   __device__ bool refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
-    if (!lane_.is_active() && warp_.number[lane] != PersistentWarp::none) {
+    if (!lane_.is_active() && warp_.number[lane] != Warp::none) {
       work_.finish(warp_.number[lane], lane_.query());
-      warp_.number[lane] = PersistentWarp::none;
+      warp_.number[lane] = Warp::none;
     }
     int next = warp_.next_ray, count = warp_.ray_count;
     bool are_left = next < count;
@@ -110,29 +135,29 @@ class PersistentTracer {
     return count;
   }
 
-  __device__ void begin(const PreparedRay& ray) {
+  __device__ void begin(const auto& ray) {
     warp_.number[threadIdx.x & 31] = ray.number;
     if constexpr (counts_lanes && requires { work_.lanes(ray.number); }) {
       set_lanes(lane_, work_.lanes(ray.number));
       lanes_of(lane_).count(LanePoint::intersect);
     }
-    lane_.begin(ray, Query(ray.t_min, ray.t_max));
+    lane_.begin(ray, typename Lane::Query(ray.t_min, ray.t_max));
   }
 
   Work& work_;
-  PersistentWarp& warp_;
-  CwbvhLane<Query> lane_;
+  Warp& warp_;
+  Lane lane_;
 };
 
 /// Traces what `work` hands out until there is nothing left. All threads of the block call it.
-template <class Query, int block_size, class Work>
-__device__ void trace_persistent(const TriangleTree& tree, PersistentMemory<block_size>& memory,
-                                 Work& work) {
+template <class Lane, int block_size, class Work>
+__device__ void trace_persistent(const TriangleTree& tree,
+                                 PersistentMemory<Lane, block_size>& memory, Work& work) {
   memory.order.fill();
   __syncthreads();
-  uint2 stack[bvh_depth_max];
-  PersistentTracer<Query, Work> tracer(tree, work, memory.order, memory.warps[threadIdx.x / 32],
-                                       stack);
+  uint2 stack[Lane::stack_size];
+  PersistentTracer<Lane, Work> tracer(tree, work, memory.order, memory.warps[threadIdx.x / 32],
+                                      stack);
   tracer.run();
 }
 

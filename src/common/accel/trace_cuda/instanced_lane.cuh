@@ -1,0 +1,168 @@
+// One lane's way through a wide tree over instances and the wide trees in them, a step, a leaf or
+// an instance at a time: the same hits as traverse_cwbvh (see 'Instances' in docs/tracing.md).
+#pragma once
+
+#include "common/accel/trace_cuda/cwbvh_lane.cuh"
+#include "common/accel/trace_cuda/world_rays.cuh"
+
+namespace pt {
+
+/// A lane's traversal of two levels; see CwbvhLane. What is left to visit are groups of one form:
+/// children in an instance, children in the world, instances. The instances of a node come before
+/// its inner children, the nearer ones first.
+template <class QueryType>
+class InstancedLane {
+ public:
+  using Query = QueryType;
+  using Rays = WorldRays;
+  using Memory = InstancedLanes;
+  static constexpr bool has_instances = true;
+  /// Of either level a group for each of its nodes' levels; and where an instance is entered, those
+  /// beside it and the mark.
+  static constexpr int stack_size = 2 * bvh_depth_max + 2;
+  static_assert(!Query::has_masks);
+
+  __device__ InstancedLane(const TriangleTree& tree, const SlotOrder& order, uint2* stack,
+                           Memory& memory)
+      : tree_(tree), order_(order), stack_(stack), memory_(memory) {}
+
+  PT_LANE_COUNTER;  ///< of the lane's ray
+
+  __device__ bool wants_test() const { return leaves_.has_slots(); }
+  __device__ bool wants_enter() const { return !wants_test() && (nodes_.bits & instances) != 0; }
+  /// Leaving an instance is the beginning of a step in the world.
+  __device__ bool wants_step() const {
+    return !wants_test() && (nodes_.bits & instances) == 0 && nodes_.has_slots();
+  }
+  __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
+  __device__ const Query& query() const { return query_; }
+
+  /// At the root.
+  __device__ void begin(const WorldRay& ray, const Query& query) {
+    const Vec3 &o = ray.origin, &d = ray.direction;
+    memory_.origin[lane()] = {o.x, o.y, o.z, 0.0f};
+    memory_.direction[lane()] = {d.x, d.y, d.z, HUGE_VALF};
+    const CwbvhRay world = make_cwbvh_ray({o, d});
+    origin_ = world.origin, inverse_ = world.inverse;
+    query_ = query;
+    nodes_ = {tree_.root, ray.t_max > 0.0f ? in_world | world.octant << 8 | 1u : 0u};
+  }
+
+  __device__ void step() {
+    if ((nodes_.bits & mark) != 0) leave();
+    if ((nodes_.bits & instances) != 0) return;
+    lanes_of(*this).count(LanePoint::node);
+    const std::uint32_t where = nodes_.bits & (0x700u | in_world);
+    const std::uint32_t child = take_first();
+    if (nodes_.has_slots()) push(nodes_);
+    const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
+    const std::uint32_t hits = hit_slots(node, origin_, inverse_, limit());
+    const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
+    nodes_ = {node.child_base(), (hits & inner) | where | inner << 16};
+    if ((where & in_world) == 0) {
+      leaves_ = {node.triangle_base(), (hits & leaf) | leaf << 8 | node.pair_mask() << 16};
+    } else if ((hits & leaf) != 0) {
+      if (nodes_.has_slots()) push(nodes_);
+      nodes_ = {node.triangle_base(), (hits & leaf) | where | instances | leaf << 16};
+    }
+    if (!nodes_.has_slots()) pop();
+  }
+
+  /// Goes to the root of the next instance, if the ray meets its box before the best hit.
+  __device__ void enter() {
+    const std::uint32_t number = take_first();
+    const InstanceRecord instance = load_wide(&tree_.instances[number]);
+    const Ray ray = world_ray();
+    const InstanceVisit visit =
+        visit_instance(instance, ray, make_slab_test_ray(ray), query_.t_min(), query_.t_max());
+    if (visit.is_empty) {
+      if (!nodes_.has_slots()) pop();
+      return;
+    }
+    if (nodes_.has_slots()) push(nodes_);
+    if (depth_ > 0) push({0, mark | 1u});
+    memory_.origin[lane()].w = visit.part.near;
+    memory_.direction[lane()].w = visit.part.far;
+    memory_.instance[lane()] = number;
+    const CwbvhRay local = make_cwbvh_ray(visit.ray);
+    origin_ = local.origin, inverse_ = local.inverse, triangle_ray_ = local.triangles;
+    nodes_ = {instance.root, local.octant << 8 | 1u};
+  }
+
+  template <class Work>
+  __device__ void test_leaf(const Work&) {
+    lanes_of(*this).count(LanePoint::primitive);
+    const CwbvhLeaf leaf = take_leaf(leaves_);
+    const std::uint32_t last = leaf.first + leaf.count - 1;
+    const Triangle a = load_wide(&tree_.triangles[leaf.first]);
+    const Triangle b = load_wide(&tree_.triangles[last]);
+    const float t_a = moved(intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t);
+    const float t_b = moved(intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t);
+    const bool nearer = t_b < t_a || (t_b == t_a && b.id < a.id);
+    const bool second = !(t_a > query_.t_min()) || (t_b > query_.t_min() && nearer);
+    if (query_.offer(tree_, second ? t_b : t_a, second ? last : leaf.first,
+                     memory_.instance[lane()])) {
+      nodes_.bits = leaves_.bits = 0;
+      depth_ = 0;
+    }
+  }
+
+ private:
+  // Bits of a SlotGroup beside those that it has anyway:
+  static constexpr std::uint32_t in_world = 1u << 11;   ///< children are in the tree over instances
+  static constexpr std::uint32_t instances = 1u << 12;  ///< children are instances
+  static constexpr std::uint32_t mark = 1u << 13;       ///< below it on the stack is the world
+
+  __device__ static unsigned lane() { return threadIdx.x & 31; }
+
+  __device__ void push(const SlotGroup& group) { stack_[depth_++] = {group.base, group.bits}; }
+  __device__ void pop() {
+    nodes_.bits = 0;
+    if (depth_ == 0) return;
+    const uint2 top = stack_[--depth_];
+    nodes_ = {top.x, top.y};
+  }
+
+  /// The number of the child that comes first, which is taken out of the group.
+  __device__ std::uint32_t take_first() {
+    const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
+    nodes_.bits ^= bit;
+    return nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
+  }
+
+  __device__ Ray world_ray() const {
+    const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
+    return {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
+  }
+
+  /// Below a mark there is always a group.
+  __device__ void leave() {
+    const CwbvhRay world = make_cwbvh_ray(world_ray());
+    origin_ = world.origin, inverse_ = world.inverse;
+    memory_.direction[lane()].w = HUGE_VALF;
+    pop();
+  }
+
+  /// See InstanceVisit.
+  __device__ float limit() const {
+    const float t_max = query_.t_max();
+    return t_max >= memory_.direction[lane()].w ? HUGE_VALF : t_max;
+  }
+  __device__ float moved(float t) const {
+    const float near = memory_.origin[lane()].w, far = memory_.direction[lane()].w;
+    return t < near ? near : t > far ? far : t;
+  }
+
+  const TriangleTree& tree_;
+  const SlotOrder& order_;
+  Query query_{0.0f, 0.0f};
+  Vec3 origin_{}, inverse_{};
+  TriangleRay triangle_ray_{};
+  SlotGroup nodes_{0, 0};
+  CwbvhGroup leaves_{0, 0};
+  uint2* stack_;
+  Memory& memory_;
+  int depth_ = 0;
+};
+
+}  // namespace pt

@@ -1,0 +1,45 @@
+// Rays of the world for warps that trace scenes with instances, in shared memory.
+#pragma once
+
+#include "common/accel/ray_record.h"
+#include "common/accel/traverse_cwbvh.h"
+
+namespace pt {
+
+/// A ray before anything is computed from it: each instance sees another one.
+struct WorldRay {
+  Vec3 origin;
+  float t_min;
+  Vec3 direction;
+  float t_max;  ///< negative: not to be traced, a miss
+  std::uint32_t number;
+};
+
+/// 32 rays that a warp holds ready for its lanes.
+class WorldRays {
+ public:
+  __device__ void store(unsigned place, const RayRecord& record, std::uint32_t number) {
+    const Vec3 &o = record.origin, &d = record.direction;
+    origin_[place] = {o.x, o.y, o.z, record.t_min};
+    direction_[place] = {d.x, d.y, d.z, is_traceable(record.ray()) ? record.t_max : -1.0f};
+    number_[place] = number;
+  }
+
+  __device__ WorldRay load(unsigned place) const {
+    const float4 o = origin_[place], d = direction_[place];
+    return {{o.x, o.y, o.z}, o.w, {d.x, d.y, d.z}, d.w, number_[place]};
+  }
+
+ private:
+  float4 origin_[32], direction_[32];
+  std::uint32_t number_[32];
+};
+
+/// What lanes need again when they enter an instance or leave it, by lane. Each sees its own alone.
+struct InstancedLanes {
+  float4 origin[32];     ///< of the ray in the world; where it enters the instance
+  float4 direction[32];  ///< likewise; where it leaves the instance, in the world infinite
+  std::uint32_t instance[32];
+};
+
+}  // namespace pt
