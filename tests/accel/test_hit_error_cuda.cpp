@@ -5,6 +5,7 @@
 #include "common/rays/trace_rays.h"
 #include "cuda_test.h"
 #include "hard_hits.h"
+#include "instance_crowds.h"
 #include "instanced_meshes.h"
 #include "mode_cases.h"
 #include "shared_file.h"
@@ -23,7 +24,7 @@ std::size_t count_different(const Hits& a, const Hits& b) {
   return different;
 }
 
-class CudaHardHits : public CudaTest, public testing::WithParamInterface<MeshKind> {
+class CudaHits : public CudaTest {
  protected:
   /// All that trees and variants find of these rays is what threads find in `expected`.
   static void expect_same(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances,
@@ -55,10 +56,13 @@ class CudaHardHits : public CudaTest, public testing::WithParamInterface<MeshKin
 
  private:
   static std::vector<TraceVariant> variants(AccelKind accel, bool plain) {
-    if (accel == AccelKind::bvh2 || !plain) return {TraceVariant::threads};
+    if (accel == AccelKind::bvh2) return {TraceVariant::threads};
+    if (!plain) return {TraceVariant::threads, TraceVariant::persistent};
     return {TraceVariant::threads, TraceVariant::persistent, TraceVariant::beam};
   }
 };
+
+class CudaHardHits : public CudaHits, public testing::WithParamInterface<MeshKind> {};
 INSTANTIATE_TEST_SUITE_P(Cuda, CudaHardHits, testing::ValuesIn(hard_mesh_kinds),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
@@ -77,8 +81,45 @@ TEST_P(CudaHardHits, AreTheSameInInstances) {
   const Mesh world = mesh;
   mesh.group = 1;
   const std::vector<Instance> instances = hard_instances(12);
-  const RaySet rays = hard_rays(world, 5000);
-  expect_same({world, mesh}, instances, rays, brute_kind.build({world, mesh}, instances));
+  for (const RayType type : {RayType::closest, RayType::any}) {
+    const RaySet rays = hard_rays(world, 5000, type);
+    expect_same({world, mesh}, instances, rays, brute_kind.build({world, mesh}, instances));
+  }
+}
+
+class CudaInstances : public CudaHits {};
+
+TEST_F(CudaInstances, ManyGroupsAreMetAlike) {
+  const InstancedMeshes world = make_instanced_meshes(30);
+  for (const RayType type : {RayType::closest, RayType::any}) {
+    RaySet rays = rays_through(20001, type);  // the last warp is not full
+    rays.rays[77].t_max = 1e-3f;
+    expect_same(world.meshes, world.instances, rays,
+                brute_kind.build(world.meshes, world.instances));
+  }
+}
+
+// Where a tenth of the hits is moved into the part of the ray that lies in the instance's box.
+TEST_F(CudaInstances, SeenFromAfarAreMetAlike) {
+  TestRandom random(34);
+  const std::vector<Mesh> meshes = squares();
+  for (const double distance : {1e4, 1e6}) {
+    const Crowd crowd = crowd_from_afar(random, distance);
+    const TriangleTreeData brute = brute_kind.build(meshes, crowd.instances);
+    RaySet rays;
+    for (const Ray& ray : crowd.rays) {
+      rays.rays.push_back({ray.origin, 0.0f, ray.direction, infinite_distance});
+    }
+    expect_same(meshes, crowd.instances, rays, brute);
+    // Shadow rays that end at what is met, or just behind.
+    const Hits hits = trace_rays_cuda(brute, rays, {TraceVariant::threads, 0, 1}, 0).hits;
+    rays.type = RayType::any;
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const float t = hits[i].t;
+      if (t > 0.0f) rays.rays[i].t_max = i % 2 == 0 ? t : std::nextafterf(t, infinite_distance);
+    }
+    expect_same(meshes, crowd.instances, rays, brute);
+  }
 }
 
 /// Files in the folder `shared`, which are no part of the repository.

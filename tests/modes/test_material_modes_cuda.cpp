@@ -6,6 +6,7 @@
 #include "lit_room.h"
 #include "masked_room.h"
 #include "material_room.h"
+#include "mixed_scene.h"
 #include "mode_cases.h"
 
 namespace pt {
@@ -110,7 +111,7 @@ TEST_P(GpuRoomsOf, AreCloseToTheCpu) {
   EXPECT_NEAR(sum_a / sum_b, 1.0, 5e-3);
 }
 
-class CudaMasks : public CudaTest {
+class CudaPersistent : public CudaTest {
  protected:
   /// By the wavefront on the GPU, as the settings say, and by the megakernel.
   static void expect_equal(const SceneData& scene, Settings settings, bool persistent) {
@@ -125,6 +126,30 @@ class CudaMasks : public CudaTest {
     EXPECT_EQ(sorted > 0, persistent);
   }
 };
+
+using CudaInstancedScenes = CudaPersistent;
+
+TEST_F(CudaInstancedScenes, PersistentWarpsTraceThemWithoutSpheres) {
+  SceneData scene = mixed_scene();
+  expect_equal(scene, {{"accel", "cwbvh"}, {"finish-paths", "0"}}, false);
+  scene.spheres.clear(), scene.sphere_material.clear();
+  for (const char* pool : {"100", "3001", "auto"}) {
+    for (const char* layout : {"soa", "aos", "sectors"}) {
+      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+        SCOPED_TRACE(testing::Message() << pool << ", " << layout << ", " << builder);
+        expect_equal(scene,
+                     {{"accel", "cwbvh"},
+                      {"pool-size", pool},
+                      {"layout", layout},
+                      {"builder", builder},
+                      {"finish-paths", "0"}},
+                     true);
+      }
+    }
+  }
+}
+
+using CudaMasks = CudaPersistent;
 
 TEST_F(CudaMasks, PersistentWarpsAskThem) {
   for (const char* pool : {"100", "3001", "auto"}) {

@@ -147,6 +147,13 @@ const std::vector<ImageKind> triangle_kinds = [] {
     kinds.push_back({name, boxes});
     kinds.back().settings.emplace_back(option, value);
   }
+  kinds.push_back({"forest",
+                   {{"scene", "instances:3K"},
+                    {"width", width},
+                    {"height", height},
+                    {"spp", spp},
+                    {"accel", "cwbvh"},
+                    {"max-depth", "8"}}});
   kinds.push_back({"no_light_sampling",
                    {{"scene", "boxes"},
                     {"width", width},

@@ -88,6 +88,33 @@ TEST(SceneOptions, VotesTakeAWideTree) {
   EXPECT_EQ(accel_of("dial:2", vote), Accel::cwbvh);
 }
 
+// Persistent warps trace wide trees, with instances or without, but no spheres; where no queue is
+// appended there are none.
+TEST(SceneOptions, PersistentWarpsTakeAWideTree) {
+  const auto accel_of = [](SceneData scene, Compaction compaction = Compaction::atomic) {
+    Options options;
+    options.device.kind = DeviceChoice::Kind::cuda;
+    options.mode = Mode::wavefront;
+    options.compaction = compaction;
+    prepare_scene(scene, options);
+    return scene.traits.accel;
+  };
+  const SceneData boxes = build_scene(with_scene("boxes"));
+  const SceneData forest = build_scene(with_scene("instances:20"));
+  for (const SceneData& scene : {boxes, forest}) {
+    EXPECT_EQ(accel_of(scene), Accel::cwbvh);
+    EXPECT_EQ(accel_of(scene, Compaction::cub), Accel::bvh2);
+    SceneData with_sphere = scene;
+    with_sphere.add_sphere({0, 0, 0}, 1, 0);
+    EXPECT_EQ(accel_of(with_sphere), Accel::bvh2);
+  }
+  for (const auto& [scene, accel] : {std::pair{boxes, Accel::cwbvh}, {forest, Accel::bvh2}}) {
+    SceneData masked = scene;
+    masked.materials[0].opacity.offset = 0.5f;
+    EXPECT_EQ(accel_of(masked), accel);
+  }
+}
+
 TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
   for (const auto& [shade, lean] : {std::pair{Shade::material, false}, {Shade::uber, true}}) {
     Options options;

@@ -37,12 +37,14 @@ Accel automatic_structure(const SceneData& scene, const Options& options) {
   if (!is_on_cuda(options)) {
     return has_avx2() && scene.opacities.empty() ? Accel::cwbvh : Accel::bvh2;
   }
-  const bool warps_persist =
-      (options.mode == Mode::wavefront && compaction_info(options.compaction).appends) ||
-      (options.mode == Mode::megakernel &&
-       (options.kernel == MegakernelKind::vote || votes_by_itself(scene, options)));
-  const bool persistent = warps_persist && scene.instances.empty() && scene.spheres.empty();
-  return persistent ? Accel::cwbvh : Accel::bvh2;
+  const bool is_plain = scene.instances.empty() && scene.spheres.empty();
+  if (options.mode == Mode::megakernel) {
+    const bool votes = options.kernel == MegakernelKind::vote || votes_by_itself(scene, options);
+    return votes && is_plain ? Accel::cwbvh : Accel::bvh2;
+  }
+  const bool warps_persist = compaction_info(options.compaction).appends && scene.spheres.empty() &&
+                             (scene.instances.empty() || scene.opacities.empty());
+  return warps_persist ? Accel::cwbvh : Accel::bvh2;
 }
 
 Accel structure_of(const SceneData& scene, const Options& options) {

@@ -96,8 +96,10 @@ class InstancedLane {
     const std::uint32_t last = leaf.first + leaf.count - 1;
     const Triangle a = load_wide(&tree_.triangles[leaf.first]);
     const Triangle b = load_wide(&tree_.triangles[last]);
-    const float t_a = moved(intersect_triangle(triangle_ray_, a.v0, a.v1, a.v2).t);
-    const float t_b = moved(intersect_triangle(triangle_ray_, b.v0, b.v1, b.v2).t);
+    TriangleRay ray = triangle_ray_;
+    ray.origin = origin_;  // the same, and no further registers for what changes with it
+    const float t_a = moved(intersect_triangle(ray, a.v0, a.v1, a.v2).t);
+    const float t_b = moved(intersect_triangle(ray, b.v0, b.v1, b.v2).t);
     const bool nearer = t_b < t_a || (t_b == t_a && b.id < a.id);
     const bool second = !(t_a > query_.t_min()) || (t_b > query_.t_min() && nearer);
     if (query_.offer(tree_, second ? t_b : t_a, second ? last : leaf.first,
