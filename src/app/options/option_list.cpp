@@ -306,8 +306,8 @@ void add_execution(std::vector<OptionEntry>& list) {
                },
                [](const Options& o) { return o.persistent ? "on" : "off"; }),
            "wavefront on CUDA: warps that persist trace the appended\n"
-           "queues of rays where a wide tree has triangles alone; off: a\n"
-           "thread per ray")
+           "queues of rays through a wide tree, in scenes without spheres;\n"
+           "off: a thread per ray")
       .only(wavefront, cuda)
       .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
            "wavefront: when no sample is left to start and so many paths\n"

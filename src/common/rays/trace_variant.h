@@ -4,7 +4,8 @@
 namespace pt {
 
 enum class TraceVariant {
-  automatic,   ///< beam for rays that are coherent, else persistent; threads for other trees
+  automatic,   ///< beam for rays that are coherent and no instances, else persistent;
+               ///< threads for other trees
   threads,     ///< a thread for every ray
   persistent,  ///< warps that take new rays when lanes are idle
   beam,        ///< 32 coherent rays together; rays that are not go by themselves
