@@ -92,13 +92,6 @@ struct QueuedShadowRays {
   }
 };
 
-/// Query of rays that begin at 0, as those of paths do: one register less, which scenes with
-/// instances need.
-template <class Query>
-struct QueryFromZero : Query {
-  __device__ QueryFromZero(float, float t_max) : Query(0.0f, t_max) {}
-};
-
 inline constexpr int trace_block = 128;
 inline constexpr int trace_blocks_least = 8;  ///< per multiprocessor: 64 registers for a thread
 

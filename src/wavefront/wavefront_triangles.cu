@@ -11,7 +11,7 @@ void WavefrontCuda::trace_persistently(const Rays& rays, const SampleBuffer& sam
   if (traits_.has_masks) {
     run_persistent<CwbvhLane<typename Masked::Query>>(Masked{rays, scene_, samples}, stage);
   } else if (scene_.triangles.instance_count > 0) {
-    run_persistent<InstancedLane<QueryFromZero<typename Rays::Query>>>(rays, stage);
+    run_persistent<InstancedLane<typename Rays::Query>>(rays, stage);
   } else {
     run_persistent<CwbvhLane<typename Rays::Query>>(rays, stage);
   }

@@ -35,16 +35,25 @@ class InstancedLane {
     return !wants_test() && (nodes_.bits & instances) == 0 && nodes_.has_slots();
   }
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
-  __device__ const Query& query() const { return query_; }
+  /// With what was found so far.
+  __device__ Query query() const {
+    const std::uint32_t slot = memory_.slot[lane()];
+    const bool has_hit = slot != no_primitive;
+    Query query(t_min(), has_hit ? infinite_distance : t_max_);
+    if (has_hit) query.offer(tree_, t_max_, slot, memory_.hit_instance[lane()]);
+    return query;
+  }
 
   /// At the root.
   __device__ void begin(const WorldRay& ray, const Query& query) {
-    const Vec3 &o = ray.origin, &d = ray.direction;
+    const CwbvhRay world = make_cwbvh_ray({ray.origin, ray.direction});
+    const Vec3 &o = ray.origin, &i = world.inverse, &d = ray.direction;
     memory_.origin[lane()] = {o.x, o.y, o.z, 0.0f};
-    memory_.direction[lane()] = {d.x, d.y, d.z, HUGE_VALF};
-    const CwbvhRay world = make_cwbvh_ray({o, d});
-    origin_ = world.origin, inverse_ = world.inverse;
-    query_ = query;
+    memory_.inverse[lane()] = {i.x, i.y, i.z, 0.0f};
+    memory_.direction[lane()] = {d.x, d.y, d.z, query.t_min()};
+    memory_.slot[lane()] = no_primitive;
+    origin_ = o, inverse_ = i;
+    t_max_ = limit_ = query.t_max();
     nodes_ = {tree_.root, ray.t_max > 0.0f ? in_world | world.octant << 8 | 1u : 0u};
   }
 
@@ -56,7 +65,7 @@ class InstancedLane {
     const std::uint32_t child = take_first();
     if (nodes_.has_slots()) push(nodes_);
     const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
-    const std::uint32_t hits = hit_slots(node, origin_, inverse_, limit());
+    const std::uint32_t hits = hit_slots(node, origin_, inverse_, limit_);
     const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
     nodes_ = {node.child_base(), (hits & inner) | where | inner << 16};
     if ((where & in_world) == 0) {
@@ -72,9 +81,9 @@ class InstancedLane {
   __device__ void enter() {
     const std::uint32_t number = take_first();
     const InstanceRecord instance = load_wide(&tree_.instances[number]);
-    const Ray ray = world_ray();
-    const InstanceVisit visit =
-        visit_instance(instance, ray, make_slab_test_ray(ray), query_.t_min(), query_.t_max());
+    const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
+    const Ray ray = {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
+    const InstanceVisit visit = visit_instance(instance, ray, make_slab_test_ray(ray), d.w, t_max_);
     if (visit.is_empty) {
       if (!nodes_.has_slots()) pop();
       return;
@@ -82,8 +91,9 @@ class InstancedLane {
     if (nodes_.has_slots()) push(nodes_);
     if (depth_ > 0) push({0, mark | 1u});
     memory_.origin[lane()].w = visit.part.near;
-    memory_.direction[lane()].w = visit.part.far;
+    memory_.inverse[lane()].w = visit.part.far;
     memory_.instance[lane()] = number;
+    limit_ = visit.limit(t_max_);
     const CwbvhRay local = make_cwbvh_ray(visit.ray);
     origin_ = local.origin, inverse_ = local.inverse, triangle_ray_ = local.triangles;
     nodes_ = {instance.root, local.octant << 8 | 1u};
@@ -98,18 +108,20 @@ class InstancedLane {
     const Triangle b = load_wide(&tree_.triangles[last]);
     TriangleRay ray = triangle_ray_;
     ray.origin = origin_;  // the same, and no further registers for what changes with it
+    const float near = memory_.origin[lane()].w, far = memory_.inverse[lane()].w;
+    const auto moved = [&](float t) { return t < near ? near : t > far ? far : t; };
     const float t_a = moved(intersect_triangle(ray, a.v0, a.v1, a.v2).t);
     const float t_b = moved(intersect_triangle(ray, b.v0, b.v1, b.v2).t);
+    const float least = t_min();
     const bool nearer = t_b < t_a || (t_b == t_a && b.id < a.id);
-    const bool second = !(t_a > query_.t_min()) || (t_b > query_.t_min() && nearer);
-    if (query_.offer(tree_, second ? t_b : t_a, second ? last : leaf.first,
-                     memory_.instance[lane()])) {
-      nodes_.bits = leaves_.bits = 0;
-      depth_ = 0;
-    }
+    const bool second = !(t_a > least) || (t_b > least && nearer);
+    const float t = second ? t_b : t_a;
+    if (t > least && t <= t_max_) take(t, second ? last : leaf.first, far);
   }
 
  private:
+  static constexpr bool finds_any = std::is_base_of_v<AnyTriangle, Query>;
+
   // Bits of a SlotGroup beside those that it has anyway:
   static constexpr std::uint32_t in_world = 1u << 11;   ///< children are in the tree over instances
   static constexpr std::uint32_t instances = 1u << 12;  ///< children are instances
@@ -132,32 +144,40 @@ class InstancedLane {
     return nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
   }
 
-  __device__ Ray world_ray() const {
-    const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
-    return {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
-  }
-
   /// Below a mark there is always a group.
   __device__ void leave() {
-    const CwbvhRay world = make_cwbvh_ray(world_ray());
-    origin_ = world.origin, inverse_ = world.inverse;
-    memory_.direction[lane()].w = HUGE_VALF;
+    const float4 o = memory_.origin[lane()], i = memory_.inverse[lane()];
+    origin_ = {o.x, o.y, o.z}, inverse_ = {i.x, i.y, i.z};
+    limit_ = t_max_;
     pop();
   }
 
-  /// See InstanceVisit.
-  __device__ float limit() const {
-    const float t_max = query_.t_max();
-    return t_max >= memory_.direction[lane()].w ? HUGE_VALF : t_max;
+  __device__ float t_min() const { return memory_.direction[lane()].w; }
+
+  /// Offers what was met at `t`, no farther than the best hit; of which memory has all but t.
+  __device__ void take(float t, std::uint32_t slot, float far) {
+    if (t == t_max_ && !wins_tie(slot)) return;
+    t_max_ = t;
+    limit_ = t >= far ? HUGE_VALF : t;
+    memory_.slot[lane()] = slot;
+    memory_.hit_instance[lane()] = memory_.instance[lane()];
+    if (finds_any) nodes_.bits = leaves_.bits = 0, depth_ = 0;
   }
-  __device__ float moved(float t) const {
-    const float near = memory_.origin[lane()].w, far = memory_.direction[lane()].w;
-    return t < near ? near : t > far ? far : t;
+
+  __device__ bool wins_tie(std::uint32_t slot) const {
+    if constexpr (finds_any) {
+      return false;
+    } else {
+      const std::uint32_t instance = memory_.instance[lane()];
+      Query query = this->query();
+      query.offer(tree_, t_max_, slot, instance);
+      const Hit hit = query.result();
+      return hit.primitive == slot && hit.instance == instance;
+    }
   }
 
   const TriangleTree& tree_;
   const SlotOrder& order_;
-  Query query_{0.0f, 0.0f};
   Vec3 origin_{}, inverse_{};
   TriangleRay triangle_ray_{};
   SlotGroup nodes_{0, 0};
@@ -165,6 +185,8 @@ class InstancedLane {
   uint2* stack_;
   Memory& memory_;
   int depth_ = 0;
+  float t_max_ = 0.0f;  ///< of the query
+  float limit_ = 0.0f;  ///< how far boxes need a visit
 };
 
 }  // namespace pt

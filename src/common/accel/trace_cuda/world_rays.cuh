@@ -35,11 +35,14 @@ class WorldRays {
   std::uint32_t number_[32];
 };
 
-/// What lanes need again when they enter an instance or leave it, by lane. Each sees its own alone.
+/// What lanes need now and then, by lane, beside registers; each sees its own alone.
 struct InstancedLanes {
-  float4 origin[32];     ///< of the ray in the world; where it enters the instance
-  float4 direction[32];  ///< likewise; where it leaves the instance, in the world infinite
-  std::uint32_t instance[32];
+  float4 origin[32];               ///< of the ray in the world; where it enters the instance
+  float4 inverse[32];              ///< likewise, as the tree needs it; where it leaves the instance
+  float4 direction[32];            ///< likewise; t_min
+  std::uint32_t instance[32];      ///< where the lane is
+  std::uint32_t slot[32];          ///< of the best hit; no_primitive
+  std::uint32_t hit_instance[32];  ///< likewise
 };
 
 }  // namespace pt
