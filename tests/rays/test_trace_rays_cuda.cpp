@@ -1,9 +1,11 @@
 // Every way of tracing on the GPU finds what the CPU finds, however the rays lie.
 #include "common/accel/build/build_triangle_tree.h"
+#include "common/error.h"
 #include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
 #include "common/scene/builtin/generate_terrain.h"
 #include "cuda_test.h"
+#include "instanced_meshes.h"
 #include "terrain_rays.h"
 
 namespace pt {
@@ -55,6 +57,18 @@ TEST_F(CudaTraceRays, ChoosesByCoherence) {
   EXPECT_EQ(chosen(RayKind::primary), TraceVariant::beam);
   EXPECT_EQ(chosen(RayKind::ao), TraceVariant::persistent);
   EXPECT_EQ(chosen(RayKind::diffuse), TraceVariant::persistent);
+}
+
+TEST_F(CudaTraceRays, InstancesAreForPersistentWarps) {
+  const InstancedMeshes world = make_instanced_meshes(3);
+  TreeOptions options;
+  const auto build = [&] { return build_triangle_tree(world.meshes, world.instances, options); };
+  const RaySet rays = rays_through(1000, RayType::closest);
+  EXPECT_EQ(trace_rays_cuda(build(), rays, {}, 0).variant, TraceVariant::persistent);
+  EXPECT_THROW(trace_rays_cuda(build(), rays, {TraceVariant::beam}, 0), Error);
+  options.accel = AccelKind::bvh2;
+  EXPECT_EQ(trace_rays_cuda(build(), rays, {}, 0).variant, TraceVariant::threads);
+  EXPECT_THROW(trace_rays_cuda(build(), rays, {TraceVariant::persistent}, 0), Error);
 }
 
 TEST_F(CudaTraceRays, NoRaysAndNoTriangles) {

@@ -2,6 +2,8 @@
 // an instance at a time: the same hits as traverse_cwbvh (see 'Instances' in docs/tracing.md).
 #pragma once
 
+#include <type_traits>
+
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/accel/trace_cuda/world_rays.cuh"
 
@@ -35,6 +37,7 @@ class InstancedLane {
     return !wants_test() && (nodes_.bits & instances) == 0 && nodes_.has_slots();
   }
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
+
   /// With what was found so far.
   __device__ Query query() const {
     const std::uint32_t slot = memory_.slot[lane()];
