@@ -42,7 +42,8 @@ double sah_cost(const TraceCommand& command, const TraceReport& report) {
       static_cast<double>((is_wide ? default_cwbvh_costs : default_bvh2_costs).triangle));
 }
 
-/// A tree of the device that got too deep has another builder than asked for.
+/// `auto` chooses by group, and a tree of the device that got too deep has another builder than
+/// asked for.
 std::string builder_name(const TraceCommand& command, const TraceReport& report) {
   return report.tree.builder.empty() ? to_string(command.builder) : report.tree.builder;
 }
@@ -146,7 +147,6 @@ BuiltTrace build_and_trace(const TraceCommand& command, const DeviceInfo& device
 int trace_command(const TraceCommand& given) {
   TraceCommand command = given;
   if (command.accel == AccelKind::automatic) command.accel = AccelKind::cwbvh;
-  if (command.builder == TreeBuilder::automatic) command.builder = TreeBuilder::sah;
   const DeviceInfo device = choose_device(command.device);
   check_command(command, device);
   const SceneData scene = load_triangles(command.mesh);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <set>
 
 #include "common/accel/build/append_nodes.h"
 #include "common/accel/build/build_sah.h"
@@ -14,55 +15,100 @@
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/merge_leaves.h"
 #include "common/accel/build/mesh_triangles.h"
+#include "common/accel/build/overlap_share.h"
 #include "common/render/option_names.h"
 
 namespace pt {
 
 namespace {
 
-BinaryTree build_binary(const MeshTriangles& triangles, const TreeOptions& options) {
-  if (options.builder == TreeBuilder::sbvh) {
-    return build_sbvh(
-        triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
+/// A group's tree by itself: its root and its slots come first.
+struct BuiltGroup {
+  Bounds bounds;
+  std::vector<Bvh2Node> bvh2;  ///< one of the two, or none where every triangle is tested
+  std::vector<CwbvhNode> cwbvh;
+  std::vector<std::uint32_t> order;  ///< slot -> the group's triangle
+  TreeBuilder builder = TreeBuilder::automatic;
+
+  double sah_cost(const TreeOptions& options) const {
+    return bvh2.empty() ? measure_tree(std::span(cwbvh), 0).sah_cost(options.cwbvh_costs.triangle)
+                        : measure_tree(std::span(bvh2), 0).sah_cost(options.bvh2_costs.triangle);
   }
-  return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+};
+
+BuiltGroup finish_tree(BinaryTree&& binary, TreeBuilder builder, const TreeOptions& options) {
+  BuiltGroup built;
+  built.bounds = binary.bounds;
+  built.builder = builder;
+  if (options.accel == AccelKind::bvh2) {
+    Bvh2 tree = merge_leaves(std::move(binary), options.bvh2_costs);
+    built.bvh2 = std::move(tree.nodes), built.order = std::move(tree.order);
+  } else {
+    Cwbvh tree = collapse_cwbvh(binary, options.cwbvh_costs);
+    built.cwbvh = std::move(tree.nodes), built.order = std::move(tree.order);
+  }
+  return built;
 }
 
-/// Appends the group's tree, and its triangles in the order of the tree's slots.
-void add_group(TriangleTreeData& tree, std::span<const Mesh> meshes, std::uint32_t number,
-               const TreeOptions& options) {
-  const MeshTriangles triangles(meshes, number);
-  if (triangles.count() == 0) return;
+BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options) {
+  const auto with_splits = [&] {
+    BinaryTree binary = build_sbvh(
+        triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
+    return finish_tree(std::move(binary), TreeBuilder::sbvh, options);
+  };
+  if (options.builder == TreeBuilder::sbvh) return with_splits();
+  BinaryTree binary =
+      build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+  const bool compares = options.builder == TreeBuilder::automatic &&
+                        spatial_splits_may_pay(binary, triangles.count());
+  BuiltGroup whole = finish_tree(std::move(binary), TreeBuilder::sah, options);
+  if (!compares) return whole;
+  BuiltGroup split = with_splits();
+  const bool pays = split.sah_cost(options) <= spatial_split_gain * whole.sah_cost(options);
+  return pays ? split : whole;
+}
+
+BuiltGroup list_triangles(const MeshTriangles& triangles) {
+  BuiltGroup list;
+  list.order.resize(triangles.count());
+  std::iota(list.order.begin(), list.order.end(), 0u);
+  for (const std::uint32_t i : list.order) list.bounds.grow(triangles.bounds(i));
+  return list;
+}
+
+/// Appends the group's tree, and its triangles in the order of the tree's slots. Returns who built
+/// it.
+TreeBuilder add_group(TriangleTreeData& tree, const MeshTriangles& triangles, std::uint32_t number,
+                      const TreeOptions& options) {
+  BuiltGroup built = options.accel == AccelKind::bvh2 || options.accel == AccelKind::cwbvh
+                         ? build_tree(triangles, options)
+                         : list_triangles(triangles);
   GroupTree group;
   group.group = number;
+  group.bounds = built.bounds;
   group.first_slot = static_cast<std::uint32_t>(tree.triangles.size());
-  std::vector<std::uint32_t> order;
-  if (options.accel == AccelKind::bvh2) {
-    BinaryTree binary = build_binary(triangles, options);
-    group.bounds = binary.bounds;
-    Bvh2 bvh = merge_leaves(std::move(binary), options.bvh2_costs);
-    order = std::move(bvh.order);
-    group.node_count = static_cast<std::uint32_t>(bvh.nodes.size());
-    group.root = append_nodes(tree.bvh2, std::move(bvh.nodes), group.first_slot);
-  } else if (options.accel == AccelKind::cwbvh) {
-    const BinaryTree binary = build_binary(triangles, options);
-    group.bounds = binary.bounds;
-    Cwbvh bvh = collapse_cwbvh(binary, options.cwbvh_costs);
-    order = std::move(bvh.order);
-    group.node_count = static_cast<std::uint32_t>(bvh.nodes.size());
-    group.root = append_nodes(tree.cwbvh, std::move(bvh.nodes), group.first_slot);
-  } else {
-    order.resize(triangles.count());
-    std::iota(order.begin(), order.end(), 0u);
-    for (const std::uint32_t i : order) group.bounds.grow(triangles.bounds(i));
+  group.slot_count = static_cast<std::uint32_t>(built.order.size());
+  group.node_count = static_cast<std::uint32_t>(built.bvh2.size() + built.cwbvh.size());
+  if (!built.bvh2.empty()) {
+    group.root = append_nodes(tree.bvh2, std::move(built.bvh2), group.first_slot);
+  }
+  if (!built.cwbvh.empty()) {
+    group.root = append_nodes(tree.cwbvh, std::move(built.cwbvh), group.first_slot);
   }
   group.first_node = group.root;
-  group.slot_count = static_cast<std::uint32_t>(order.size());
-  tree.triangles.resize(tree.triangles.size() + order.size());
+  tree.triangles.resize(tree.triangles.size() + built.order.size());
   tbb::parallel_for(0u, group.slot_count, [&](std::uint32_t i) {
-    tree.triangles[group.first_slot + i] = triangles[order[i]];
+    tree.triangles[group.first_slot + i] = triangles[built.order[i]];
   });
   tree.groups.push_back(group);
+  return built.builder;
+}
+
+/// Where groups differ, by all of them.
+std::string names_of(const std::set<TreeBuilder>& builders) {
+  std::string text;
+  for (const TreeBuilder builder : builders) text += (text.empty() ? "" : "+") + to_string(builder);
+  return text;
 }
 
 }  // namespace
@@ -81,8 +127,10 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   check_builder(chosen.builder, chosen.accel, false);
   check_geometry(meshes, instances);
   TriangleTreeData tree;
+  std::set<TreeBuilder> builders;
   for (const std::uint32_t group : groups_in_use(instances)) {
-    add_group(tree, meshes, group, chosen);
+    const MeshTriangles triangles(meshes, group);
+    if (triangles.count() > 0) builders.insert(add_group(tree, triangles, group, chosen));
   }
   if (!instances.empty()) {
     add_instance_tree(tree, instances, chosen.accel);
@@ -91,10 +139,7 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   }
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
   tree.build_ms = time.count();
-  const bool sah = chosen.builder == TreeBuilder::automatic;
-  if (chosen.accel != AccelKind::brute) {
-    tree.builder = to_string(sah ? TreeBuilder::sah : chosen.builder);
-  }
+  if (chosen.accel != AccelKind::brute) tree.builder = names_of(builders);
   return tree;
 }
 

@@ -30,7 +30,7 @@ struct TriangleTreeData {
   std::uint32_t root = 0;
   std::vector<GroupTree> groups;     ///< in use, ascending by group
   std::uint32_t first_top_node = 0;  ///< the tree over instances fills the end of the nodes
-  std::string builder;               ///< by name; empty: no tree
+  std::string builder;               ///< by name, joined by + where groups differ; empty: no tree
   double build_ms = 0;
 
   bool is_empty() const { return triangles.empty(); }
