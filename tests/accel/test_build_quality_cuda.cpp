@@ -39,7 +39,7 @@ TEST_F(CudaBuild, TreesAreNearlyAsGoodAsTheCpuBuilders) {
 void print_cpu_trees(const Mesh& mesh) {
   for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
     TreeOptions options;
-    options.accel = accel;
+    options.accel = accel, options.builder = TreeBuilder::sah;
     const TriangleTreeData tree = build_triangle_tree(std::span(&mesh, 1), {}, options);
     const bool is_wide = accel == AccelKind::cwbvh;
     const TreeQuality quality =
