@@ -234,9 +234,9 @@ void add_execution(std::vector<OptionEntry>& list) {
            "Embree (CPU, triangles only); auto: what suits the scene")
       .add(choice("builder", &Options::builder),
            "Who builds trees over triangles: binned SAH or spatial\n"
-           "splits on the CPU (auto: what makes the cheaper tree), LBVH\n"
-           "or H-PLOC on the GPU; trees over instances and over spheres\n"
-           "are always the CPU's")
+           "splits on the CPU (auto: either, the first improved by\n"
+           "reinsertion), LBVH or H-PLOC on the GPU; trees over\n"
+           "instances and over spheres are always the CPU's")
       .add(choice("work", &Options::work),
            "megakernel: what a thread renders: a pixel, a sample of a\n"
            "pixel, or whatever it fetches from a common counter")

@@ -16,7 +16,7 @@
 #include "common/accel/build/merge_leaves.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/overlap_share.h"
-#include "common/render/option_names.h"
+#include "common/accel/build/reinsert_nodes.h"
 
 namespace pt {
 
@@ -28,7 +28,7 @@ struct BuiltGroup {
   std::vector<Bvh2Node> bvh2;  ///< one of the two, or none where every triangle is tested
   std::vector<CwbvhNode> cwbvh;
   std::vector<std::uint32_t> order;  ///< slot -> the group's triangle
-  TreeBuilder builder = TreeBuilder::automatic;
+  std::string builder;               ///< by name; empty: no tree
 
   double sah_cost(const TreeOptions& options) const {
     return bvh2.empty() ? measure_tree(std::span(cwbvh), 0).sah_cost(options.cwbvh_costs.triangle)
@@ -36,7 +36,7 @@ struct BuiltGroup {
   }
 };
 
-BuiltGroup finish_tree(BinaryTree&& binary, TreeBuilder builder, const TreeOptions& options) {
+BuiltGroup finish_tree(BinaryTree&& binary, const char* builder, const TreeOptions& options) {
   BuiltGroup built;
   built.bounds = binary.bounds;
   built.builder = builder;
@@ -50,22 +50,48 @@ BuiltGroup finish_tree(BinaryTree&& binary, TreeBuilder builder, const TreeOptio
   return built;
 }
 
-BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options) {
-  const auto with_splits = [&] {
-    BinaryTree binary = build_sbvh(
-        triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
-    return finish_tree(std::move(binary), TreeBuilder::sbvh, options);
+BinaryTree build_whole(const MeshTriangles& triangles) {
+  return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+}
+
+BuiltGroup build_split(const MeshTriangles& triangles, const TreeOptions& options) {
+  BinaryTree binary = build_sbvh(
+      triangles.count(), [&](std::uint32_t i) { return triangles[i]; }, options.sbvh);
+  return finish_tree(std::move(binary), "sbvh", options);
+}
+
+// What the automatic builder goes by, measured on some fifteen scenes (docs/tracing.md).
+constexpr std::uint32_t large_count = 1u << 21;  // triangles that take long
+constexpr double reinsertion_gain = 0.99;        // of costs, at most, to be taken
+constexpr double split_gain = 0.92;              // likewise
+constexpr double split_share = 1.45;             // overlap_share() of a tree worth the try
+constexpr double large_split_share = 2.0;        // the same from large_count on
+
+/// The tree by `sah`, or what cheaper one can be made of it or beside it.
+BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& options) {
+  const bool is_large = triangles.count() >= large_count;
+  const auto take_if_cheaper = [&](BuiltGroup& best, BuiltGroup&& other, double gain) {
+    if (other.sah_cost(options) <= gain * best.sah_cost(options)) best = std::move(other);
   };
-  if (options.builder == TreeBuilder::sbvh) return with_splits();
-  BinaryTree binary =
-      build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
-  const bool compares = options.builder == TreeBuilder::automatic &&
-                        spatial_splits_may_pay(binary, triangles.count());
-  BuiltGroup whole = finish_tree(std::move(binary), TreeBuilder::sah, options);
-  if (!compares) return whole;
-  BuiltGroup split = with_splits();
-  const bool pays = split.sah_cost(options) <= spatial_split_gain * whole.sah_cost(options);
-  return pays ? split : whole;
+  BinaryTree binary = build_whole(triangles);
+  BinaryTree improved;
+  if (!is_large) improved = reinsert_nodes(binary);
+  const double share = overlap_share(is_large ? binary : improved);
+  BuiltGroup best = finish_tree(std::move(binary), "sah", options);
+  if (!is_large) {
+    take_if_cheaper(best, finish_tree(std::move(improved), "sah-reinsert", options),
+                    reinsertion_gain);
+  }
+  if (share >= (is_large ? large_split_share : split_share)) {
+    take_if_cheaper(best, build_split(triangles, options), split_gain);
+  }
+  return best;
+}
+
+BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options) {
+  if (options.builder == TreeBuilder::automatic) return build_cheapest(triangles, options);
+  if (options.builder == TreeBuilder::sbvh) return build_split(triangles, options);
+  return finish_tree(build_whole(triangles), "sah", options);
 }
 
 BuiltGroup list_triangles(const MeshTriangles& triangles) {
@@ -78,7 +104,7 @@ BuiltGroup list_triangles(const MeshTriangles& triangles) {
 
 /// Appends the group's tree, and its triangles in the order of the tree's slots. Returns who built
 /// it.
-TreeBuilder add_group(TriangleTreeData& tree, const MeshTriangles& triangles, std::uint32_t number,
+std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles, std::uint32_t number,
                       const TreeOptions& options) {
   BuiltGroup built = options.accel == AccelKind::bvh2 || options.accel == AccelKind::cwbvh
                          ? build_tree(triangles, options)
@@ -105,9 +131,9 @@ TreeBuilder add_group(TriangleTreeData& tree, const MeshTriangles& triangles, st
 }
 
 /// Where groups differ, by all of them.
-std::string names_of(const std::set<TreeBuilder>& builders) {
+std::string joined(const std::set<std::string>& builders) {
   std::string text;
-  for (const TreeBuilder builder : builders) text += (text.empty() ? "" : "+") + to_string(builder);
+  for (const std::string& builder : builders) text += (text.empty() ? "" : "+") + builder;
   return text;
 }
 
@@ -127,7 +153,7 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   check_builder(chosen.builder, chosen.accel, false);
   check_geometry(meshes, instances);
   TriangleTreeData tree;
-  std::set<TreeBuilder> builders;
+  std::set<std::string> builders;
   for (const std::uint32_t group : groups_in_use(instances)) {
     const MeshTriangles triangles(meshes, group);
     if (triangles.count() > 0) builders.insert(add_group(tree, triangles, group, chosen));
@@ -139,7 +165,7 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   }
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
   tree.build_ms = time.count();
-  if (chosen.accel != AccelKind::brute) tree.builder = names_of(builders);
+  tree.builder = joined(builders);
   return tree;
 }
 

@@ -28,9 +28,10 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// instances the tree is over the meshes of group 0; with instances it is one of two levels, with a
 /// tree for each group that is used and one over the instances, the meshes of group 0 being an
 /// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
-/// slots are in the order of the triangles' numbers. The automatic builder is sah, or sbvh for
-/// those groups where spatial splits make the tree cheaper (overlap_share.h). Throws Error as
-/// check_geometry, and for builders that are not the CPU's.
+/// slots are in the order of the triangles' numbers.
+/// The automatic builder takes, group by group, the cheapest of the tree by sah, the same after
+/// reinsert_nodes() ("sah-reinsert"), and the one by sbvh where overlap_share() promises something.
+/// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);

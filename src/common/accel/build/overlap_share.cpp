@@ -10,11 +10,6 @@ namespace {
 
 constexpr int task_depth = 10;  // so far down, the two children are tasks of their own
 
-// Measured on some twenty scenes (docs/tracing.md).
-constexpr double share_min = 1.1;
-constexpr double large_share_min = 2.0;
-constexpr std::uint32_t large_count = 1u << 21;
-
 /// Of a subtree, in units of area: as many as a ray's expected visits times the root's.
 struct Costs {
   double visits = 0, overlap = 0;
@@ -48,10 +43,6 @@ Costs costs_of(const BinaryTree& tree, std::uint32_t subtree, double area, int d
 double overlap_share(const BinaryTree& tree) {
   const Costs costs = costs_of(tree, tree.root, static_cast<double>(tree.bounds.half_area()), 0);
   return costs.visits > 0 ? costs.overlap / costs.visits : 0.0;
-}
-
-bool spatial_splits_may_pay(const BinaryTree& tree, std::uint32_t count) {
-  return overlap_share(tree) >= (count < large_count ? share_min : large_share_min);
 }
 
 }  // namespace pt

@@ -1,0 +1,15 @@
+// Makes a finished binary tree cheaper: subtrees are taken out and put in where they cost least
+// (Bittner, Hapala and Havran 2013, 'Fast Insertion-Based Optimization of Bounding Volume
+// Hierarchies'), those with the largest boxes alone, since these cost most, and found side by side
+// (Meister and Bittner 2018, 'Parallel Reinsertion for Bounding Volume Hierarchy Optimization').
+#pragma once
+
+#include "common/accel/build/binary_tree.h"
+
+namespace pt {
+
+/// A tree with the same leaves, whose nodes have a lower sum of areas; a copy of `tree` where that
+/// would be deeper than bvh_depth_max. Does not depend on the number of threads.
+BinaryTree reinsert_nodes(const BinaryTree& tree);
+
+}  // namespace pt

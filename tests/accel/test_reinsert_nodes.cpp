@@ -1,0 +1,160 @@
+// Reinsertion keeps the leaves, makes trees cheaper, and keeps what is asked of a BinaryTree.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "common/accel/build/build_sah.h"
+#include "common/accel/build/mesh_triangles.h"
+#include "common/accel/build/reinsert_nodes.h"
+#include "triangle_meshes.h"
+
+namespace pt {
+namespace {
+
+BinaryTree sah_tree(const Mesh& mesh) {
+  const MeshTriangles triangles({&mesh, 1});
+  return build_sah(triangles.count(), [&](std::uint32_t i) { return triangles.bounds(i); });
+}
+
+/// A balanced tree over triangles in the order of their numbers.
+class TreeByNumber {
+ public:
+  explicit TreeByNumber(const Mesh& mesh) : triangles_({&mesh, 1}) {
+    tree.node_capacity = triangles_.count();
+    tree.nodes.reset(new Bvh2Node[triangles_.count()]());
+    tree.order.resize(triangles_.count());
+    std::iota(tree.order.begin(), tree.order.end(), 0u);
+    tree.root = add(0, triangles_.count(), tree.bounds);
+  }
+
+  BinaryTree tree;
+
+ private:
+  std::uint32_t add(std::uint32_t first, std::uint32_t end, Bounds& box) {
+    if (end - first == 1) {
+      box = triangles_.bounds(first);
+      return make_leaf(first, 1);
+    }
+    const std::uint32_t index = count_++, middle = (first + end) / 2;
+    Bounds half[2];
+    tree.nodes[index].child[0] = add(first, middle, half[0]);
+    tree.nodes[index].child[1] = add(middle, end, half[1]);
+    for (int i = 0; i < 2; ++i) {
+      set_child_bounds(tree.nodes[index], i, half[i]);
+      box.grow(half[i]);
+    }
+    return index;
+  }
+
+  MeshTriangles triangles_;
+  std::uint32_t count_ = 0;
+};
+
+/// What a walk through a tree finds; boxes of nodes must be those of what is below, exactly.
+struct Walk {
+  explicit Walk(const BinaryTree& tree) : tree_(tree) {
+    leaves.resize(tree.order.size());
+    visit(tree.root, tree.bounds, 0);
+  }
+
+  std::vector<Bounds> leaves;  ///< by place
+  std::uint32_t leaf_count = 0;
+  double area = 0;  ///< of all nodes, relative to the root
+  int depth = 0;
+
+ private:
+  void visit(std::uint32_t child, const Bounds& box, int level) {
+    if (is_leaf(child)) {
+      EXPECT_EQ(child, make_leaf(leaf_first(child), 1));
+      EXPECT_TRUE(leaves.at(leaf_first(child)).is_empty()) << "twice";
+      leaves[leaf_first(child)] = box;
+      ++leaf_count;
+      return;
+    }
+    depth = std::max(depth, level + 1);
+    area += static_cast<double>(box.half_area()) / static_cast<double>(tree_.bounds.half_area());
+    ASSERT_LT(child, tree_.node_capacity);
+    const Bvh2Node& node = tree_.nodes[child];
+    EXPECT_TRUE(is_leaf(node.child[0]) || node.child[0] > child);
+    EXPECT_TRUE(is_leaf(node.child[1]) || node.child[1] > child);
+    if (!is_leaf(node.child[0]) && !is_leaf(node.child[1])) {
+      EXPECT_LT(node.child[0], node.child[1]);
+    }
+    Bounds both = child_bounds(node, 0);
+    both.grow(child_bounds(node, 1));
+    EXPECT_EQ(both.min, box.min);
+    EXPECT_EQ(both.max, box.max);
+    for (int i = 0; i < 2; ++i) visit(node.child[i], child_bounds(node, i), level + 1);
+  }
+
+  const BinaryTree& tree_;
+};
+
+/// Returns the new sum of areas relative to the old one.
+double check(const BinaryTree& before) {
+  const BinaryTree after = reinsert_nodes(before);
+  const Walk old(before), now(after);
+  EXPECT_EQ(after.order, before.order);
+  EXPECT_EQ(after.bounds.min, before.bounds.min);
+  EXPECT_EQ(after.bounds.max, before.bounds.max);
+  EXPECT_EQ(now.leaf_count, before.order.size());
+  for (std::size_t i = 0; i < now.leaves.size(); ++i) {
+    EXPECT_EQ(now.leaves[i].min, old.leaves[i].min);
+    EXPECT_EQ(now.leaves[i].max, old.leaves[i].max);
+  }
+  EXPECT_LE(now.depth, bvh_depth_max);
+  EXPECT_LE(now.area, old.area * (1 + 1e-5));
+  return old.area > 0 ? now.area / old.area : 1;
+}
+
+TEST(ReinsertNodes, KeepsTheLeavesAndTheOrder) {
+  for (const MeshKind& kind : mesh_kinds) {
+    for (const int count : {1, 2, 3, 10, 100, 3000}) {
+      SCOPED_TRACE(testing::Message() << kind.name << ", " << count);
+      const Mesh mesh = kind.make(count);
+      check(sah_tree(mesh));
+      check(TreeByNumber(mesh).tree);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+// Two subtrees, each with half of two clusters far apart: of all nodes those with the largest boxes
+// are wrong.
+TEST(ReinsertNodes, PutsAClusterTogether) {
+  Mesh mesh;
+  for (int part = 0; part < 4; ++part) {
+    const Mesh cluster = make_soup(16, 0.1, Vec3(part % 2 ? 1000.0f : 0.0f), 1 + part);
+    for (const TriangleIndices& t : cluster.triangles) {
+      add_triangle(mesh, cluster.positions[t.v[0]], cluster.positions[t.v[1]],
+                   cluster.positions[t.v[2]]);
+    }
+  }
+  const BinaryTree before = TreeByNumber(mesh).tree;
+  // Three boxes of about the root's size become one.
+  EXPECT_GT(Walk(before).area, 3);
+  EXPECT_LT(Walk(reinsert_nodes(before)).area, 1.1);
+}
+
+TEST(ReinsertNodes, TreesStayAsShallowAsTraversalsExpect) {
+  const Mesh mesh = make_geometric_series(140);
+  check(sah_tree(mesh));
+  check(TreeByNumber(mesh).tree);
+}
+
+TEST(ReinsertNodes, ThreadsDoNotChangeTheTree) {
+  const TreeByNumber before(make_soup(20'000, 1));
+  const auto nodes = [&](std::size_t threads) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const BinaryTree tree = reinsert_nodes(before.tree);
+    return std::string(reinterpret_cast<const char*>(tree.nodes.get()),
+                       (tree.order.size() - 1) * sizeof(Bvh2Node));
+  };
+  EXPECT_TRUE(nodes(1) == nodes(3));
+}
+
+}  // namespace
+}  // namespace pt
