@@ -93,9 +93,11 @@ struct Walk {
   const BinaryTree& tree_;
 };
 
-/// Returns the new sum of areas relative to the old one.
-double check(const BinaryTree& before) {
-  const BinaryTree after = reinsert_nodes(before);
+/// Returns whether there is a new tree.
+bool check(const BinaryTree& before) {
+  const std::optional<BinaryTree> result = reinsert_nodes(before);
+  if (!result) return false;
+  const BinaryTree& after = *result;
   const Walk old(before), now(after);
   EXPECT_EQ(after.order, before.order);
   EXPECT_EQ(after.bounds.min, before.bounds.min);
@@ -106,20 +108,22 @@ double check(const BinaryTree& before) {
     EXPECT_EQ(now.leaves[i].max, old.leaves[i].max);
   }
   EXPECT_LE(now.depth, bvh_depth_max);
-  EXPECT_LE(now.area, old.area * (1 + 1e-5));
-  return old.area > 0 ? now.area / old.area : 1;
+  EXPECT_LT(now.area, old.area);
+  return true;
 }
 
 TEST(ReinsertNodes, KeepsTheLeavesAndTheOrder) {
+  int changed = 0;
   for (const MeshKind& kind : mesh_kinds) {
     for (const int count : {1, 2, 3, 10, 100, 3000}) {
       SCOPED_TRACE(testing::Message() << kind.name << ", " << count);
       const Mesh mesh = kind.make(count);
-      check(sah_tree(mesh));
-      check(TreeByNumber(mesh).tree);
+      changed += check(sah_tree(mesh)) ? 1 : 0;
+      changed += check(TreeByNumber(mesh).tree) ? 1 : 0;
       if (HasFailure()) return;
     }
   }
+  EXPECT_GT(changed, 10);
 }
 
 // Two subtrees, each with half of two clusters far apart: of all nodes those with the largest boxes
@@ -136,7 +140,9 @@ TEST(ReinsertNodes, PutsAClusterTogether) {
   const BinaryTree before = TreeByNumber(mesh).tree;
   // Three boxes of about the root's size become one.
   EXPECT_GT(Walk(before).area, 3);
-  EXPECT_LT(Walk(reinsert_nodes(before)).area, 1.1);
+  const std::optional<BinaryTree> after = reinsert_nodes(before);
+  ASSERT_TRUE(after);
+  EXPECT_LT(Walk(*after).area, 1.1);
 }
 
 TEST(ReinsertNodes, TreesStayAsShallowAsTraversalsExpect) {
@@ -149,7 +155,7 @@ TEST(ReinsertNodes, ThreadsDoNotChangeTheTree) {
   const TreeByNumber before(make_soup(20'000, 1));
   const auto nodes = [&](std::size_t threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const BinaryTree tree = reinsert_nodes(before.tree);
+    const BinaryTree tree = reinsert_nodes(before.tree).value();
     return std::string(reinterpret_cast<const char*>(tree.nodes.get()),
                        (tree.order.size() - 1) * sizeof(Bvh2Node));
   };

@@ -60,32 +60,26 @@ BuiltGroup build_split(const MeshTriangles& triangles, const TreeOptions& option
   return finish_tree(std::move(binary), "sbvh", options);
 }
 
-// What the automatic builder goes by, measured on some fifteen scenes (docs/tracing.md).
-constexpr std::uint32_t large_count = 1u << 21;  // triangles that take long
-constexpr double reinsertion_gain = 0.99;        // of costs, at most, to be taken
-constexpr double split_gain = 0.92;              // likewise
-constexpr double split_share = 1.45;             // overlap_share() of a tree worth the try
-constexpr double large_split_share = 2.0;        // the same from large_count on
+// When the automatic builder tries spatial splits and takes them, measured on some fifteen scenes
+// (docs/tracing.md).
+constexpr double split_share = 1.5;        // overlap_share() of a tree worth the try
+constexpr double large_split_share = 2.0;  // the same from large_count triangles on
+constexpr std::uint32_t large_count = 1u << 21;
+constexpr double split_gain = 0.92;  // of costs, at most, to be taken
 
-/// The tree by `sah`, or what cheaper one can be made of it or beside it.
+/// The tree by `sah`, improved by reinsertion if it can be, or a much cheaper one by `sbvh`.
 BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& options) {
-  const bool is_large = triangles.count() >= large_count;
-  const auto take_if_cheaper = [&](BuiltGroup& best, BuiltGroup&& other, double gain) {
-    if (other.sah_cost(options) <= gain * best.sah_cost(options)) best = std::move(other);
-  };
   BinaryTree binary = build_whole(triangles);
-  BinaryTree improved;
-  if (!is_large) improved = reinsert_nodes(binary);
-  const double share = overlap_share(is_large ? binary : improved);
-  BuiltGroup best = finish_tree(std::move(binary), "sah", options);
-  if (!is_large) {
-    take_if_cheaper(best, finish_tree(std::move(improved), "sah-reinsert", options),
-                    reinsertion_gain);
-  }
-  if (share >= (is_large ? large_split_share : split_share)) {
-    take_if_cheaper(best, build_split(triangles, options), split_gain);
-  }
-  return best;
+  std::optional<BinaryTree> improved = reinsert_nodes(binary);
+  const char* const builder = improved ? "sah-reinsert" : "sah";
+  if (improved) binary = std::move(*improved);
+  const bool is_large = triangles.count() >= large_count;
+  const bool tries = overlap_share(binary) >= (is_large ? large_split_share : split_share);
+  BuiltGroup whole = finish_tree(std::move(binary), builder, options);
+  if (!tries) return whole;
+  BuiltGroup split = build_split(triangles, options);
+  const bool pays = split.sah_cost(options) <= split_gain * whole.sah_cost(options);
+  return pays ? split : whole;
 }
 
 BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options) {

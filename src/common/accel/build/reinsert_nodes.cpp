@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <queue>
 #include <vector>
 
 namespace pt {
@@ -11,16 +13,17 @@ namespace pt {
 namespace {
 
 constexpr int passes = 3;
-constexpr std::size_t share = 10;  // a tenth of all nodes, by their areas, is tried in each pass
+constexpr std::size_t upper_max = 1u << 16;  // nodes that can change
+constexpr double least_saving = 0.0225;      // of these nodes' areas
 constexpr std::uint32_t nothing = 0xffffffffu;
 
-/// A node or a leaf, with its box at hand and the way up.
+/// A node of the upper part of the tree, or a subtree below, which stays as it is.
 struct Node {
   Bounds bounds;
   std::uint32_t parent;
-  std::uint32_t child[2];  // of a leaf: nothing, and the tree's name for it
+  std::uint32_t child[2];  // of a subtree below: nothing, and what the old tree calls it
 
-  bool is_leaf() const { return child[0] == nothing; }
+  bool is_subtree() const { return child[0] == nothing; }
 };
 
 /// Where a subtree is to go: beside node `at`, into a new node.
@@ -36,9 +39,19 @@ Bounds joined(Bounds a, const Bounds& b) {
 
 class Reinserter {
  public:
-  explicit Reinserter(const BinaryTree& tree) {
-    nodes_.reserve(2 * tree.order.size());
-    root_ = read(tree, tree.root, tree.bounds, nothing);
+  explicit Reinserter(const BinaryTree& tree) : tree_(tree) {
+    nodes_.push_back({tree.bounds, nothing, {nothing, tree.root}});
+    open_largest();
+    tried_ = std::min(upper_max / 2, nodes_in(tree) / 10);
+  }
+
+  /// Of the upper nodes.
+  double area() const {
+    double sum = 0;
+    for (const Node& node : nodes_) {
+      if (!node.is_subtree()) sum += static_cast<double>(node.bounds.half_area());
+    }
+    return sum;
   }
 
   // What seems to gain is found by all threads in the tree as it is, then looked for again and
@@ -55,37 +68,104 @@ class Reinserter {
     }
   }
 
-  /// False where the tree is too deep; `nodes` have room for all.
-  bool write(Bvh2Node* nodes) const {
+  /// None where it is too deep.
+  std::optional<BinaryTree> result() const {
+    BinaryTree result;
+    result.bounds = tree_.bounds, result.order = tree_.order;
+    result.node_capacity = tree_.node_capacity;
+    result.nodes.reset(new Bvh2Node[tree_.node_capacity]);
+    std::vector<std::uint32_t> sizes(nodes_.size());  // of subtrees below, in nodes
+    tbb::parallel_for(std::size_t{0}, nodes_.size(), [&](std::size_t i) {
+      if (nodes_[i].is_subtree()) sizes[i] = count_nodes(nodes_[i].child[1]);
+    });
+    std::vector<Copy> copies;
     std::uint32_t count = 0;
-    return emit(root_, 0, nodes, count);
+    if (!emit(root_, 0, sizes, result.nodes.get(), count, copies)) return std::nullopt;
+    std::atomic<bool> too_deep = false;
+    tbb::parallel_for(std::size_t{0}, copies.size(), [&](std::size_t i) {
+      const Copy& copy = copies[i];
+      std::uint32_t to = copy.to;
+      if (!copy_subtree(copy.from, copy.depth, result.nodes.get(), to)) too_deep = true;
+    });
+    if (too_deep) return std::nullopt;
+    return result;
   }
 
  private:
-  std::uint32_t read(const BinaryTree& tree, std::uint32_t subtree, const Bounds& bounds,
-                     std::uint32_t parent) {
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.push_back({bounds, parent, {nothing, subtree}});
-    if (is_leaf(subtree)) return index;
-    const Bvh2Node& node = tree.nodes[subtree];
-    for (int i = 0; i < 2; ++i) {
-      const std::uint32_t child = read(tree, node.child[i], child_bounds(node, i), index);
-      nodes_[index].child[i] = child;
+  /// A subtree below that is to be copied.
+  struct Copy {
+    std::uint32_t from, to;
+    int depth;
+  };
+
+  static std::size_t nodes_in(const BinaryTree& tree) { return 2 * tree.order.size() - 1; }
+
+  // A node is at least as large as those below, so that the largest are the tree's upper part.
+  void open_largest() {
+    struct Sized {
+      float area;
+      std::uint32_t node;
+      bool operator<(const Sized& b) const {
+        return area < b.area || (area == b.area && node > b.node);
+      }
+    };
+    std::priority_queue<Sized> closed;
+    const auto close = [&](std::uint32_t node) {
+      if (!is_leaf(nodes_[node].child[1])) closed.push({nodes_[node].bounds.half_area(), node});
+    };
+    close(root_);
+    std::size_t left = std::min(upper_max, nodes_in(tree_) / 5 + 1);
+    for (; left > 0 && !closed.empty(); --left) {
+      const std::uint32_t index = closed.top().node;
+      closed.pop();
+      const Bvh2Node& node = tree_.nodes[nodes_[index].child[1]];
+      for (int i = 0; i < 2; ++i) {
+        const auto child = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.push_back({child_bounds(node, i), index, {nothing, node.child[i]}});
+        nodes_[index].child[i] = child;
+        close(child);
+      }
     }
-    return index;
   }
 
-  // In depth-first order.
-  bool emit(std::uint32_t index, int depth, Bvh2Node* result, std::uint32_t& count) const {
-    if (nodes_[index].is_leaf()) return true;
+  // Nodes lie in depth-first order; `count` are there already. Leaves room for the subtrees below.
+  bool emit(std::uint32_t index, int depth, const std::vector<std::uint32_t>& sizes,
+            Bvh2Node* result, std::uint32_t& count, std::vector<Copy>& copies) const {
+    const Node& from = nodes_[index];
+    if (from.is_subtree()) {
+      if (is_leaf(from.child[1])) return true;
+      copies.push_back({from.child[1], count, depth});
+      count += sizes[index];
+      return true;
+    }
     if (depth >= bvh_depth_max) return false;
     Bvh2Node& node = result[count++];
     node.padding[0] = node.padding[1] = 0;
     for (int i = 0; i < 2; ++i) {
-      const Node& child = nodes_[nodes_[index].child[i]];
+      const Node& child = nodes_[from.child[i]];
       set_child_bounds(node, i, child.bounds);
-      node.child[i] = child.is_leaf() ? child.child[1] : count;
-      if (!emit(nodes_[index].child[i], depth + 1, result, count)) return false;
+      const bool is_one = child.is_subtree() && is_leaf(child.child[1]);
+      node.child[i] = is_one ? child.child[1] : count;
+      if (!emit(from.child[i], depth + 1, sizes, result, count, copies)) return false;
+    }
+    return true;
+  }
+
+  std::uint32_t count_nodes(std::uint32_t subtree) const {
+    if (is_leaf(subtree)) return 0;
+    const Bvh2Node& node = tree_.nodes[subtree];
+    return 1 + count_nodes(node.child[0]) + count_nodes(node.child[1]);
+  }
+
+  bool copy_subtree(std::uint32_t from, int depth, Bvh2Node* result, std::uint32_t& to) const {
+    if (depth >= bvh_depth_max) return false;
+    const Bvh2Node& old = tree_.nodes[from];
+    Bvh2Node& node = result[to++];
+    node = old;
+    for (int i = 0; i < 2; ++i) {
+      if (is_leaf(old.child[i])) continue;
+      node.child[i] = to;
+      if (!copy_subtree(old.child[i], depth + 1, result, to)) return false;
     }
     return true;
   }
@@ -104,9 +184,8 @@ class Reinserter {
     const auto larger = [](const Sized& a, const Sized& b) {
       return a.area > b.area || (a.area == b.area && a.node < b.node);
     };
-    const auto end = all.begin() + static_cast<std::ptrdiff_t>(all.size() / share);
-    std::nth_element(all.begin(), end, all.end(), larger);
-    std::sort(all.begin(), end, larger);
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), tried_));
+    std::partial_sort(all.begin(), end, all.end(), larger);
     std::vector<std::uint32_t> nodes;
     std::transform(all.begin(), end, std::back_inserter(nodes),
                    [](const Sized& sized) { return sized.node; });
@@ -161,7 +240,7 @@ class Reinserter {
         best = {gain, candidate.node};
       }
       const float grown = candidate.grown + joint - node.bounds.half_area();
-      if (node.is_leaf() || limit - grown <= best.gain || depth + 2 > stack.size()) continue;
+      if (node.is_subtree() || limit - grown <= best.gain || depth + 2 > stack.size()) continue;
       for (const std::uint32_t child : node.child) stack[depth++] = {child, grown};
     }
   }
@@ -197,24 +276,21 @@ class Reinserter {
     }
   }
 
+  const BinaryTree& tree_;
   std::vector<Node> nodes_;
   std::uint32_t root_ = 0;
+  std::size_t tried_;  // in a pass
 };
 
 }  // namespace
 
-BinaryTree reinsert_nodes(const BinaryTree& tree) {
-  BinaryTree result;
-  result.bounds = tree.bounds, result.root = tree.root, result.order = tree.order;
-  result.node_capacity = tree.node_capacity;
-  result.nodes.reset(new Bvh2Node[tree.node_capacity]);
-  if (is_leaf(tree.root)) return result;
+std::optional<BinaryTree> reinsert_nodes(const BinaryTree& tree) {
+  if (is_leaf(tree.root)) return std::nullopt;
   Reinserter reinserter(tree);
+  const double before = reinserter.area();
   for (int i = 0; i < passes; ++i) reinserter.pass();
-  if (!reinserter.write(result.nodes.get())) {
-    std::copy_n(tree.nodes.get(), tree.node_capacity, result.nodes.get());
-  }
-  return result;
+  if (!(reinserter.area() <= (1 - least_saving) * before)) return std::nullopt;
+  return reinserter.result();
 }
 
 }  // namespace pt
