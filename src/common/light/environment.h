@@ -48,7 +48,7 @@ struct MapPoint {
 /// is not.
 PT_HD MapPoint environment_point(const Environment& env, const Vec3& direction) {
   const float azimuth = atan2f(direction.x, -direction.z);
-  const float from_axis = sqrtf(
+  const float from_axis = square_root(
       fused_multiply_add(direction.x, direction.x, multiply_rounded(direction.z, direction.z)));
   const float from_zenith = atan2f(from_axis, direction.y);
   // Rounded: what comes next takes the whole part off, and might be fused with the product.
@@ -104,7 +104,7 @@ struct EnvironmentSample {
 /// pole, measured in sin^2(theta / 2): uniform on the sphere like cos(theta), and precise at the
 /// pole.
 PT_HD float sample_band(std::uint32_t band, std::uint32_t bands, float u) {
-  const float step = 0.25f / static_cast<float>(bands);  // half an angle, in turns
+  const float step = divide(0.25f, static_cast<float>(bands));  // half an angle, in turns
   const float sin0 = sincos_2pi(static_cast<float>(band) * step).sin;
   const float sin1 = sincos_2pi(static_cast<float>(band + 1) * step).sin;
   return fused_multiply_add(u, (sin1 - sin0) * (sin1 + sin0), sin0 * sin0);
@@ -118,10 +118,10 @@ PT_HD EnvironmentSample sample_environment(const Environment& env, float u0, flo
   const std::uint32_t band = chosen.index / env.width, column = chosen.index % env.width;
   const bool below = 2 * band >= bands;
   const float h = fminf(sample_band(below ? bands - 1 - band : band, bands, u2), 1.0f);
-  const float sin_theta = 2.0f * sqrtf(h * (1.0f - h));
+  const float sin_theta = 2.0f * square_root(h * (1.0f - h));
   const float cos_theta = 1.0f - 2.0f * h;
   const SinCos phi =  // of the angle from column 0, which is +z
-      sincos_2pi((static_cast<float>(column) + chosen.u) / static_cast<float>(env.width));
+      sincos_2pi(divide(static_cast<float>(column) + chosen.u, static_cast<float>(env.width)));
   const Vec3 local = {-sin_theta * phi.sin, below ? -cos_theta : cos_theta, sin_theta * phi.cos};
   const Vec3 wi = normalize(env.to_world.vector(local));
   return {wi, env.texels[chosen.index].pdf, environment_radiance(env, wi)};

@@ -39,7 +39,7 @@ struct LightSelector {
     const float p = environment_probability;
     if (u0 < p) return {environment_light, p};
     if (count == 0) return {};
-    const std::uint32_t light = sample_alias(table, count, (u0 - p) / (1.0f - p), u1).index;
+    const std::uint32_t light = sample_alias(table, count, divide(u0 - p, 1.0f - p), u1).index;
     return {light, listed_pmf(light)};
   }
 
@@ -63,7 +63,7 @@ struct LightSelector {
   }
 
   PT_HD float listed_pmf(std::uint32_t light) const {
-    return (1.0f - environment_probability) * lights[light].weight / total_weight;
+    return divide((1.0f - environment_probability) * lights[light].weight, total_weight);
   }
 
   PT_HD LightChoice sample_with_tree(const Vec3& point, Receiver receiver, float u0,

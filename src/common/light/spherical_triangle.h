@@ -33,13 +33,13 @@ struct SphericalTriangle {
         fused_multiply_add(volume, half.cos, -multiply_rounded(dot(b, c) + dot(c, a), half.sin));
     const float to_c = (1.0f + dot(a, b)) * half.sin;
     const Vec3 middle = add_scaled(to_a * a, to_c, c);
-    const float turn = 2.0f * dot(a, middle) / fmaxf(dot(middle, middle), 1e-30f);
+    const float turn = divide(2.0f * dot(a, middle), fmaxf(dot(middle, middle), 1e-30f));
     const Vec3 moved = add_scaled(-a, turn, middle);
     // On the arc from b to it, uniform in the cosine of the angle to b.
     const Vec3 apart = moved - b;
     const float h = multiply_rounded(0.5f * u1, dot(apart, apart));  // 1 - cos
     const Vec3 across = add_scaled(moved, -dot(moved, b), b);
-    const float sine = sqrtf(fmaxf(0.0f, h * (2.0f - h)));
+    const float sine = square_root(fmaxf(0.0f, h * (2.0f - h)));
     const float scale = sine * inverse_sqrt(fmaxf(dot(across, across), 1e-30f));
     return normalize(add_scaled(add_scaled(b, -h, b), scale, across));
   }

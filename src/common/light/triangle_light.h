@@ -47,16 +47,16 @@ struct TriangleSampler {
   PT_HD float pdf(const Vec3& wi, float distance) const {
     if (looms()) {
       const SphericalTriangle s = seen();
-      if (has_solid_angle(s)) return 1.0f / s.solid_angle;
+      if (has_solid_angle(s)) return divide(1.0f, s.solid_angle);
     }
     const float cosine_times_area = 0.5f * fabsf(dot(normal, wi));
-    return cosine_times_area > 0.0f ? distance * distance / cosine_times_area : 0.0f;
+    return cosine_times_area > 0.0f ? divide(distance * distance, cosine_times_area) : 0.0f;
   }
 
   /// Where a ray along `wi` meets its plane, within the triangle but for rounding.
   PT_HD TrianglePoint point_along(const Vec3& wi) const {
-    const Vec3 p = add_scaled(-v0, dot(v0, normal) / dot(wi, normal), wi);
-    const float scale = 1.0f / dot(normal, normal);
+    const Vec3 p = add_scaled(-v0, divide(dot(v0, normal), dot(wi, normal)), wi);
+    const float scale = divide(1.0f, dot(normal, normal));
     const auto share = [&](const Vec3& across) {
       return fminf(fmaxf(dot(across, normal) * scale, 0.0f), 1.0f);
     };

@@ -23,7 +23,7 @@ struct Dielectric {
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
     const bool entering = wo.z > 0.0f;
-    const float relative_eta = entering ? eta : 1.0f / eta;
+    const float relative_eta = entering ? eta : divide(1.0f, eta);
     const float cos_i = fminf(fabsf(wo.z), 1.0f);
     // Inside of glass radiance is eta^2 times that outside, so a path carries 1 / eta^2 there
     // (pbrt-v4, section 9.5.2). Roulette must not take that for a loss.
@@ -33,9 +33,9 @@ struct Dielectric {
               0.0f,         Lobe::reflection | Lobe::delta,
               1.0f,         entering ? 1.0f : inside_eta2};
     }
-    const float inverse_eta = 1.0f / relative_eta;
+    const float inverse_eta = divide(1.0f, relative_eta);
     const float sin2_t = fmaxf(0.0f, (1.0f - cos_i * cos_i) * inverse_eta * inverse_eta);
-    const float cos_t = sqrtf(fmaxf(0.0f, 1.0f - sin2_t));
+    const float cos_t = square_root(fmaxf(0.0f, 1.0f - sin2_t));
     return {Vec3(-inverse_eta * wo.x, -inverse_eta * wo.y, entering ? -cos_t : cos_t),
             tint * (inverse_eta * inverse_eta),
             0.0f,

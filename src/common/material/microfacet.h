@@ -22,16 +22,13 @@ struct Microfacets {
 
   /// Density of the facets' area by their unit normal m, m.z >= 0.
   PT_HD float distribution(const Vec3& m) const {
-    const float x = m.x / alpha_x, y = m.y / alpha_y;
-    const float scale = inverse_pi / (alpha_x * alpha_y);
+    const float x = divide(m.x, alpha_x), y = divide(m.y, alpha_y);
+    const float scale = divide(inverse_pi, alpha_x * alpha_y);
     const float slopes = fused_multiply_add(x, x, multiply_rounded(y, y));
     const float cos2 = m.z * m.z;
-    if (is_beckmann) {
-      if (slopes > 80.0f * cos2) return 0.0f;  // e^-80, and no division by 0
-      return multiply_rounded(scale, expf(-slopes / cos2) / (cos2 * cos2));
-    }
+    if (is_beckmann) return multiply_rounded(scale, beckmann_distribution(slopes, cos2));
     const float sum = fused_multiply_add(m.z, m.z, slopes);
-    return multiply_rounded(scale, 1.0f / (sum * sum));
+    return multiply_rounded(scale, divide(1.0f, sum * sum));
   }
 
   /// The part of the facets that `w` sees (Smith's G1), divided by |w.z|: finite at the horizon,
@@ -39,12 +36,8 @@ struct Microfacets {
   PT_HD float visible_over_cosine(const Vec3& w) const {
     const float x = alpha_x * w.x, y = alpha_y * w.y, z = fabsf(w.z);
     const float slopes = fused_multiply_add(x, x, multiply_rounded(y, y));
-    if (is_beckmann) {
-      const float root = sqrtf(slopes), a = z / fmaxf(root, 1e-20f);
-      const float tail = inverse_sqrt_pi * root * expf(-a * a);
-      return 2.0f / fused_multiply_add(z, 1.0f + erff(a), fmaxf(tail, 1e-20f));
-    }
-    return 2.0f / (z + fmaxf(sqrtf(fused_multiply_add(z, z, slopes)), 1e-20f));
+    if (is_beckmann) return beckmann_visible(z, slopes);
+    return divide(2.0f, z + fmaxf(square_root(fused_multiply_add(z, z, slopes)), 1e-20f));
   }
 
   /// A normal that w sees, w.z >= 0: density distribution(m) visible_over_cosine(w) dot(w, m) per
@@ -57,6 +50,20 @@ struct Microfacets {
 
  private:
   static constexpr float inverse_sqrt_pi = 0.5641895835f;
+
+  // Beckmann's functions are long. Not inlined, they lie in a kernel once, and not between the code
+  // of the more frequent GGX.
+
+  PT_NOINLINE static float beckmann_distribution(float slopes, float cos2) {
+    if (slopes > 80.0f * cos2) return 0.0f;  // e^-80, and no division by 0
+    return expf(-slopes / cos2) / (cos2 * cos2);
+  }
+
+  PT_NOINLINE static float beckmann_visible(float z, float slopes) {
+    const float root = sqrtf(slopes), a = z / fmaxf(root, 1e-20f);
+    const float tail = inverse_sqrt_pi * root * expf(-a * a);
+    return 2.0f / fused_multiply_add(z, 1.0f + erff(a), fmaxf(tail, 1e-20f));
+  }
 
   /// On roughness 1: the sphere's cap that mirrors w into the upper hemisphere (Dupuy and Benyoub
   /// 2023, 'Sampling Visible GGX Normals with Spherical Caps').
@@ -72,7 +79,7 @@ struct Microfacets {
   /// independent; the one along w has the distribution below, which Newton's method inverts in
   /// x = erf(slope) (Jakob 2014, 'An Improved Visible Normal Sampling Routine for the Beckmann
   /// Distribution').
-  PT_HD static Vec3 sample_beckmann(const Vec3& w, float u0, float u1) {
+  PT_NOINLINE static Vec3 sample_beckmann(Vec3 w, float u0, float u1) {
     const float sine2 = fused_multiply_add(w.x, w.x, multiply_rounded(w.y, w.y));
     const float sine = sqrtf(sine2);
     const float along = visible_slope(sine, fmaxf(w.z, 1e-6f), u0);
@@ -113,9 +120,9 @@ PT_HD Vec3 mirrored_by(const Vec3& wo, const Vec3& m, float cosine) {
 /// `wo` refracted at the normal m; `cosine`, above 0, is their dot product, `eta` the index beyond
 /// over before. Where all is reflected: along the surface.
 PT_HD Vec3 refracted(const Vec3& wo, const Vec3& m, float cosine, float eta) {
-  const float inverse = 1.0f / eta;
+  const float inverse = divide(1.0f, eta);
   const float sin2 = fmaxf(0.0f, fused_multiply_add(-cosine, cosine, 1.0f)) * inverse * inverse;
-  const float along = sqrtf(fmaxf(0.0f, 1.0f - sin2));
+  const float along = square_root(fmaxf(0.0f, 1.0f - sin2));
   return add_scaled(-inverse * wo, fused_multiply_add(inverse, cosine, -along), m);
 }
 

@@ -42,12 +42,12 @@ struct OrenNayar {
   /// the fit is 1.5 % too large there, which white facets may not be.
   PT_HD float roughness_factor(const Vec3& wo, const Vec3& wi) const {
     const float variance = sigma * sigma;
-    const float a = 1.0f - 0.5f * variance / (variance + 0.33f);
-    const float b = 0.45f * variance / (variance + 0.09f);
+    const float a = 1.0f - divide(0.5f * variance, variance + 0.33f);
+    const float b = divide(0.45f * variance, variance + 0.09f);
     const float both = fused_multiply_add(wo.x, wi.x, multiply_rounded(wo.y, wi.y));
-    const float sine_tangent = fmaxf(both, 0.0f) / fmaxf(fabsf(wo.z), fabsf(wi.z));
+    const float sine_tangent = divide(fmaxf(both, 0.0f), fmaxf(fabsf(wo.z), fabsf(wi.z)));
     const float most = multiply_rounded(max_abs(albedo), fused_multiply_add(0.5f, b, a));
-    return fused_multiply_add(b, sine_tangent, a) / fmaxf(most, 1.0f);
+    return divide(fused_multiply_add(b, sine_tangent, a), fmaxf(most, 1.0f));
   }
 };
 

@@ -27,7 +27,7 @@ struct Phong {
     const bool glossy = u.z < two.glossy_probability();
     Vec3 wi = TwoLobes::sample_diffuse(wo, u);
     if (glossy) {
-      const float cosine = power(1.0f - u.x, 1.0f / (exponent + 1.0f));
+      const float cosine = power(1.0f - u.x, divide(1.0f, exponent + 1.0f));
       const float sine = fast_sqrt(fmaxf(0.0f, fused_multiply_add(-cosine, cosine, 1.0f)));
       const SinCos phi = sincos_2pi(u.y);
       const Frame frame = make_frame(mirrored(wo));
@@ -40,7 +40,7 @@ struct Phong {
     if (!same_side(wo, wi)) return {};
     const float lobe = power(dot(mirrored(wo), wi), exponent) * (0.5f * inverse_pi);
     // (n + 1) normalises the density, (n + 2) the reflectance at normal incidence.
-    const float factor = (exponent + 2.0f) / (exponent + 1.0f) * fabsf(wi.z);
+    const float factor = divide(exponent + 2.0f, exponent + 1.0f) * fabsf(wi.z);
     return two.evaluate(wi, multiply_rounded(lobe, exponent + 1.0f), factor);
   }
 

@@ -20,9 +20,9 @@ struct CoatedBody {
 
   /// What of `entered`, the light that gets in times the part that gets out, leaves the body.
   PT_HD Color leaving(float entered) const {
-    const float scale = entered / (coat.x * coat.x);
+    const float scale = divide(entered, coat.x * coat.x);
     const auto channel = [&](float d) {
-      return multiply_rounded(d, scale) / fused_multiply_add(-coat.z, d, 1.0f - coat.y);
+      return divide(multiply_rounded(d, scale), fused_multiply_add(-coat.z, d, 1.0f - coat.y));
     };
     return {channel(diffuse.x), channel(diffuse.y), channel(diffuse.z)};
   }
@@ -31,7 +31,7 @@ struct CoatedBody {
   PT_HD float coat_probability(float reflectance) const {
     const float s = multiply_rounded(reflectance, mean(specular));
     const float sum = fused_multiply_add(1.0f - reflectance, mean(diffuse), s);
-    return sum > 0.0f ? s / sum : 1.0f;
+    return sum > 0.0f ? divide(s, sum) : 1.0f;
   }
 };
 
@@ -53,13 +53,14 @@ struct Plastic {
     const float reflected = fresnel_dielectric(fminf(fabsf(wo.z), 1.0f), body.eta());
     const float p = body.coat_probability(reflected);
     if (u.z < p) {
-      return {mirrored(wo), body.specular * (reflected / p), 0.0f, Lobe::reflection | Lobe::delta};
+      return {mirrored(wo), body.specular * divide(reflected, p), 0.0f,
+              Lobe::reflection | Lobe::delta};
     }
     Vec3 wi = sample_cosine_hemisphere(u.x, u.y);
     const float passed = (1.0f - reflected) * (1.0f - fresnel_dielectric(wi.z, body.eta()));
     const float pdf = multiply_rounded(1.0f - p, cosine_hemisphere_pdf(wi.z));
     if (wo.z < 0.0f) wi.z = -wi.z;
-    return {wi, body.leaving(passed / (1.0f - p)), pdf, Lobe::reflection | Lobe::diffuse};
+    return {wi, body.leaving(divide(passed, 1.0f - p)), pdf, Lobe::reflection | Lobe::diffuse};
   }
 
   PT_HD BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const {

@@ -57,7 +57,7 @@ struct Principled {
       if (!(cosine > 0.0f)) return {};
       i = mirrored_by(o, m, cosine);
       // What is left of u.z decides whether the light passes.
-      const float rest = (u.z - choice.diffuse - choice.coat) / choice.specular;
+      const float rest = divide(u.z - choice.diffuse - choice.coat, choice.specular);
       if (!coats && rest < passing(view, fresnel_dielectric(cosine, view.eta))) {
         i = refracted(o, m, cosine, view.eta);
         lobe = Lobe::transmission | Lobe::glossy;
@@ -67,7 +67,7 @@ struct Principled {
     if (i.z == 0.0f || (i.z > 0.0f) != reflects) return {};
     const BsdfValue value = evaluate_seen(view, choice, o, i);
     if (!(value.pdf > 0.0f)) return {};
-    return {view.side * i, value.f / value.pdf,        value.pdf,
+    return {view.side * i, divide(value.f, value.pdf), value.pdf,
             lobe,          reflects ? 1.0f : view.eta, view.inside == reflects ? eta * eta : 1.0f};
   }
 
@@ -97,7 +97,7 @@ struct Principled {
 
   PT_HD View view_of(const Vec3& wo) const {
     const bool inside = wo.z < 0.0f && glass() > 0.0f;
-    return {copysignf(1.0f, wo.z), inside, inside ? 1.0f / eta : eta};
+    return {copysignf(1.0f, wo.z), inside, inside ? divide(1.0f, eta) : eta};
   }
 
   PT_HD Choice choice_at(const View& view, const Vec3& o) const {
@@ -105,7 +105,7 @@ struct Principled {
     const float reflected = fmaxf(fresnel_dielectric(fminf(o.z, 1.0f), eta), 0.1f);
     const float specular = fused_multiply_add(opaque(), reflected - 1.0f, 1.0f);
     const float diffuse = opaque() * base.albedo(), coat = 0.25f * clearcoat;
-    const float scale = 1.0f / (diffuse + coat + specular);
+    const float scale = divide(1.0f, diffuse + coat + specular);
     return {diffuse * scale, coat * scale, specular * scale};
   }
 
@@ -138,8 +138,9 @@ struct Principled {
     const float shown = rough.visible_over_cosine(i) * fabsf(i.z);
     if (!reflects) {
       const float sum = fused_multiply_add(view.eta, cos_i, cos_o);
-      const float lobe = seen * cos_o * -cos_i / (sum * sum);
-      const Color root(sqrtf(base.color.x), sqrtf(base.color.y), sqrtf(base.color.z));
+      const float lobe = divide(seen * cos_o * -cos_i, sum * sum);
+      const Color root(square_root(base.color.x), square_root(base.color.y),
+                       square_root(base.color.z));
       return {
           root * (glass() * (1.0f - fresnel) * (lobe * shown)),
           multiply_rounded(choice.specular * passing(view, fresnel), lobe * (view.eta * view.eta))};
@@ -162,7 +163,7 @@ struct Principled {
         const float schlick = interpolate(0.04f, 1.0f, schlick_weight(cos_o, eta));
         f = add_scaled(f, 0.25f * clearcoat * schlick * coat,
                        Color(Clearcoat::visible(o, i) * i.z));
-        pdf = fused_multiply_add(choice.coat * coat, 0.25f * m.z / cos_o, pdf);
+        pdf = fused_multiply_add(choice.coat * coat, divide(0.25f * m.z, cos_o), pdf);
       }
     }
     return {f, pdf};

@@ -11,7 +11,7 @@ namespace pt {
 /// The colour at luminance 1; white for black.
 PT_HD Color hue(const Color& c) {
   const float luminance = dot(c, Vec3(0.212671f, 0.715160f, 0.072169f));
-  return luminance > 0.0f ? c / luminance : Color(1.0f);
+  return luminance > 0.0f ? divide(c, luminance) : Color(1.0f);
 }
 
 /// (1 - cosine)^5, by which Schlick's reflectance goes from that at normal incidence to 1.
@@ -23,21 +23,21 @@ PT_HD float schlick_weight(float cosine) {
 /// Schlick's weight at a boundary: below eta 1 the angle is that of the refracted ray.
 PT_HD float schlick_weight(float cosine, float eta) {
   if (eta > 1.0f) return schlick_weight(cosine);
-  const float sin2 = fused_multiply_add(-cosine, cosine, 1.0f) / (eta * eta);
-  return schlick_weight(sqrtf(fmaxf(0.0f, 1.0f - sin2)));
+  const float sin2 = divide(fused_multiply_add(-cosine, cosine, 1.0f), eta * eta);
+  return schlick_weight(square_root(fmaxf(0.0f, 1.0f - sin2)));
 }
 
 /// Schlick's reflectance at normal incidence.
 PT_HD float normal_reflectance(float eta) {
-  const float root = (eta - 1.0f) / (eta + 1.0f);
+  const float root = divide(eta - 1.0f, eta + 1.0f);
   return root * root;
 }
 
 /// GGX of a roughness between 0 and 1, longer along the tangent where it is anisotropic.
 PT_HD Microfacets principled_facets(float roughness, float anisotropic) {
   const float alpha = roughness * roughness;
-  const float aspect = sqrtf(fused_multiply_add(-0.9f, anisotropic, 1.0f));
-  return {fmaxf(alpha / aspect, 0.001f), fmaxf(alpha * aspect, 0.001f), false};
+  const float aspect = square_root(fused_multiply_add(-0.9f, anisotropic, 1.0f));
+  return {fmaxf(divide(alpha, aspect), 0.001f), fmaxf(alpha * aspect, 0.001f), false};
 }
 
 /// What lies below the specular lobe.
@@ -54,7 +54,8 @@ struct PrincipledBase {
     const float diffuse = fused_multiply_add(fused_multiply_add(-0.5f, Fo, 1.0f),
                                              fused_multiply_add(-0.5f, Fi, 1.0f), retro);
     const float Fss = interpolate(1.0f, 0.5f * Rr, Fo) * interpolate(1.0f, 0.5f * Rr, Fi);
-    const float subsurface = 1.25f * fused_multiply_add(Fss, 1.0f / (cos_o + cos_i) - 0.5f, 0.5f);
+    const float subsurface =
+        1.25f * fused_multiply_add(Fss, divide(1.0f, cos_o + cos_i) - 0.5f, 0.5f);
     const Color fuzz = interpolate(Color(1.0f), hue(color), sheen_tint);
     return add_scaled(fuzz * (sheen * schlick_weight(cos_d)),
                       inverse_pi * interpolate(diffuse, subsurface, flatness), color);

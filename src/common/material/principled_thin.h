@@ -42,7 +42,8 @@ struct PrincipledThin {
     if (!(o.z > 0.0f)) return {};
     const float specular = spec_trans, mirror = mirror_part(o);
     const bool is_specular = u.z < specular;
-    const float rest = is_specular ? u.z / specular : (u.z - specular) / (1.0f - specular);
+    const float rest =
+        is_specular ? divide(u.z, specular) : divide(u.z - specular, 1.0f - specular);
     const bool reflects = rest < (is_specular ? mirror : 1.0f - diff_trans);
     Vec3 i;
     if (is_specular) {
@@ -59,7 +60,7 @@ struct PrincipledThin {
     if (!(value.pdf > 0.0f)) return {};
     const int lobe = (reflects ? Lobe::reflection : Lobe::transmission) |
                      (is_specular ? Lobe::glossy : Lobe::diffuse);
-    return {side * i, value.f / value.pdf, value.pdf, static_cast<std::uint8_t>(lobe)};
+    return {side * i, divide(value.f, value.pdf), value.pdf, static_cast<std::uint8_t>(lobe)};
   }
 
   PT_HD BsdfValue evaluate(const Vec3& wo, const Vec3& wi) const {

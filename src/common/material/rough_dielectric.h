@@ -41,7 +41,7 @@ struct RoughDielectric {
     const Microfacets facets = Microfacets::make(alpha_x, alpha_y, is_beckmann);
     const bool entering = wo.z > 0.0f;
     const float side = entering ? 1.0f : -1.0f;
-    const float relative_eta = entering ? eta : 1.0f / eta;
+    const float relative_eta = entering ? eta : divide(1.0f, eta);
     const Vec3 o = side * wo;  // as if from above
     const Vec3 m = facets.sample_visible(o, u.x, u.y);
     const float cos_o = fminf(dot(o, m), 1.0f);
@@ -63,7 +63,7 @@ struct RoughDielectric {
     }
     // Radiance inside is eta^2 times that outside (see dielectric.h).
     return {side * i,
-            passed * (shown / (relative_eta * relative_eta)),
+            passed * divide(shown, relative_eta * relative_eta),
             multiply_rounded(seen * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel),
             Lobe::transmission | Lobe::glossy,
             relative_eta,
@@ -75,7 +75,7 @@ struct RoughDielectric {
     const Microfacets facets = Microfacets::make(alpha_x, alpha_y, is_beckmann);
     const bool reflects = same_side(wo, wi);
     const float side = wo.z > 0.0f ? 1.0f : -1.0f;
-    const float relative_eta = side > 0.0f ? eta : 1.0f / eta;
+    const float relative_eta = side > 0.0f ? eta : divide(1.0f, eta);
     const Vec3 o = side * wo, i = side * wi;
     Vec3 m = normalize(add_scaled(o, reflects ? 1.0f : relative_eta, i));
     if (m.z < 0.0f) m = -m;
@@ -91,7 +91,7 @@ struct RoughDielectric {
     }
     const float pdf =
         multiply_rounded(seen * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel);
-    return {passed * (pdf * shown / (relative_eta * relative_eta)), pdf};
+    return {passed * divide(pdf * shown, relative_eta * relative_eta), pdf};
   }
 
  private:
@@ -101,7 +101,7 @@ struct RoughDielectric {
                                            float relative_eta) {
     const float cos_o = dot(o, m), cos_i = dot(i, m);
     const float sum = fused_multiply_add(relative_eta, cos_i, cos_o);
-    return relative_eta * relative_eta * fabsf(cos_i) * cos_o / (sum * sum);
+    return divide(relative_eta * relative_eta * fabsf(cos_i) * cos_o, sum * sum);
   }
 };
 

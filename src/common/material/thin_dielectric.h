@@ -25,7 +25,7 @@ struct ThinDielectric {
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
     const float once = fresnel_dielectric(fminf(fabsf(wo.z), 1.0f), eta);
     // R + T R T + T R^3 T + ...
-    const float reflectance = 2.0f * once / (1.0f + once);
+    const float reflectance = divide(2.0f * once, 1.0f + once);
     if (u.z < reflectance) return {mirrored(wo), reflected, 0.0f, Lobe::reflection | Lobe::delta};
     return {-wo, passed, 0.0f, Lobe::transmission | Lobe::delta};
   }

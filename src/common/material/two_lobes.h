@@ -11,14 +11,14 @@ struct TwoLobes {
 
   /// Together they reflect at most what they get: scaled where their sum is above 1.
   PT_HD static TwoLobes make(const Color& diffuse, const Color& specular) {
-    const float scale = 1.0f / fmaxf(max_abs(diffuse + specular), 1.0f);
+    const float scale = divide(1.0f, fmaxf(max_abs(diffuse + specular), 1.0f));
     return {diffuse * scale, specular * scale};
   }
 
   /// The probability of sampling the glossy one.
   PT_HD float glossy_probability() const {
     const float s = mean(specular), sum = mean(diffuse) + s;
-    return sum > 0.0f ? s / sum : 0.0f;
+    return sum > 0.0f ? divide(s, sum) : 0.0f;
   }
 
   /// Of two directions on one side: `glossy_pdf` is the glossy lobe's density, `factor` its
@@ -43,7 +43,7 @@ struct TwoLobes {
 PT_HD BsdfSample sample_of(const Vec3& wi, const BsdfValue& value, bool is_glossy) {
   if (!(value.pdf > 0.0f)) return {};
   const int kind = is_glossy ? Lobe::glossy : Lobe::diffuse;
-  return {wi, value.f * (1.0f / value.pdf), value.pdf,
+  return {wi, value.f * divide(1.0f, value.pdf), value.pdf,
           static_cast<std::uint8_t>(Lobe::reflection | kind)};
 }
 

@@ -58,6 +58,10 @@ PT_HD Color add_rounded(const Color& a, const Color& b) {
   return {add_rounded(a.x, b.x), add_rounded(a.y, b.y), add_rounded(a.z, b.z)};
 }
 
+PT_HD Color divide(const Color& a, float b) {
+  return {divide(a.x, b), divide(a.y, b), divide(a.z, b)};
+}
+
 /// a + t (b - a), rounded alike in every kernel.
 PT_HD float interpolate(float a, float b, float t) { return fused_multiply_add(t, b - a, a); }
 PT_HD Color interpolate(const Color& a, const Color& b, float t) {

@@ -29,7 +29,7 @@ PT_HD AliasSample resolve_alias(const AliasEntry* entries, std::uint32_t index, 
   const AliasEntry entry = entries[index];
   const float t = entry.threshold;
   const bool own = u < t;
-  const float rest = own ? u / t : (u - t) / (1.0f - t);
+  const float rest = own ? divide(u, t) : divide(u - t, 1.0f - t);
   return {own ? index : entry.alias, fminf(rest, one_minus_ulp)};
 }
 

@@ -11,14 +11,15 @@ namespace pt {
 PT_HD float power_heuristic(float chosen, float other) {
   if (chosen == HUGE_VALF) return 1.0f;
   if (chosen <= 0.0f) return 0.0f;
-  const float ratio = other / chosen;  // squared by itself, a density could leave float's range
-  return 1.0f / (1.0f + multiply_rounded(ratio, ratio));
+  const float ratio =
+      divide(other, chosen);  // squared by itself, a density could leave float's range
+  return divide(1.0f, 1.0f + multiply_rounded(ratio, ratio));
 }
 
 PT_HD float balance_heuristic(float chosen, float other) {
   if (chosen == HUGE_VALF) return 1.0f;
   if (chosen <= 0.0f) return 0.0f;
-  return 1.0f / (1.0f + other / chosen);
+  return divide(1.0f, 1.0f + divide(other, chosen));
 }
 
 /// Of light that a sampled light sends, where `direction` is the density with which the path's own

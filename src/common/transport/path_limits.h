@@ -27,7 +27,7 @@ struct PathLimits {
 /// the same.)
 PT_HD void play_roulette(Color& beta, float u, float outside = 1.0f) {
   const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * outside, 0.95f);
-  const float scale = u < survival ? 1.0f / survival : 0.0f;
+  const float scale = u < survival ? divide(1.0f, survival) : 0.0f;
   beta = multiply_rounded(beta, Color(scale));
 }
 
