@@ -36,9 +36,7 @@ PT_HD float unpack_cosine(std::uint16_t packed) {
   return fused_multiply_add(static_cast<float>(packed), 1.0f / 32768.0f, -1.0f);
 }
 
-PT_HD float sine_of(float cosine) {
-  return fast_sqrt(fmaxf(0.0f, fused_multiply_add(-cosine, cosine, 1.0f)));
-}
+PT_HD float sine_of(float cosine) { return fast_sqrt(fused_multiply_add(-cosine, cosine, 1.0f)); }
 
 /// cos(max(0, a - b)) of two angles between 0 and pi.
 PT_HD float cos_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
@@ -68,12 +66,13 @@ PT_HD float blend_cosine(float bound, float middle) {
   return fused_multiply_add(0.25f, bound, multiply_rounded(0.75f, fmaxf(middle, 0.0f)));
 }
 
-/// About the irradiance that the lights of a node give, if nothing lies between; never below 0.
+/// About the irradiance that the lights of a node give, if nothing lies between; never below 0. No
+/// branches: the two nodes of a pair are computed side by side.
 PT_HD float light_importance(const LightNode& node, const LightReceiver& receiver) {
   const Vec3 way = node.center - receiver.point;
   const float distance2 = dot(way, way), radius2 = multiply_rounded(node.radius, node.radius);
   const bool inside = !(distance2 > radius2);
-  const float inverse = inverse_sqrt(fmaxf(distance2, 1e-30f));
+  const float inverse = inverse_sqrt_of_normal(fmaxf(distance2, 1e-30f));
   const float sin_ball = fminf(node.radius * inverse, 1.0f), cos_ball = sine_of(sin_ball);
   // The angle at the light, less the cone of its normals, and less the ball's angle as well: both
   // together may be more than half a turn.
@@ -87,24 +86,24 @@ PT_HD float light_importance(const LightNode& node, const LightReceiver& receive
   const float bound = inside || sin_slack <= 0.0f
                           ? 1.0f
                           : cos_difference(cos_light, sin_light, cos_slack, sin_slack);
-  if (bound <= unpack_cosine(node.cos_emission)) return 0.0f;
+  const bool dark = bound <= unpack_cosine(node.cos_emission);
   const float emitted =
       blend_cosine(bound, cos_difference(cos_light, sin_light, cos_cone, sin_cone));
-  float importance = node.intensity * emitted / fmaxf(distance2, radius2);
-  if (receiver.has_normal) {
-    const float cosine = dot(receiver.normal, way) * inverse;
-    const float middle = receiver.both_sides ? fabsf(cosine) : cosine;
-    const float best = inside ? 1.0f : cos_difference(middle, sine_of(middle), cos_ball, sin_ball);
-    importance *= blend_cosine(best, middle) + 1e-4f;  // the normal has been packed
-  }
-  return fminf(fmaxf(importance, 0.0f), importance_max);
+  const float irradiance = divide(node.intensity * emitted, fmaxf(distance2, radius2));
+  const float cosine = dot(receiver.normal, way) * inverse;
+  const float middle = receiver.both_sides ? fabsf(cosine) : cosine;
+  const float beside = cos_difference(middle, sine_of(middle), cos_ball, sin_ball);
+  const float received =
+      blend_cosine(select(inside, 1.0f, beside), middle) + 1e-4f;  // the normal has been packed
+  const float importance = irradiance * select(receiver.has_normal, received, 1.0f);
+  return dark ? 0.0f : fminf(fmaxf(importance, 0.0f), importance_max);
 }
 
-/// The share of a pair's first node; one half where neither has any importance.
+/// The share of a pair's first node; one half where neither has any importance worth the name.
 PT_HD float first_share(const LightPair& pair, const LightReceiver& receiver) {
   const float first = light_importance(pair.node[0], receiver);
   const float sum = first + light_importance(pair.node[1], receiver);
-  return sum > 0.0f ? first / sum : 0.5f;
+  return sum > 1e-30f ? divide(first, sum) : 0.5f;
 }
 
 /// A view. TreeOfLights (build_light_tree.h) owns the memory.
@@ -136,10 +135,14 @@ struct Interval {
 
   /// True with this probability.
   PT_HD bool choose(float probability) {
+    // Of 32 bits, so that each product is one instruction.
     const auto share =
-        static_cast<std::uint64_t>(fminf(probability * 4294967296.0f, 4294967040.0f));
+        static_cast<std::uint32_t>(fminf(probability * 4294967296.0f, 4294967040.0f));
+    const auto high = static_cast<std::uint32_t>(width >> 32);
+    const auto low = static_cast<std::uint32_t>(width);
     const std::uint64_t part =
-        probability >= 1.0f ? width : (width >> 32) * share + ((width & 0xffffffffu) * share >> 32);
+        probability >= 1.0f ? width
+                            : std::uint64_t{high} * share + (std::uint64_t{low} * share >> 32);
     const bool chosen = place < part;
     if (!chosen) place -= part;
     width = chosen ? part : width - part;

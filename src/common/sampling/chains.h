@@ -89,10 +89,4 @@ struct Chains {
   }
 };
 
-/// Chains::draw, not inlined: kernels that draw for other samplers, too, keep their registers.
-PT_NOINLINE inline Vec4 draw_apart(const Chains* chains, std::uint32_t path,
-                                   std::uint32_t iteration, std::uint32_t block) {
-  return chains->draw(path, iteration, block);
-}
-
 }  // namespace pt

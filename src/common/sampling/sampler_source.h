@@ -34,14 +34,22 @@ struct SamplerSource {
     const Chains* chains;
 
     PT_HD Vec4 draw(std::uint32_t block) {
-      if (chains != nullptr) return draw_apart(chains, philox.pixel, philox.sample, block);
-      if (sampler.kind == SamplerKind::independent) return philox.draw(block);
-      const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits(block, 2);
-      if (sampler.kind == SamplerKind::sobol) return sobol_block(philox.sample, pattern);
-      return stratified_block(philox.draw(block), sampler.grid, sampler.samples, philox.sample,
-                              pattern);
+      const bool alone = sampler.kind == SamplerKind::independent && chains == nullptr;
+      return alone ? philox.draw(block) : draw_apart(*this, block);
     }
   };
+
+  /// Not inlined: kernels that draw independent numbers, too, keep their registers and their code
+  /// close together.
+  static PT_NOINLINE Vec4 draw_apart(Stream stream, std::uint32_t block) {
+    PhiloxSource::Stream& philox = stream.philox;
+    const Sampler& sampler = stream.sampler;
+    if (stream.chains != nullptr) return stream.chains->draw(philox.pixel, philox.sample, block);
+    const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits(block, 2);
+    if (sampler.kind == SamplerKind::sobol) return sobol_block(philox.sample, pattern);
+    return stratified_block(philox.draw(block), sampler.grid, sampler.samples, philox.sample,
+                            pattern);
+  }
 
   PT_HD Stream open(const PathId& id) const {
     if (chains == nullptr) return {PhiloxSource{seed}.open(id), sampler, nullptr};

@@ -29,18 +29,17 @@ PT_HD MapFrame map_frame(const Surface& surface, bool turned) {
 }
 
 /// The normal of a normal map, or of a bump map, in the frame; not of unit length.
-PT_HD Vec3 mapped_normal(const Scene& scene, const Surface& surface, const MapFrame& frame,
-                         const Parameter& map) {
-  const Texture& texture = scene.textures[map.texture];
+PT_HD Vec3 mapped_normal(const Texture& texture, const std::byte* texels, const Surface& surface,
+                         const MapFrame& frame, const Parameter& map) {
   if (surface.material.node == MaterialNode::bump_map) {
-    const Vec2 slope = map.value.x * texture_gradient(texture, scene.texels, surface.uv);
+    const Vec2 slope = map.value.x * texture_gradient(texture, texels, surface.uv);
     const auto along = [&](const Vec3& dp, float height) {
       return Vec3(dot(frame.s, dp), dot(frame.t, dp), height);
     };
     const Vec3 n = cross_rounded(along(surface.dp_du, slope.x), along(surface.dp_dv, slope.y));
     return n.z < 0.0f ? -n : n;
   }
-  Vec3 n = 2.0f * sample_texture(texture, scene.texels, surface.uv) - Vec3(1.0f);
+  Vec3 n = 2.0f * sample_texture(texture, texels, surface.uv) - Vec3(1.0f);
   if (surface.material.node == MaterialNode::gltf_normal_map) {
     n.x *= map.value.x, n.y *= map.value.x;
     if (dot(frame.t, surface.dp_dv) < 0.0f) n.y = -n.y;
@@ -48,13 +47,25 @@ PT_HD Vec3 mapped_normal(const Scene& scene, const Surface& surface, const MapFr
   return n;
 }
 
+/// What a map makes of a shading normal. `base`: the normal before; `roughness2` as
+/// Surface::map_roughness2.
+struct TurnedNormal {
+  Vec3 normal, base;
+  float roughness2;
+};
+
 /// Turns the shading normal by the surface's material, a map. `wo` points away from the surface.
-PT_HD void apply_map(const Scene& scene, const Vec3& wo, bool turned, Surface& surface) {
-  const Parameter map = load_wide(&scene.parameters[surface.material_number]);
+/// Not inlined, and by value, since maps are few and their code is long.
+PT_NOINLINE inline TurnedNormal turned_normal(Surface surface, Parameter map,
+                                              const Texture* textures, const std::byte* texels,
+                                              Vec3 wo, bool turned) {
+  const TurnedNormal unturned = {surface.shading_normal, surface.base_normal,
+                                 surface.map_roughness2};
+  if (map.texture == no_texture) return unturned;
   const MapFrame frame = map_frame(surface, turned);
-  const Vec3 n = mapped_normal(scene, surface, frame, map);
+  const Vec3 n = mapped_normal(textures[map.texture], texels, surface, frame, map);
   const float length2 = dot(n, n);
-  if (map.texture == no_texture || !(length2 > 0.0f)) return;
+  if (!(length2 > 0.0f)) return unturned;
   const Vec3 local = normalize(n);
   const auto world = [&frame](const Vec3& v) {
     return normalize(weighted_sum(v, frame.s, frame.t, frame.n));
@@ -63,17 +74,16 @@ PT_HD void apply_map(const Scene& scene, const Vec3& wo, bool turned, Surface& s
   if (map.value.z == 0.0f && dot(wo, normal) * dot(wo, frame.n) < 0.0f) {
     normal = world({-local.x, -local.y, local.z});
   }
-  surface.base_normal = frame.n;
-  surface.shading_normal = normal;
   const float tangent2 = fused_multiply_add(-local.z, local.z, 1.0f) / (local.z * local.z);
-  surface.map_roughness2 = map.value.y == 0.0f ? fminf(fmaxf(0.125f * tangent2, 0.0f), 1.0f) : 0.0f;
+  return {normal, frame.n,
+          map.value.y == 0.0f ? fminf(fmaxf(0.125f * tangent2, 0.0f), 1.0f) : 0.0f};
 }
 
 /// One of the two materials of a blend, and a random number that is again uniform in [0, 1).
 PT_HD std::uint32_t choose_blended(const Scene& scene, const Surface& surface, float& u) {
   const Parameter p = load_wide(&scene.parameters[surface.material_number]);
   const float weight =
-      fminf(fmaxf(grey_of(textured(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
+      fminf(fmaxf(grey_of(textured_apart(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
   const bool second = u < weight;
   u = fminf(second ? u / weight : (u - weight) / (1.0f - weight), one_minus_ulp);
   return second ? surface.material.second : surface.material.first();
@@ -94,7 +104,12 @@ PT_HD void resolve_material(const Scene& scene, const Vec3& wo, float& u, Surfac
     } else if (surface.material.node == MaterialNode::blend) {
       next = choose_blended(scene, surface, u);
     } else {
-      apply_map(scene, wo, turned, surface);
+      const TurnedNormal map =
+          turned_normal(surface, load_wide(&scene.parameters[surface.material_number]),
+                        scene.textures, scene.texels, wo, turned);
+      surface.shading_normal = map.normal;
+      surface.base_normal = map.base;
+      surface.map_roughness2 = map.roughness2;
     }
     surface.material_number = next;
     surface.material = scene.material(next);

@@ -32,11 +32,11 @@ struct PlainDirections {
   }
 };
 
-/// `u` uniform in [0, 1)^3.
+/// A direction that does not know the BSDF. Not inlined, and by value: the code of a comparison
+/// that is seldom made, a second sample() and evaluate(), does not lie between that of every path.
 template <class Bsdf>
-PT_HD BsdfSample sample_direction(const Bsdf& bsdf, DirectionSampling how, const Vec3& wo, Vec3 u) {
+PT_NOINLINE BsdfSample sample_plainly(Bsdf bsdf, DirectionSampling how, Vec3 wo, Vec3 u) {
   using Plain = PlainDirections<Bsdf>;
-  if (how == DirectionSampling::bsdf || bsdf.is_delta()) return bsdf.sample(wo, u);
   if constexpr (Plain::mirrors) {
     if (u.z < 0.5f) {
       BsdfSample mirror = bsdf.sample(wo, {u.x, u.y, 2.0f * u.z});
@@ -49,6 +49,14 @@ PT_HD BsdfSample sample_direction(const Bsdf& bsdf, DirectionSampling how, const
   const float pdf = Plain::pdf(how, wo, wi);
   if (!(pdf > 0.0f)) return {};
   return {wi, bsdf.evaluate(wo, wi).f / pdf, pdf, Lobe::glossy};
+}
+
+/// `u` uniform in [0, 1)^3.
+template <class Bsdf>
+PT_HD BsdfSample sample_direction(const Bsdf& bsdf, DirectionSampling how, const Vec3& wo,
+                                  const Vec3& u) {
+  if (how == DirectionSampling::bsdf || bsdf.is_delta()) return bsdf.sample(wo, u);
+  return sample_plainly(bsdf, how, wo, u);
 }
 
 /// The density of the above, given that of the BSDF's own sample().

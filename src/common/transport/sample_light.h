@@ -33,42 +33,53 @@ PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
          static_cast<float>(scene.light_count);
 }
 
-/// Any light but the environment, without its texture; `uv`: where in that.
-PT_HD IncidentLight sample_plain_light(const Scene& scene, const Light& light, const Vec3& from,
-                                       float u0, float u1, Vec2& uv) {
-  if (is_triangle(light.kind)) {
-    const TriangleLightSample s =
-        sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
+/// Where a light was sampled, without its texture; `uv`: where in that.
+struct PlainLight {
+  IncidentLight incident;
+  Vec2 uv = Vec2(0.0f);
+};
+
+PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, const Vec3& from,
+                                       float u0, float u1) {
+  const TriangleLightSample s =
+      sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
+  PlainLight result = {{s.light.wi, s.light.end, light.radiance, s.light.pdf}};
+  if (light.emission_texture != no_texture) {
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
     if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
-    if (light.emission_texture != no_texture) {
-      uv = texture_coordinates(scene, light.triangle, light.triangle != no_texture, b);
-    }
-    return {s.light.wi, s.light.end, light.radiance, s.light.pdf};
+    result.uv = texture_coordinates(scene, light.triangle, light.triangle != no_texture, b);
   }
+  return result;
+}
+
+/// Any light but triangles and the environment. Not inlined, and by value: scenes have few of them,
+/// and their code is long.
+PT_NOINLINE inline PlainLight sample_other_light(Light light, Vec3 from, float u0, float u1) {
   if (light.kind == LightKind::sphere) {
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
-    return {s.wi, s.end, light.radiance, s.pdf};
+    return {{s.wi, s.end, light.radiance, s.pdf}};
   }
   if (light.kind == LightKind::sun) {
     const LightSample s = sample_sun(light.b, light.c.x, u0, u1);
-    return {s.wi, s.end, light.radiance, s.pdf};
+    return {{s.wi, s.end, light.radiance, s.pdf}};
   }
   DeltaLightSample s = sample_delta_light(light.delta(), from);
+  Vec2 uv(0.0f);
   if (light.kind == LightKind::projector) {
     const Projection projection = project(light, -s.wi);
     uv = projection.uv;
     s.irradiance *= projection.factor;
   }
-  return {s.wi, s.end, s.irradiance, 1.0f, true};
+  return {{s.wi, s.end, s.irradiance, 1.0f, true}, uv};
 }
 
 /// Any light but the environment.
 PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
                                         float u0, float u1) {
-  Vec2 uv(0.0f);
-  IncidentLight incident = sample_plain_light(scene, light, from, u0, u1, uv);
-  incident.radiance = textured(scene, incident.radiance, light.emission_texture, uv);
+  PlainLight plain = is_triangle(light.kind) ? sample_triangle_light(scene, light, from, u0, u1)
+                                             : sample_other_light(light, from, u0, u1);
+  IncidentLight& incident = plain.incident;
+  incident.radiance = textured_apart(scene, incident.radiance, light.emission_texture, plain.uv);
   return incident;
 }
 
@@ -94,6 +105,12 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver 
   return sample_selected_light(scene, from, receiver, u);
 }
 
+/// LightSelector::pmf, not inlined: few paths meet a lamp, and it is as long as sample().
+PT_NOINLINE inline float light_pmf_apart(LightSelector selector, Vec3 point, Receiver receiver,
+                                         std::uint32_t light) {
+  return selector.pmf(point, receiver, light);
+}
+
 /// The density with which sample_light would have found the lamp that a ray hit.
 template <class Traits>
 PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit) {
@@ -113,7 +130,7 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
     const std::uint32_t number = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
     const Light light = load_wide(&selector.lights[number]);
-    return selector.pmf(ray.origin, receiver, number) *
+    return light_pmf_apart(selector, ray.origin, receiver, number) *
            TriangleSampler(light.a - ray.origin, light.b, light.c).pdf(ray.direction, hit.t);
   }
 }

@@ -41,7 +41,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   const Emission emission = scene.emission(surface.material);
   Color Le = emission.radiance;
   if constexpr (Traits::lighting == Lighting::full) {
-    Le = textured(scene, Le, emission.texture, surface.uv);
+    Le = textured_apart(scene, Le, emission.texture, surface.uv);
   }
   const float pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
   return path.beta * Le * direction_weight(mis, path.bsdf_pdf, pdf);
@@ -71,7 +71,7 @@ PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const V
   if (light.pdf <= 0.0f || is_black(value.f)) return {};
   const float weight = light.is_delta ? 1.0f : light_weight(mis, light.pdf, value.pdf);
   return spawn_shadow_ray<Traits>(surface.point, from, light,
-                                  path.beta * value.f * light.radiance * (weight / light.pdf));
+                                  path.beta * value.f * light.radiance * divide(weight, light.pdf));
 }
 
 /// Around the shading normal, along dp_du where the material needs that.
@@ -112,7 +112,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   IncidentLight incident;
   if (asks) {
     lanes_of(ray).count(LanePoint::light);
-    path.receiver = receiver_of<Traits>(surface, ray);
+    if (!full || scene.light_selector.has_tree()) path.receiver = receiver_of<Traits>(surface, ray);
     incident = sample_light<Traits>(scene, from, path.receiver, light);
   }
   const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);

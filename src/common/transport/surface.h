@@ -26,11 +26,15 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
   return c * sample_texture(scene.textures[texture], scene.texels, uv);
 }
 
-/// The same, not inlined: BSDFs have dozens of parameters together, and a lookup's code is long.
-template <class Traits>
-PT_NOINLINE Color textured_apart(const Texture* texture, const std::byte* texels, float r, float g,
-                                 float b, float u, float v) {
-  return Color(r, g, b) * sample_texture(*texture, texels, {u, v});
+/// The same, not inlined: a lookup's code is long, and there would be dozens of it.
+PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const std::byte* texels,
+                                          Vec2 uv) {
+  return c * sample_texture(*texture, texels, uv);
+}
+PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
+                           const Vec2& uv) {
+  if (texture == no_texture) return c;
+  return multiply_texture(c, &scene.textures[texture], scene.texels, uv);
 }
 
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
@@ -50,9 +54,8 @@ class SurfaceParameters {
  private:
   PT_HD Color read(int i) const {
     const Parameter p = load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]);
-    if (Traits::lighting != Lighting::full || p.texture == no_texture) return p.value;
-    return textured_apart<Traits>(&scene_.textures[p.texture], scene_.texels, p.value.x, p.value.y,
-                                  p.value.z, surface_.uv.x, surface_.uv.y);
+    if constexpr (Traits::lighting != Lighting::full) return p.value;
+    return textured_apart(scene_, p.value, p.texture, surface_.uv);
   }
 
   PT_HD Color value_of(const Parameter& p) const {
