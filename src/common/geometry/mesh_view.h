@@ -5,23 +5,22 @@
 
 namespace pt {
 
-/// The vertices' attributes of all meshes, one after the other: a view. Empty where no mesh has
-/// any.
-struct VertexAttributes {
-  const TriangleIndices* triangles = nullptr;  ///< [triangle id]
-  const Vec3* normals = nullptr;               ///< [vertex]
-  const Vec2* uvs = nullptr;                   ///< [vertex]
+/// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of
+/// memory. Vertices that triangles share are repeated. Their own arrays would be half as large, but
+/// a hit would read 15 words from seven places, and their numbers before that.
+struct alignas(64) CornerAttributes {
+  Vec3 normal[3] = {Vec3(0.0f), Vec3(0.0f), Vec3(0.0f)};  ///< unit length, or the mesh has none
+  Vec2 uv[3] = {Vec2(0.0f), Vec2(0.0f), Vec2(0.0f)};
+  float padding = 0.0f;
 
-  PT_HD Vec3 normal(std::uint32_t id, const Vec3& b) const {
-    const TriangleIndices t = triangles[id];
-    return weighted_sum(b, normals[t.v[0]], normals[t.v[1]], normals[t.v[2]]);
+  PT_HD Vec3 normal_at(const Vec3& b) const {
+    return weighted_sum(b, normal[0], normal[1], normal[2]);
   }
-  PT_HD Vec2 uv(std::uint32_t id, const Vec3& b) const {
-    const TriangleIndices t = triangles[id];
-    const Vec2 p = uvs[t.v[0]], q = uvs[t.v[1]], r = uvs[t.v[2]];
-    const Vec3 uv = weighted_sum(b, Vec3(p, 0.0f), Vec3(q, 0.0f), Vec3(r, 0.0f));
-    return {uv.x, uv.y};
+  PT_HD Vec2 uv_at(const Vec3& b) const {
+    const Vec3 at = weighted_sum(b, Vec3(uv[0], 0.0f), Vec3(uv[1], 0.0f), Vec3(uv[2], 0.0f));
+    return {at.x, at.y};
   }
 };
+static_assert(sizeof(CornerAttributes) == 64);
 
 }  // namespace pt

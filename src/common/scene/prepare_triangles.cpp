@@ -62,26 +62,21 @@ Accel structure_of(const SceneData& scene, const Options& options) {
   }
 }
 
-/// All meshes' attributes as one array of vertices; triangles are numbered through the meshes.
-MeshAttributes join_attributes(const std::vector<Mesh>& meshes) {
-  MeshAttributes all;
-  const auto any = [&](auto&& has) { return std::any_of(meshes.begin(), meshes.end(), has); };
-  const bool normals = any([](const Mesh& mesh) { return !mesh.normals.empty(); });
-  const bool uvs = any([](const Mesh& mesh) { return !mesh.uvs.empty(); });
-  if (!normals && !uvs) return all;
+/// By triangle, counted through the meshes; empty where none has attributes.
+std::vector<CornerAttributes> list_corners(const std::vector<Mesh>& meshes) {
+  std::vector<CornerAttributes> corners;
+  const auto has_any = [](const Mesh& mesh) { return !mesh.normals.empty() || !mesh.uvs.empty(); };
+  if (std::none_of(meshes.begin(), meshes.end(), has_any)) return corners;
   for (const Mesh& mesh : meshes) {
-    const std::size_t first = std::max(all.normals.size(), all.uvs.size());
-    const std::size_t end = first + mesh.positions.size();
-    for (TriangleIndices triangle : mesh.triangles) {
-      for (std::uint32_t& v : triangle.v) v += static_cast<std::uint32_t>(first);
-      all.triangles.push_back(triangle);
+    for (const TriangleIndices& triangle : mesh.triangles) {
+      CornerAttributes& all = corners.emplace_back();
+      for (int i = 0; i < 3; ++i) {
+        if (!mesh.normals.empty()) all.normal[i] = mesh.normals[triangle.v[i]];
+        if (!mesh.uvs.empty()) all.uv[i] = mesh.uvs[triangle.v[i]];
+      }
     }
-    if (normals) all.normals.insert(all.normals.end(), mesh.normals.begin(), mesh.normals.end());
-    if (uvs) all.uvs.insert(all.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
-    if (normals) all.normals.resize(end, Vec3(0.0f));
-    if (uvs) all.uvs.resize(end, Vec2(0.0f));
   }
-  return all;
+  return corners;
 }
 
 /// In the order of InstanceRecord::number: the meshes of group 0 come last.
@@ -125,7 +120,7 @@ void prepare_triangles(SceneData& scene, const Options& options) {
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
     if (accel == Accel::embree) scene.embree = std::make_shared<const EmbreeTree>(scene.tree);
   }
-  scene.attributes = join_attributes(scene.meshes);
+  scene.corners = list_corners(scene.meshes);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
   scene.light_list = list_lights(scene, bounds, options.light_selection);
   if (scene.environment.width > 0) {

@@ -34,13 +34,13 @@ struct Scene {
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
-  VertexAttributes attributes;
-  const Affine* to_world = nullptr;    ///< [InstanceRecord::number]
-  LightSelector light_selector;        ///< Lighting::full
-  LightMap light_map;                  ///< Lighting::full
-  Environment environment;             ///< Lighting::full
-  const Opacity* opacities = nullptr;  ///< [material], in scenes with masks
-  std::uint32_t mask_seed = 0;         ///< of this render
+  const CornerAttributes* corners = nullptr;  ///< [triangle id]; null: no mesh has attributes
+  const Affine* to_world = nullptr;           ///< [InstanceRecord::number]
+  LightSelector light_selector;               ///< Lighting::full
+  LightMap light_map;                         ///< Lighting::full
+  Environment environment;                    ///< Lighting::full
+  const Opacity* opacities = nullptr;         ///< [material], in scenes with masks
+  std::uint32_t mask_seed = 0;                ///< of this render
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
   PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA

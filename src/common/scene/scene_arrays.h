@@ -23,9 +23,7 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.light_emission, scene.light_emission, "scene");
   function(view.bvh_nodes, scene.bvh_nodes, "acceleration structure");
   function(view.to_world, scene.to_world, "instances");
-  function(view.attributes.triangles, scene.attributes.triangles, "vertex attributes");
-  function(view.attributes.normals, scene.attributes.normals, "vertex attributes");
-  function(view.attributes.uvs, scene.attributes.uvs, "vertex attributes");
+  function(view.corners, scene.corners, "vertex attributes");
   function(view.light_selector.lights, scene.light_list.lights, "lights");
   function(view.light_selector.table, scene.light_list.selection, "lights");
   function(view.light_selector.tree.pairs, scene.light_list.tree.pairs, "lights");

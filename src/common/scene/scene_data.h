@@ -37,13 +37,6 @@ struct SceneDefaults {
   bool measure_exposure = false;
 };
 
-/// The memory behind VertexAttributes; empty where no mesh has any.
-struct MeshAttributes {
-  std::vector<TriangleIndices> triangles;
-  std::vector<Vec3> normals;
-  std::vector<Vec2> uvs;
-};
-
 /// The memory behind a LightSelector and a LightMap.
 struct LightListData {
   std::vector<Light> lights;
@@ -90,8 +83,8 @@ struct SceneData {
   // In scenes with triangles:
   TriangleTreeData tree;                     ///< empty where --builder leaves it to the device
   std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`
-  MeshAttributes attributes;
-  std::vector<Affine> to_world;  ///< by instance
+  std::vector<CornerAttributes> corners;     ///< by triangle; empty where no mesh has attributes
+  std::vector<Affine> to_world;              ///< by instance
   LightListData light_list;
   EnvironmentMap environment_map;
 

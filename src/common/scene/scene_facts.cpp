@@ -18,8 +18,7 @@ std::uint64_t mesh_bytes(const SceneData& scene) {
   for (const Mesh& mesh : scene.meshes) {
     sum += bytes(mesh.positions) + bytes(mesh.triangles) + bytes(mesh.normals) + bytes(mesh.uvs);
   }
-  return sum + bytes(scene.attributes.triangles) + bytes(scene.attributes.normals) +
-         bytes(scene.attributes.uvs);
+  return sum + bytes(scene.corners);
 }
 
 std::string size_text(std::uint64_t size_bytes) {

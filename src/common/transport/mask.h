@@ -56,7 +56,8 @@ struct MaskTest {
     const Opacity opacity = load_wide(&scene.opacities[triangle.material]);
     Vec2 uv(hit.b1, hit.b2);
     if ((triangle.attributes & TriangleAttributes::uvs) != 0) {
-      uv = scene.attributes.uv(triangle.id, Vec3(1.0f - hit.b1 - hit.b2, hit.b1, hit.b2));
+      uv = load_wide(&scene.corners[triangle.id])
+               .uv_at(Vec3(1.0f - hit.b1 - hit.b2, hit.b1, hit.b2));
     }
     const float there = opacity_at(scene, opacity, uv);
     if (opacity.cutoff > 0.0f) return !(there >= opacity.cutoff);

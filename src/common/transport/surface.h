@@ -77,16 +77,14 @@ PT_HD bool is_placed(const Scene& scene) {
 /// where it has none.
 PT_HD Vec2 texture_coordinates(const Scene& scene, std::uint32_t triangle_id, bool has_uvs,
                                const Vec3& barycentric) {
-  return has_uvs ? scene.attributes.uv(triangle_id, barycentric)
+  return has_uvs ? load_wide(&scene.corners[triangle_id]).uv_at(barycentric)
                  : Vec2(barycentric.y, barycentric.z);
 }
 
 /// Sets dp_du and dp_dv of a triangle with texture coordinates; v grows as ours does, upwards.
-PT_HD void set_derivatives(const Scene& scene, const Triangle& triangle, const Affine* to_world,
-                           Surface& surface) {
-  const TriangleIndices t = scene.attributes.triangles[triangle.id];
-  const Vec2* uvs = scene.attributes.uvs;
-  const Vec2 uv1 = uvs[t.v[1]] - uvs[t.v[0]], uv2 = uvs[t.v[2]] - uvs[t.v[0]];
+PT_HD void set_derivatives(const Triangle& triangle, const CornerAttributes& corners,
+                           const Affine* to_world, Surface& surface) {
+  const Vec2 uv1 = corners.uv[1] - corners.uv[0], uv2 = corners.uv[2] - corners.uv[0];
   const float determinant = difference_of_products(uv1.x, uv2.y, uv1.y, uv2.x);
   if (determinant == 0.0f) return;
   const float scale = 1.0f / determinant;
@@ -126,6 +124,11 @@ template <class Traits>
 PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hit) {
   const std::uint32_t slot = hit.primitive - scene.primitives.count();
   const Triangle triangle = load_wide(&scene.triangles.triangles[slot]);
+  const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
+  const bool has_normals = (triangle.attributes & TriangleAttributes::normals) != 0;
+  CornerAttributes corners;
+  if (has_uvs || has_normals) corners = load_wide(&scene.corners[triangle.id]);
+  const Material material = scene.material(triangle.material);
   const bool placed = is_placed<Traits>(scene);
   InstanceRecord instance;
   Ray local = ray;
@@ -141,9 +144,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Vec3 size = glm::max(glm::max(glm::abs(triangle.v0 - position), glm::abs(triangle.v1 - position)),
                        glm::abs(triangle.v2 - position));
   Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
-  Vec3 shading_normal = (triangle.attributes & TriangleAttributes::normals) != 0
-                            ? scene.attributes.normal(triangle.id, b)
-                            : normal;
+  Vec3 shading_normal = has_normals ? corners.normal_at(b) : normal;
   if (placed) {
     const Affine to_world = load_wide(&scene.to_world[instance.number]);
     position = to_world.point(position);
@@ -158,15 +159,13 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
                                       8.0f * half_ulp * max_abs(size))},
                   normalize(shading_normal),
                   triangle.material,
-                  scene.material(triangle.material)};
+                  material};
   if (surface.material.is(Material::textured)) {
-    const bool has_uvs = (triangle.attributes & TriangleAttributes::uvs) != 0;
-    surface.uv = texture_coordinates(scene, triangle.id, has_uvs, b);
+    surface.uv = has_uvs ? corners.uv_at(b) : Vec2(b.y, b.z);
   }
   if constexpr (Traits::lighting == Lighting::full) {
-    if (surface.material.is(Material::tangents) &&
-        (triangle.attributes & TriangleAttributes::uvs) != 0) {
-      set_derivatives(scene, triangle, placed ? &scene.to_world[instance.number] : nullptr,
+    if (surface.material.is(Material::tangents) && has_uvs) {
+      set_derivatives(triangle, corners, placed ? &scene.to_world[instance.number] : nullptr,
                       surface);
     }
   }

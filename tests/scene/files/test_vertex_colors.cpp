@@ -24,7 +24,9 @@ Color shown(const SceneData& scene, std::size_t mesh, std::uint32_t triangle, co
             const Parameter& p) {
   if (p.texture == no_texture) return p.value;
   const Mesh& m = scene.meshes[mesh];
-  const Vec2 uv = VertexAttributes{m.triangles.data(), nullptr, m.uvs.data()}.uv(triangle, b);
+  CornerAttributes corners;
+  for (int i = 0; i < 3; ++i) corners.uv[i] = m.uvs[m.triangles[triangle].v[i]];
+  const Vec2 uv = corners.uv_at(b);
   return p.value * sample_texture(scene.textures.at(p.texture), scene.texels.data(), uv);
 }
 
