@@ -151,6 +151,58 @@ TEST(ReinsertNodes, TreesStayAsShallowAsTraversalsExpect) {
   check(TreeByNumber(mesh).tree);
 }
 
+/// A list of `nodes` nodes, each leaf half as far away as the one before and half as large; beside
+/// it something far away. In the root's other half there are two leaves close to the list, and
+/// beside them something as far away on the other side.
+BinaryTree list_and_pair(int nodes) {
+  const auto cube = [](float x, float size) { return Bounds{Vec3(x), Vec3(x + size)}; };
+  BinaryTree tree;
+  tree.node_capacity = static_cast<std::uint32_t>(nodes) + 4;
+  tree.nodes.reset(new Bvh2Node[tree.node_capacity]());
+  std::uint32_t count = 0, leaves = 0;
+  const auto set = [&](std::uint32_t node, int i, std::uint32_t child, const Bounds& box) {
+    tree.nodes[node].child[i] = child;
+    set_child_bounds(tree.nodes[node], i, box);
+  };
+  const std::uint32_t root = count++, left = count++;
+  const Bounds far = cube(1000, 1), list = {Vec3(0), Vec3(1.5f)}, pair = {Vec3(2), Vec3(4)};
+  const Bounds below = cube(-1000, 1);
+  const auto joined = [](Bounds a, const Bounds& b) { return a.grow(b), a; };
+  set(root, 0, left, joined(list, far));
+  set(left, 0, count, list);
+  for (int i = 0; i < nodes; ++i) {
+    const std::uint32_t node = count++;
+    const float s = std::ldexp(1.0f, -i);
+    const bool is_last = i + 1 == nodes;
+    set(node, 0, is_last ? make_leaf(leaves, 1) : count, {Vec3(0), Vec3(0.75f * s)});
+    leaves += is_last ? 1 : 0;
+    set(node, 1, make_leaf(leaves++, 1), cube(s, 0.5f * s));
+  }
+  set(left, 1, make_leaf(leaves++, 1), far);
+  const std::uint32_t right = count++, both = count++;
+  set(root, 1, right, joined(pair, below));
+  set(right, 0, both, pair);
+  set(both, 0, make_leaf(leaves++, 1), cube(2, 1)),
+      set(both, 1, make_leaf(leaves++, 1), cube(3, 1));
+  set(right, 1, make_leaf(leaves++, 1), below);
+  tree.order.resize(leaves);
+  std::iota(tree.order.begin(), tree.order.end(), 0u);
+  tree.bounds = joined(below, far);
+  return tree;
+}
+
+// The list belongs to the pair, one level further down.
+TEST(ReinsertNodes, WhatWouldGetTooDeepStays) {
+  const BinaryTree shallow = list_and_pair(bvh_depth_max - 3);
+  EXPECT_EQ(Walk(shallow).depth, bvh_depth_max - 1);
+  const std::optional<BinaryTree> moved = reinsert_nodes(shallow);
+  ASSERT_TRUE(moved);
+  EXPECT_EQ(Walk(*moved).depth, bvh_depth_max);
+  const BinaryTree deep = list_and_pair(bvh_depth_max - 2);
+  EXPECT_EQ(Walk(deep).depth, bvh_depth_max);
+  EXPECT_FALSE(reinsert_nodes(deep));
+}
+
 TEST(ReinsertNodes, ThreadsDoNotChangeTheTree) {
   const TreeByNumber before(make_soup(20'000, 1));
   const auto nodes = [&](std::size_t threads) {
