@@ -108,6 +108,11 @@ __global__ void __launch_bounds__(block_max<Stage>())
     stage_kernel(const __grid_constant__ SceneStorage<memory> storage,
                  const __grid_constant__ Stage stage, const __grid_constant__ StageQueues queues,
                  StageClock* clock) {
+#if CUDART_VERSION >= 13000
+  // Registers that do not suffice spill into shared memory, not into L1, which writes them through.
+  if constexpr (Stage::id == StageId::shade_surface)
+    asm volatile(".pragma \"enable_smem_spilling\";");
+#endif
   using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
   __shared__ typename Appender::Shared shared;
   stamp_first_thread(clock, id_of(stage));
