@@ -110,7 +110,8 @@ __global__ void __launch_bounds__(block_max<Stage>())
                  StageClock* clock) {
 #if CUDART_VERSION >= 13000
   // Registers that do not suffice spill into shared memory, not into L1, which writes them through.
-  if constexpr (Stage::id == StageId::shade_surface)
+  // Not beside shared memory whose size the host chooses.
+  if constexpr (Stage::id == StageId::shade_surface && memory != SceneMemory::shared)
     asm volatile(".pragma \"enable_smem_spilling\";");
 #endif
   using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
