@@ -16,6 +16,7 @@ from sentences import against, fastest, in_groups
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),
             ("instances:10K", 1024, 16, None), ("terrain:10M", 1024, 16, None)]
 QUADS = ["cornell"]
+BY_ITSELF = "by itself"  # the structure, builder and kernel that the program takes
 # H-PLOC, which needs a GPU, builds the structure that suits the mode.
 SUITABLE = {"megakernel": "bvh2", "wavefront": "cwbvh"}
 # As the modes are usually written: a pixel for each thread; a selection before each stage, launched
@@ -33,12 +34,12 @@ def ways_of(scene, mode, device):
         ways = {f"{accel}, sah": f"--accel {accel} --builder sah" for accel in ("bvh2", "cwbvh")}
         if device.kind == "cuda":
             ways[f"{SUITABLE[mode]}, hploc"] = f"--accel {SUITABLE[mode]} --builder hploc"
-    return {**ways, "as usually written": f"--accel bvh2 {USUAL[mode]}"}
+    return {BY_ITSELF: "", **ways, "as usually written": f"--accel bvh2 {USUAL[mode]}"}
 
 
 def same_image(scene, options):
     """One hit for every structure (docs/tracing.md) holds for triangles."""
-    return f"{scene}, {'brute' if 'brute' in options else 'bvh2'}" if scene in QUADS else scene
+    return f"{scene}, {'bvh2' if 'bvh2' in options else 'brute'}" if scene in QUADS else scene
 
 
 def configurations(arguments, device):
