@@ -17,6 +17,7 @@ Options mlt_options(const Settings& more) {
                                {"max-depth", "6"},
                                {"chains", "997"},
                                {"mutation-size", "0.015625"},
+                               {"large-step-probability", "0.3"},
                                {"bootstrap", "5000"}}),
               more);
 }

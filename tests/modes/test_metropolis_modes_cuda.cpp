@@ -8,10 +8,16 @@
 namespace pt {
 namespace {
 
-const Settings few_chains{
-    {"integrator", "mlt"}, {"scene", "cornell"},   {"width", "67"},
-    {"height", "41"},      {"spp", "20"},          {"max-depth", "6"},
-    {"chains", "1500"},    {"bootstrap", "20000"}, {"mutation-size", "0.015625"}};
+const Settings few_chains{{"integrator", "mlt"},
+                          {"scene", "cornell"},
+                          {"width", "67"},
+                          {"height", "41"},
+                          {"spp", "20"},
+                          {"max-depth", "6"},
+                          {"chains", "1500"},
+                          {"bootstrap", "20000"},
+                          {"mutation-size", "0.015625"},
+                          {"large-step-probability", "0.3"}};
 
 Rendered render_mlt(const std::string& mode, const Settings& more) {
   return render_options(with(cuda_options(mode, few_chains), more));
