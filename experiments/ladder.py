@@ -16,8 +16,6 @@ from images import images_of
 from scene_files import add_scene_files
 from sentences import against, in_groups, time_of
 
-PLAIN = ("--mode wavefront --stages split --compaction none --shade uber --regenerate off "
-         "--finish-paths 0 --schedule host --pool-size 1M")
 CUDA, TRIANGLES, SPHERES = "a GPU", "triangles", "spheres"
 # (rung, what changes against the one before, what it needs)
 STEPS = [
@@ -32,9 +30,12 @@ STEPS = [
     ("wide tree", "--accel cwbvh --persistent off", (CUDA, TRIANGLES)),
     ("persistent warps", "--persistent on", (CUDA, TRIANGLES)),
 ]
-# Above all of them, for spheres: no compaction or order of the hits is left to choose.
-FUSED = [("fused stages", "--mode wavefront --stages fused --wave-rays 1"),
-         ("two rays a wave", "--mode wavefront --stages fused --wave-rays 2")]
+# Above all of them, for spheres. Fused stages sort no hits, and their kernel is for all materials.
+SHADE = "--shade uber "
+FUSED = [("fused stages", "--stages fused --wave-rays 1 --compaction atomic"),
+         ("two rays a wave", "--wave-rays 2")]
+PLAIN = (f"--mode wavefront --stages split --compaction none {SHADE}--regenerate off "
+         "--finish-paths 0 --schedule host --pool-size 1M")
 QUICK = "--pool-size 256"
 
 
@@ -51,14 +52,16 @@ def rungs_of(scene, device):
         if set(needs) <= set(has):
             options = " ".join(with_options(options, change))
             yield rung, options
-    if SPHERES in has:
-        yield from FUSED
+    for rung, change in FUSED if SPHERES in has else []:
+        options = " ".join(with_options(options.replace(SHADE, ""), change))
+        yield rung, options
 
 
 def configurations(arguments, device):
+    def quick(options):
+        return QUICK if arguments.quick and "--mode wavefront" in options else ""
     return [Configuration(
-        f"{scene}: {number} {rung}",
-        " ".join(with_options(f"{image} {options}", QUICK if arguments.quick and "wavefront" in options else "")),
+        f"{scene}: {number} {rung}", " ".join(with_options(f"{image} {options}", quick(options))),
         {"panel": scene, "x": f"{number} {rung}", "gain": ""}, same_image=scene)
             for scene, image in images_of(arguments).items()
             for number, (rung, options) in enumerate(rungs_of(scene, device))]

@@ -16,7 +16,6 @@ from sentences import against, fastest, in_groups
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),
             ("instances:10K", 1024, 16, None), ("terrain:10M", 1024, 16, None)]
 QUADS = ["cornell"]
-BY_ITSELF = "by itself"  # the structure, builder and kernel that the program takes
 # H-PLOC, which needs a GPU, builds the structure that suits the mode.
 SUITABLE = {"megakernel": "bvh2", "wavefront": "cwbvh"}
 # As the modes are usually written: a pixel for each thread; a selection before each stage, launched
@@ -34,7 +33,9 @@ def ways_of(scene, mode, device):
         ways = {f"{accel}, sah": f"--accel {accel} --builder sah" for accel in ("bvh2", "cwbvh")}
         if device.kind == "cuda":
             ways[f"{SUITABLE[mode]}, hploc"] = f"--accel {SUITABLE[mode]} --builder hploc"
-    return {BY_ITSELF: "", **ways, "as usually written": f"--accel bvh2 {USUAL[mode]}"}
+    if scene not in QUADS:
+        ways["by itself"] = ""  # the structure, builder and kernel that the program takes
+    return {**ways, "as usually written": f"--accel bvh2 {USUAL[mode]}"}
 
 
 def same_image(scene, options):

@@ -155,8 +155,8 @@ void add_metropolis(std::vector<OptionEntry>& list) {
            "smallest is a sixteenth of it")
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
            "Paths before the chains, at which these begin; auto: twice the\n"
-           "mutations, at least 2^20 on CUDA, 2^17 on the CPU, and at most\n"
-           "256 times as many, or half of --time-limit");
+           "mutations, from 2^20 to 2^30 on CUDA, 2^17 to 2^25 on the CPU,\n"
+           "or half of --time-limit");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {

@@ -32,7 +32,7 @@ constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 ChainDefaults chain_defaults(const cudaDeviceProp& device) {
   return {2 * static_cast<std::uint64_t>(device.multiProcessorCount) *
               static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
-          std::uint64_t{1} << 20, std::uint64_t{1} << 23};
+          std::uint64_t{1} << 20, std::uint64_t{1} << 30, std::uint64_t{1} << 23};
 }
 
 class Stopwatch {

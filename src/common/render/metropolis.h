@@ -24,8 +24,9 @@ struct ChainPlan {
 /// What a device takes where --chains and --bootstrap say nothing.
 struct ChainDefaults {
   std::uint64_t chains = std::uint64_t{1} << 13;
-  std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; half of the mutations
-  std::uint64_t turn = std::uint64_t{1} << 16;       ///< paths between two looks at the clock
+  std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; twice the mutations
+  std::uint64_t bootstrap_most = std::uint64_t{1} << 25;
+  std::uint64_t turn = std::uint64_t{1} << 16;  ///< paths between two looks at the clock
 };
 
 /// Throws Error when the memory cannot hold what the options ask for.
