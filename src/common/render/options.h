@@ -101,7 +101,7 @@ struct Options {
   float large_step_probability = 0.05f;  ///< in (0, 1]
   float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]
   std::uint64_t bootstrap = 0;           ///< paths before the chains, 0: automatic
-  bool multiple_scattering = false;     ///< of rough conductors, between their facets
+  bool multiple_scattering = false;      ///< of rough conductors, between their facets
   std::uint64_t seed = 1;
   std::string output = "image.exr";    ///< .exr, .png or .ppm
   ExposureChoice exposure;             ///< for PNG and PPM only
