@@ -36,19 +36,22 @@ class RangeAppender {
   std::array<std::array<std::uint32_t, range_max>, queue_count> slots_;
 };
 
-/// Runs `stage` over its queue on the calling thread's oneTBB arena, and sends every slot on.
+/// The slot in place `i` of the stage's input; false: it does not wait for the stage.
 template <class Stage>
-void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
+bool finds_slot(const StageQueues& queues, std::uint32_t i, std::uint32_t& slot) {
+  slot = queues.input == StageInput::queue ? queues.begin()[i] : i;
+  return queues.input != StageInput::tags || queues.tags[slot] == stage_info(Stage::id).queue;
+}
+
+/// Calls run_range(begin, end, send) for ranges of the stage's input, on the calling thread's
+/// oneTBB arena; send(slot, next) sends a finished slot on.
+template <class Stage, class RunRange>
+void for_each_range(const StageQueues& queues, RunRange&& run_range) {
   // simple_partitioner: no range is longer than its grain.
-  constexpr StageId own_tag = stage_info(Stage::id).queue;
   const tbb::blocked_range<std::uint32_t> all(0, *queues.count, RangeAppender::range_max);
-  const std::uint32_t* const slots = queues.begin();
-  const auto run_range = [&](const tbb::blocked_range<std::uint32_t>& range) {
+  const auto run = [&](const tbb::blocked_range<std::uint32_t>& range) {
     RangeAppender appender;
-    for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-      const std::uint32_t slot = queues.input == StageInput::queue ? slots[i] : i;
-      if (queues.input == StageInput::tags && queues.tags[slot] != own_tag) continue;
-      const Next next = stage(scene, slot, i);
+    run_range(range.begin(), range.end(), [&](std::uint32_t slot, const Next& next) {
       if (!queues.appends) {
         queues.tags[slot] = next.to;
         if (Stage::outcomes.casts_shadow_rays) {
@@ -60,10 +63,21 @@ void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& qu
         }
         if (next.shadow) appender.append(StageId::shadow, slot);
       }
-    }
+    });
     if (queues.appends) appender.flush(queues);
   };
-  tbb::parallel_for(all, run_range, tbb::simple_partitioner());
+  tbb::parallel_for(all, run, tbb::simple_partitioner());
+}
+
+/// Runs `stage` over its queue and sends every slot on.
+template <class Stage>
+void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
+  for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
+    for (std::uint32_t i = begin; i < end; ++i) {
+      std::uint32_t slot;
+      if (finds_slot<Stage>(queues, i, slot)) send(slot, stage(scene, slot, i));
+    }
+  });
 }
 
 }  // namespace pt

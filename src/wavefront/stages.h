@@ -140,14 +140,24 @@ struct ContinueChains {
 template <class T>
 using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks>;
 
-template <class Traits>
-struct IntersectRays {
+/// The next rays of paths: what is traced, and what becomes of a path when its hit is known.
+struct PathRays {
   static constexpr StageId id = StageId::intersect;
-  static constexpr SphereAccess spheres = sphere_access<Traits>;
   static constexpr StageOutcomes outcomes = {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
   bool parts_misses;  ///< false: a surface's stage shades them, too (Branching::reduced)
+
+  PT_HD Next finish(std::uint32_t slot, const Hit& hit) const {
+    if (parts_misses && hit.is_miss()) return {StageId::shade_miss};
+    pool.store_hit(slot, hit);
+    return {StageId::shade_surface};
+  }
+};
+
+template <class Traits>
+struct IntersectRays : PathRays {
+  static constexpr SphereAccess spheres = sphere_access<Traits>;
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -158,10 +168,7 @@ struct IntersectRays {
     }
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
-    const Hit hit = intersect_closest<Traits>(scene, ray, key);
-    if (parts_misses && hit.is_miss()) return {StageId::shade_miss};
-    pool.store_hit(slot, hit);
-    return {StageId::shade_surface};
+    return finish(slot, intersect_closest<Traits>(scene, ray, key));
   }
 };
 
@@ -253,13 +260,23 @@ struct ShadeSurface {
   }
 };
 
-template <class Traits>
-struct TraceShadowRays {
+/// Questions to lights, likewise.
+struct ShadowRays {
   static constexpr StageId id = StageId::shadow;
-  static constexpr SphereAccess spheres = sphere_access<Traits>;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   PathPool pool;
   SampleBuffer samples;
+
+  /// `number`: the path's.
+  PT_HD Next finish(std::uint32_t number, const ShadowRay& shadow, bool is_occluded) const {
+    if (!is_occluded) add_radiance(samples, number, shadow.radiance);
+    return {free_slot};
+  }
+};
+
+template <class Traits>
+struct TraceShadowRays : ShadowRays {
+  static constexpr SphereAccess spheres = sphere_access<Traits>;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t number, key = 0;
@@ -269,10 +286,7 @@ struct TraceShadowRays {
       key = shadow_ray_key(mask_key<Traits>(scene, samples.id_of(number)),
                            pool.load_shadow_rays(slot));
     }
-    if (!intersect_shadow<Traits>(scene, shadow, key)) {
-      add_radiance(samples, number, shadow.radiance);
-    }
-    return {free_slot};
+    return finish(number, shadow, intersect_shadow<Traits>(scene, shadow, key));
   }
 };
 

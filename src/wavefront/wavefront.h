@@ -172,7 +172,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
       return;
     }
   }
-  execute.run(IntersectRays<RayTraits<Traits>>{b.pool, parts_misses, samples}, rays);
+  execute.run(IntersectRays<RayTraits<Traits>>{{b.pool, parts_misses}, samples}, rays);
 }
 
 /// Which light arrives, likewise.
@@ -185,7 +185,7 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
       return execute.trace_shadow_queue(rays, samples);
     }
   }
-  execute.run(TraceShadowRays<RayTraits<Traits>>{b.pool, samples}, rays);
+  execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
 }
 
 /// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can

@@ -8,9 +8,11 @@
 #include <atomic>
 #include <numeric>
 
+#include "common/accel/traverse_brute_block.h"
 #include "common/device/cpu_renderer.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
+#include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -129,7 +131,13 @@ class CpuExecutor {
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {
     if (*queues.count == 0) return;
-    part_.timer.time(to_string(id_of(stage)), [&] { run_stage_cpu(stage, scene_, queues); });
+    part_.timer.time(to_string(id_of(stage)), [&] {
+      if constexpr (runs_in_blocks<Stage>) {
+        run_blocks_cpu(stage, block_traits(stage), scene_, queues);
+      } else {
+        run_stage_cpu(stage, scene_, queues);
+      }
+    });
   }
 
  private:
@@ -151,7 +159,9 @@ class WavefrontCpu : public CpuRenderer {
     const auto threads = static_cast<std::uint64_t>(this->threads());
     pool_size_ = options.pool_size > 0 ? options.pool_size
                                        : std::min(threads * auto_slots_per_thread, image_paths);
-    const bool fused = fuses_stages(options, traits_);
+    // By default where rays are traced alone: what fused stages save, blocks of rays save more of.
+    const bool fused = fuses_stages(options, traits_) &&
+                       (options.stages == Stages::fused || brute_block() == nullptr);
     stages_ = to_string(fused ? Stages::fused : Stages::split);
     WaveBuffers common;
     common.compaction = compaction_info(options.compaction);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "common/accel/traverse_brute_block.h"
 #include "common/render/dispatch.h"
 #include "common/render/path_limits_of.h"
 #include "common/sampling/random.h"
@@ -171,7 +172,8 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
                               {"layout", {"soa", "sectors", "aos"}},
                               {"stages", {"split", "auto"}},
                               {"branching", {"divergent", "reduced"}}};
-  if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
+  // Also about the 32 slots of a block, for one thread and for two.
+  if (is_tiny()) choices[2].values = {"7", "1", "31", "32", "33", "64", "65", "455", "auto"};
   expect_all_same(options("wavefront"), variations(choices, 8, 2), options("serial"));
 }
 
@@ -188,6 +190,7 @@ TEST_P(ModesOf, FusedStagesEqualSerial) {
                   options("serial"));
 }
 
+// And where they are not traced in blocks, which pays more.
 TEST(Stages, AreFusedWhereRaysAreCheap) {
   const auto stages = [](const Settings& more) {
     Options options = with(Options(), {{"device", "cpu"}, {"width", "16"}, {"height", "8"}});
@@ -206,7 +209,8 @@ TEST(Stages, AreFusedWhereRaysAreCheap) {
       return stages(more);
     };
     SCOPED_TRACE(scene);
-    EXPECT_EQ(of({}), "fused");
+    EXPECT_EQ(of({}), brute_block() != nullptr ? "split" : "fused");
+    EXPECT_EQ(of({{"stages", "fused"}}), "fused");
     EXPECT_EQ(of({{"stages", "split"}}), "split");
     EXPECT_EQ(of({{"mode", "megakernel"}}), "");
     // What fused stages do not know.

@@ -28,7 +28,7 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
                   serial);
   const std::vector<Choice> choices{{"accel", {"cwbvh", "bvh2"}},
                                     {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
-                                    {"pool-size", {"333", "auto", "3600"}},
+                                    {"pool-size", {"333", "33", "auto", "3600"}},
                                     {"regenerate", {"on", "off"}},
                                     {"layout", {"soa", "sectors", "aos"}},
                                     {"finish-paths", {"0", "100"}}};

@@ -5,39 +5,71 @@
 // and is called where has_avx2() says so.
 #pragma once
 
-#ifdef __x86_64__
-#include <immintrin.h>
-
 #include "common/accel/traverse_cwbvh.h"
+#include "common/accel/triangle_lanes.h"
 
-#define PT_AVX2 __attribute__((target("avx2,bmi,bmi2,popcnt")))
+#ifdef __x86_64__
 
 namespace pt {
+
+/// As make_cwbvh_axis, of the three axes in as many lanes; the fourth holds zeros.
+struct CwbvhAxesAvx2 {
+  __m128 step, near, far;
+
+  PT_AVX2 CwbvhAxesAvx2(const CwbvhNode& node, const CwbvhRay& ray) {
+    const __m128 step_bits = _mm_castsi128_ps(_mm_setr_epi32(-256, -256, -256, 0));
+    const __m128 sign = _mm_set1_ps(-0.0f);
+    const __m128 inverse = three(&ray.inverse.x);
+    const __m128 packed = _mm_loadu_ps(reinterpret_cast<const float*>(node.packed));
+    step = _mm_and_ps(packed, step_bits) * inverse;
+    const __m128 base = (three(&node.origin.x) - three(&ray.origin.x)) * inverse;
+    const __m128 slack = _mm_andnot_ps(sign, base) * _mm_set1_ps(cwbvh_origin_tolerance) +
+                         _mm_andnot_ps(sign, step) * _mm_set1_ps(cwbvh_grid_tolerance);
+    near = base - slack;
+    far = base + slack;
+  }
+
+  /// Axis i's, eight times.
+  template <int i>
+  PT_AVX2 static __m256 axis(__m128 v) {
+    return _mm256_permute_ps(_mm256_set_m128(v, v), i * 0x55);
+  }
+
+ private:
+  /// What lies behind three floats is read, too: it must be there.
+  PT_AVX2 static __m128 three(const float* p) {
+    return _mm_blend_ps(_mm_loadu_ps(p), _mm_setzero_ps(), 8);
+  }
+};
+
+/// Narrows [near, far] to where the ray is between the slots' planes of axis i.
+template <int i>
+PT_AVX2 inline void clip_to_axis(const CwbvhNode& node, const CwbvhRay& ray,
+                                 const CwbvhAxesAvx2& axes, __m256& near, __m256& far) {
+  // A slot's two planes are neighbours, the low one first: those where the ray enters become the
+  // first eight bytes.
+  const __m128i low_first = _mm_setr_epi8(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15);
+  const __m128i negative = _mm_set1_epi8(static_cast<char>(ray.octant >> i & 1u));
+  const __m128i planes =
+      _mm_shuffle_epi8(_mm_load_si128(reinterpret_cast<const __m128i*>(node.planes[i])),
+                       _mm_xor_si128(low_first, negative));
+  const __m256 enters = _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(planes));
+  const __m256 leaves = _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_srli_si128(planes, 8)));
+  const __m256 step = CwbvhAxesAvx2::axis<i>(axes.step);
+  // As max_number and min_number: the second operand where the first one is NaN.
+  near = _mm256_max_ps(enters * step + CwbvhAxesAvx2::axis<i>(axes.near), near);
+  far = _mm256_min_ps(leaves * step + CwbvhAxesAvx2::axis<i>(axes.far), far);
+}
 
 /// As intersect_cwbvh_node.
 PT_AVX2 inline std::uint32_t intersect_cwbvh_node_avx2(const CwbvhNode& node, const CwbvhRay& ray,
                                                        float t_min, float t_max) {
+  const CwbvhAxesAvx2 axes(node, ray);
   __m256 near = _mm256_set1_ps(t_min), far = _mm256_set1_ps(t_max);
-  const __m128i low_byte = _mm_set1_epi16(0xff);
-  PT_UNROLL(3)
-  for (int i = 0; i < 3; ++i) {
-    const CwbvhAxis axis =
-        make_cwbvh_axis(node.origin[i], node.step(i), ray.origin[i], ray.inverse[i]);
-    const __m256 step = _mm256_set1_ps(axis.step);
-    // A slot's two planes are the bytes of a 16-bit word, the low one first.
-    const __m128i planes = _mm_load_si128(reinterpret_cast<const __m128i*>(node.planes[i]));
-    const int shift = ray.inverse[i] < 0.0f ? 8 : 0;
-    const __m128i first = _mm_and_si128(_mm_srl_epi16(planes, _mm_cvtsi32_si128(shift)), low_byte);
-    const __m128i second =
-        _mm_and_si128(_mm_srl_epi16(planes, _mm_cvtsi32_si128(8 - shift)), low_byte);
-    const __m256 enters = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(first));
-    const __m256 leaves = _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(second));
-    // As max_number and min_number: the second operand where the first one is NaN.
-    near =
-        _mm256_max_ps(_mm256_add_ps(_mm256_mul_ps(enters, step), _mm256_set1_ps(axis.near)), near);
-    far = _mm256_min_ps(_mm256_add_ps(_mm256_mul_ps(leaves, step), _mm256_set1_ps(axis.far)), far);
-  }
-  const __m256 limit = _mm256_mul_ps(far, _mm256_set1_ps(1.0f + slab_tolerance));
+  clip_to_axis<0>(node, ray, axes, near, far);
+  clip_to_axis<1>(node, ray, axes, near, far);
+  clip_to_axis<2>(node, ray, axes, near, far);
+  const __m256 limit = far * _mm256_set1_ps(1.0f + slab_tolerance);
   const int met = _mm256_movemask_ps(_mm256_cmp_ps(near, limit, _CMP_LE_OQ));
   return static_cast<std::uint32_t>(met) & node.used_mask();
 }
@@ -50,6 +82,10 @@ PT_AVX2 inline std::uint32_t intersect_triangles_avx2(const TriangleRay& ray,
                                                       float t_max, float (&t)[4]) {
   const __m128 origin[3] = {_mm_set1_ps(ray.origin.x), _mm_set1_ps(ray.origin.y),
                             _mm_set1_ps(ray.origin.z)};
+  // Selected without branches, which would be guessed wrong where rays take turns.
+  const __m128i axis = _mm_set1_epi32(static_cast<int>(ray.axis));
+  const __m128 is_y = _mm_castsi128_ps(_mm_cmpeq_epi32(axis, _mm_set1_epi32(1)));
+  const __m128 is_z = _mm_castsi128_ps(_mm_cmpeq_epi32(axis, _mm_set1_epi32(2)));
   __m128 x[3], y[3], depth[3];  // of the vertices
   PT_UNROLL(3)
   for (int v = 0; v < 3; ++v) {
@@ -67,35 +103,13 @@ PT_AVX2 inline std::uint32_t intersect_triangles_avx2(const TriangleRay& ray,
     y[v] = _mm_add_ps(_mm_mul_ps(_mm_set1_ps(ray.y_axis.x), p[0]),
                       _mm_add_ps(_mm_mul_ps(_mm_set1_ps(ray.y_axis.y), p[1]),
                                  _mm_mul_ps(_mm_set1_ps(ray.y_axis.z), p[2])));
-    depth[v] = ray.axis == 2 ? p[2] : ray.axis == 1 ? p[1] : p[0];
+    depth[v] = _mm_blendv_ps(_mm_blendv_ps(p[0], p[1], is_y), p[2], is_z);
   }
-  __m128 edge[3];  // u, v, w: rounded differences of exact products
-  PT_UNROLL(3)
-  for (int i = 0; i < 3; ++i) {
-    const int a = (i + 2) % 3, b = (i + 1) % 3;
-    const __m256d ab = _mm256_mul_pd(_mm256_cvtps_pd(x[a]), _mm256_cvtps_pd(y[b]));
-    const __m256d ba = _mm256_mul_pd(_mm256_cvtps_pd(y[a]), _mm256_cvtps_pd(x[b]));
-    edge[i] = _mm256_cvtpd_ps(_mm256_sub_pd(ab, ba));
-  }
-  const __m128 zero = _mm_setzero_ps();
-  const __m128 least = _mm_min_ps(edge[0], _mm_min_ps(edge[1], edge[2]));
-  const __m128 most = _mm_max_ps(edge[0], _mm_max_ps(edge[1], edge[2]));
-  const __m128 missed = _mm_and_ps(_mm_cmplt_ps(least, zero), _mm_cmpgt_ps(most, zero));
-  const int all_missed = _mm_movemask_ps(missed);
-  if (all_missed == 0xf) return 0;
-  const __m128 determinant = _mm_add_ps(_mm_add_ps(edge[0], edge[1]), edge[2]);
-  __m256d sum = _mm256_mul_pd(_mm256_cvtps_pd(edge[0]), _mm256_cvtps_pd(depth[0]));
-  PT_UNROLL(2)
-  for (int i = 1; i < 3; ++i) {
-    const __m256d next = _mm256_mul_pd(_mm256_cvtps_pd(edge[i]), _mm256_cvtps_pd(depth[i]));
-    sum = _mm256_add_pd(sum, next);
-  }
-  const __m128 inverse = _mm_div_ps(_mm_set1_ps(1.0f), determinant);
-  const __m128 at = _mm_mul_ps(_mm_mul_ps(_mm256_cvtpd_ps(sum), inverse), _mm_set1_ps(ray.inverse));
+  __m128 at;
+  const __m128 met = meet_projected<Lanes4>(x, y, depth, _mm_set1_ps(ray.inverse),
+                                            _mm_set1_ps(t_min), _mm_set1_ps(t_max), at);
   _mm_storeu_ps(t, at);
-  const __m128 in_range =
-      _mm_and_ps(_mm_cmpgt_ps(at, _mm_set1_ps(t_min)), _mm_cmple_ps(at, _mm_set1_ps(t_max)));
-  return static_cast<std::uint32_t>(_mm_movemask_ps(in_range) & ~all_missed);
+  return Lanes4::bits(met);
 }
 
 struct CwbvhTestsAvx2 {
@@ -140,5 +154,4 @@ __attribute__((target("avx2,bmi,bmi2,popcnt"), flatten, noinline)) void traverse
 
 }  // namespace pt
 
-#undef PT_AVX2
 #endif

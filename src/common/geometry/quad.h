@@ -24,6 +24,9 @@ PT_HD Quad make_quad(const Vec3& corner, const Vec3& edge_a, const Vec3& edge_b)
           n / area, area};
 }
 
+/// How far beyond its edges a quad is met: two that share an edge must leave no gap between them.
+inline constexpr float quad_margin = 16.0f * half_ulp;
+
 /// Distance along the ray, or a value <= 0 when it misses.
 PT_HD float quad_distance(const Quad& quad, const Ray& ray) {
   const float cosine = glm::dot(quad.normal, ray.direction);
@@ -32,8 +35,7 @@ PT_HD float quad_distance(const Quad& quad, const Ray& ray) {
   const Vec3 p = t * ray.direction - oc;
   const float a = glm::dot(quad.dual_a, p);
   const float b = glm::dot(quad.dual_b, p);
-  // Two quads that share an edge must leave no gap between them.
-  constexpr float margin = 16.0f * half_ulp;
+  constexpr float margin = quad_margin;
   const bool inside = a >= -margin && a <= 1.0f + margin && b >= -margin && b <= 1.0f + margin;
   return inside && t < infinite_distance ? t : -1.0f;
 }

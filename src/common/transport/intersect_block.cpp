@@ -1,0 +1,105 @@
+#include "common/transport/intersect_block.h"
+
+#include "common/accel/traverse_brute_block.h"
+#include "common/accel/traverse_cwbvh_block.h"
+#include "common/transport/intersect.h"
+
+namespace pt {
+namespace {
+
+template <Accel accel, Geometry geometry>
+using Plain = Traits<accel, geometry, Lighting::sky>;
+
+// What no block is made for: instances, and brute force on a processor without lanes.
+Hit closest_alone(const BlockTraits& traits, const Scene& scene, const Ray& ray) {
+  if (traits.geometry == Geometry::spheres_and_quads) {
+    return intersect_closest<Plain<Accel::brute, Geometry::spheres_and_quads>>(scene, ray);
+  }
+  if (traits.accel == Accel::brute) {
+    return intersect_closest<Plain<Accel::brute, Geometry::mixed>>(scene, ray);
+  }
+  return intersect_closest<Plain<Accel::cwbvh_avx2, Geometry::mixed>>(scene, ray);
+}
+
+bool shadow_alone(const BlockTraits& traits, const Scene& scene, const ShadowRay& shadow) {
+  if (traits.geometry == Geometry::spheres_and_quads) {
+    return intersect_shadow<Plain<Accel::brute, Geometry::spheres_and_quads>>(scene, shadow);
+  }
+  if (traits.accel == Accel::brute) {
+    return intersect_shadow<Plain<Accel::brute, Geometry::mixed>>(scene, shadow);
+  }
+  return intersect_shadow<Plain<Accel::cwbvh_avx2, Geometry::mixed>>(scene, shadow);
+}
+
+// Spheres beside triangles are in a tree.
+using PrimitivesBesides = Plain<Accel::bvh2, Geometry::mixed>;
+
+bool has_block(const BlockTraits& traits, const Scene& scene) {
+  return scene.triangles.instance_count == 0 &&
+         (traits.accel == Accel::cwbvh_avx2 || brute_block() != nullptr);
+}
+
+}  // namespace
+
+void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayBlock& rays,
+                             Hit* hits) {
+  if (!has_block(traits, scene)) {
+    for (std::uint32_t i = 0; i < rays.count; ++i) {
+      hits[i] = closest_alone(traits, scene, rays.ray(i));
+    }
+    return;
+  }
+  std::fill_n(hits, rays.count, Hit());
+  std::uint32_t first_number = 0;  // of what the block tests
+  HitBlock found;
+  if (traits.geometry == Geometry::spheres_and_quads) {
+    rays.fill_lanes();
+    brute_block()->closest_primitives(scene.primitives, rays, found);
+  } else {
+    first_number = scene.primitives.count();
+    for (std::uint32_t i = 0; i < rays.count && first_number > 0; ++i) {
+      hits[i] = closest_primitive<PrimitivesBesides>(scene, rays.ray(i));
+      rays.t_max[i] = hits[i].t;
+    }
+    if (traits.accel == Accel::brute) {
+      rays.fill_lanes();
+      brute_block()->closest_triangles(scene.triangles, rays, found);
+    } else {
+      closest_triangles_in_turns(scene.triangles, rays, found);
+    }
+  }
+  for (std::uint32_t i = 0; i < rays.count; ++i) {
+    if (found.primitive[i] != no_primitive) {
+      hits[i] = {found.t[i], first_number + found.primitive[i], 0};
+    }
+  }
+}
+
+std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& scene,
+                                     RayBlock& rays) {
+  std::uint32_t occluded = 0;
+  if (!has_block(traits, scene)) {
+    for (std::uint32_t i = 0; i < rays.count; ++i) {
+      const ShadowRay shadow = {rays.ray(i), rays.t_max[i]};
+      occluded |= (shadow_alone(traits, scene, shadow) ? 1u : 0u) << i;
+    }
+    return occluded;
+  }
+  if (traits.geometry == Geometry::spheres_and_quads) {
+    rays.fill_lanes();
+    return brute_block()->any_primitive(scene.primitives, rays);
+  }
+  for (std::uint32_t i = 0; i < rays.count && scene.primitives.count() > 0; ++i) {
+    if (any_primitive<PrimitivesBesides>(scene, rays.ray(i), rays.t_max[i])) {
+      occluded |= 1u << i;
+      rays.t_max[i] = -1.0f;
+    }
+  }
+  if (traits.accel != Accel::brute) {
+    return occluded | any_triangles_in_turns(scene.triangles, rays);
+  }
+  rays.fill_lanes();
+  return occluded | brute_block()->any_triangle(scene.triangles, rays);
+}
+
+}  // namespace pt

@@ -1,0 +1,30 @@
+// Step 2 of many paths at once, for the CPU: what do the rays of a block meet? The same, bit for
+// bit, as intersect.h finds for one ray after the other.
+#pragma once
+
+#include "common/accel/ray_block.h"
+#include "common/scene/scene.h"
+
+namespace pt {
+
+/// Which kind of rays there is: a scene's without lights and masks.
+struct BlockTraits {
+  Accel accel;
+  Geometry geometry;
+};
+
+/// Whether rays of such scenes are traced in blocks: where that is another way to trace them, so
+/// that nothing need be compiled for one ray as well.
+template <class Traits>
+inline constexpr bool traces_blocks =
+    !Traits::has_masks && (Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2);
+
+/// The closest hits of rays whose t_max is infinite_distance; hits[i] is ray i's. `rays` is filled
+/// up to whole lanes.
+void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayBlock& rays,
+                             Hit* hits);
+
+/// Bit i of the result: something lies on ray i nearer than its t_max.
+std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& scene, RayBlock& rays);
+
+}  // namespace pt

@@ -1,0 +1,68 @@
+#include "wavefront/run_block_cpu.h"
+
+#include "wavefront/run_stage_cpu.h"
+
+namespace pt {
+namespace {
+
+using Slots = std::array<std::uint32_t, RayBlock::size_max>;
+
+// Traces the next rays of the paths in `count` slots; `send(slot, next)` takes each on.
+template <class Send>
+void run_block(const PathRays& stage, const BlockTraits& traits, const Scene& scene,
+               const Slots& slots, std::uint32_t count, Send&& send) {
+  RayBlock rays;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    rays.append(stage.pool.load_ray(slots[i]), infinite_distance);
+  }
+  std::array<Hit, RayBlock::size_max> hits;
+  intersect_closest_block(traits, scene, rays, hits.data());
+  for (std::uint32_t i = 0; i < count; ++i) send(slots[i], stage.finish(slots[i], hits[i]));
+}
+
+// Likewise the shadow rays.
+template <class Send>
+void run_block(const ShadowRays& stage, const BlockTraits& traits, const Scene& scene,
+               const Slots& slots, std::uint32_t count, Send&& send) {
+  RayBlock rays;
+  std::uint32_t number;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
+    rays.append(shadow.ray, shadow.distance);
+  }
+  const std::uint32_t occluded = intersect_shadow_block(traits, scene, rays);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
+    send(slots[i], stage.finish(number, shadow, (occluded >> i & 1u) != 0));
+  }
+}
+
+template <class Stage>
+void run_blocks(const Stage& stage, const BlockTraits& traits, const Scene& scene,
+                const StageQueues& queues) {
+  for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
+    Slots slots;
+    while (begin < end) {
+      std::uint32_t count = 0;
+      for (; begin < end && count < slots.size(); ++begin) {
+        std::uint32_t slot;
+        if (finds_slot<Stage>(queues, begin, slot)) slots[count++] = slot;
+      }
+      if (count > 0) run_block(stage, traits, scene, slots, count, send);
+    }
+  });
+}
+
+}  // namespace
+
+void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const Scene& scene,
+                    const StageQueues& queues) {
+  run_blocks(stage, traits, scene, queues);
+}
+
+void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const Scene& scene,
+                    const StageQueues& queues) {
+  run_blocks(stage, traits, scene, queues);
+}
+
+}  // namespace pt
