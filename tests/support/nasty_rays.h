@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "common/accel/ray_block.h"
+#include "common/accel/traverse_brute.h"
+#include "common/scene/scene_data.h"
 #include "statistics.h"
 
 namespace pt {
@@ -27,6 +29,12 @@ inline Ray make_nasty(Ray ray, TestRandom& random) {
     if ((which >> (3 + i) & 1u) != 0) ray.direction[i] = nasty_float(random);
   }
   return ray;
+}
+
+/// Spheres far away up to a multiple of scan_group: with others a ray that is no number may make
+/// the plain test read one of those that fill the last group up, and which are not there.
+inline void fill_scan_groups(SceneData& scene) {
+  while (scene.spheres.size() % scan_group != 0) scene.add_sphere({0, 900, 0}, 1, 0);
 }
 
 /// Blocks of 1 to 32 rays of make(random), a third of them nasty, each with a t_max that may be
