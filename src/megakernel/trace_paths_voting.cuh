@@ -7,6 +7,7 @@
 // in the same order as in the loop, so its radiance is the same, bit for bit.
 #pragma once
 
+#include "common/accel/trace_cuda/choose_turn.cuh"
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/film/film.h"
 #include "common/transport/generate_camera_path.h"

@@ -23,7 +23,7 @@ struct QueuedRays {
   template <class Load>
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, int& count,
                                  Load&& load) const {
-    const std::uint32_t first = reserve_rays<128>(next, *queues.count, lane, reserved, count);
+    const std::uint32_t first = reserve_rays(next, *queues.count, lane, reserved, count);
     if (static_cast<int>(lane) < count) load(slot(first + lane));
     return first;
   }

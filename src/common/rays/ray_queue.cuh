@@ -22,7 +22,6 @@ __device__ void store_result(const TriangleTree& tree, const Query& query, HitRe
 }
 
 /// A warp's share of the array; see reserve_rays.
-template <std::uint32_t batch>
 class RayQueue {
  public:
   __device__ RayQueue(const TriangleTree& tree, const RayArrays& arrays)
@@ -31,8 +30,7 @@ class RayQueue {
   /// See PersistentTracer.
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& ray,
                                  int& count) const {
-    const std::uint32_t first =
-        reserve_rays<batch>(arrays_.next, arrays_.count, lane, reserved, count);
+    const std::uint32_t first = reserve_rays(arrays_.next, arrays_.count, lane, reserved, count);
     if (static_cast<int>(lane) < count) ray = load_ray(arrays_.rays + first + lane);
     return first;
   }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int block_size = 128;
 constexpr int blocks_least = 8;  // per multiprocessor: 64 registers for a thread
-constexpr std::uint32_t batch = 128;
 
 enum class Structure { brute, bvh2, cwbvh };
 
@@ -47,7 +46,7 @@ __global__ void __launch_bounds__(block_size, blocks_least)
     trace_by_persistent_warps(const __grid_constant__ TriangleTree tree,
                               const __grid_constant__ RayArrays arrays) {
   __shared__ PersistentMemory<Lane, block_size> memory;
-  RayQueue<batch> queue(tree, arrays);
+  RayQueue queue(tree, arrays);
   trace_persistent<Lane>(tree, memory, queue);
 }
 

@@ -17,9 +17,6 @@ struct SlotGroup {
   __device__ bool has_slots() const { return (bits & 0xffu) != 0; }
 };
 
-/// What the whole warp does next, of what its lanes want: a test takes longer than a step.
-__device__ inline bool warp_steps(int stepping, int testing) { return stepping >= 2 * testing; }
-
 /// A lane's traversal, which can stop between any two steps and go on later. Query: one with
 /// offer_nearer. A lane that has found leaves tests them before it goes on: without knowing the hit
 /// it would visit nodes behind it. The two triangles of a leaf are tested side by side.

@@ -8,7 +8,9 @@
 #pragma once
 
 #include "common/accel/ray_arrays.h"
-#include "common/accel/trace_cuda/cwbvh_lane.cuh"
+#include "common/accel/trace_cuda/choose_turn.cuh"
+#include "common/accel/trace_cuda/slot_order.cuh"
+#include "common/lane_counter.h"
 
 namespace pt {
 
@@ -34,14 +36,6 @@ struct PersistentMemory {
 struct PersistentTuning {
   static constexpr int refill = 8;  ///< idle lanes that make the warp hand out rays
 };
-
-/// What the whole warp does next where there are instances, of what its lanes want. Found by
-/// simulation, as warp_steps.
-enum class Turn { step, test, enter };
-__device__ inline Turn choose_turn(int stepping, int testing, int entering) {
-  if (warp_steps(stepping, max(testing, entering))) return Turn::step;
-  return testing >= entering ? Turn::test : Turn::enter;
-}
 
 /// Traces what `work` hands out, one lane's view. Lane: CwbvhLane or InstancedLane. Work has
 ///   std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord&, int& count)  by the whole warp:
