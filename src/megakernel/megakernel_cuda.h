@@ -1,11 +1,13 @@
 // The megakernel's renderer. The loop has 39 variants (scene, branching, random numbers, scene
-// memory), so launching is split into files that compile side by side; the kernel that votes is
-// one.
+// memory), so launching is split into files that compile side by side; the kernels that vote and
+// sort are one each.
 #pragma once
 
 #include "common/device/cuda_renderer.cuh"
 
 namespace pt {
+
+struct PathSlot;
 
 class MegakernelCuda : public CudaRenderer {
  public:
@@ -25,12 +27,22 @@ class MegakernelCuda : public CudaRenderer {
   template <class Kernel>
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
-  /// Whether there is a kernel that votes for this scene and these options.
+  /// How this scene is rendered with these options: never automatic.
+  MegakernelKind choose_kernel() const;
+  /// Whether there is a kernel that votes, or sorts, for this scene and these options.
   bool can_vote() const;
+  bool can_sort() const;
   void launch_voting(const SamplerSource& source, const SampleBuffer& batch);
+  template <bool has_masks>
+  std::uint32_t sorting_blocks();
+  template <bool has_masks>
+  void allocate_slots();
+  template <bool has_masks>
+  void launch_sorting(const SamplerSource& source, const SampleBuffer& batch);
 
   std::uint32_t* next_path_ = nullptr;
-  bool votes_ = false;
+  PathSlot* slots_ = nullptr;  ///< only where blocks sort
+  const MegakernelKind kernel_;
 };
 
 }  // namespace pt

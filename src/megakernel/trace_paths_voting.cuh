@@ -12,6 +12,7 @@
 #include "common/film/film.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/path_integrator.h"
+#include "megakernel/path_query.cuh"
 
 namespace pt {
 
@@ -30,32 +31,6 @@ struct VotingWarp {
   float4 radiance[32];           ///< so far; the receiver
   float shadow_radiance[3][32];  ///< to be added if the shadow ray is free
   float bsdf_pdf[32];
-};
-
-/// The closest hit of a path's ray, or any of a shadow ray, which ends with it.
-class PathQuery : public ClosestTriangle {
- public:
-  __device__ PathQuery(float t_min, float t_max, bool is_shadow = false)
-      : ClosestTriangle(t_min, t_max), is_shadow_(is_shadow) {}
-
-  /// One that has met nothing nearer than `t`, which is `primitive` or, without one, the end.
-  __device__ static PathQuery resumed(const TriangleTree& tree, float t, std::uint32_t primitive,
-                                      bool is_shadow) {
-    const bool has_hit = primitive != no_primitive;
-    PathQuery query(0.0f, has_hit ? infinite_distance : t, is_shadow);
-    if (has_hit) query.offer(tree, t, primitive, 0);
-    return query;
-  }
-
-  /// As AnyTriangle says: the first hit that counts lies nearer than t_max.
-  __device__ bool offer_nearer(const TriangleTree& tree, const MetTriangle& a,
-                               const MetTriangle& b) {
-    ClosestTriangle::offer_nearer(tree, a, b);
-    return is_shadow_ && !result().is_miss();
-  }
-
- private:
-  bool is_shadow_;
 };
 
 /// Of a lane, where it is in the tree and what it has met, while others are shaded: in its stack's

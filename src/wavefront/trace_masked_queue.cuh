@@ -1,6 +1,7 @@
 // The rays of a queue, traced by persistent warps, in scenes with masks.
 #pragma once
 
+#include "common/transport/mask_hides.h"
 #include "wavefront/trace_queue.cuh"
 
 namespace pt {
@@ -18,13 +19,6 @@ class QueryWithKey : public Query {
  private:
   float key_;
 };
-
-/// Apart from the tracer's loop, which has no register to spare: masks are rare.
-__device__ __noinline__ inline bool mask_hides(const Scene* scene, std::uint32_t ray_key,
-                                               std::uint32_t slot, float b1, float b2) {
-  const Triangle triangle = load_wide(&scene->triangles.triangles[slot]);
-  return MaskTest{*scene, ray_key}.hides(triangle, {0.0f, b1, b2}, 0);
-}
 
 /// QueuedPaths or QueuedShadowRays of a scene without spheres and instances.
 template <class Rays>

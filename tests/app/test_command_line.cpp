@@ -440,10 +440,17 @@ TEST(Refused, VotesWithoutWholeWarpsThatFetch) {
       {"--mode megakernel --kernel vote --block 5x3",
        "--kernel vote: whole warps vote; expected a --block of a multiple of 32 threads, 5x3 has "
        "15"},
-      {"--mode megakernel --kernel warp", "--kernel warp: expected one of auto, loop, vote"},
+      {"--mode megakernel --kernel sort --work sample",
+       "--kernel sort: its warps fetch paths; expected --work persistent, not sample"},
+      {"--mode megakernel --kernel sort --accel brute",
+       "--kernel sort: traces wide trees; expected --accel cwbvh or auto, not brute"},
+      {"--mode megakernel --kernel sort --block 8x8",
+       "--block 8x8: has no effect with --kernel sort, whose blocks are as large as "
+       "multiprocessors"},
+      {"--mode megakernel --kernel warp", "--kernel warp: expected one of auto, loop, vote, sort"},
   });
-  for (const char* line : {"--kernel vote --accel cwbvh --block 8x8", "--kernel loop --work pixel",
-                           "--kernel auto --accel bvh2 --block 5x3"})
+  for (const char* line : {"--kernel vote --accel cwbvh --block 8x8", "--kernel sort --accel cwbvh",
+                           "--kernel loop --work pixel", "--kernel auto --accel bvh2 --block 5x3"})
     EXPECT_NO_THROW(parse(std::string("--mode megakernel ") + line)) << line;
 }
 

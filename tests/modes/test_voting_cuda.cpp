@@ -1,11 +1,13 @@
-// The megakernel whose warps vote gives the image of the loop, bit for bit, and traces the same
-// rays.
+// The megakernels whose warps vote and whose blocks sort give the image of the loop, bit for bit,
+// and trace the same rays.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "common/error.h"
+#include "common/scene/prepare_scene.h"
 #include "cuda_test.h"
+#include "masked_room.h"
 #include "mode_cases.h"
 
 namespace pt {
@@ -20,6 +22,7 @@ std::vector<ImageKind> voting_kinds() {
       {"statue", {{"scene", "statue:3K"}}},
       {"terrain", {{"scene", "terrain:3K"}}},
       {"dial", {{"scene", "dial:6:0:closed"}}},
+      {"all_kinds", {{"scene", "dial:14:0.5:open"}}},
       {"cornell", {{"scene", "cornell"}, {"sampler", "sobol"}}},
       {"one_path", {{"width", "1"}, {"height", "1"}, {"spp", "1"}}},
       {"one_column", {{"width", "1"}, {"height", "37"}, {"spp", "1"}}},
@@ -57,13 +60,15 @@ class GpuVotingOf : public CudaTest, public testing::WithParamInterface<ImageKin
 INSTANTIATE_TEST_SUITE_P(Cuda, GpuVotingOf, testing::ValuesIn(voting_kinds()),
                          [](const auto& kind) { return kind.param.name; });
 
-// The first render is the vote's: its samples cannot be what another left in the memory.
+// The first renders are theirs: their samples cannot be what another left in the memory.
 TEST_P(GpuVotingOf, EqualsTheLoopAndTheWavefront) {
+  const Rendered sorted = render("megakernel", {{"kernel", "sort"}, {"seed", "3"}});
   const Rendered voted = render("megakernel", {{"kernel", "vote"}});
   const Rendered expected = render("megakernel", {{"kernel", "loop"}});
   EXPECT_GT(expected.counts.rays, 0u);
   expect_same(voted, expected);
   expect_same(render("wavefront"), expected);
+  expect_same(sorted, render("megakernel", {{"kernel", "loop"}, {"seed", "3"}}));
 }
 
 TEST_P(GpuVotingOf, DoesNotDependOnTheBlock) {
@@ -98,18 +103,33 @@ class CudaVoting : public CudaTest {
   }
 };
 
-// Warps that vote keep their paths in shared memory, and the loop nothing.
+// Warps that vote and blocks that sort keep paths in shared memory, and the loop nothing; blocks
+// that sort have a size of their own.
 TEST_F(CudaVoting, IsChosenWhereItApplies) {
-  const auto votes = [](const Settings& settings) { return kernel_of(settings).shared_bytes > 0; };
-  EXPECT_TRUE(votes({{"scene", "boxes"}, {"kernel", "vote"}}));
-  EXPECT_TRUE(votes({{"scene", "boxes"}, {"accel", "cwbvh"}}));
-  EXPECT_FALSE(votes({{"scene", "boxes"}, {"accel", "cwbvh"}, {"kernel", "loop"}}));
-  EXPECT_FALSE(votes({{"scene", "boxes"}, {"accel", "cwbvh"}, {"work", "sample"}}));
-  EXPECT_FALSE(votes({{"scene", "boxes"}, {"accel", "cwbvh"}, {"block", "5x3"}}));
-  EXPECT_FALSE(votes({{"scene", "boxes"}, {"accel", "cwbvh"}, {"block", "32x32"}}));
-  EXPECT_FALSE(votes({{"scene", "instances:20"}, {"accel", "cwbvh"}}));
-  EXPECT_FALSE(votes({{"scene", "boxes"}, {"accel", "bvh2"}}));
-  EXPECT_FALSE(votes({{"scene", "cornell"}}));
+  const auto kind_of = [](const Settings& settings) {
+    const KernelInfo kernel = kernel_of(settings);
+    if (kernel.block_threads == 640) return "sort";
+    return kernel.shared_bytes > 0 ? "vote" : "loop";
+  };
+  const auto with_wide_tree = [&](Settings settings) {
+    settings.emplace_back("accel", "cwbvh");
+    return kind_of(settings);
+  };
+  EXPECT_STREQ(kind_of({{"scene", "boxes"}, {"kernel", "vote"}}), "vote");
+  EXPECT_STREQ(kind_of({{"scene", "boxes"}, {"kernel", "sort"}}), "sort");
+  EXPECT_STREQ(kind_of({{"scene", "boxes"}}), "sort");
+  EXPECT_STREQ(kind_of({{"scene", "dial:2"}}), "sort");
+  EXPECT_STREQ(kind_of({{"scene", "boxes"}, {"block", "32x4"}}), "vote");
+  EXPECT_STREQ(kind_of({{"scene", "dial:2"}, {"block", "32x4"}}), "loop");
+  EXPECT_STREQ(kind_of({{"scene", "boxes"}, {"accel", "bvh2"}}), "loop");
+  EXPECT_STREQ(kind_of({{"scene", "cornell"}}), "loop");
+  EXPECT_STREQ(with_wide_tree({{"scene", "dial:2"}}), "sort");
+  EXPECT_STREQ(with_wide_tree({{"scene", "dial:2"}, {"block", "32x4"}}), "vote");
+  EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"kernel", "loop"}}), "loop");
+  EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"work", "sample"}}), "loop");
+  EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"block", "5x3"}}), "loop");
+  EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"block", "32x32"}}), "loop");
+  EXPECT_STREQ(with_wide_tree({{"scene", "instances:20"}}), "loop");
 }
 
 TEST_F(CudaVoting, RefusesBlocksThatAreTooLarge) {
@@ -120,6 +140,26 @@ TEST_F(CudaVoting, RefusesBlocksThatAreTooLarge) {
                                           {"block", "32x16"}});
   EXPECT_NE(refusal.find("--kernel vote: expected"), std::string::npos) << refusal;
   EXPECT_NE(refusal.find("32x16 has 512"), std::string::npos) << refusal;
+}
+
+// The loop traces a binary tree.
+TEST_F(CudaVoting, BlocksThatSortAskMasks) {
+  const auto render = [](const char* kernel, const char* accel) {
+    const Options options = cuda_options("megakernel", {{"width", "67"},
+                                                        {"height", "41"},
+                                                        {"spp", "5"},
+                                                        {"max-depth", "8"},
+                                                        {"kernel", kernel},
+                                                        {"accel", accel}});
+    SceneData scene = masked_room();
+    prepare_scene(scene, options);
+    EXPECT_TRUE(scene.traits.has_masks);
+    return take_image(*make_renderer(options, scene, choose_device(options.device)));
+  };
+  const Rendered expected = render("loop", "bvh2");
+  EXPECT_GT(expected.counts.shadow_rays, 0u);
+  expect_same(render("sort", "cwbvh"), expected);
+  expect_same(render("auto", "auto"), expected);
 }
 
 // Warps that fetch paths again in the middle of a request: more of them than all fetch at first.
@@ -135,7 +175,7 @@ TEST_F(CudaVoting, WarpsTakeEveryPath) {
                                                 {"height", "256"},
                                                 {"max-depth", "4"}});
   options.spp = 2 * warps * fetched / (side * side) + 1;
-  expect_all_same(options, variations({{"kernel", {"vote", "loop"}}}, 0, 0),
+  expect_all_same(options, variations({{"kernel", {"vote", "sort", "loop"}}}, 0, 0),
                   with(options, {{"kernel", "loop"}, {"work", "pixel"}}));
 }
 

@@ -58,7 +58,13 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   voting.kernel = MegakernelKind::vote;
   EXPECT_NO_THROW(check_scene_options(voting, build_scene(voting)));
   EXPECT_THROW(check_scene_options(voting, masked), Error);
+  Options sorting = with_scene("boxes");
+  sorting.kernel = MegakernelKind::sort;
+  EXPECT_NO_THROW(check_scene_options(sorting, masked));
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
+    EXPECT_EQ(refusal(scene, "kernel", "sort"),
+              "--kernel sort: traces triangles alone; scene '" + scene +
+                  "' has spheres, instances or no triangles, expected auto or loop");
     EXPECT_EQ(refusal(scene, "kernel", "vote"),
               "--kernel vote: traces triangles alone; scene '" + scene +
                   "' has spheres, instances, masks or no triangles, expected auto or loop");
@@ -66,8 +72,9 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   }
 }
 
-// Threads that follow rays alone are faster in a binary tree, and warps that vote in a wide one;
-// these decide by themselves where all surfaces have one kind of BSDF and the blocks suit them.
+// Threads that follow rays alone are faster in a binary tree, warps that vote and blocks that sort
+// in a wide one. The latter have blocks of their own; with others votes decide by themselves where
+// all surfaces have one kind of BSDF and the blocks suit them.
 TEST(SceneOptions, VotesTakeAWideTree) {
   const auto accel_of = [](const char* name, MegakernelKind kernel, BlockSize block = {}) {
     Options options = with_scene(name);
@@ -81,10 +88,14 @@ TEST(SceneOptions, VotesTakeAWideTree) {
   };
   using enum MegakernelKind;
   EXPECT_EQ(accel_of("boxes", vote), Accel::cwbvh);
+  EXPECT_EQ(accel_of("dial:2", sort), Accel::cwbvh);
   EXPECT_EQ(accel_of("boxes", loop), Accel::bvh2);
   EXPECT_EQ(accel_of("boxes", automatic), Accel::cwbvh);
   EXPECT_EQ(accel_of("boxes", automatic, {5, 3}), Accel::bvh2);
-  EXPECT_EQ(accel_of("dial:2", automatic), Accel::bvh2);
+  EXPECT_EQ(accel_of("boxes", automatic, {32, 4}), Accel::cwbvh);
+  EXPECT_EQ(accel_of("dial:2", automatic), Accel::cwbvh);
+  EXPECT_EQ(accel_of("dial:2", automatic, {32, 4}), Accel::bvh2);
+  EXPECT_EQ(accel_of("dial:2", loop), Accel::bvh2);
   EXPECT_EQ(accel_of("dial:2", vote), Accel::cwbvh);
 }
 

@@ -133,24 +133,30 @@ void check_stages(const Options& options, const GivenOptions& given) {
     refuse_with_stages(options, "branching", Stages::split);
 }
 
-/// The kernel that votes needs whole warps that fetch paths, and the tree whose steps they vote on.
-void check_voting(const Options& options) {
-  if (options.kernel != MegakernelKind::vote) return;
+/// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.
+void check_voting(const Options& options, const GivenOptions& given) {
+  if (options.kernel != MegakernelKind::vote && options.kernel != MegakernelKind::sort) return;
+  const std::string kernel = to_string(options.kernel);
   if (options.work != Work::persistent)
     throw Error(
-        fmt::format("--kernel vote: its warps fetch paths; expected --work persistent, not "
-                    "{}",
-                    to_string(options.work)));
+        fmt::format("--kernel {}: its warps fetch paths; expected --work persistent, not {}",
+                    kernel, to_string(options.work)));
   if (options.accel != AccelKind::automatic && options.accel != AccelKind::cwbvh)
     throw Error(
-        fmt::format("--kernel vote: traces wide trees; expected --accel cwbvh or auto, not "
-                    "{}",
-                    to_string(options.accel)));
-  if (options.block.x * options.block.y % 32 != 0)
+        fmt::format("--kernel {}: traces wide trees; expected --accel cwbvh or auto, not {}",
+                    kernel, to_string(options.accel)));
+  if (options.kernel == MegakernelKind::sort) {
+    if (given.contains("block"))
+      throw Error(
+          fmt::format("--block {}: has no effect with --kernel sort, whose blocks are as "
+                      "large as multiprocessors",
+                      block_text(options.block)));
+  } else if (options.block.x * options.block.y % 32 != 0) {
     throw Error(
         fmt::format("--kernel vote: whole warps vote; expected a --block of a multiple of "
                     "32 threads, {} has {}",
                     block_text(options.block), options.block.x * options.block.y));
+  }
 }
 
 }  // namespace
@@ -161,7 +167,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);
-  check_voting(options);
+  check_voting(options, given);
   if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
     throw Error(
         fmt::format("--shade material: takes ranges of an ordered queue; --compaction {} has no "

@@ -249,10 +249,11 @@ void add_execution(std::vector<OptionEntry>& list) {
       .only(megakernel, cuda)
       .add(choice("kernel", &Options::kernel),
            "megakernel on CUDA: a loop in which each turn traces a ray of\n"
-           "every lane to its end, or warps that vote on what to do next:\n"
-           "steps down a wide tree, tests of triangles, or shading; auto:\n"
-           "vote in scenes of triangles alone, if they have one kind of\n"
-           "BSDF or --accel is cwbvh")
+           "every lane to its end; warps that vote on what to do next:\n"
+           "steps down a wide tree, tests of triangles, or shading; or\n"
+           "blocks that sort their paths by material; auto: in scenes\n"
+           "of triangles alone sort, with another --block vote if there\n"
+           "is one kind of BSDF; loop elsewhere")
       .only(megakernel, cuda)
       .add(choice("compaction", &Options::compaction),
            "wavefront: how the paths that wait for a stage are gathered:\n"

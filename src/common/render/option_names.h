@@ -35,7 +35,8 @@ template <>
 inline constexpr auto enum_names<MegakernelKind> =
     std::to_array<EnumName<MegakernelKind>>({{MegakernelKind::automatic, "auto"},
                                              {MegakernelKind::loop, "loop"},
-                                             {MegakernelKind::vote, "vote"}});
+                                             {MegakernelKind::vote, "vote"},
+                                             {MegakernelKind::sort, "sort"}});
 template <>
 inline constexpr auto enum_names<Compaction> = [] {
   std::array<EnumName<Compaction>, std::size(compaction_table)> names{};

@@ -16,7 +16,7 @@ namespace pt {
 
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
-enum class MegakernelKind { automatic, loop, vote };
+enum class MegakernelKind { automatic, loop, vote, sort };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
 enum class Shade { automatic, uber, material };

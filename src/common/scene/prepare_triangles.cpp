@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
@@ -23,14 +22,6 @@ bool is_on_cuda(const Options& options) {
   return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
 }
 
-/// Whether the megakernel's warps vote if nobody says how they work. They win where a ray costs
-/// more than its shading: with several kinds of BSDFs they wait for these (results/ has the
-/// measurement).
-bool votes_by_itself(const SceneData& scene, const Options& options) {
-  return options.kernel == MegakernelKind::automatic && may_vote(options) &&
-         scene.opacities.empty() && std::has_single_bit(kinds_of(scene));
-}
-
 /// Persistent warps and AVX2 make the most of wide trees; for threads that follow rays alone binary
 /// ones are faster (results/ and docs/cpu.md have the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
@@ -39,8 +30,10 @@ Accel automatic_structure(const SceneData& scene, const Options& options) {
   }
   const bool is_plain = scene.instances.empty() && scene.spheres.empty();
   if (options.mode == Mode::megakernel) {
-    const bool votes = options.kernel == MegakernelKind::vote || votes_by_itself(scene, options);
-    return votes && is_plain ? Accel::cwbvh : Accel::bvh2;
+    const MegakernelKind kernel = options.kernel == MegakernelKind::automatic
+                                      ? automatic_kernel(scene, options)
+                                      : options.kernel;
+    return kernel != MegakernelKind::loop && is_plain ? Accel::cwbvh : Accel::bvh2;
   }
   const bool warps_persist = compaction_info(options.compaction).appends && scene.spheres.empty() &&
                              (scene.instances.empty() || scene.opacities.empty());

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "common/error.h"
 #include "common/render/option_names.h"
@@ -31,7 +32,11 @@ std::string unless(E value, Usual... usual) {
 bool has_triangles(const SceneData& scene, const Options& o) { return !is_lean(scene, o); }
 
 bool has_triangles_alone(const SceneData& scene, const Options& o) {
-  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty() &&
+  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty();
+}
+
+bool has_plain_triangles_alone(const SceneData& scene, const Options& o) {
+  return has_triangles_alone(scene, o) &&
          std::ranges::all_of(scene.materials,
                              [](const MaterialDescription& m) { return m.opacity.is_opaque(); });
 }
@@ -57,11 +62,20 @@ constexpr SceneRule rules[] = {
      has_triangles, "builds trees over triangles; scene '{}' has none"},
     {"kernel",
      [](const Options& o) {
-       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop);
+       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop,
+                     MegakernelKind::sort);
      },
-     has_triangles_alone,
+     has_plain_triangles_alone,
      "traces triangles alone; scene '{}' has spheres, instances, masks or no triangles, expected "
      "auto or loop"},
+    {"kernel",
+     [](const Options& o) {
+       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop,
+                     MegakernelKind::vote);
+     },
+     has_triangles_alone,
+     "traces triangles alone; scene '{}' has spheres, instances or no triangles, expected auto or "
+     "loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -101,6 +115,12 @@ bool has_primitives_only(const SceneData& scene) {
   return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
          scene.sun.one_minus_cos == 0.0f && scene.textures.empty() &&
          std::ranges::none_of(scene.materials, needs_triangles);
+}
+
+MegakernelKind automatic_kernel(const SceneData& scene, const Options& options) {
+  if (may_sort(options)) return MegakernelKind::sort;
+  const bool is_simple = std::has_single_bit(kinds_of(scene)) && scene.opacities.empty();
+  return is_simple && may_vote(options) ? MegakernelKind::vote : MegakernelKind::loop;
 }
 
 void check_scene_options(const Options& options, const SceneData& scene) {

@@ -26,4 +26,17 @@ inline bool may_vote(const Options& options) {
   return options.work == Work::persistent && threads % 32 == 0 && threads <= voting_threads_max;
 }
 
+/// Whether a megakernel whose blocks sort suits the options if nobody asks for it: it has blocks of
+/// its own (megakernel/trace_paths_sorting.cuh).
+inline bool may_sort(const Options& options) {
+  constexpr BlockSize usual;
+  return options.work == Work::persistent && options.block.x == usual.x &&
+         options.block.y == usual.y;
+}
+
+/// The megakernel on CUDA that suits scenes of triangles alone if nobody chooses one: blocks that
+/// sort; with other blocks warps that vote where there is one kind of BSDF and no mask, and loops
+/// else (results/ has the measurements).
+MegakernelKind automatic_kernel(const SceneData& scene, const Options& options);
+
 }  // namespace pt

@@ -62,8 +62,10 @@ class CwbvhLane {
   /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
   /// step changes them.
   __device__ void park(volatile uint2* place) const {
-    place[0].x = nodes_.base, place[0].y = nodes_.bits;
-    place[1].x = leaves_.base, place[1].y = leaves_.bits;
+    place[0].x = nodes_.base;
+    place[0].y = nodes_.bits;
+    place[1].x = leaves_.base;
+    place[1].y = leaves_.bits;
     place[2].x = static_cast<std::uint32_t>(depth_);
   }
   __device__ void unpark(const volatile uint2* place, const Query& query) {

@@ -44,6 +44,8 @@ struct PersistentTuning {
 ///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
 ///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
 ///     triangle's mask lets the ray through
+///   std::uint32_t name(std::uint32_t number)  if finish() and lanes() are to get that instead
+///   Query query(const PreparedRay&)  if not all of its rays ask the same
 ///   LaneCounter lanes(std::uint32_t number)  if its rays' lanes are to be counted
 template <class Lane, class Work>
 class PersistentTracer {
@@ -54,9 +56,17 @@ class PersistentTracer {
                               Warp& warp, uint2* stack)
       : work_(work), warp_(warp), lane_(tree, order, stack, warp.lanes) {}
 
+  __device__ Lane& lane() { return lane_; }
+
   /// By the whole warp; returns when all rays are done.
   __device__ void run() {
     warp_.number[threadIdx.x & 31] = Warp::none;
+    go_on(0);
+  }
+
+  /// Likewise, with lanes that may have a ray already; returns when no more rays are handed out and
+  /// at most `pausing` lanes still trace one.
+  __device__ void go_on(int pausing) {
     warp_.next_ray = warp_.ray_count = 0;
     warp_.reserved = {0, 0};
     __syncwarp();
@@ -74,9 +84,9 @@ class PersistentTracer {
       }
       const int enter_count = __popc(entering);
       const int busy_count = test_count + step_count + enter_count;
-      if (busy_count <= (is_drained ? 0 : 32 - PersistentTuning::refill)) {
+      if (busy_count <= (is_drained ? pausing : 32 - PersistentTuning::refill)) {
         is_drained = !refill(~(testing | stepping | entering));
-        if (is_drained && busy_count == 0) return;
+        if (is_drained && busy_count <= pausing) return;
       } else {
         const Turn turn = choose_turn(step_count, test_count, enter_count);
         if (turn == Turn::step) {
@@ -124,7 +134,11 @@ class PersistentTracer {
     RayRecord record;
     int count;
     const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
-    if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
+    if constexpr (requires { work_.name(first); }) {
+      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, work_.name(first + lane));
+    } else {
+      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
+    }
     __syncwarp();
     return count;
   }
@@ -135,7 +149,11 @@ class PersistentTracer {
       set_lanes(lane_, work_.lanes(ray.number));
       lanes_of(lane_).count(LanePoint::intersect);
     }
-    lane_.begin(ray, typename Lane::Query(ray.t_min, ray.t_max));
+    if constexpr (requires { work_.query(ray); }) {
+      lane_.begin(ray, work_.query(ray));
+    } else {
+      lane_.begin(ray, typename Lane::Query(ray.t_min, ray.t_max));
+    }
   }
 
   Work& work_;

@@ -1,0 +1,60 @@
+// The megakernel whose blocks sort their paths, and its launch, for the files that instantiate it.
+#pragma once
+
+#include "common/device/stage_stamp.cuh"
+#include "megakernel/megakernel_cuda.h"
+#include "megakernel/trace_paths_sorting.cuh"
+
+namespace pt {
+
+/// Of scenes of triangles alone.
+template <bool has_masks>
+using SortingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks>;
+
+/// All that a multiprocessor has room for at 96 registers: so they share the code that is in its
+/// instruction cache, and their paths are sorted together (results/ has the measurement).
+inline constexpr int sorting_threads = 640;
+
+template <class Traits>
+using BlockMemory = SortingMemory<SortingLane<Traits>, sorting_threads>;
+
+template <class Traits>
+__global__ void __launch_bounds__(sorting_threads, 1)
+    sorting_megakernel(const __grid_constant__ Scene scene,
+                       const __grid_constant__ SampleBuffer batch,
+                       const __grid_constant__ SamplerSource source,
+                       const __grid_constant__ PathLimits limits, std::uint32_t* next_path,
+                       PathSlot* slots, StageClock* clock) {
+  using Memory = BlockMemory<Traits>;
+  extern __shared__ uint4 sorting_memory[];
+  stamp_first_thread(clock, StageId::megakernel);
+  uint2 stack[sorting_stack_size];
+  SortingTracer<Traits, SamplerSource, Memory> tracer(
+      scene, source, batch, limits, next_path, *reinterpret_cast<Memory*>(sorting_memory),
+      slots + static_cast<std::size_t>(blockIdx.x) * Memory::slot_count, stack);
+  tracer.run();
+}
+
+template <bool has_masks>
+std::uint32_t MegakernelCuda::sorting_blocks() {
+  using Memory = BlockMemory<SortingTraits<has_masks>>;
+  const auto* const kernel =
+      reinterpret_cast<const void*>(sorting_megakernel<SortingTraits<has_masks>>);
+  return resident_blocks(kernel, sorting_threads, sizeof(Memory));
+}
+
+template <bool has_masks>
+void MegakernelCuda::allocate_slots() {
+  using Memory = BlockMemory<SortingTraits<has_masks>>;
+  slots_ = memory_.allocate<PathSlot>(
+      "paths", std::uint64_t{sorting_blocks<has_masks>()} * Memory::slot_count);
+}
+
+template <bool has_masks>
+void MegakernelCuda::launch_sorting(const SamplerSource& source, const SampleBuffer& batch) {
+  launch("megakernel", sorting_megakernel<SortingTraits<has_masks>>, sorting_blocks<has_masks>(),
+         sorting_threads, sizeof(BlockMemory<SortingTraits<has_masks>>), scene_, batch, source,
+         limits_, next_path_, slots_, clock());
+}
+
+}  // namespace pt

@@ -1,0 +1,410 @@
+// The megakernel's body for many kinds of BSDFs: a wavefront inside a block.
+//
+// Warps that vote (trace_paths_voting.cuh) shade what happens to wait in them, surfaces of several
+// kinds by code that each warp fetches for itself. Here a block owns several paths for each of its
+// threads and takes all of them through the same phases, a barrier between each and the next:
+//
+//   start   slots whose path has ended get a new one and its camera ray
+//   trace   lanes take rays and shadow rays of the block, another one whenever theirs ends
+//   sort    the paths whose rays have ended, by the kind of the BSDF that they met
+//   shade   in this order: threads side by side execute the same code, and so do all warps at about
+//           the same time, which share what is in the instruction cache
+//
+// A phase of tracing does not wait for its longest rays: their lanes go on in the next one. A path
+// meets the same functions in the same order as in the loop (trace_path.h), so its radiance is the
+// same, bit for bit.
+#pragma once
+
+#include "common/accel/trace_cuda/persistent_cwbvh.cuh"
+#include "common/device/counting_sort.cuh"
+#include "common/film/film.h"
+#include "common/transport/follow_path.h"
+#include "common/transport/generate_camera_path.h"
+#include "common/transport/mask_hides.h"
+#include "megakernel/path_query.cuh"
+#include "megakernel/path_slot.h"
+
+namespace pt {
+
+struct SortingTuning {
+  static constexpr int slots_per_thread = 12;
+  static constexpr int pausing = 12;  ///< lanes of 32 for whose rays a phase does not wait
+};
+
+/// A lane of a block. Traits: of triangles alone.
+template <class Traits>
+using SortingLane = CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>>;
+
+/// What a block shares, in shared memory.
+template <class Lane, int threads>
+struct SortingMemory {
+  static constexpr int slot_count = threads * SortingTuning::slots_per_thread;
+  static constexpr int class_count = kind_count + 1;  ///< misses come first
+
+  /// What the path of a slot waits for.
+  enum class Path : std::uint8_t {
+    none,  ///< there is none, or all that it waits for is its last shadow ray
+    ray,   ///< for its ray
+    hit,   ///< to be shaded
+  };
+  /// And its shadow ray.
+  enum class Shadow : std::uint8_t {
+    none,  ///< there is none, or it has ended
+    ray,   ///< is traced
+    last,  ///< likewise, and the path ends then
+  };
+
+  PersistentMemory<Lane, threads> tracing;
+  std::uint16_t rays[2 * slot_count];    ///< to be traced: see BlockRays
+  std::uint16_t ordered[slot_count];     ///< slots to be shaded, by kind
+  std::uint16_t free_slots[slot_count];  ///< whose paths have ended
+  Path path[slot_count];
+  Shadow shadow[slot_count];
+  std::uint32_t ray_end;  ///< of `rays`, while it is filled
+  std::uint32_t ray_count, next_ray;
+  std::uint32_t free_end;                            ///< of `free_slots`
+  std::uint32_t start_count, start_ray, first_path;  ///< of the slots that get a path
+  std::uint32_t paused;                              ///< lanes
+  bool has_ended;                                    ///< no path is left
+  std::uint32_t next_shaded;
+  std::uint32_t counts[class_count], first[class_count];  ///< of the slots to be shaded, by class
+};
+
+/// Puts `value` at the end of a list where `wanted`. By whole warps.
+__device__ inline void append(std::uint16_t* list, std::uint32_t& end, bool wanted,
+                              std::uint32_t value) {
+  const unsigned votes = __ballot_sync(0xffffffffu, wanted);
+  if (votes == 0) return;
+  const unsigned lane = threadIdx.x & 31;
+  std::uint32_t first = 0;
+  if (lane == 0) first = atomicAdd(&end, __popc(votes));
+  first = __shfl_sync(0xffffffffu, first, 0) + __popc(votes & ((1u << lane) - 1));
+  if (wanted) list[first] = static_cast<std::uint16_t>(value);
+}
+
+/// The block's rays for PersistentTracer, by name: twice the slot, and one more for the shadow ray.
+template <class Traits, class Memory>
+struct BlockRays {
+  using Query = typename SortingLane<Traits>::Query;
+  using Path = typename Memory::Path;
+  using Shadow = typename Memory::Shadow;
+  Memory& memory;
+  PathSlot* slots;
+  const Scene& scene;
+  const SampleBuffer& samples;
+
+  __device__ static bool is_shadow(std::uint32_t name) { return (name & 1u) != 0; }
+
+  __device__ RayRecord record(std::uint32_t name) const {
+    const PathSlot& slot = slots[name / 2];
+    float distance = infinite_distance;
+    const Ray ray = is_shadow(name) ? slot.load_shadow_ray(distance) : slot.load_ray();
+    float key = 0.0f;  // in the place of t_min, which is 0
+    if constexpr (Traits::has_masks) key = __uint_as_float(key_of(name));
+    return {ray.origin, key, ray.direction, distance};
+  }
+
+  __device__ std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord& next, int& count) const {
+    std::uint32_t first = 0;
+    if (lane == 0) first = atomicAdd(&memory.next_ray, 32u);
+    first = __shfl_sync(0xffffffffu, first, 0);
+    const std::uint32_t all = memory.ray_count;
+    count = first < all ? static_cast<int>(min(32u, all - first)) : 0;
+    if (static_cast<int>(lane) < count) next = record(name(first + lane));
+    return first;
+  }
+
+  __device__ std::uint32_t name(std::uint32_t number) const { return memory.rays[number]; }
+
+  __device__ Query query(const PreparedRay& ray) const {
+    return with_key(PathQuery(0.0f, ray.t_max, is_shadow(ray.number)), ray.t_min);
+  }
+  __device__ static Query with_key(const PathQuery& query, [[maybe_unused]] float key) {
+    if constexpr (Traits::has_masks) {
+      return {query, __float_as_uint(key)};
+    } else {
+      return query;
+    }
+  }
+
+  __device__ bool hides(const Query& query, std::uint32_t slot, const TriangleHit& hit) const {
+    return mask_hides(&scene, query.key(), slot, hit.b1, hit.b2);
+  }
+
+  __device__ void finish(std::uint32_t name, const Query& query) const {
+    const std::uint32_t number = name / 2;
+    PathSlot& slot = slots[number];
+    if (!is_shadow(name)) {
+      slot.store_hit(query.result());
+      memory.path[number] = Path::hit;
+      return;
+    }
+    if (query.result().is_miss()) slot.add_shadow_radiance();
+    const bool is_last = memory.shadow[number] == Shadow::last;
+    memory.shadow[number] = Shadow::none;
+    if (!is_last) return;
+    Color radiance;
+    Ray ray;
+    const PathState path = slot.load_path(radiance, ray);
+    samples.store(path, radiance);
+    memory.free_slots[atomicAdd(&memory.free_end, 1u)] = static_cast<std::uint16_t>(number);
+  }
+
+  __device__ LaneCounter lanes(std::uint32_t name) const {
+    const std::uint32_t rays = slots[name / 2].load_rays();
+    const LaneCounter all = lanes_of(scene);
+    return is_shadow(name) ? all.at(rays - 1).of_shadow_ray() : all.at(rays);
+  }
+
+ private:
+  __device__ std::uint32_t key_of(std::uint32_t name) const {
+    const PathSlot& slot = slots[name / 2];
+    const std::uint32_t key = mask_key<Traits>(scene, samples.id_of(slot.load_number()));
+    return is_shadow(name) ? shadow_ray_key(key, slot.load_rays())
+                           : next_ray_key(key, slot.load_rays());
+  }
+};
+
+/// Of a lane, where it is in the tree and what it has met, while its block does other things: in
+/// its stack's memory, beyond the stack.
+inline constexpr int sorting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
+
+/// One thread's view. Traits: of triangles alone; Source: one whose streams
+/// are opened anew for each draw; `next_path` counts the paths that blocks have taken.
+template <class Traits, class Source, class Memory>
+class SortingTracer {
+ public:
+  __device__ SortingTracer(const Scene& scene, const Source& source, const SampleBuffer& samples,
+                           const PathLimits& limits, std::uint32_t* next_path, Memory& memory,
+                           PathSlot* slots, uint2* stack)
+      : scene_(scene),
+        source_(source),
+        samples_(samples),
+        limits_(limits),
+        next_path_(next_path),
+        memory_(memory),
+        warp_(memory.tracing.warps[threadIdx.x / 32]),
+        slots_(slots),
+        rays_{memory, slots, scene, samples},
+        stack_(stack) {}
+
+  /// By the whole block; returns when no paths are left.
+  __device__ __forceinline__ void run() {
+    empty();
+    while (start()) {
+      trace();
+      __syncthreads();
+      sort();
+      shade();
+    }
+  }
+
+ private:
+  using Path = typename Memory::Path;
+  using Shadow = typename Memory::Shadow;
+  using Lane = SortingLane<Traits>;
+  using Shading = ShadingTraits<Traits>;
+  static constexpr int per_thread = SortingTuning::slots_per_thread;
+
+  __device__ void empty() {
+    for (int k = 0; k < per_thread; ++k) {
+      const std::uint32_t slot = k * blockDim.x + threadIdx.x;
+      memory_.free_slots[slot] = static_cast<std::uint16_t>(slot);
+      memory_.path[slot] = Path::none;
+      memory_.shadow[slot] = Shadow::none;
+    }
+    warp_.number[threadIdx.x & 31] = PersistentWarp<Lane>::none;
+    if (threadIdx.x == 0) {
+      memory_.free_end = per_thread * blockDim.x;
+      memory_.ray_end = memory_.paused = 0;
+    }
+    memory_.tracing.order.fill();
+  }
+
+  /// Free slots get new paths. False: there is nothing left to do.
+  __device__ __forceinline__ bool start() {
+    __syncthreads();
+    if (threadIdx.x == 0) take_paths();
+    if (threadIdx.x < Memory::class_count) memory_.counts[threadIdx.x] = 0;
+    __syncthreads();
+    const std::uint32_t count = memory_.start_count;
+    for (std::uint32_t i = threadIdx.x; i < count; i += blockDim.x) {
+      const std::uint32_t slot = memory_.free_slots[i], number = memory_.first_path + i;
+      const bool exists = number < samples_.path_count;
+      memory_.path[slot] = exists ? Path::ray : Path::none;
+      if (!exists) continue;
+      memory_.rays[memory_.start_ray + i] = static_cast<std::uint16_t>(2 * slot);
+      start_path(slots_[slot], number);
+    }
+    const bool goes_on = !memory_.has_ended;
+    __syncthreads();
+    return goes_on;
+  }
+
+  /// By one thread: as many paths as slots are free, as far as there are paths.
+  __device__ void take_paths() {
+    const std::uint32_t count = memory_.free_end, all = samples_.path_count;
+    const std::uint32_t first = count > 0 ? atomicAdd(next_path_, count) : all;
+    memory_.first_path = first;
+    memory_.start_count = count;
+    memory_.start_ray = memory_.ray_end;
+    memory_.ray_count = memory_.ray_end + (first < all ? min(count, all - first) : 0);
+    memory_.has_ended = memory_.ray_count == 0 && memory_.paused == 0;
+    memory_.next_ray = memory_.next_shaded = memory_.free_end = memory_.ray_end = 0;
+    memory_.paused = 0;
+  }
+
+  __device__ void start_path(PathSlot& slot, std::uint32_t number) {
+    lanes_of(scene_).at(0).count(LanePoint::turn);
+    PathState path;
+    path.number = number;
+    const PathId id = samples_.id_of(number);
+    typename Source::Stream random = source_.open(id);
+    const Vec4 u = random.draw(scatter_block(0));
+    slot.store_path(path, Color(0.0f), generate_camera_path(scene_, random, id.pixel, u));
+  }
+
+  /// What the block's rays meet. With many rays lanes pause when none are left but theirs; these
+  /// are fewer than all that are traced, so that some end in each phase.
+  __device__ __forceinline__ void trace() {
+    const int pausing = memory_.ray_count > blockDim.x ? SortingTuning::pausing : 0;
+    PersistentTracer<Lane, const BlockRays<Traits, Memory>> tracer(
+        scene_.triangles, rays_, memory_.tracing.order, warp_, stack_);
+    resume(tracer.lane());
+    tracer.go_on(pausing);
+    pause(tracer.lane());
+  }
+
+  // Volatile, see CwbvhLane::park.
+  __device__ volatile uint2* parked() const { return stack_ + bvh_depth_max; }
+
+  __device__ void pause(const Lane& lane) {
+    if (!lane.is_active()) return;
+    lane.park(parked());
+    volatile uint2& met = parked()[Lane::parked_size];
+    met.x = __float_as_uint(lane.query().t_max());
+    met.y = lane.query().result().primitive;
+    atomicAdd(&memory_.paused, 1u);
+  }
+
+  __device__ void resume(Lane& lane) {
+    const unsigned place = threadIdx.x & 31;
+    const std::uint32_t name = warp_.number[place];
+    const bool paused = name != PersistentWarp<Lane>::none;
+    if (paused) {
+      warp_.rays.store(place, rays_.record(name), name);
+      const PreparedRay ray = warp_.rays.load(place);
+      lane.set_ray(ray);
+      const volatile uint2& met = parked()[Lane::parked_size];
+      const float t = __uint_as_float(met.x);
+      lane.unpark(parked(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
+                                                              rays_.is_shadow(name)),
+                                           ray.t_min));
+      if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(name));
+    }
+    __syncwarp();
+  }
+
+  /// Whom it awaits: 0 for a miss, else the kind of the surface's BSDF and one; below 0 for those
+  /// whose rays have not ended.
+  __device__ int class_of(std::uint32_t slot) const {
+    if (memory_.path[slot] != Path::hit || memory_.shadow[slot] != Shadow::none) return -1;
+    const Hit hit = slots_[slot].load_hit();
+    if (hit.is_miss()) return 0;
+    return 1 + static_cast<int>(scene_.material(material_number_at(scene_, hit)).kind);
+  }
+
+  __device__ __forceinline__ void sort() {
+    int classes[per_thread];
+    std::uint32_t place[per_thread];
+    PT_UNROLL(8)
+    for (int k = 0; k < per_thread; ++k) classes[k] = class_of(k * blockDim.x + threadIdx.x);
+    PT_UNROLL(8)
+    for (int k = 0; k < per_thread; ++k) place[k] = take_places(memory_.counts, classes[k]);
+    __syncthreads();
+    if (threadIdx.x < Memory::class_count) {
+      memory_.first[threadIdx.x] = sum_before(memory_.counts, static_cast<int>(threadIdx.x));
+    }
+    __syncthreads();
+    PT_UNROLL(8)
+    for (int k = 0; k < per_thread; ++k) {
+      if (classes[k] < 0) continue;
+      memory_.ordered[memory_.first[classes[k]] + place[k]] =
+          static_cast<std::uint16_t>(k * blockDim.x + threadIdx.x);
+    }
+    __syncthreads();
+  }
+
+  /// Warps take 32 paths at a time, in their order.
+  __device__ __forceinline__ void shade() {
+    constexpr int last = Memory::class_count - 1;
+    const std::uint32_t count = memory_.first[last] + memory_.counts[last];
+    const unsigned lane = threadIdx.x & 31;
+    while (true) {
+      std::uint32_t place = 0;
+      if (lane == 0) place = atomicAdd(&memory_.next_shaded, 32u);
+      place = __shfl_sync(0xffffffffu, place, 0);
+      if (place >= count) return;
+      place += lane;
+      const bool has_path = place < count;
+      std::uint32_t slot = 0;
+      Path path = Path::hit;
+      Shadow shadow = Shadow::none;
+      if (has_path) {
+        slot = memory_.ordered[place];
+        path = shade_path(slots_[slot], shadow);
+        memory_.path[slot] = path;
+        memory_.shadow[slot] = shadow;
+      }
+      __syncwarp();
+      append(memory_.rays, memory_.ray_end, path == Path::ray, 2 * slot);
+      append(memory_.rays, memory_.ray_end, shadow != Shadow::none, 2 * slot + 1);
+      append(memory_.free_slots, memory_.free_end, path == Path::none && shadow == Shadow::none,
+             slot);
+    }
+  }
+
+  /// What the slot waits for then.
+  __device__ __forceinline__ Path shade_path(PathSlot& slot, Shadow& shadow) {
+    Color radiance;
+    Ray ray;
+    PathState path = slot.load_path(radiance, ray);
+    const Hit hit = slot.load_hit();
+    set_lanes(ray, lanes_of(scene_).at(path.rays));
+    ++path.rays;
+    if (hit.is_miss()) {
+      samples_.store(path,
+                     add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
+                                               scene_, ray.direction, path, limits_)));
+      return Path::none;
+    }
+    lanes_of(scene_).at(path.rays).count(LanePoint::turn);
+    typename Source::Stream random = source_.open(samples_.id_of(path.number));
+    const Scattering scattering = scatter_path<Shading>(scene_, ray, hit, path, limits_, random);
+    radiance = add_rounded(radiance, scattering.emitted);
+    const bool asks = !is_black(scattering.shadow.radiance);
+    if (asks) {
+      slot.store_shadow(scattering.shadow);
+      shadow = scattering.alive ? Shadow::ray : Shadow::last;
+    }
+    if (!scattering.alive && !asks) {
+      samples_.store(path, radiance);
+    } else {
+      slot.store_path(path, radiance, scattering.ray);
+    }
+    return scattering.alive ? Path::ray : Path::none;
+  }
+
+  const Scene& scene_;
+  const Source& source_;
+  const SampleBuffer& samples_;
+  const PathLimits& limits_;
+  std::uint32_t* next_path_;
+  Memory& memory_;
+  PersistentWarp<Lane>& warp_;
+  PathSlot* slots_;
+  const BlockRays<Traits, Memory> rays_;
+  uint2* stack_;
+};
+
+}  // namespace pt

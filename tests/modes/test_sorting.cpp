@@ -1,0 +1,128 @@
+// The megakernel whose blocks sort their paths, on emulated blocks: each path gets what it gets
+// when it is followed alone, bit for bit.
+#include <gtest/gtest.h>
+
+#include "common/render/path_limits_of.h"
+#include "common/render/random_source.h"
+#include "common/scene/prepare_scene.h"
+#include "emulated_gpu.h"  // before device code
+#include "masked_room.h"
+#include "megakernel/trace_paths_sorting.cuh"
+#include "mode_cases.h"
+
+namespace pt {
+namespace {
+
+template <bool has_masks>
+using SortingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks>;
+constexpr int threads = 64;
+
+/// What blocks made of the paths of a scene, and what each is alone.
+class SortedPaths {
+ public:
+  SortedPaths(const SceneData& scene, const Options& options)
+      : scene_(host_view(scene, options.width, options.height)),
+        source_(sampler_source_of(options)),
+        limits_(path_limits_of(options)) {
+    scene_.mask_seed = mask_seed(options.seed);
+    const auto width = static_cast<std::uint32_t>(options.width);
+    const auto height = static_cast<std::uint32_t>(options.height);
+    const auto spp = static_cast<std::uint32_t>(options.spp);
+    samples_.resize(std::size_t{width} * height * spp, Sample{Color(-1.0f), 0});
+    batch_ = SampleBuffer(samples_.data(), {0, 0, width, height}, 0, spp);
+  }
+
+  /// What a grid of blocks does, one after the other; later ones may find nothing left.
+  template <class Traits>
+  void sort(int blocks) {
+    using Memory = SortingMemory<SortingLane<Traits>, threads>;
+    const auto memory = std::make_unique<Memory>();
+    std::vector<PathSlot> slots(Memory::slot_count);
+    std::uint32_t next_path = 0;
+    for (int i = 0; i < blocks; ++i) {
+      std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
+      EmulatedBlock(threads).run([&] {
+        uint2 stack[sorting_stack_size];
+        SortingTracer<Traits, SamplerSource, Memory> tracer(
+            scene_, source_, batch_, limits_, &next_path, *memory, slots.data(), stack);
+        tracer.run();
+      });
+    }
+  }
+
+  template <class Traits>
+  void expect_what_each_gets_alone() const {
+    int lit = 0;
+    for (std::uint32_t number = 0; number < batch_.path_count; ++number) {
+      const Sample expected = follow<Traits>(number), found = samples_[number];
+      ASSERT_EQ(found.rays, expected.rays) << "path " << number;
+      ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "path " << number;
+      lit += is_black(expected.radiance) ? 0 : 1;
+    }
+    EXPECT_GT(lit, 0);
+  }
+
+ private:
+  template <class Traits>
+  Sample follow(std::uint32_t number) const {
+    const PathId id = batch_.id_of(number);
+    auto random = source_.open(id);
+    PathState path;
+    path.number = number;
+    const Vec4 u = random.draw(scatter_block(0));
+    const Ray ray = generate_camera_path(scene_, random, id.pixel, u);
+    const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
+                                               mask_key<Traits>(scene_, id));
+    return {radiance, path.packed_rays()};
+  }
+
+  Scene scene_;
+  SamplerSource source_;
+  PathLimits limits_;
+  std::vector<Sample> samples_;
+  SampleBuffer batch_;
+};
+
+Options small_image() {
+  return with(
+      Options(),
+      {{"width", "19"}, {"height", "11"}, {"spp", "2"}, {"max-depth", "5"}, {"accel", "cwbvh"}});
+}
+
+class SortingOf : public testing::TestWithParam<ImageKind> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Emulated, SortingOf,
+    testing::Values(ImageKind{"boxes", {{"scene", "boxes"}}},
+                    ImageKind{"statue", {{"scene", "statue:3K"}}},
+                    ImageKind{"many_kinds", {{"scene", "dial:14:0:closed"}}},
+                    ImageKind{"long_paths", {{"scene", "dial:6:0:closed"}, {"max-depth", "30"}}},
+                    ImageKind{"roulette", {{"scene", "boxes"}, {"rr", "2"}, {"max-depth", "20"}}},
+                    ImageKind{"light_tree", {{"scene", "boxes"}, {"light-selection", "tree"}}},
+                    ImageKind{"no_light_sampling", {{"scene", "boxes"}, {"nee", "off"}}},
+                    ImageKind{"camera_rays", {{"scene", "boxes"}, {"max-depth", "1"}}},
+                    ImageKind{"one_path", {{"scene", "boxes"}, {"width", "1"}, {"height", "1"}}}),
+    [](const auto& kind) { return kind.param.name; });
+
+TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
+  using Traits = SortingTraits<false>;
+  const Options options = with(small_image(), GetParam().settings);
+  const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
+  ASSERT_EQ(scene.traits, Traits::value());
+  SortedPaths paths(scene, options);
+  paths.sort<Traits>(2);
+  paths.expect_what_each_gets_alone<Traits>();
+}
+
+TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
+  const Options options = with(small_image(), {{"width", "31"}, {"height", "23"}});
+  SceneData scene = masked_room();
+  prepare_scene(scene, options);
+  ASSERT_TRUE(scene.traits.has_masks);
+  SortedPaths paths(scene, options);
+  paths.sort<SortingTraits<true>>(1);
+  paths.expect_what_each_gets_alone<SortingTraits<true>>();
+}
+
+}  // namespace
+}  // namespace pt
