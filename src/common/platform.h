@@ -13,11 +13,13 @@
 #define GLM_FORCE_CUDA
 #define PT_HD __host__ __device__ inline
 #define PT_NOINLINE __host__ __device__ __noinline__
+#define PT_HD_IN_KERNEL __host__ __device__ __forceinline__
 #define PT_UNROLL(n) PT_PRAGMA(unroll n)
 #else
 #include <atomic>
 #define PT_HD inline
 #define PT_NOINLINE __attribute__((noinline))
+#define PT_HD_IN_KERNEL inline
 #define PT_UNROLL(n) PT_PRAGMA(GCC unroll n)
 #endif
 

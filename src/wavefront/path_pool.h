@@ -199,10 +199,18 @@ struct PathPool {
 
   PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow,
                           const PathState& path) const {
+    store_shadow_ray(slot, shadow, path);
+    store_shadow_radiance(slot, shadow.radiance, path);
+  }
+  PT_HD void store_shadow_ray(std::uint32_t slot, const ShadowRay& shadow,
+                              const PathState& path) const {
     store_wide(half_at(shadow_origin, slot),
                pack(shadow.ray.origin, float_to_bits(shadow.distance)));
     store_wide(half_at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
-    store_wide(at(shadow_radiance, slot), pack(shadow.radiance, path.rays));
+  }
+  PT_HD void store_shadow_radiance(std::uint32_t slot, const Color& radiance,
+                                   const PathState& path) const {
+    store_wide(at(shadow_radiance, slot), pack(radiance, path.rays));
   }
   /// Of the path when it asked.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {

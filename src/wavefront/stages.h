@@ -47,6 +47,9 @@ PT_HD StageId id_of(const Stage& stage) {
 template <class Traits>
 inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 512 : 1024;
 
+/// Where surfaces are shaded in steps (StoredSteps) fewer registers do: 96, so that 20 warps fit.
+inline constexpr int steps_block_max = 640;
+
 /// Only brute force scans.
 template <class Traits>
 inline constexpr SphereAccess sphere_access =
@@ -228,28 +231,65 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const
   sum = add_rounded(sum, radiance);
 }
 
-template <class Traits, Branching branching, class Source>
+/// Keeps nothing of a surface's shading in registers (surface_steps.h): numbers are drawn when they
+/// are asked for, what is known is stored at once. For sources whose streams have no state.
+template <class Source>
+struct StoredSteps {
+  const StageContext<Source>& context;
+  const PathState& path;
+  std::uint32_t slot;
+
+  PT_HD Vec4 scatter() const { return draw(scatter_block(path.rays)); }
+  PT_HD Vec4 light() const { return draw(light_block(path.rays)); }
+  PT_HD Color emit(const Color& emitted) const {
+    add_radiance(context.samples, path.number, emitted);
+    return Color(0.0f);
+  }
+  static constexpr bool aims = true;
+  PT_HD void aim(const ShadowRay& shadow) const {
+    context.pool.store_shadow_ray(slot, shadow, path);
+  }
+
+ private:
+  /// Anew each time: the compiler would keep a block that it recognises.
+  PT_HD Vec4 draw(std::uint32_t block) const {
+    auto stream = context.source.open(context.samples.id_of(path.number));
+    return stream.draw(float_to_bits(anew(bits_to_float(block))));
+  }
+};
+
+/// `in_steps`: by StoredSteps, else all is kept until the end.
+template <class Traits, Branching branching, class Source, bool in_steps = false>
 struct ShadeSurface {
   static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::shade_surface;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr int block_max = shading_block_max<Traits>;
+  static constexpr int block_max = in_steps ? steps_block_max : shading_block_max<Traits>;
   /// The only BSDF that it knows; null: it knows several.
   static constexpr const char* kind =
       Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
 
-  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+  /// As a function of its own it would be handed the scene in local memory.
+  PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const PathPool& pool = context.pool;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
     ++path.rays;
-    const Scattering scattering =
-        scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
+    Scattering scattering;
+    if constexpr (in_steps) {
+      scattering = Traits::Integrator::template surface<Traits>(
+          scene, ray, pool.load_hit(slot), path, context.limits,
+          StoredSteps<Source>{context, path, slot});
+    } else {
+      scattering =
+          scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
+    }
     const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
-    if (shadow) pool.store_shadow(slot, scattering.shadow, path);
+    if (shadow && !in_steps) pool.store_shadow_ray(slot, scattering.shadow, path);
+    if (shadow) pool.store_shadow_radiance(slot, scattering.shadow.radiance, path);
     if (!scattering.alive) {
       end_path(context.samples, path, scattering.emitted, has_lights);
       return {free_slot, shadow};

@@ -153,6 +153,7 @@ inline bool fuses_stages(const Options& options, const SceneTraits& traits) {
 //   run(stage, queues)       a stage over its slots, a thread for each
 //   kinds_have_kernels       whether it has a kernel for each kind of BSDF; else the one for all
 //                            shades their ranges
+//   shades_in_steps          whether it is short of registers (StoredSteps)
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
 //   traces_queues_here()     in this very one;
@@ -188,6 +189,14 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
 }
 
+/// Surfaces by one kernel, in steps where that pays.
+template <class Shading, Branching branching, class Source, class Executor>
+void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
+                       const StageQueues& surfaces) {
+  constexpr bool in_steps = Executor::shades_in_steps && Shading::lighting == Lighting::full;
+  execute.run(ShadeSurface<Shading, branching, Source, in_steps>{context}, surfaces);
+}
+
 /// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can
 /// tell the kind. `surfaces`: their ordered queue.
 template <class Shading, class Source, class Executor>
@@ -198,7 +207,7 @@ void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext
     if ((b.kinds >> k & 1) == 0) return;
     StageQueues range = surfaces;
     range.first = &b.counters->kinds.first[k], range.count = &b.counters->kinds.count[k];
-    execute.run(ShadeSurface<Kind, Branching::divergent, Source>{context}, range);
+    shade_surfaces_by<Kind, Branching::divergent>(execute, context, range);
   };
   for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
     using Kind = std::conditional_t<Executor::kinds_have_kernels, OneKind<Shading, Bsdf>, Shading>;
@@ -220,7 +229,7 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
   if constexpr (Shading::lighting == Lighting::full) {
     if (b.shades_by_kind) return shade_each_kind<Shading>(execute, b, context, surfaces);
   }
-  execute.run(ShadeSurface<Shading, branching, Source>{context}, surfaces);
+  shade_surfaces_by<Shading, branching>(execute, context, surfaces);
 }
 
 /// Markov chains whose paths have ended take their steps and begin the next ones, which wait for

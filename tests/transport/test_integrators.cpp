@@ -111,6 +111,7 @@ struct Executor {
   bool more = true;
 
   static constexpr bool kinds_have_kernels = false;
+  static constexpr bool shades_in_steps = false;
   template <class>
   static constexpr bool traces_queues = false;
 

@@ -36,7 +36,7 @@ using StageBlocks = std::array<int, stage_count>;  ///< threads per block, by St
 constexpr StageBlocks default_stage_blocks() {
   StageBlocks blocks{};
   for (int& block : blocks) block = 256;
-  blocks[static_cast<std::size_t>(StageId::shade_surface)] = 512;
+  blocks[static_cast<std::size_t>(StageId::shade_surface)] = 640;
   return blocks;
 }
 

@@ -30,6 +30,14 @@ struct PathIntegrator {
                                   const Vec4& light) {
     return shade_surface<Traits>(scene, ray, hit, path, limits, scatter, light);
   }
+
+  /// The same in steps (surface_steps.h), for schedules that are short of registers: where
+  /// Executor::shades_in_steps, an integrator has it, too.
+  template <class Traits, class Steps>
+  PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathLimits& limits, const Steps& steps) {
+    return shade_surface<Traits>(scene, ray, hit, path, limits, steps);
+  }
 };
 
 }  // namespace pt

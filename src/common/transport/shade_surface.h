@@ -10,6 +10,7 @@
 #include "common/transport/resolve_material.h"
 #include "common/transport/sample_direction.h"
 #include "common/transport/sample_light.h"
+#include "common/transport/surface_steps.h"
 
 namespace pt {
 
@@ -18,7 +19,7 @@ struct Scattering {
   bool alive = false;
   Ray ray;
   Color emitted = Color(0.0f);  ///< to be added to the path's sample
-  ShadowRay shadow;             ///< to be traced unless its radiance is black
+  ShadowRay shadow;             ///< to be traced unless its radiance is black; see DrawnSteps::aims
 };
 
 /// For whom the lights are asked.
@@ -63,15 +64,32 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
           radiance};
 }
 
-/// What a light, sampled as seen from `from`, contributes directly (next-event estimation), given
-/// what the BSDF says of its direction.
+/// What a sampled light contributes directly (next-event estimation), given what the BSDF says of
+/// its direction.
+PT_HD Color direct_radiance(const PathState& path, const IncidentLight& light,
+                            const BsdfValue& value, MisHeuristic mis) {
+  if (light.pdf <= 0.0f || is_black(value.f)) return Color(0.0f);
+  const float weight = light.is_delta ? 1.0f : light_weight(mis, light.pdf, value.pdf);
+  return path.beta * value.f * light.radiance * divide(weight, light.pdf);
+}
+
+/// The same as a question to the light, which was sampled as seen from `from`.
 template <class Traits>
 PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const Vec3& from,
                           const IncidentLight& light, const BsdfValue& value, MisHeuristic mis) {
   if (light.pdf <= 0.0f || is_black(value.f)) return {};
-  const float weight = light.is_delta ? 1.0f : light_weight(mis, light.pdf, value.pdf);
   return spawn_shadow_ray<Traits>(surface.point, from, light,
-                                  path.beta * value.f * light.radiance * divide(weight, light.pdf));
+                                  direct_radiance(path, light, value, mis));
+}
+
+/// Tells `steps` where the light's shadow ray goes; a light without one gives nothing.
+template <class Traits, class Steps>
+PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& from,
+                        IncidentLight& light) {
+  if (light.pdf <= 0.0f) return;
+  const ShadowRay shadow = spawn_shadow_ray<Traits>(surface.point, from, light, Color(1.0f));
+  if (is_black(shadow.radiance)) light.pdf = 0.0f;
+  steps.aim(shadow);
 }
 
 /// Around the shading normal, along dp_du where the material needs that.
@@ -81,13 +99,13 @@ PT_HD Frame shading_frame(const Vec3& normal, const Vec3& dp_du) {
   return make_frame(normal);
 }
 
-/// `path.rays` counts the ray that hit. `scatter` and `light` are the blocks of random numbers of
-/// that name (random.h); `light` is not read in a scene without lights. Updates the path's
-/// throughput, density and counts. A path ends when it is absorbed, has traced all of its rays or
-/// loses at Russian roulette, which `scatter.w` decides.
-template <class Traits>
+/// `path.rays` counts the ray that hit. `steps`: see surface_steps.h; steps.light() is not called
+/// in a scene without lights. Updates the path's throughput, density and counts. A path ends when
+/// it is absorbed, has traced all of its rays or loses at Russian roulette, which scatter().w
+/// decides.
+template <class Traits, class Steps>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                               const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
+                               const PathLimits& limits, const Steps& steps) {
   constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
   // The paper's kernels stay lean: what they cannot do is done by the others (scene_options.h).
   const MisHeuristic mis = full ? limits.mis : MisHeuristic::power;
@@ -96,10 +114,12 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Surface surface = surface_at<Traits>(scene, ray, hit);
   Scattering result;
   if constexpr (has_lights) {
-    result.emitted = emitted_radiance<Traits>(scene, ray, hit, path, surface, mis);
+    result.emitted = steps.emit(emitted_radiance<Traits>(scene, ray, hit, path, surface, mis));
   }
   if (path.rays >= limits.max_depth) return result;
-  float choice = scatter.w;
+  float choice = 0.0f;
+  const bool is_nested = full && surface.material.is(Material::nested);
+  if (is_nested) choice = steps.scatter().w;
   if constexpr (full) resolve_material(scene, -ray.direction, choice, surface);
   if (full && surface.material.is(Material::one_sided) &&
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
@@ -113,8 +133,11 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if (asks) {
     lanes_of(ray).count(LanePoint::light);
     if (!full || scene.light_selector.has_tree()) path.receiver = receiver_of<Traits>(surface, ray);
-    incident = sample_light<Traits>(scene, from, path.receiver, light);
+    incident = sample_light<Traits>(scene, from, path.receiver, steps.light());
+    if constexpr (Steps::aims) aim_at_light<Traits>(steps, surface, from, incident);
   }
+  const Vec4 scatter = steps.scatter();
+  if (!is_nested) choice = scatter.w;
   const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);
   BsdfSample next;
   BsdfValue value;
@@ -140,7 +163,11 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   }
   if constexpr (has_lights) {
     path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
-    result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
+    if constexpr (Steps::aims) {
+      result.shadow.radiance = direct_radiance(path, incident, value, mis);
+    } else {
+      result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
+    }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
@@ -150,6 +177,12 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   result.ray = spawn_ray(surface.point, normalize(wi));
   set_lanes(result.ray, lanes_of(scene).at(path.rays));
   return result;
+}
+
+template <class Traits>
+PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
+                               const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
+  return shade_surface<Traits>(scene, ray, hit, path, limits, DrawnSteps{scatter, light});
 }
 
 }  // namespace pt
