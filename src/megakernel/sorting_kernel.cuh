@@ -23,14 +23,15 @@ __global__ void __launch_bounds__(sorting_threads, 1)
     sorting_megakernel(const __grid_constant__ Scene scene,
                        const __grid_constant__ SampleBuffer batch,
                        const __grid_constant__ SamplerSource source,
-                       const __grid_constant__ PathLimits limits, std::uint32_t* next_path,
-                       PathSlot* slots, StageClock* clock) {
+                       const __grid_constant__ PathLimits limits,
+                       const __grid_constant__ PathShare paths, PathSlot* slots,
+                       StageClock* clock) {
   using Memory = BlockMemory<Traits>;
   extern __shared__ uint4 sorting_memory[];
   stamp_first_thread(clock, StageId::megakernel);
   uint2 stack[sorting_stack_size];
   SortingTracer<Traits, SamplerSource, Memory> tracer(
-      scene, source, batch, limits, next_path, *reinterpret_cast<Memory*>(sorting_memory),
+      scene, source, batch, limits, paths, *reinterpret_cast<Memory*>(sorting_memory),
       slots + static_cast<std::size_t>(blockIdx.x) * Memory::slot_count, stack);
   tracer.run();
 }
@@ -52,9 +53,11 @@ void MegakernelCuda::allocate_slots() {
 
 template <bool has_masks>
 void MegakernelCuda::launch_sorting(const SamplerSource& source, const SampleBuffer& batch) {
-  launch("megakernel", sorting_megakernel<SortingTraits<has_masks>>, sorting_blocks<has_masks>(),
-         sorting_threads, sizeof(BlockMemory<SortingTraits<has_masks>>), scene_, batch, source,
-         limits_, next_path_, slots_, clock());
+  const std::uint32_t blocks = sorting_blocks<has_masks>();
+  const PathShare paths{next_path_, (batch.path_count + blocks - 1) / blocks};
+  launch("megakernel", sorting_megakernel<SortingTraits<has_masks>>, blocks, sorting_threads,
+         sizeof(BlockMemory<SortingTraits<has_masks>>), scene_, batch, source, limits_, paths,
+         slots_, clock());
 }
 
 }  // namespace pt

@@ -31,6 +31,12 @@ struct SortingTuning {
   static constexpr int pausing = 12;  ///< lanes of 32 for whose rays a phase does not wait
 };
 
+/// How blocks share the paths of a batch.
+struct PathShare {
+  std::uint32_t* next;    ///< paths that have been taken
+  std::uint32_t at_once;  ///< that a block may take: else the first ones would take small batches
+};
+
 /// A lane of a block. Traits: of triangles alone.
 template <class Traits>
 using SortingLane = CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>>;
@@ -62,10 +68,10 @@ struct SortingMemory {
   Shadow shadow[slot_count];
   std::uint32_t ray_end;  ///< of `rays`, while it is filled
   std::uint32_t ray_count, next_ray;
-  std::uint32_t free_end;                            ///< of `free_slots`
-  std::uint32_t start_count, start_ray, first_path;  ///< of the slots that get a path
-  std::uint32_t paused;                              ///< lanes
-  bool has_ended;                                    ///< no path is left
+  std::uint32_t free_end;                                        ///< of `free_slots`
+  std::uint32_t start_count, first_free, start_ray, first_path;  ///< of the slots that get a path
+  std::uint32_t paused;                                          ///< lanes
+  bool has_ended;                                                ///< no path is left
   std::uint32_t next_shaded;
   std::uint32_t counts[class_count], first[class_count];  ///< of the slots to be shaded, by class
 };
@@ -170,18 +176,18 @@ struct BlockRays {
 inline constexpr int sorting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
 
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
-/// are opened anew for each draw; `next_path` counts the paths that blocks have taken.
+/// are opened anew for each draw.
 template <class Traits, class Source, class Memory>
 class SortingTracer {
  public:
   __device__ SortingTracer(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                           const PathLimits& limits, std::uint32_t* next_path, Memory& memory,
+                           const PathLimits& limits, const PathShare& paths, Memory& memory,
                            PathSlot* slots, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
         limits_(limits),
-        next_path_(next_path),
+        paths_(paths),
         memory_(memory),
         warp_(memory.tracing.warps[threadIdx.x / 32]),
         slots_(slots),
@@ -229,7 +235,8 @@ class SortingTracer {
     __syncthreads();
     const std::uint32_t count = memory_.start_count;
     for (std::uint32_t i = threadIdx.x; i < count; i += blockDim.x) {
-      const std::uint32_t slot = memory_.free_slots[i], number = memory_.first_path + i;
+      const std::uint32_t slot = memory_.free_slots[memory_.first_free + i];
+      const std::uint32_t number = memory_.first_path + i;
       const bool exists = number < samples_.path_count;
       memory_.path[slot] = exists ? Path::ray : Path::none;
       if (!exists) continue;
@@ -241,17 +248,20 @@ class SortingTracer {
     return goes_on;
   }
 
-  /// By one thread: as many paths as slots are free, as far as there are paths.
+  /// By one thread: as many paths as slots are free, or as one block may take at once. When there
+  /// are no more, nobody asks for slots that are left.
   __device__ void take_paths() {
-    const std::uint32_t count = memory_.free_end, all = samples_.path_count;
-    const std::uint32_t first = count > 0 ? atomicAdd(next_path_, count) : all;
+    const std::uint32_t count = min(memory_.free_end, paths_.at_once), all = samples_.path_count;
+    const std::uint32_t first = count > 0 ? atomicAdd(paths_.next, count) : all;
+    const std::uint32_t left = first < all ? all - first : 0;
     memory_.first_path = first;
     memory_.start_count = count;
+    memory_.first_free = memory_.free_end - count;
+    memory_.free_end = count < left ? memory_.first_free : 0;
     memory_.start_ray = memory_.ray_end;
-    memory_.ray_count = memory_.ray_end + (first < all ? min(count, all - first) : 0);
+    memory_.ray_count = memory_.ray_end + min(count, left);
     memory_.has_ended = memory_.ray_count == 0 && memory_.paused == 0;
-    memory_.next_ray = memory_.next_shaded = memory_.free_end = memory_.ray_end = 0;
-    memory_.paused = 0;
+    memory_.next_ray = memory_.next_shaded = memory_.ray_end = memory_.paused = 0;
   }
 
   __device__ void start_path(PathSlot& slot, std::uint32_t number) {
@@ -399,7 +409,7 @@ class SortingTracer {
   const Source& source_;
   const SampleBuffer& samples_;
   const PathLimits& limits_;
-  std::uint32_t* next_path_;
+  const PathShare& paths_;
   Memory& memory_;
   PersistentWarp<Lane>& warp_;
   PathSlot* slots_;

@@ -34,17 +34,18 @@ class SortedPaths {
 
   /// What a grid of blocks does, one after the other; later ones may find nothing left.
   template <class Traits>
-  void sort(int blocks) {
+  void sort(int blocks, std::uint32_t at_once) {
     using Memory = SortingMemory<SortingLane<Traits>, threads>;
     const auto memory = std::make_unique<Memory>();
     std::vector<PathSlot> slots(Memory::slot_count);
     std::uint32_t next_path = 0;
+    const PathShare paths{&next_path, at_once};
     for (int i = 0; i < blocks; ++i) {
       std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
       EmulatedBlock(threads).run([&] {
         uint2 stack[sorting_stack_size];
-        SortingTracer<Traits, SamplerSource, Memory> tracer(
-            scene_, source_, batch_, limits_, &next_path, *memory, slots.data(), stack);
+        SortingTracer<Traits, SamplerSource, Memory> tracer(scene_, source_, batch_, limits_, paths,
+                                                            *memory, slots.data(), stack);
         tracer.run();
       });
     }
@@ -110,7 +111,7 @@ TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   ASSERT_EQ(scene.traits, Traits::value());
   SortedPaths paths(scene, options);
-  paths.sort<Traits>(2);
+  paths.sort<Traits>(2, 100);
   paths.expect_what_each_gets_alone<Traits>();
 }
 
@@ -120,7 +121,7 @@ TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
   prepare_scene(scene, options);
   ASSERT_TRUE(scene.traits.has_masks);
   SortedPaths paths(scene, options);
-  paths.sort<SortingTraits<true>>(1);
+  paths.sort<SortingTraits<true>>(1, 31 * 23 * 2);
   paths.expect_what_each_gets_alone<SortingTraits<true>>();
 }
 
