@@ -4,7 +4,7 @@
 
 // The emulation comes before what it emulates.
 // clang-format off
-#include "emulated_warps.h"
+#include "emulated_gpu.h"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
 // clang-format on
@@ -75,8 +75,8 @@ class CountingLane {
 /// The rays that all warps share.
 struct SharedRays {
   std::uint32_t count = 0, next = 0;
-  std::vector<std::atomic<int>> finished;
-  std::atomic<int> wrong = 0;
+  std::vector<int> finished;
+  int wrong = 0;
 
   explicit SharedRays(std::uint32_t n) : count(n), finished(n) {}
 };
@@ -105,7 +105,7 @@ template <int warps>
 void trace(SharedRays& rays) {
   const TriangleTree tree;
   const auto memory = std::make_unique<PersistentMemory<CountingLane, 32 * warps>>();
-  run_emulated_block(warps, [&] {
+  EmulatedBlock(32 * warps).run([&] {
     CountedWork work{rays};
     trace_persistent<CountingLane>(tree, *memory, work);
   });
@@ -132,7 +132,7 @@ TEST(PersistentWarps, ReserveEachRayOnce) {
   for (const std::uint32_t count : {0u, 1u, 33u, 5000u}) {
     SharedRays rays(count);
     ReservedRays reserved[3] = {};
-    run_emulated_block(3, [&] {
+    EmulatedBlock(96).run([&] {
       const unsigned lane = threadIdx.x % 32;
       for (int got = 1; got > 0;) {
         const std::uint32_t first =

@@ -143,6 +143,7 @@ class EmulatedBlock {
 
 #define threadIdx (pt::EmulatedBlock::current().thread())
 #define blockDim (pt::EmulatedBlock::current().size())
+#define gridDim (pt::EmulatedBlock::Place{1})
 
 // What CUDA has, by its names.
 using std::max;
