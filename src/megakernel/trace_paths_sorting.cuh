@@ -15,6 +15,7 @@
 // same, bit for bit.
 #pragma once
 
+#include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/device/counting_sort.cuh"
 #include "common/film/film.h"
