@@ -6,7 +6,8 @@ The scene `dial:K:C:F` has K materials with coherence C (0 noise, 1 stripes), op
 ordered by kind, a kernel for each kind) is compared with the megakernel, which keeps its
 default work and block; `ratio` is the megakernel's time divided by the variant's, so the crossover
 is where it passes 1. All trace the same structure (--accel), so that shading makes the difference,
-but for the megakernel whose warps vote, which exists for wide trees on CUDA alone.
+but for three that exist on CUDA alone, with wide trees: the megakernel whose warps vote, the one
+whose blocks sort, and the wavefront with its persistent warps, which are both sides at their best.
 First, images of all variants are compared: they must be equal bit for bit.
 """
 import math
@@ -19,13 +20,15 @@ from image_check import with_options
 FIGURES = ["open", "closed"]
 MATERIALS = [1, 2, 4, 8, 16, 32]
 COHERENCES = [0, 0.5, 1]
-BASE, VOTING = "megakernel", "voting megakernel"
+BASE = "megakernel"
 VARIANTS = {
     BASE: "--mode megakernel",
-    VOTING: "--mode megakernel --accel cwbvh --kernel vote",
+    "voting megakernel": "--mode megakernel --accel cwbvh --kernel vote",
+    "sorting megakernel": "--mode megakernel --accel cwbvh --kernel sort",
     "uber": "--mode wavefront --shade uber",
     "uber, sorted": "--mode wavefront --shade uber --compaction sort",
     "by material": "--mode wavefront --shade material",
+    "wide tree": "--mode wavefront --accel cwbvh",
 }
 DEPTH = 8
 # A ratio is lowest if the base is as fast and the row as slow as they may be: wider than need be.
@@ -66,7 +69,7 @@ def configurations(arguments, device):
         scene = f"dial:{materials}:{coherence}:{figure}"
         image = image_of(scene, size, spp, arguments)
         for variant, options in VARIANTS.items():
-            if variant == VOTING and device.kind != "cuda":
+            if "cwbvh" in options and device.kind != "cuda":
                 continue
             is_base = variant == BASE  # in no plot: the others are drawn relative to it
             rows.append(Configuration(
