@@ -30,13 +30,6 @@ INSTANTIATE_TEST_SUITE_P(By, BruteBlocks,
                                          LaneKind{"avx512", brute_block_avx512}),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
-void expect_hit(const HitBlock& hits, std::uint32_t i, const Hit& expected) {
-  ASSERT_EQ(hits.primitive[i], expected.primitive) << "ray " << i;
-  if (!expected.is_miss()) {
-    ASSERT_EQ(float_to_bits(hits.t[i]), float_to_bits(expected.t)) << "ray " << i;
-  }
-}
-
 TEST_P(BruteBlocks, MeetTheSameSpheresAndQuads) {
   int hits_found = 0, occluded_found = 0;
   for (const SceneKind& kind : scene_kinds) {

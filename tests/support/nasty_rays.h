@@ -2,6 +2,8 @@
 // or 0, and without a direction.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <limits>
 
 #include "common/accel/ray_block.h"
@@ -35,6 +37,14 @@ inline Ray make_nasty(Ray ray, TestRandom& random) {
 /// the plain test read one of those that fill the last group up, and which are not there.
 inline void fill_scan_groups(SceneData& scene) {
   while (scene.spheres.size() % scan_group != 0) scene.add_sphere({0, 900, 0}, 1, 0);
+}
+
+/// Ray i of a block has met what it meets alone.
+inline void expect_hit(const HitBlock& hits, std::uint32_t i, const Hit& expected) {
+  ASSERT_EQ(hits.primitive[i], expected.primitive) << "ray " << i;
+  if (!expected.is_miss()) {
+    ASSERT_EQ(float_to_bits(hits.t[i]), float_to_bits(expected.t)) << "ray " << i;
+  }
 }
 
 /// Blocks of 1 to 32 rays of make(random), a third of them nasty, each with a t_max that may be

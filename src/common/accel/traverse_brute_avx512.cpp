@@ -15,27 +15,11 @@ bool has_avx512() {
          __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
 }
 
-PT_LANES void closest_primitives(const Primitives& primitives, const RayBlock& rays,
-                                 HitBlock& hits) {
-  closest_primitives_lanes<Lanes16>(primitives, rays, hits);
-}
-PT_LANES std::uint32_t any_primitive(const Primitives& primitives, const RayBlock& rays) {
-  return any_primitives_lanes<Lanes16>(primitives, rays);
-}
-PT_LANES void closest_triangles(const TriangleTree& tree, const RayBlock& rays, HitBlock& hits) {
-  closest_triangles_lanes<Lanes16>(tree, rays, hits);
-}
-PT_LANES std::uint32_t any_triangle(const TriangleTree& tree, const RayBlock& rays) {
-  return any_triangles_lanes<Lanes16>(tree, rays);
-}
-
 }  // namespace
 
 const BruteBlock* brute_block_avx512() {
-  static constexpr BruteBlock lanes = {closest_primitives, any_primitive, closest_triangles,
-                                       any_triangle};
   static const bool has = has_avx512();
-  return has ? &lanes : nullptr;
+  return has ? &brute_block_by<Lanes16> : nullptr;
 }
 
 #else

@@ -303,6 +303,10 @@ PT_LANES inline std::uint32_t any_triangles_lanes(const TriangleTree& tree, cons
   return found;
 }
 
+template <class L>
+inline constexpr BruteBlock brute_block_by = {closest_primitives_lanes<L>, any_primitives_lanes<L>,
+                                              closest_triangles_lanes<L>, any_triangles_lanes<L>};
+
 }  // namespace pt
 
 #endif

@@ -10,25 +10,15 @@ namespace {
 template <Accel accel, Geometry geometry>
 using Plain = Traits<accel, geometry, Lighting::sky>;
 
-// What no block is made for: instances, and brute force on a processor without lanes.
-Hit closest_alone(const BlockTraits& traits, const Scene& scene, const Ray& ray) {
+// What no block is made for: instances, and brute force on a processor without lanes. Calls
+// function(traits) with the traits of one ray.
+template <class Function>
+auto alone(const BlockTraits& traits, Function&& function) {
   if (traits.geometry == Geometry::spheres_and_quads) {
-    return intersect_closest<Plain<Accel::brute, Geometry::spheres_and_quads>>(scene, ray);
+    return function(Plain<Accel::brute, Geometry::spheres_and_quads>{});
   }
-  if (traits.accel == Accel::brute) {
-    return intersect_closest<Plain<Accel::brute, Geometry::mixed>>(scene, ray);
-  }
-  return intersect_closest<Plain<Accel::cwbvh_avx2, Geometry::mixed>>(scene, ray);
-}
-
-bool shadow_alone(const BlockTraits& traits, const Scene& scene, const ShadowRay& shadow) {
-  if (traits.geometry == Geometry::spheres_and_quads) {
-    return intersect_shadow<Plain<Accel::brute, Geometry::spheres_and_quads>>(scene, shadow);
-  }
-  if (traits.accel == Accel::brute) {
-    return intersect_shadow<Plain<Accel::brute, Geometry::mixed>>(scene, shadow);
-  }
-  return intersect_shadow<Plain<Accel::cwbvh_avx2, Geometry::mixed>>(scene, shadow);
+  if (traits.accel == Accel::brute) return function(Plain<Accel::brute, Geometry::mixed>{});
+  return function(Plain<Accel::cwbvh_avx2, Geometry::mixed>{});
 }
 
 // Spheres beside triangles are in a tree.
@@ -45,7 +35,9 @@ void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayB
                              Hit* hits) {
   if (!has_block(traits, scene)) {
     for (std::uint32_t i = 0; i < rays.count; ++i) {
-      hits[i] = closest_alone(traits, scene, rays.ray(i));
+      hits[i] = alone(traits, [&](auto plain) {
+        return intersect_closest<decltype(plain)>(scene, rays.ray(i));
+      });
     }
     return;
   }
@@ -81,7 +73,9 @@ std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& sce
   if (!has_block(traits, scene)) {
     for (std::uint32_t i = 0; i < rays.count; ++i) {
       const ShadowRay shadow = {rays.ray(i), rays.t_max[i]};
-      occluded |= (shadow_alone(traits, scene, shadow) ? 1u : 0u) << i;
+      const bool is_occluded = alone(
+          traits, [&](auto plain) { return intersect_shadow<decltype(plain)>(scene, shadow); });
+      occluded |= (is_occluded ? 1u : 0u) << i;
     }
     return occluded;
   }
