@@ -39,7 +39,6 @@ TEST_P(BruteBlocks, MeetTheSameSpheresAndQuads) {
       scene.add_material(MaterialDescription());
       TestRandom random(static_cast<std::uint64_t>(count));
       kind.fill(scene, random, count);
-      fill_scan_groups(scene);
       Options options;
       options.accel = AccelKind::brute;
       prepare_scene(scene, options);

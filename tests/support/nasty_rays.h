@@ -33,12 +33,6 @@ inline Ray make_nasty(Ray ray, TestRandom& random) {
   return ray;
 }
 
-/// Spheres far away up to a multiple of scan_group: with others a ray that is no number may make
-/// the plain test read one of those that fill the last group up, and which are not there.
-inline void fill_scan_groups(SceneData& scene) {
-  while (scene.spheres.size() % scan_group != 0) scene.add_sphere({0, 900, 0}, 1, 0);
-}
-
 /// Ray i of a block has met what it meets alone.
 inline void expect_hit(const HitBlock& hits, std::uint32_t i, const Hit& expected) {
   ASSERT_EQ(hits.primitive[i], expected.primitive) << "ray " << i;

@@ -53,7 +53,6 @@ using Rays = Traits<accel, geometry, Lighting::sky>;
 
 TEST(IntersectBlock, MeetsTheSameSpheresAndQuads) {
   SceneData scene = make_random_scene(scene_kinds[2], 40);
-  fill_scan_groups(scene);
   expect_same_hits<Rays<Accel::brute, Geometry::spheres_and_quads>>(scene, AccelKind::brute);
 }
 

@@ -69,7 +69,9 @@ PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t first,
     lanes_of(ray).count(LanePoint::primitive);
     const int j = count_leading_zeros(candidates);
     candidates &= ~(0x80000000u >> j);
-    if (visit(sphere_distance(load_wide(&primitives.spheres[first + j]), ray), first + j)) {
+    const std::uint32_t primitive = first + j;
+    if (primitive >= primitives.sphere_count) return false;  // a ray that is NaN meets fillers, too
+    if (visit(sphere_distance(load_wide(&primitives.spheres[primitive]), ray), primitive)) {
       return true;
     }
   }
