@@ -15,7 +15,7 @@ MODES = ["megakernel", "wavefront"]
 # scene, width, height, samples, depth: the paper's images, then scenes of quads and triangles
 BUILT_IN = [("spheres", 600, 300, 50, 50), ("spheres", 2400, 1200, 50, 50),
             *((scene, 1024, 1024, 64, 8) for scene in (
-                "cornell", "statue:1M", "terrain", "boxes", "instances:10K", "instances:1M",
+                "cornell", "statue:1M", "terrain:1M", "boxes", "instances:10K", "instances:1M",
                 "dial:16:0:closed"))]
 
 
