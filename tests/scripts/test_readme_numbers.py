@@ -7,18 +7,18 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "results" / "nvidia-h200"
 
-PAPER = "--scene spheres --width 600 --height 300 --spp 50"
-STATUE = "--scene statue:1M --width 1024 --height 1024 --max-depth 8 --spp 64"
+PAPER, STATUE = "spheres 600x300", "statue:1M 1024x1024"
 # What README.md says, with the number's place and format; table, row and column of the number, and
 # what the column is multiplied with.
 NUMBERS = [
-    ("takes the megakernel {:.1f} ms", "by_itself", f"{PAPER} --mode megakernel", "kernel_ms", 1),
-    ("the wavefront {:.1f} ms", "by_itself", f"{PAPER} --mode wavefront", "kernel_ms", 1),
+    ("takes the megakernel {:.1f} ms", "by_itself", f"{PAPER}: megakernel", "kernel_ms_median", 1),
+    ("the wavefront {:.1f} ms", "by_itself", f"{PAPER}: wavefront", "kernel_ms_median", 1),
     ("one CPU thread needs {:.1f} s for 100 samples", "image_size", "serial, CPU 600x300",
      "image_ms_median", 1e-3),
     ("{:.0f} million paths a second in the megakernel", "by_itself",
-     f"{STATUE} --mode megakernel", "mpaths_per_s", 1),
-    ("{:.0f} million paths a second in the wavefront", "by_itself", STATUE, "mpaths_per_s", 1),
+     f"{STATUE}: megakernel", "mpaths_per_s", 1),
+    ("{:.0f} million paths a second in the wavefront", "by_itself", f"{STATUE}: wavefront",
+     "mpaths_per_s", 1),
     *[(text, "ladder", f"{scene}: {rung}", "kernel_ms_median", 1) for text, scene, rung in [
         ("16 materials takes {:.1f} ms in the plain", "dial:16:0:closed", "1 megakernel"),
         ("{:.1f} ms in one whose blocks sort", "dial:16:0:closed", "0 megakernel at its best"),
