@@ -250,7 +250,7 @@ PT_HD float sum_of_products(float a, float b, float c, float d, float e, float f
 PT_HD bool differ_in_sign(float a, float b, float c) {
 #ifdef __CUDA_ARCH__
   const int i = __float_as_int(a), j = __float_as_int(b), k = __float_as_int(c);
-  return __vimin3_s32(i, j, k) < 0 && __vimax3_s32(i, j, k) > 0;
+  return (__vimin3_s32(i, j, k) < 0) & (__vimax3_s32(i, j, k) > 0);  // && makes bytes of both
 #else
   const float least = a < b ? (a < c ? a : c) : (b < c ? b : c);
   const float most = a > b ? (a > c ? a : c) : (b > c ? b : c);

@@ -92,14 +92,11 @@ struct QueuedShadowRays {
   }
 };
 
-inline constexpr int trace_block = 128;
-inline constexpr int trace_blocks_least = 8;  ///< per multiprocessor: 64 registers for a thread
-
 template <class Lane, class Rays>
-__global__ void __launch_bounds__(trace_block, trace_blocks_least)
+__global__ void __launch_bounds__(persistent_block<Lane>, persistent_blocks_least<Lane>)
     trace_rays_of_queue(const __grid_constant__ TriangleTree tree,
                         const __grid_constant__ Rays rays, StageId stage, StageClock* clock) {
-  __shared__ PersistentMemory<Lane, trace_block> memory;
+  __shared__ PersistentMemory<Lane, persistent_block<Lane>> memory;
   stamp_first_thread(clock, stage);
   if (*rays.rays.queues.count == 0) return;
   trace_persistent<Lane>(tree, memory, rays);

@@ -21,9 +21,9 @@ template <class Lane, class Rays>
 void WavefrontCuda::run_persistent(const Rays& rays, StageId stage) {
   constexpr auto kernel = trace_rays_of_queue<Lane, Rays>;
   const std::uint32_t blocks =
-      resident_blocks(reinterpret_cast<const void*>(kernel), trace_block, 0);
-  launch(stage_info(stage).name.data(), kernel, blocks, trace_block, 0, scene_.triangles, rays,
-         stage, clock());
+      resident_blocks(reinterpret_cast<const void*>(kernel), persistent_block<Lane>, 0);
+  launch(stage_info(stage).name.data(), kernel, blocks, persistent_block<Lane>, 0, scene_.triangles,
+         rays, stage, clock());
 }
 
 void WavefrontCuda::trace_queue(const StageQueues& queues, const SampleBuffer& samples) {

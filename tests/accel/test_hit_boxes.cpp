@@ -2,12 +2,24 @@
 // admits and this machine's rounding does not make.
 #include <gtest/gtest.h>
 
+// The emulation comes before what it emulates.
+// clang-format off
+#include "emulated_gpu.h"
+#include "common/accel/trace_cuda/cwbvh_step.cuh"
+// clang-format on
 #include "common/accel/build/encode_cwbvh.h"
 #include "hard_hits.h"
 #include "tree_kinds.h"
 
 namespace pt {
 namespace {
+
+/// What the GPU's step misses of the children there are.
+std::uint32_t missed_by_step(const CwbvhNode& node, const CwbvhRay& ray, float t) {
+  const NearPlanes planes = select_near_planes(ray.inverse);
+  return missed_slots(load_cwbvh_words(&node), ray.origin, ray.inverse, planes, t) &
+         node.used_mask();
+}
 
 /// The ray visits the box of a triangle that it meets at `t`, in both kinds of nodes, although all
 /// behind is pruned already. A sibling's box decides where the wide node's grid lies.
@@ -23,8 +35,12 @@ testing::AssertionResult visits(const Triangle& v, const Ray& ray, float t, Test
   children.bounds[0] = own, children.bounds[1] = other;
   children.triangles[0] = children.triangles[1] = 1;
   const CwbvhNode node = encode_cwbvh_node(children, assign_cwbvh_slots(children), 0, 0);
-  if (intersect_cwbvh_node(node, make_cwbvh_ray(ray), 0.0f, t) != node.used_mask()) {
+  const CwbvhRay wide = make_cwbvh_ray(ray);
+  if (intersect_cwbvh_node(node, wide, 0.0f, t) != node.used_mask()) {
     return testing::AssertionFailure() << "cwbvh, t " << t;
+  }
+  if (missed_by_step(node, wide, t) != 0) {
+    return testing::AssertionFailure() << "cwbvh on CUDA, t " << t;
   }
   return testing::AssertionSuccess();
 }
@@ -90,6 +106,30 @@ TEST(HitError, NoBoxHidesWhatTheBoundAdmits) {
     }
   }
   EXPECT_GT(tested, 30000);
+}
+
+/// And none is visited for nothing: where the CPU's test misses a box by more than tolerances, so
+/// does the GPU's step.
+TEST(HitError, StepsOnCudaVisitWhatTheCpuVisits) {
+  TestRandom random(83);
+  int missed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    CwbvhChildren children;
+    children.count = cwbvh_width;
+    for (int c = 0; c < cwbvh_width; ++c) {
+      const Vec3 low = Vec3(random.unit(), random.unit(), random.unit());
+      children.bounds[c] = {low, low + 0.3f * Vec3(random.unit(), random.unit(), random.unit())};
+      children.triangles[c] = 1;
+    }
+    const CwbvhNode node = encode_cwbvh_node(children, assign_cwbvh_slots(children), 0, 0);
+    const Vec3 from = 3.0f * Vec3(random.direction());
+    const CwbvhRay ray = make_cwbvh_ray(ray_to(from, children.bounds[0].center()));
+    const std::uint32_t near = missed_by_step(node, ray, 4.0f);
+    const std::uint32_t far = ~intersect_cwbvh_node(node, ray, 0.0f, 4.0f) & node.used_mask();
+    EXPECT_LE(std::popcount(near ^ far), 1) << i;
+    missed += std::popcount(near);
+  }
+  EXPECT_GT(missed, 20000);
 }
 
 }  // namespace

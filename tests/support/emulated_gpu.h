@@ -159,6 +159,16 @@ inline float __fmaf_rn(float a, float b, float c) { return std::fma(a, b, c); }
 inline std::uint32_t __funnelshift_l(std::uint32_t low, std::uint32_t high, int shift) {
   return high << shift | low >> (32 - shift);
 }
+/// Byte i is that of x and y, one behind the other, which digit i of `select` names.
+inline std::uint32_t __byte_perm(std::uint32_t x, std::uint32_t y, std::uint32_t select) {
+  const std::uint64_t bytes = std::uint64_t{y} << 32 | x;
+  std::uint32_t result = 0;
+  for (int i = 0; i < 4; ++i) {
+    const std::uint32_t digit = select >> 4 * i & 7u;
+    result |= static_cast<std::uint32_t>(bytes >> 8 * digit & 0xffu) << 8 * i;
+  }
+  return result;
+}
 inline int __vimax3_s32_relu(int a, int b, int c) { return std::max({a, b, c, 0}); }
 inline int __vimin3_s32(int a, int b, int c) { return std::min({a, b, c}); }
 template <class T>

@@ -81,7 +81,9 @@ class ClosestTriangleId {
   static constexpr std::uint32_t no_id = 0xffffffffu;
 
   PT_HD void offer(const MetTriangle& met) {
-    const bool is_nearer = met.t < t_ || (met.t == t_ && met.id < id_ && !is_miss());
+    // As signed numbers, of which no_id is the least.
+    const bool wins_tie = static_cast<std::int32_t>(met.id) < static_cast<std::int32_t>(id_);
+    const bool is_nearer = met.t < t_ || (met.t == t_ && wins_tie);
     if (met.t > t_min_ && is_nearer) t_ = met.t, id_ = met.id;
   }
 

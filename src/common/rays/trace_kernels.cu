@@ -42,10 +42,10 @@ __global__ void __launch_bounds__(block_size, (resident_least<structure, instanc
 }
 
 template <class Lane>
-__global__ void __launch_bounds__(block_size, blocks_least)
+__global__ void __launch_bounds__(persistent_block<Lane>, persistent_blocks_least<Lane>)
     trace_by_persistent_warps(const __grid_constant__ TriangleTree tree,
                               const __grid_constant__ RayArrays arrays) {
-  __shared__ PersistentMemory<Lane, block_size> memory;
+  __shared__ PersistentMemory<Lane, persistent_block<Lane>> memory;
   RayQueue queue(tree, arrays);
   trace_persistent<Lane>(tree, memory, queue);
 }
@@ -101,39 +101,50 @@ Kernel choose_kernel(TraceVariant variant, const TriangleTree& tree) {
                                  : choose_threads<false, Query>(tree);
 }
 
-Kernel choose_persistent(RayType type, const TriangleTree& tree) {
+struct PersistentKernel {
+  Kernel kernel;
+  int block_size;
+};
+
+template <class Lane>
+PersistentKernel persistent_kernel() {
+  return {trace_by_persistent_warps<Lane>, persistent_block<Lane>};
+}
+
+PersistentKernel choose_persistent(RayType type, const TriangleTree& tree) {
   const bool any = type == RayType::any;
   if (tree.instance_count > 0) {
-    return any ? trace_by_persistent_warps<InstancedLane<AnyTriangle>>
-               : trace_by_persistent_warps<InstancedLane<ClosestTriangle>>;
+    return any ? persistent_kernel<InstancedLane<AnyTriangle>>()
+               : persistent_kernel<InstancedLane<ClosestTriangle>>();
   }
-  return any ? trace_by_persistent_warps<CwbvhLane<AnyTriangle>>
-             : trace_by_persistent_warps<CwbvhLane<ClosestTriangleId>>;
+  return any ? persistent_kernel<CwbvhLane<AnyTriangle>>()
+             : persistent_kernel<CwbvhLane<ClosestTriangleId>>();
 }
 
 }  // namespace
 
 int persistent_blocks(RayType type, const TriangleTree& tree) {
-  const void* kernel = reinterpret_cast<const void*>(choose_persistent(type, tree));
+  const auto [kernel, threads] = choose_persistent(type, tree);
   int device = 0, multiprocessors = 0, per_multiprocessor = 0;
   check_cuda(cudaGetDevice(&device), "cudaGetDevice");
   check_cuda(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
              "cudaDeviceGetAttribute");
-  check_cuda(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel, block_size, 0),
-      "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&per_multiprocessor, kernel, threads, 0),
+             "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   return multiprocessors * per_multiprocessor;
 }
 
 void launch_trace(TraceVariant variant, RayType type, const TriangleTree& tree,
                   const RayArrays& rays, int blocks) {
   if (rays.count == 0) return;
-  const bool is_persistent = variant == TraceVariant::persistent;
-  const Kernel kernel = is_persistent          ? choose_persistent(type, tree)
-                        : type == RayType::any ? choose_kernel<AnyTriangle>(variant, tree)
+  if (variant == TraceVariant::persistent) {
+    const auto [kernel, threads] = choose_persistent(type, tree);
+    kernel<<<static_cast<unsigned>(blocks), static_cast<unsigned>(threads)>>>(tree, rays);
+  } else {
+    const Kernel kernel = type == RayType::any ? choose_kernel<AnyTriangle>(variant, tree)
                                                : choose_kernel<ClosestTriangle>(variant, tree);
-  const auto all = (rays.count + block_size - 1) / block_size;
-  kernel<<<is_persistent ? static_cast<unsigned>(blocks) : all, block_size>>>(tree, rays);
+    kernel<<<(rays.count + block_size - 1) / block_size, block_size>>>(tree, rays);
+  }
   check_cuda(cudaGetLastError(), "launching the tracing of rays");
 }
 

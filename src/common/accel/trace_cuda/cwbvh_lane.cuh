@@ -9,13 +9,24 @@
 namespace pt {
 
 /// Inner children that are left to visit: bits 0..7 their slots, 8..10 the ray's octant (so that
-/// bits 0..10 are the place in SlotOrder), 16..23 the node's inner_mask.
+/// bits 0..10 are the place in SlotOrder), 16..23 the node's inner_mask; 24..31 are anything.
 struct SlotGroup {
   std::uint32_t base;
   std::uint32_t bits;
 
   __device__ bool has_slots() const { return (bits & 0xffu) != 0; }
 };
+
+/// Those of a node that are not missed; `parent` has the ray's octant.
+__device__ inline SlotGroup inner_children(const CwbvhWords& node, std::uint32_t misses,
+                                           const SlotGroup& parent) {
+  return {node.child_base(), __byte_perm(node.part[0].w, parent.bits, 0x0050) & ~misses};
+}
+
+/// As leaf_group, but for the highest bits.
+__device__ inline CwbvhGroup leaf_children(const CwbvhWords& node, std::uint32_t misses) {
+  return {node.triangle_base(), __byte_perm(node.part[1].x, node.part[1].y, 0x0400) & ~misses};
+}
 
 /// A lane's traversal, which can stop between any two steps and go on later. Query: one with
 /// offer_nearer. A lane that has found leaves tests them before it goes on: without knowing the hit
@@ -52,6 +63,7 @@ class CwbvhLane {
   __device__ void set_ray(const PreparedRay& ray) {
     origin_ = ray.origin;
     inverse_ = ray.inverse;
+    planes_ = select_near_planes(ray.inverse);
     triangle_ray_ = ray.triangles;
   }
 
@@ -77,17 +89,17 @@ class CwbvhLane {
 
   __device__ void step() {
     lanes_of(*this).count(LanePoint::node);
-    const std::uint32_t octant = nodes_.bits & 0x700u;
-    const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
+    const std::uint32_t bit = order_.first[nodes_.bits & 0x7ffu];
     const std::uint32_t child = nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
     nodes_.bits ^= bit;
-    if (nodes_.has_slots()) stack_[depth_++] = {nodes_.base, nodes_.bits};
     const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
-    const std::uint32_t hits = hit_slots(node, origin_, inverse_, query_.t_max());
-    const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
-    nodes_ = {node.child_base(), (hits & inner) | octant | inner << 16};
-    leaves_ = {node.triangle_base(), (hits & leaf) | leaf << 8 | node.pair_mask() << 16};
-    if (!nodes_.has_slots() && depth_ > 0) {
+    const std::uint32_t misses = missed_slots(node, origin_, inverse_, planes(), query_.t_max());
+    leaves_ = leaf_children(node, misses);
+    const SlotGroup inner = inner_children(node, misses, nodes_);
+    const bool goes_down = inner.has_slots(), has_rest = nodes_.has_slots();
+    if (goes_down && has_rest) stack_[depth_++] = {nodes_.base, nodes_.bits};
+    nodes_ = {goes_down ? inner.base : nodes_.base, goes_down ? inner.bits : nodes_.bits};
+    if (!goes_down && !has_rest && depth_ > 0) {
       const uint2 top = stack_[--depth_];
       nodes_ = {top.x, top.y};
     }
@@ -116,6 +128,15 @@ class CwbvhLane {
   }
 
  private:
+  /// Kept where there are registers for them.
+  __device__ NearPlanes planes() const {
+    if constexpr (Query::has_masks) {
+      return select_near_planes(inverse_);
+    } else {
+      return planes_;
+    }
+  }
+
   /// What a mask hides was not met. One loop, so that lanes ask together, be it about their first
   /// triangle or their second.
   template <class Work>
@@ -143,6 +164,7 @@ class CwbvhLane {
   const SlotOrder& order_;
   Query query_{0.0f, 0.0f};
   Vec3 origin_{}, inverse_{};
+  NearPlanes planes_{};
   TriangleRay triangle_ray_{};
   SlotGroup nodes_{0, 0};
   CwbvhGroup leaves_{0, 0};

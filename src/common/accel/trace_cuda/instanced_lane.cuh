@@ -64,18 +64,20 @@ class InstancedLane {
     if ((nodes_.bits & mark) != 0) leave();
     if ((nodes_.bits & instances) != 0) return;
     lanes_of(*this).count(LanePoint::node);
-    const std::uint32_t where = nodes_.bits & (0x700u | in_world);
+    const bool inside = (nodes_.bits & in_world) == 0;
     const std::uint32_t child = take_first();
     if (nodes_.has_slots()) push(nodes_);
     const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
-    const std::uint32_t hits = hit_slots(node, origin_, inverse_, limit_);
-    const std::uint32_t inner = node.inner_mask(), leaf = node.leaf_mask();
-    nodes_ = {node.child_base(), (hits & inner) | where | inner << 16};
-    if ((where & in_world) == 0) {
-      leaves_ = {node.triangle_base(), (hits & leaf) | leaf << 8 | node.pair_mask() << 16};
-    } else if ((hits & leaf) != 0) {
+    const std::uint32_t misses =
+        missed_slots(node, origin_, inverse_, select_near_planes(inverse_), limit_);
+    const CwbvhGroup leaves = leaf_children(node, misses);
+    nodes_ = inner_children(node, misses, nodes_);
+    if (inside) {
+      leaves_ = leaves;
+    } else if (leaves.has_slots()) {
+      const std::uint32_t bits = __byte_perm(leaves.bits, nodes_.bits, 0x1150) | instances;
       if (nodes_.has_slots()) push(nodes_);
-      nodes_ = {node.triangle_base(), (hits & leaf) | where | instances | leaf << 16};
+      nodes_ = {leaves.base, bits};
     }
     if (!nodes_.has_slots()) pop();
   }
@@ -142,7 +144,7 @@ class InstancedLane {
 
   /// The number of the child that comes first, which is taken out of the group.
   __device__ std::uint32_t take_first() {
-    const std::uint32_t bit = 1u << order_.first[nodes_.bits & 0x7ffu];
+    const std::uint32_t bit = order_.first[nodes_.bits & 0x7ffu];
     nodes_.bits ^= bit;
     return nodes_.base + __popc(nodes_.bits >> 16 & (bit - 1));
   }

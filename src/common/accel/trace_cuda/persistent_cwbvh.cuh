@@ -33,6 +33,14 @@ struct PersistentMemory {
   PersistentWarp<Lane> warps[block_size / 32];
 };
 
+/// Threads of a block; 1024 of them, with 64 registers each, fill a multiprocessor. Large blocks
+/// have fewer tables of children's order, which leaves L1 more: 256 with instances, since more need
+/// over 48 kB.
+template <class Lane>
+inline constexpr int persistent_block = Lane::has_instances ? 256 : 512;
+template <class Lane>
+inline constexpr int persistent_blocks_least = 1024 / persistent_block<Lane>;
+
 struct PersistentTuning {
   static constexpr int refill = 8;  ///< idle lanes that make the warp hand out rays
 };
@@ -70,7 +78,7 @@ class PersistentTracer {
     warp_.next_ray = warp_.ray_count = 0;
     warp_.reserved = {0, 0};
     __syncwarp();
-    bool is_drained = false;  // no rays are left: only the end is waited for
+    int few = enough_idle;  // busy lanes; once no rays are left, what is waited for
     while (true) {
       const bool tests = lane_.wants_test(), steps = lane_.wants_step();
       const unsigned testing = __ballot_sync(whole_warp, tests);
@@ -84,9 +92,10 @@ class PersistentTracer {
       }
       const int enter_count = __popc(entering);
       const int busy_count = test_count + step_count + enter_count;
-      if (busy_count <= (is_drained ? pausing : 32 - PersistentTuning::refill)) {
-        is_drained = !refill(~(testing | stepping | entering));
+      if (busy_count <= few) {
+        const bool is_drained = !refill(~(testing | stepping | entering));
         if (is_drained && busy_count <= pausing) return;
+        few = is_drained ? pausing : enough_idle;
       } else {
         const Turn turn = choose_turn(step_count, test_count, enter_count);
         if (turn == Turn::step) {
@@ -102,6 +111,7 @@ class PersistentTracer {
 
  private:
   static constexpr unsigned whole_warp = 0xffffffffu;
+  static constexpr int enough_idle = 32 - PersistentTuning::refill;
 
   /// Finishes the rays of idle lanes and hands out others. False: there were none.
   __device__ bool refill(unsigned idle) {

@@ -5,9 +5,9 @@
 
 namespace pt {
 
-/// For the octant of a ray's direction and a set of slots, at [octant << 8 | slots]: the slot to
-/// visit first, that is the one with the least (slot XOR octant). In shared memory: one load
-/// instead of a dozen instructions.
+/// For the octant of a ray's direction and a set of slots, at [octant << 8 | slots]: the bit of the
+/// slot to visit first, that is the one with the least (slot XOR octant); any if there is none. In
+/// shared memory: one load instead of a dozen instructions.
 struct SlotOrder {
   std::uint8_t first[8 * 256];
 
@@ -18,7 +18,7 @@ struct SlotOrder {
       std::uint32_t best = 0;
       for (std::uint32_t k = 8; k-- > 0;)
         if ((slots >> (k ^ octant) & 1u) != 0) best = k ^ octant;
-      first[i] = static_cast<std::uint8_t>(best);
+      first[i] = static_cast<std::uint8_t>(1u << best);
     }
   }
 };
