@@ -1,0 +1,73 @@
+// The lanes of persistent warps, emulated: the hits of the CPU's traversal, bit for bit.
+#include <gtest/gtest.h>
+
+// The emulation comes before what it emulates.
+// clang-format off
+#include "emulated_gpu.h"
+#include "common/accel/trace_cuda/instanced_lane.cuh"
+#include "common/accel/trace_cuda/persistent_cwbvh.cuh"
+#include "common/accel/trace_cuda/reserve_rays.cuh"
+// clang-format on
+#include "common/accel/build/build_triangle_tree.h"
+#include "instanced_meshes.h"
+
+namespace pt {
+namespace {
+
+/// Rays of a set, whose hits are kept.
+struct KeptHits {
+  const RaySet& rays;
+  std::uint32_t next = 0, count = 0;
+  std::vector<Hit> hits;
+
+  explicit KeptHits(const RaySet& set)
+      : rays(set), count(static_cast<std::uint32_t>(set.rays.size())), hits(set.rays.size()) {}
+
+  std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record, int& got) {
+    const std::uint32_t first = reserve_rays(&next, count, lane, reserved, got);
+    if (static_cast<int>(lane) < got) record = rays.rays[first + lane];
+    return first;
+  }
+  void finish(std::uint32_t number, const ClosestTriangle& query) { hits[number] = query.result(); }
+};
+
+template <class Lane>
+std::vector<Hit> trace_emulated(const TriangleTree& tree, const RaySet& rays) {
+  const auto memory = std::make_unique<PersistentMemory<Lane, 64>>();
+  KeptHits work(rays);
+  EmulatedBlock(64).run([&] { trace_persistent<Lane>(tree, *memory, work); });
+  return work.hits;
+}
+
+template <class Lane, bool instanced>
+void expect_hits_of_cpu(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances) {
+  TreeOptions options;
+  options.accel = AccelKind::cwbvh;
+  const TriangleTreeData data = build_triangle_tree(meshes, instances, options);
+  const TriangleTree tree = data.view();
+  const RaySet rays = rays_through(3000, RayType::closest);
+  const std::vector<Hit> hits = trace_emulated<Lane>(tree, rays);
+  int found = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const RayRecord& r = rays.rays[i];
+    const Hit hit = closest_triangle_cwbvh<instanced>(tree, r.ray(), r.t_min, r.t_max);
+    EXPECT_EQ(hits[i].primitive, hit.primitive) << i;
+    if (hit.is_miss()) continue;
+    ++found;
+    EXPECT_EQ(hits[i].t, hit.t) << i;
+    EXPECT_EQ(hits[i].instance, hit.instance) << i;
+  }
+  EXPECT_GT(found, 200);
+}
+
+TEST(PersistentLanes, HaveTheHitsOfTheCpu) {
+  expect_hits_of_cpu<CwbvhLane<ClosestTriangle>, false>({make_soup(5000, 30, {}, 3)}, {});
+}
+
+TEST(PersistentLanes, HaveTheHitsOfTheCpuInInstances) {
+  const InstancedMeshes world = make_instanced_meshes(60);
+  expect_hits_of_cpu<InstancedLane<ClosestTriangle>, true>(world.meshes, world.instances);
+}
+
+}  // namespace
+}  // namespace pt
