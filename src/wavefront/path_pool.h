@@ -11,8 +11,7 @@
 #include "common/film/film.h"
 #include "common/render/options.h"
 #include "common/render/stage_info.h"
-#include "common/transport/intersect.h"
-#include "common/transport/path.h"
+#include "common/transport/path_records.h"
 
 namespace pt {
 
@@ -20,11 +19,6 @@ namespace pt {
 /// filled with zeros is free.
 inline constexpr StageId free_slot = StageId::generate;
 static_assert(static_cast<int>(free_slot) == 0);
-
-struct alignas(16) Record {
-  float x, y, z;
-  std::uint32_t w;
-};
 
 struct alignas(8) StoredHit {
   float t;
@@ -38,23 +32,24 @@ struct PathPool {
   /// each has its array, the size of all that a slot has where that lies side by side. Run-time
   /// values, so both layouts are one code: the address of an element is a product and a sum anyway.
   struct Strides {
-    std::uint32_t ray = sizeof(Record);  ///< of a record that is half of a ray
-    std::uint32_t record = sizeof(Record), hit = sizeof(StoredHit), word = sizeof(std::uint32_t);
+    std::uint32_t ray = sizeof(PathRecord);  ///< of a record that is half of a ray
+    std::uint32_t record = sizeof(PathRecord), hit = sizeof(StoredHit),
+                  word = sizeof(std::uint32_t);
   };
 
   std::uint32_t slot_count = 0;
   Strides strides;
   // Of slot 0; at(field, slot) is another's, half_at(field, slot) that of a ray's two records.
-  Record* origin = nullptr;      ///< ray origin, density of the BSDF
-  Record* direction = nullptr;   ///< ray direction, number of the path | new_path
-  Record* throughput = nullptr;  ///< beta, rays | shadow rays << 16
+  PathRecord* origin = nullptr;      ///< ray origin, density of the BSDF
+  PathRecord* direction = nullptr;   ///< ray direction, number of the path | new_path
+  PathRecord* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   Receiver* receiver = nullptr;           ///< only where a tree of lights asks for it
   // Only in scenes with lights:
-  Record* shadow_origin = nullptr;     ///< ray origin, distance
-  Record* shadow_direction = nullptr;  ///< ray direction, number of the path
-  Record* shadow_radiance = nullptr;   ///< what arrives if the ray is free, rays of the path
+  PathRecord* shadow_origin = nullptr;     ///< ray origin, distance
+  PathRecord* shadow_direction = nullptr;  ///< ray direction, number of the path
+  PathRecord* shadow_radiance = nullptr;   ///< what arrives if the ray is free, rays of the path
   // Only with compaction over tags; arrays in both layouts, since a pass reads them alone:
   StageId* tag = nullptr;
   StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
@@ -83,8 +78,8 @@ struct PathPool {
       });
     } else {
       if (parts.layout == PoolLayout::sectors) {
-        strides.ray = 2 * sizeof(Record);
-        for_each_ray(parts, [&](Record*& first, Record*& second) {
+        strides.ray = 2 * sizeof(PathRecord);
+        for_each_ray(parts, [&](PathRecord*& first, PathRecord*& second) {
           first = allocate(first, 2 * n), second = first + 1;
         });
       }
@@ -107,11 +102,11 @@ struct PathPool {
   }
 
   /// Where the slot's element of a field is: at(throughput, slot).
-  PT_HD Record* at(Record* field, std::uint32_t slot) const {
+  PT_HD PathRecord* at(PathRecord* field, std::uint32_t slot) const {
     return step(field, slot, strides.record);
   }
   /// Likewise of origin, direction and those of the shadow ray.
-  PT_HD Record* half_at(Record* field, std::uint32_t slot) const {
+  PT_HD PathRecord* half_at(PathRecord* field, std::uint32_t slot) const {
     return step(field, slot, strides.ray);
   }
   PT_HD StoredHit* at(StoredHit* field, std::uint32_t slot) const {
@@ -123,30 +118,22 @@ struct PathPool {
     return step(field, slot, strides.word);
   }
 
-  PT_HD static Record pack(const Vec3& v, std::uint32_t w) { return {v.x, v.y, v.z, w}; }
-  PT_HD static Vec3 vec(const Record& r) { return {r.x, r.y, r.z}; }
-
   PT_HD Ray load_ray(std::uint32_t slot) const {
     return {vec(load_wide(half_at(origin, slot))), vec(load_wide(half_at(direction, slot)))};
   }
 
   /// The path and its ray, of which a miss needs the direction only.
   PT_HD PathState load_path(std::uint32_t slot, Vec3& ray_direction) const {
-    const Record d = load_wide(half_at(direction, slot));
+    const PathRecord d = load_wide(half_at(direction, slot));
     ray_direction = vec(d);
     PathState path;
     path.number = d.w & ~new_path;
-    if ((d.w & new_path) == 0) {
-      const Record b = load_wide(at(throughput, slot));
-      path.beta = vec(b);
-      path.rays = static_cast<std::uint16_t>(b.w);
-      path.shadow_rays = static_cast<std::uint16_t>(b.w >> 16);
-    }
+    if ((d.w & new_path) == 0) unpack_throughput(load_wide(at(throughput, slot)), path);
     return path;
   }
 
   PT_HD PathState load_path(std::uint32_t slot, Ray& ray) const {
-    const Record o = load_wide(half_at(origin, slot));
+    const PathRecord o = load_wide(half_at(origin, slot));
     PathState path = load_path(slot, ray.direction);
     ray.origin = vec(o);
     path.bsdf_pdf = bits_to_float(o.w);
@@ -155,15 +142,14 @@ struct PathPool {
   }
 
   PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t number) const {
-    store_wide(half_at(origin, slot),
-               pack(ray.origin, float_to_bits(PathState::delta_distribution)));
+    store_wide(half_at(origin, slot), pack_origin(ray, PathState()));
     store_wide(half_at(direction, slot), pack(ray.direction, number | new_path));
   }
 
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
-    store_wide(half_at(origin, slot), pack(ray.origin, float_to_bits(path.bsdf_pdf)));
-    store_wide(half_at(direction, slot), pack(ray.direction, path.number));
-    store_wide(at(throughput, slot), pack(path.beta, path.packed_rays()));
+    store_wide(half_at(origin, slot), pack_origin(ray, path));
+    store_wide(half_at(direction, slot), pack_direction(ray, path));
+    store_wide(at(throughput, slot), pack_throughput(path));
     if (receiver != nullptr) *at(receiver, slot) = path.receiver;
   }
 
@@ -204,8 +190,7 @@ struct PathPool {
   }
   PT_HD void store_shadow_ray(std::uint32_t slot, const ShadowRay& shadow,
                               const PathState& path) const {
-    store_wide(half_at(shadow_origin, slot),
-               pack(shadow.ray.origin, float_to_bits(shadow.distance)));
+    store_wide(half_at(shadow_origin, slot), pack_shadow_origin(shadow));
     store_wide(half_at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
   }
   PT_HD void store_shadow_radiance(std::uint32_t slot, const Color& radiance,
@@ -217,8 +202,8 @@ struct PathPool {
     return at(shadow_radiance, slot)->w;
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
-    const Record o = load_wide(half_at(shadow_origin, slot));
-    const Record d = load_wide(half_at(shadow_direction, slot));
+    const PathRecord o = load_wide(half_at(shadow_origin, slot));
+    const PathRecord d = load_wide(half_at(shadow_direction, slot));
     number = d.w;
     return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(at(shadow_radiance, slot)))};
   }
@@ -258,7 +243,7 @@ struct PathPool {
   static std::uint32_t fields_bytes(const Parts& parts) {
     std::uint32_t end = 0;
     PathPool().for_each_field(parts, [&]<class T>(T*) { next_place<T>(end); });
-    return next_place<Record>(end);
+    return next_place<PathRecord>(end);
   }
 
   template <class T>

@@ -5,7 +5,7 @@
 namespace pt {
 namespace {
 
-constexpr double record = sizeof(Record), place = sizeof(std::uint32_t), tag = sizeof(StageId);
+constexpr double record = sizeof(PathRecord), place = sizeof(std::uint32_t), tag = sizeof(StageId);
 constexpr double sample = sizeof(Sample), radiance = sizeof(Color);
 
 class Predictor {

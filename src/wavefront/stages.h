@@ -251,10 +251,8 @@ struct StoredSteps {
   }
 
  private:
-  /// Anew each time: the compiler would keep a block that it recognises.
   PT_HD Vec4 draw(std::uint32_t block) const {
-    auto stream = context.source.open(context.samples.id_of(path.number));
-    return stream.draw(float_to_bits(anew(bits_to_float(block))));
+    return draw_late(context.source, context.samples.id_of(path.number), block);
   }
 };
 

@@ -172,19 +172,20 @@ class MarkedPool {
   MarkedPool(std::uint32_t slots, const PathPool::Parts& parts) {
     pool.slot_count = slots;
     pool.allocate_arrays(parts, [&]<class T>(T*, std::uint64_t count) {
-      blocks_.emplace_back(count * sizeof(T) / sizeof(Record) + 1);
-      std::memset(blocks_.back().data(), mark, blocks_.back().size() * sizeof(Record));
+      blocks_.emplace_back(count * sizeof(T) / sizeof(PathRecord) + 1);
+      std::memset(blocks_.back().data(), mark, blocks_.back().size() * sizeof(PathRecord));
       return reinterpret_cast<T*>(blocks_.back().data());
     });
   }
 
   /// Bytes of records of which something was written.
   std::size_t written_bytes() const {
-    Record unused;
+    PathRecord unused;
     std::memset(&unused, mark, sizeof unused);
     std::size_t bytes = 0;
-    for (const std::vector<Record>& block : blocks_) {
-      for (const Record& r : block) bytes += std::memcmp(&r, &unused, sizeof r) != 0 ? sizeof r : 0;
+    for (const std::vector<PathRecord>& block : blocks_) {
+      for (const PathRecord& r : block)
+        bytes += std::memcmp(&r, &unused, sizeof r) != 0 ? sizeof r : 0;
     }
     return bytes;
   }
@@ -192,7 +193,7 @@ class MarkedPool {
   PathPool pool;
 
  private:
-  std::vector<std::vector<Record>> blocks_;
+  std::vector<std::vector<PathRecord>> blocks_;
 };
 
 // The stage itself writes what is predicted, but for queue and sample.

@@ -3,6 +3,7 @@
 // when they are needed, so that nobody keeps them meanwhile.
 #pragma once
 
+#include "common/sampling/random.h"
 #include "common/transport/intersect.h"
 
 namespace pt {
@@ -21,5 +22,13 @@ struct DrawnSteps {
   static constexpr bool aims = false;
   PT_HD void aim(const ShadowRay&) const {}
 };
+
+/// What steps return that keep no numbers. Anew each time: the compiler would keep a block that it
+/// recognises. Source: one whose streams have no state.
+template <class Source>
+PT_HD Vec4 draw_late(const Source& source, const PathId& id, std::uint32_t block) {
+  auto stream = source.open(id);
+  return stream.draw(float_to_bits(anew(bits_to_float(block))));
+}
 
 }  // namespace pt
