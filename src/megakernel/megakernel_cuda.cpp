@@ -24,7 +24,7 @@ MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, i
   if (kernel_ == MegakernelKind::sort && !can_sort()) {
     throw Error(
         "--kernel sort: expected --accel cwbvh, --work persistent and a device whose blocks may "
-        "have 128 KiB of shared memory");
+        "have 73 KiB of shared memory");
   }
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
   if (kernel_ != MegakernelKind::sort) return;

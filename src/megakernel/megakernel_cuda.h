@@ -32,6 +32,9 @@ class MegakernelCuda : public CudaRenderer {
   /// Whether there is a kernel that votes, or sorts, for this scene and these options.
   bool can_vote() const;
   bool can_sort() const;
+  /// How many paths a block that sorts has for each thread: what its shared memory has room for;
+  /// 0 where that is too few.
+  int sorting_slots() const;
   void launch_voting(const SamplerSource& source, const SampleBuffer& batch);
   template <bool has_masks>
   std::uint32_t sorting_blocks();

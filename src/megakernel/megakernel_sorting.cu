@@ -3,14 +3,20 @@
 
 namespace pt {
 
+int MegakernelCuda::sorting_slots() const {
+  using Memory = BlockMemory<SortingTraits<false>>;
+  static_assert(Memory::bytes(1) == BlockMemory<SortingTraits<true>>::bytes(1));
+  constexpr int least = 4;
+  int slots = SortingTuning::slots_most;
+  while (slots >= least && Memory::bytes(slots) > properties_.sharedMemPerBlockOptin) --slots;
+  return slots >= least ? slots : 0;
+}
+
 bool MegakernelCuda::can_sort() const {
-  constexpr std::size_t shared_bytes =
-      std::max(sizeof(BlockMemory<SortingTraits<false>>), sizeof(BlockMemory<SortingTraits<true>>));
   using Masked = Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>;
   const bool is_plain = traits_ == SortingTraits<false>::value();
   const bool is_masked = traits_ == Masked::value() && scene_.has_only_triangles();
-  return (is_plain || is_masked) && options_.work == Work::persistent &&
-         shared_bytes <= properties_.sharedMemPerBlockOptin;
+  return (is_plain || is_masked) && options_.work == Work::persistent && sorting_slots() > 0;
 }
 
 template void MegakernelCuda::allocate_slots<false>();

@@ -32,7 +32,7 @@ __global__ void __launch_bounds__(sorting_threads, 1)
   uint2 stack[sorting_stack_size];
   SortingTracer<Traits, SamplerSource, Memory> tracer(
       scene, source, batch, limits, paths, *reinterpret_cast<Memory*>(sorting_memory),
-      slots + static_cast<std::size_t>(blockIdx.x) * Memory::slot_count, stack);
+      slots + std::size_t{blockIdx.x} * sorting_threads * paths.slots_per_thread, stack);
   tracer.run();
 }
 
@@ -41,23 +41,23 @@ std::uint32_t MegakernelCuda::sorting_blocks() {
   using Memory = BlockMemory<SortingTraits<has_masks>>;
   const auto* const kernel =
       reinterpret_cast<const void*>(sorting_megakernel<SortingTraits<has_masks>>);
-  return resident_blocks(kernel, sorting_threads, sizeof(Memory));
+  return resident_blocks(kernel, sorting_threads, Memory::bytes(sorting_slots()));
 }
 
 template <bool has_masks>
 void MegakernelCuda::allocate_slots() {
-  using Memory = BlockMemory<SortingTraits<has_masks>>;
   slots_ = memory_.allocate<PathSlot>(
-      "paths", std::uint64_t{sorting_blocks<has_masks>()} * Memory::slot_count);
+      "paths", std::uint64_t{sorting_blocks<has_masks>()} * sorting_threads * sorting_slots());
 }
 
 template <bool has_masks>
 void MegakernelCuda::launch_sorting(const SamplerSource& source, const SampleBuffer& batch) {
+  using Memory = BlockMemory<SortingTraits<has_masks>>;
   const std::uint32_t blocks = sorting_blocks<has_masks>();
-  const PathShare paths{next_path_, (batch.path_count + blocks - 1) / blocks};
+  const PathShare paths{next_path_, (batch.path_count + blocks - 1) / blocks, sorting_slots()};
   launch("megakernel", sorting_megakernel<SortingTraits<has_masks>>, blocks, sorting_threads,
-         sizeof(BlockMemory<SortingTraits<has_masks>>), scene_, batch, source, limits_, paths,
-         slots_, clock());
+         Memory::bytes(paths.slots_per_thread), scene_, batch, source, limits_, paths, slots_,
+         clock());
 }
 
 }  // namespace pt

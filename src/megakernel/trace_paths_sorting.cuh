@@ -28,45 +28,51 @@
 namespace pt {
 
 struct SortingTuning {
-  static constexpr int slots_per_thread = 12;
-  static constexpr int pausing = 12;  ///< lanes of 32 for whose rays a phase does not wait
+  static constexpr int slots_most = 12;  ///< of a thread; fewer where a block's memory is small
+  static constexpr int pausing = 12;     ///< lanes of 32 for whose rays a phase does not wait
 };
 
 /// How blocks share the paths of a batch.
 struct PathShare {
   std::uint32_t* next;    ///< paths that have been taken
   std::uint32_t at_once;  ///< that a block may take: else the first ones would take small batches
+  int slots_per_thread;   ///< up to SortingTuning::slots_most
 };
 
 /// A lane of a block. Traits: of triangles alone.
 template <class Traits>
 using SortingLane = CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>>;
 
-/// What a block shares, in shared memory.
+/// What a block shares, in shared memory: of `places` only those that it has slots for.
 template <class Lane, int threads>
 struct SortingMemory {
-  static constexpr int slot_count = threads * SortingTuning::slots_per_thread;
   static constexpr int class_count = kind_count + 1;  ///< misses come first
 
   /// What the path of a slot waits for.
   enum class Path : std::uint8_t {
-    none,  ///< there is none, or all that it waits for is its last shadow ray
-    ray,   ///< for its ray
-    hit,   ///< to be shaded
+    none,   ///< there is none
+    ray,    ///< for its ray
+    ended,  ///< for its last shadow ray
+    miss,   ///< to be ended: its ray left the scene
+    hit,    ///< to be shaded
   };
   /// And its shadow ray.
   enum class Shadow : std::uint8_t {
-    none,  ///< there is none, or it has ended
+    none,  ///< there is none, or it was in vain
     ray,   ///< is traced
-    last,  ///< likewise, and the path ends then
+    free,  ///< has met nothing: what it brings is to be added
+  };
+
+  /// What a slot waits for, and a place in each list.
+  struct Places {
+    std::uint16_t rays[2];  ///< to be traced: see BlockRays
+    std::uint16_t ordered;  ///< slots to be shaded, by kind
+    std::uint16_t free;     ///< slots whose paths have ended
+    Path path;
+    Shadow shadow;
   };
 
   PersistentMemory<Lane, threads> tracing;
-  std::uint16_t rays[2 * slot_count];    ///< to be traced: see BlockRays
-  std::uint16_t ordered[slot_count];     ///< slots to be shaded, by kind
-  std::uint16_t free_slots[slot_count];  ///< whose paths have ended
-  Path path[slot_count];
-  Shadow shadow[slot_count];
   std::uint32_t ray_end;  ///< of `rays`, while it is filled
   std::uint32_t ray_count, next_ray;
   std::uint32_t free_end;                                        ///< of `free_slots`
@@ -75,18 +81,28 @@ struct SortingMemory {
   bool has_ended;                                                ///< no path is left
   std::uint32_t next_shaded;
   std::uint32_t counts[class_count], first[class_count];  ///< of the slots to be shaded, by class
+  Places places[threads * SortingTuning::slots_most];
+
+  static constexpr std::size_t bytes(int slots_per_thread) {
+    const int fewer = SortingTuning::slots_most - slots_per_thread;
+    return sizeof(SortingMemory) - sizeof(Places) * threads * fewer;
+  }
+
+  __device__ std::uint16_t& ray(std::uint32_t i) { return places[i / 2].rays[i % 2]; }
+  __device__ std::uint16_t& ordered(std::uint32_t i) { return places[i].ordered; }
+  __device__ std::uint16_t& free_slot(std::uint32_t i) { return places[i].free; }
+  __device__ Path& path(std::uint32_t slot) { return places[slot].path; }
+  __device__ Shadow& shadow(std::uint32_t slot) { return places[slot].shadow; }
 };
 
-/// Puts `value` at the end of a list where `wanted`. By whole warps.
-__device__ inline void append(std::uint16_t* list, std::uint32_t& end, bool wanted,
-                              std::uint32_t value) {
+/// Reserves a place at the end of a list where `wanted`. By whole warps.
+__device__ inline std::uint32_t take_end(std::uint32_t& end, bool wanted) {
   const unsigned votes = __ballot_sync(0xffffffffu, wanted);
-  if (votes == 0) return;
+  if (votes == 0) return 0;
   const unsigned lane = threadIdx.x & 31;
   std::uint32_t first = 0;
   if (lane == 0) first = atomicAdd(&end, __popc(votes));
-  first = __shfl_sync(0xffffffffu, first, 0) + __popc(votes & ((1u << lane) - 1));
-  if (wanted) list[first] = static_cast<std::uint16_t>(value);
+  return __shfl_sync(0xffffffffu, first, 0) + __popc(votes & ((1u << lane) - 1));
 }
 
 /// The block's rays for PersistentTracer, by name: twice the slot, and one more for the shadow ray.
@@ -121,7 +137,7 @@ struct BlockRays {
     return first;
   }
 
-  __device__ std::uint32_t name(std::uint32_t number) const { return memory.rays[number]; }
+  __device__ std::uint32_t name(std::uint32_t number) const { return memory.ray(number); }
 
   __device__ Query query(const PreparedRay& ray) const {
     return with_key(PathQuery(0.0f, ray.t_max, is_shadow(ray.number)), ray.t_min);
@@ -139,22 +155,16 @@ struct BlockRays {
   }
 
   __device__ void finish(std::uint32_t name, const Query& query) const {
-    const std::uint32_t number = name / 2;
-    PathSlot& slot = slots[number];
-    if (!is_shadow(name)) {
-      slot.store_hit(query.result());
-      memory.path[number] = Path::hit;
-      return;
+    const std::uint32_t slot = name / 2;
+    const Hit hit = query.result();
+    if (is_shadow(name)) {
+      memory.shadow(slot) = hit.is_miss() ? Shadow::free : Shadow::none;
+    } else if (hit.is_miss()) {
+      memory.path(slot) = Path::miss;
+    } else {
+      slots[slot].store_hit(hit);
+      memory.path(slot) = Path::hit;
     }
-    if (query.result().is_miss()) slot.add_shadow_radiance();
-    const bool is_last = memory.shadow[number] == Shadow::last;
-    memory.shadow[number] = Shadow::none;
-    if (!is_last) return;
-    Color radiance;
-    Ray ray;
-    const PathState path = slot.load_path(radiance, ray);
-    samples.store(path, radiance);
-    memory.free_slots[atomicAdd(&memory.free_end, 1u)] = static_cast<std::uint16_t>(number);
   }
 
   __device__ LaneCounter lanes(std::uint32_t name) const {
@@ -175,6 +185,29 @@ struct BlockRays {
 /// Of a lane, where it is in the tree and what it has met, while its block does other things: in
 /// its stack's memory, beyond the stack.
 inline constexpr int sorting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
+
+/// Keeps nothing of a surface's shading in registers (surface_steps.h).
+template <class Source>
+struct SlotSteps {
+  const Source& source;
+  const SampleBuffer& samples;
+  const PathState& path;
+  PathSlot& slot;
+
+  PT_HD Vec4 scatter() const { return draw(scatter_block(path.rays)); }
+  PT_HD Vec4 light() const { return draw(light_block(path.rays)); }
+  PT_HD Color emit(const Color& emitted) const {
+    if (!is_black(emitted)) slot.add_radiance(emitted);
+    return Color(0.0f);
+  }
+  static constexpr bool aims = true;
+  PT_HD void aim(const ShadowRay& shadow) const { slot.store_shadow_ray(shadow); }
+
+ private:
+  PT_HD Vec4 draw(std::uint32_t block) const {
+    return draw_late(source, samples.id_of(path.number), block);
+  }
+};
 
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
 /// are opened anew for each draw.
@@ -211,18 +244,20 @@ class SortingTracer {
   using Shadow = typename Memory::Shadow;
   using Lane = SortingLane<Traits>;
   using Shading = ShadingTraits<Traits>;
-  static constexpr int per_thread = SortingTuning::slots_per_thread;
+
+  /// The k-th that this thread looks after where a block goes through all of its slots.
+  __device__ static std::uint32_t slot_of(int k) { return k * blockDim.x + threadIdx.x; }
 
   __device__ void empty() {
-    for (int k = 0; k < per_thread; ++k) {
-      const std::uint32_t slot = k * blockDim.x + threadIdx.x;
-      memory_.free_slots[slot] = static_cast<std::uint16_t>(slot);
-      memory_.path[slot] = Path::none;
-      memory_.shadow[slot] = Shadow::none;
+    for (int k = 0; k < paths_.slots_per_thread; ++k) {
+      const std::uint32_t slot = slot_of(k);
+      memory_.free_slot(slot) = static_cast<std::uint16_t>(slot);
+      memory_.path(slot) = Path::none;
+      memory_.shadow(slot) = Shadow::none;
     }
     warp_.number[threadIdx.x & 31] = PersistentWarp<Lane>::none;
     if (threadIdx.x == 0) {
-      memory_.free_end = per_thread * blockDim.x;
+      memory_.free_end = paths_.slots_per_thread * blockDim.x;
       memory_.ray_end = memory_.paused = 0;
     }
     memory_.tracing.order.fill();
@@ -236,12 +271,12 @@ class SortingTracer {
     __syncthreads();
     const std::uint32_t count = memory_.start_count;
     for (std::uint32_t i = threadIdx.x; i < count; i += blockDim.x) {
-      const std::uint32_t slot = memory_.free_slots[memory_.first_free + i];
+      const std::uint32_t slot = memory_.free_slot(memory_.first_free + i);
       const std::uint32_t number = memory_.first_path + i;
       const bool exists = number < samples_.path_count;
-      memory_.path[slot] = exists ? Path::ray : Path::none;
+      memory_.path(slot) = exists ? Path::ray : Path::none;
       if (!exists) continue;
-      memory_.rays[memory_.start_ray + i] = static_cast<std::uint16_t>(2 * slot);
+      memory_.ray(memory_.start_ray + i) = static_cast<std::uint16_t>(2 * slot);
       start_path(slots_[slot], number);
     }
     const bool goes_on = !memory_.has_ended;
@@ -267,12 +302,13 @@ class SortingTracer {
 
   __device__ void start_path(PathSlot& slot, std::uint32_t number) {
     lanes_of(scene_).at(0).count(LanePoint::turn);
-    PathState path;
-    path.number = number;
     const PathId id = samples_.id_of(number);
     typename Source::Stream random = source_.open(id);
     const Vec4 u = random.draw(scatter_block(0));
-    slot.store_path(path, Color(0.0f), generate_camera_path(scene_, random, id.pixel, u));
+    PathState path;
+    path.number = number;
+    slot.store_path(path, generate_camera_path(scene_, random, id.pixel, u));
+    slot.store_radiance(Color(0.0f), path);
   }
 
   /// What the block's rays meet. With many rays lanes pause when none are left but theirs; these
@@ -319,29 +355,34 @@ class SortingTracer {
   /// Whom it awaits: 0 for a miss, else the kind of the surface's BSDF and one; below 0 for those
   /// whose rays have not ended.
   __device__ int class_of(std::uint32_t slot) const {
-    if (memory_.path[slot] != Path::hit || memory_.shadow[slot] != Shadow::none) return -1;
+    const Path path = memory_.path(slot);
+    if (path <= Path::ray || memory_.shadow(slot) == Shadow::ray) return -1;
+    if (path != Path::hit) return 0;
     const Hit hit = slots_[slot].load_hit();
-    if (hit.is_miss()) return 0;
     return 1 + static_cast<int>(scene_.material(material_number_at(scene_, hit)).kind);
   }
 
   __device__ __forceinline__ void sort() {
-    int classes[per_thread];
-    std::uint32_t place[per_thread];
-    PT_UNROLL(8)
-    for (int k = 0; k < per_thread; ++k) classes[k] = class_of(k * blockDim.x + threadIdx.x);
-    PT_UNROLL(8)
-    for (int k = 0; k < per_thread; ++k) place[k] = take_places(memory_.counts, classes[k]);
+    constexpr int most = SortingTuning::slots_most;
+    const int count = paths_.slots_per_thread;
+    int classes[most];
+    std::uint32_t place[most] = {};
+    PT_UNROLL(12)
+    for (int k = 0; k < most; ++k) classes[k] = k < count ? class_of(slot_of(k)) : -1;
+    PT_UNROLL(12)
+    for (int k = 0; k < most; ++k) {
+      if (k < count) place[k] = take_places(memory_.counts, classes[k]);
+    }
     __syncthreads();
     if (threadIdx.x < Memory::class_count) {
       memory_.first[threadIdx.x] = sum_before(memory_.counts, static_cast<int>(threadIdx.x));
     }
     __syncthreads();
-    PT_UNROLL(8)
-    for (int k = 0; k < per_thread; ++k) {
+    PT_UNROLL(12)
+    for (int k = 0; k < most; ++k) {
       if (classes[k] < 0) continue;
-      memory_.ordered[memory_.first[classes[k]] + place[k]] =
-          static_cast<std::uint16_t>(k * blockDim.x + threadIdx.x);
+      memory_.ordered(memory_.first[classes[k]] + place[k]) =
+          static_cast<std::uint16_t>(slot_of(k));
     }
     __syncthreads();
   }
@@ -362,48 +403,70 @@ class SortingTracer {
       Path path = Path::hit;
       Shadow shadow = Shadow::none;
       if (has_path) {
-        slot = memory_.ordered[place];
-        path = shade_path(slots_[slot], shadow);
-        memory_.path[slot] = path;
-        memory_.shadow[slot] = shadow;
+        slot = memory_.ordered(place);
+        path = memory_.path(slot), shadow = memory_.shadow(slot);
+        shade_path(slots_[slot], path, shadow);
+        memory_.path(slot) = path, memory_.shadow(slot) = shadow;
       }
       __syncwarp();
-      append(memory_.rays, memory_.ray_end, path == Path::ray, 2 * slot);
-      append(memory_.rays, memory_.ray_end, shadow != Shadow::none, 2 * slot + 1);
-      append(memory_.free_slots, memory_.free_end, path == Path::none && shadow == Shadow::none,
-             slot);
+      append_ray(path == Path::ray, 2 * slot);
+      append_ray(shadow == Shadow::ray, 2 * slot + 1);
+      const bool is_free = path == Path::none;
+      const std::uint32_t end = take_end(memory_.free_end, is_free);
+      if (is_free) memory_.free_slot(end) = static_cast<std::uint16_t>(slot);
     }
   }
 
-  /// What the slot waits for then.
-  __device__ __forceinline__ Path shade_path(PathSlot& slot, Shadow& shadow) {
+  __device__ void append_ray(bool wanted, std::uint32_t name) {
+    const std::uint32_t end = take_end(memory_.ray_end, wanted);
+    if (wanted) memory_.ray(end) = static_cast<std::uint16_t>(name);
+  }
+
+  /// Takes what the path has waited for, and leaves what it waits for then.
+  __device__ __forceinline__ void shade_path(PathSlot& slot, Path& state, Shadow& shadow) {
     Color radiance;
     Ray ray;
     PathState path = slot.load_path(radiance, ray);
-    const Hit hit = slot.load_hit();
+    const bool is_lit = shadow == Shadow::free;
+    if (is_lit) radiance = add_rounded(radiance, slot.load_shadow_radiance());
+    shadow = Shadow::none;
+    if (state == Path::ended) {
+      end_path(path, radiance, state);
+      return;
+    }
     set_lanes(ray, lanes_of(scene_).at(path.rays));
     ++path.rays;
-    if (hit.is_miss()) {
-      samples_.store(path,
-                     add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
-                                               scene_, ray.direction, path, limits_)));
-      return Path::none;
+    if (state == Path::miss) {
+      const Color sky =
+          Traits::Integrator::template miss<Traits::lighting>(scene_, ray.direction, path, limits_);
+      end_path(path, add_rounded(radiance, sky), state);
+      return;
     }
+    if (is_lit) slot.store_radiance(radiance, path);
+    shade_hit(slot, path, ray, state, shadow);
+  }
+
+  __device__ void end_path(const PathState& path, const Color& radiance, Path& state) {
+    samples_.store(path, radiance);
+    state = Path::none;
+  }
+
+  __device__ __forceinline__ void shade_hit(PathSlot& slot, PathState& path, const Ray& ray,
+                                            Path& state, Shadow& shadow) {
     lanes_of(scene_).at(path.rays).count(LanePoint::turn);
-    typename Source::Stream random = source_.open(samples_.id_of(path.number));
-    const Scattering scattering = scatter_path<Shading>(scene_, ray, hit, path, limits_, random);
-    radiance = add_rounded(radiance, scattering.emitted);
+    const SlotSteps<Source> steps{source_, samples_, path, slot};
+    const Scattering scattering = Traits::Integrator::template surface<Shading>(
+        scene_, ray, slot.load_hit(), path, limits_, steps);
     const bool asks = !is_black(scattering.shadow.radiance);
-    if (asks) {
-      slot.store_shadow(scattering.shadow);
-      shadow = scattering.alive ? Shadow::ray : Shadow::last;
-    }
     if (!scattering.alive && !asks) {
-      samples_.store(path, radiance);
-    } else {
-      slot.store_path(path, radiance, scattering.ray);
+      end_path(path, slot.load_radiance(), state);
+      return;
     }
-    return scattering.alive ? Path::ray : Path::none;
+    state = scattering.alive ? Path::ray : Path::ended;
+    slot.store_path(path, scattering.ray);
+    if (!asks) return;
+    shadow = Shadow::ray;
+    slot.store_shadow_radiance(scattering.shadow.radiance);
   }
 
   const Scene& scene_;

@@ -32,14 +32,16 @@ class SortedPaths {
     batch_ = SampleBuffer(samples_.data(), {0, 0, width, height}, 0, spp);
   }
 
-  /// What a grid of blocks does, one after the other; later ones may find nothing left.
+  /// What a grid of blocks does, one after the other; later ones may find nothing left. Beyond what
+  /// a block may use of its memory nothing is written.
   template <class Traits>
-  void sort(int blocks, std::uint32_t at_once) {
+  void sort(int blocks, std::uint32_t at_once, int slots_per_thread = SortingTuning::slots_most) {
     using Memory = SortingMemory<SortingLane<Traits>, threads>;
     const auto memory = std::make_unique<Memory>();
-    std::vector<PathSlot> slots(Memory::slot_count);
+    std::vector<PathSlot> slots(std::size_t{threads} * slots_per_thread);
     std::uint32_t next_path = 0;
-    const PathShare paths{&next_path, at_once};
+    const PathShare paths{&next_path, at_once, slots_per_thread};
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(memory.get());
     for (int i = 0; i < blocks; ++i) {
       std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
       EmulatedBlock(threads).run([&] {
@@ -48,6 +50,8 @@ class SortedPaths {
                                                             *memory, slots.data(), stack);
         tracer.run();
       });
+      ASSERT_TRUE(std::all_of(bytes + Memory::bytes(slots_per_thread), bytes + sizeof *memory,
+                              [](unsigned char byte) { return byte == 0xa5; }));
     }
   }
 
@@ -113,6 +117,17 @@ TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
   SortedPaths paths(scene, options);
   paths.sort<Traits>(2, 100);
   paths.expect_what_each_gets_alone<Traits>();
+}
+
+TEST(SortingOfFewSlots, GivesEachPathWhatItGetsAlone) {
+  using Traits = SortingTraits<false>;
+  const Options options = with(small_image(), {{"scene", "boxes"}});
+  const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
+  for (const int slots_per_thread : {1, 4, 7}) {
+    SortedPaths paths(scene, options);
+    paths.sort<Traits>(2, 300, slots_per_thread);
+    paths.expect_what_each_gets_alone<Traits>();
+  }
 }
 
 TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
