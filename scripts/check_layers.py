@@ -66,7 +66,8 @@ LAYERS = [
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
-    ("platform", ["common/lane_counter.h", "common/platform.h", "common/type_list.h"], []),
+    ("platform", ["common/lane_counter.h", "common/platform.h",
+                  "common/platform_cpu.h", "common/type_list.h"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
 MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]

@@ -16,7 +16,7 @@
 #define PT_HD_IN_KERNEL __host__ __device__ __forceinline__
 #define PT_UNROLL(n) PT_PRAGMA(unroll n)
 #else
-#include <atomic>
+#include "common/platform_cpu.h"
 #define PT_HD inline
 #define PT_NOINLINE __attribute__((noinline))
 #define PT_HD_IN_KERNEL inline
