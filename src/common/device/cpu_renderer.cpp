@@ -10,6 +10,7 @@
 #include <span>
 #include <thread>
 
+#include "common/device/huge_pages.h"
 #include "common/film/develop.h"
 #include "common/memory_error.h"
 #include "common/scene/prepare_scene.h"
@@ -81,6 +82,7 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
+  use_huge_pages(scene);
   const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);

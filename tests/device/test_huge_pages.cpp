@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include "common/device/huge_pages.h"
+
+namespace pt {
+namespace {
+
+constexpr std::uintptr_t page = HugePageRange::page_bytes;
+
+HugePageRange range(std::uintptr_t begin, std::size_t size_bytes) {
+  return huge_page_range(reinterpret_cast<const void*>(begin), size_bytes);
+}
+
+TEST(HugePages, AreThoseThatAnArrayFills) {
+  EXPECT_EQ(range(3 * page, page).begin, 3 * page);
+  EXPECT_EQ(range(3 * page, page).size_bytes, page);
+  EXPECT_EQ(range(3 * page + 16, 3 * page).begin, 4 * page);
+  EXPECT_EQ(range(3 * page + 16, 3 * page).size_bytes, 2 * page);
+  EXPECT_EQ(range(3 * page - 16, page + 16).begin, 3 * page);
+  EXPECT_EQ(range(3 * page - 16, page + 16).size_bytes, page);
+}
+
+TEST(HugePages, NoneForSmallArrays) {
+  EXPECT_EQ(range(0, 0).size_bytes, 0u);
+  EXPECT_EQ(range(3 * page, page - 1).size_bytes, 0u);
+  EXPECT_EQ(range(3 * page + 1, 2 * page - 2).size_bytes, 0u);
+  EXPECT_EQ(range(3 * page + 1, 2 * page - 1).size_bytes, page);
+}
+
+TEST(HugePages, KeepWhatTheyHold) {
+  SceneData scene;
+  scene.texels.resize(3 * page + 5);
+  for (std::size_t i = 0; i < scene.texels.size(); ++i) scene.texels[i] = std::byte(i % 251);
+  const std::vector<std::byte> before = scene.texels;
+  use_huge_pages(scene);
+  EXPECT_EQ(scene.texels, before);
+}
+
+}  // namespace
+}  // namespace pt
