@@ -41,15 +41,10 @@ template <class Stage>
 void run_blocks(const Stage& stage, const BlockTraits& traits, const Scene& scene,
                 const StageQueues& queues) {
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
-    Slots slots;
-    while (begin < end) {
-      std::uint32_t count = 0;
-      for (; begin < end && count < slots.size(); ++begin) {
-        std::uint32_t slot;
-        if (finds_slot<Stage>(queues, begin, slot)) slots[count++] = slot;
-      }
-      if (count > 0) run_block(stage, traits, scene, slots, count, send);
-    }
+    for_each_block<Stage, RayBlock::size_max>(queues, begin, end,
+                                              [&](const Slots& slots, std::uint32_t count) {
+                                                run_block(stage, traits, scene, slots, count, send);
+                                              });
   });
 }
 
