@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 
-#include "common/sampling/draw_block.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {
@@ -70,14 +69,6 @@ void for_each_range(const StageQueues& queues, RunRange&& run_range) {
   tbb::parallel_for(all, run, tbb::simple_partitioner());
 }
 
-/// A stage that shades: all that it calls, but for what is never inlined, becomes one function, in
-/// which a path's values stay in registers. (Across calls they would go through memory: stored by
-/// parts, loaded as a whole, for which a processor waits.)
-template <class Stage>
-[[gnu::flatten]] Next shade_slot(const Stage& stage, const Scene& scene, std::uint32_t slot) {
-  return stage(scene, slot, 0);
-}
-
 /// Runs `stage` over its queue and sends every slot on.
 template <class Stage>
 void run_stage_cpu(const Stage& stage, const Scene& scene, const StageQueues& queues) {
@@ -102,51 +93,6 @@ void for_each_block(const StageQueues& queues, std::uint32_t begin, std::uint32_
     }
     if (count > 0) function(slots, count);
   }
-}
-
-/// Draws the numbers with which `count` paths leave the surfaces that they have met.
-template <bool has_lights, class Source, class Slots>
-void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, std::uint32_t count,
-                       DrawnBlock& scatter, DrawnBlock& light) {
-  const bool together = is_philox(context.source);
-  DrawNames names{};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const PathState path = context.pool.load_name(slots[i]);
-    const PathId id = context.samples.id_of(path.number);
-    const std::uint32_t rays = path.rays + 1u;  // with the one that has met the surface
-    names.pixel[i] = id.pixel, names.sample[i] = id.sample, names.block[i] = scatter_block(rays);
-    if (together) continue;
-    auto stream = context.source.open(id);
-    scatter.set(i, stream.draw(scatter_block(rays)));
-    if (has_lights) light.set(i, stream.draw(light_block(rays)));
-  }
-  if (!together) return;
-  draw_block(context.source.seed, names, count, scatter);
-  for (std::uint32_t i = 0; i < count; ++i) names.block[i] |= 1u;  // light_block
-  if (has_lights) draw_block(context.source.seed, names, count, light);
-}
-
-/// Surfaces whose numbers come from streams without state: drawn for a block of slots, then each is
-/// shaded.
-template <class Traits, Branching branching, class Source>
-requires(!requires(const Source& source) {
-  source.states;
-}) void run_stage_cpu(const ShadeSurface<Traits, branching, Source>& stage, const Scene& scene,
-                      const StageQueues& queues) {
-  using Stage = ShadeSurface<Traits, branching, DrawnSource>;
-  const auto& [pool, samples, source, counters, ray_queue, limits, chains] = stage.context;
-  for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
-    DrawnBlock scatter, light;
-    Stage drawn{{pool, samples, {&scatter, &light}, counters, ray_queue, limits, chains}};
-    for_each_block<Stage, DrawNames::size_max>(
-        queues, begin, end, [&](const auto& slots, std::uint32_t count) {
-          draw_for_surfaces<Traits::has_lights>(stage.context, slots, count, scatter, light);
-          for (std::uint32_t i = 0; i < count; ++i) {
-            drawn.context.source.place = i;
-            send(slots[i], shade_slot(drawn, scene, slots[i]));
-          }
-        });
-  });
 }
 
 }  // namespace pt

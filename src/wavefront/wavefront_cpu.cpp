@@ -14,6 +14,7 @@
 #include "common/scene/prepare_materials.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
+#include "wavefront/shade_block_cpu.h"
 
 namespace pt {
 namespace {
@@ -135,6 +136,8 @@ class CpuExecutor {
     part_.timer.time(to_string(id_of(stage)), [&] {
       if constexpr (runs_in_blocks<Stage>) {
         run_blocks_cpu(stage, block_traits(stage), scene_, queues);
+      } else if constexpr (shades_in_blocks<Stage>) {
+        shade_blocks_cpu(stage, scene_, queues);
       } else {
         run_stage_cpu(stage, scene_, queues);
       }

@@ -1,0 +1,51 @@
+// What shading reads at places that depend on chance, asked of memory for paths whose turn comes
+// later. In two steps: what the first one asks for says where the second's lies.
+#pragma once
+
+#include "common/sampling/alias_table.h"
+#include "common/scene/scene.h"
+
+namespace pt {
+
+/// The cache lines of *p.
+template <class T>
+void prefetch(const T* p) {
+  const char* const begin = reinterpret_cast<const char*>(p);
+  constexpr std::size_t line_bytes = 64;
+  for (std::size_t i = 0; i < sizeof(T); i += line_bytes) __builtin_prefetch(begin + i);
+  __builtin_prefetch(begin + sizeof(T) - 1);
+}
+
+/// The triangle that a ray has met, or null.
+inline const Triangle* triangle_of(const Scene& scene, const Hit& hit) {
+  const std::uint32_t primitives = scene.primitives.count();
+  return hit.primitive < primitives ? nullptr
+                                    : &scene.triangles.triangles[hit.primitive - primitives];
+}
+
+/// Whether these numbers ask the environment for light; nearly always right.
+inline bool asks_environment(const Scene& scene, const Vec4& light) {
+  return light.z < scene.light_selector.environment_probability;
+}
+
+/// The triangle, and the entry of the table by which the environment is sampled.
+inline void prefetch_records(const Scene& scene, const Hit& hit, const Vec4& light) {
+  if (const Triangle* const triangle = triangle_of(scene, hit)) prefetch(triangle);
+  if (!asks_environment(scene, light)) return;
+  const Environment& env = scene.environment;
+  const float cells = static_cast<float>(env.width) * static_cast<float>(env.bands());
+  prefetch(env.alias + static_cast<std::uint64_t>(light.x * cells));  // that or one beside it
+}
+
+/// What these say: the attributes of the triangle's corners, and texels of the environment.
+inline void prefetch_attributes(const Scene& scene, const Hit& hit, const Vec4& light) {
+  const Triangle* const triangle = triangle_of(scene, hit);
+  if (triangle != nullptr && triangle->attributes != 0) prefetch(&scene.corners[triangle->id]);
+  if (!asks_environment(scene, light)) return;
+  const Environment& env = scene.environment;
+  const AliasSample cell = sample_alias(env.alias, env.width * env.bands(), light.x, light.y);
+  prefetch(&env.texels[cell.index]);
+  if (env.height > 1) prefetch(&env.texels[cell.index + env.width]);
+}
+
+}  // namespace pt
