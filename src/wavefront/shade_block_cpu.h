@@ -2,6 +2,7 @@
 // read is asked of memory, then the stage shades each slot as it does alone.
 #pragma once
 
+#include "common/accel/traverse_triangles.h"
 #include "common/sampling/draw_block.h"
 #include "wavefront/prefetch_cpu.h"
 #include "wavefront/run_stage_cpu.h"
@@ -42,13 +43,21 @@ void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, 
   if (has_lights) draw_block(context.source.seed, names, count, light);
 }
 
+#ifdef __x86_64__
+#define PT_SHADE [[gnu::flatten, gnu::target("avx2,bmi,bmi2,popcnt")]]
+#else
+#define PT_SHADE [[gnu::flatten]]
+#endif
+
 /// All that shading calls, but for what is never inlined, becomes one function, in which a path's
 /// values stay in registers. (Across calls they would go through memory: stored by parts and loaded
-/// as a whole, for which a processor waits.)
+/// as a whole, for which a processor waits.) Compiled for AVX2, so only where that is there;
+/// products and sums are not contracted, so the bits are the same.
 template <class Stage>
-[[gnu::flatten]] Next shade_slot(const Stage& stage, const Scene& scene, std::uint32_t slot) {
+PT_SHADE Next shade_slot(const Stage& stage, const Scene& scene, std::uint32_t slot) {
   return stage(scene, slot, 0);
 }
+#undef PT_SHADE
 
 /// As run_stage_cpu.
 template <class Traits, Branching branching, class Source>
@@ -58,6 +67,7 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
   constexpr bool prefetches = Traits::lighting == Lighting::full;  // its scenes may be large
   constexpr std::uint32_t ahead = 4;                               // slots
   const StageContext<Source>& c = stage.context;
+  static const bool fast = has_avx2();
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
     DrawnBlock scatter{}, light{};
     Stage drawn{
@@ -77,7 +87,8 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
           for (std::uint32_t i = 0; i < count; ++i) {
             ask_for_attributes(i + ahead);
             drawn.context.source.place = i;
-            send(slots[i], shade_slot(drawn, scene, slots[i]));
+            const std::uint32_t slot = slots[i];
+            send(slot, fast ? shade_slot(drawn, scene, slot) : drawn(scene, slot, 0));
           }
         });
   });
