@@ -19,8 +19,8 @@ void prefetch(const T* p) {
 /// The triangle that a ray has met, or null.
 inline const Triangle* triangle_of(const Scene& scene, const Hit& hit) {
   const std::uint32_t primitives = scene.primitives.count();
-  return hit.primitive < primitives ? nullptr
-                                    : &scene.triangles.triangles[hit.primitive - primitives];
+  if (hit.is_miss() || hit.primitive < primitives) return nullptr;
+  return &scene.triangles.triangles[hit.primitive - primitives];
 }
 
 /// Whether these numbers ask the environment for light; nearly always right.
