@@ -21,7 +21,8 @@ def cell(text):
     if value is None or not value == value:  # NaN sorts nowhere
         return f"<td{' class=long' * (len(text) > 60)}>{escape(text)}</td>"
     shown = f"{value:,.0f}" if value == int(value) and abs(value) < 1e15 else show(value, 4)
-    return f'<td class="n" data-v="{escape(text)}" title="{escape(text)}">{shown}</td>'
+    title = f' title="{escape(text)}"' if shown != text else ""
+    return f'<td class="n" data-v="{escape(text)}"{title}>{shown}</td>'
 
 
 def html_table(heads, rows, name=""):
