@@ -12,7 +12,7 @@ NOT_SHOWN = {"experiment"}
 # Where tables without a schema version, whose columns are their experiment's, say what was measured.
 ORIGIN = {"version", "commit", "build_type", "compiler", "cuda", "fast_math", "command", "device",
           "device_kind", "threads", "driver", "repeat", "warmup", "scene_hash"}
-MOST_ROWS = 200  # of a table; the file has all
+MOST_ROWS = 150  # of a table; the file has all
 
 
 def cell(text):
