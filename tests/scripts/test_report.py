@@ -396,8 +396,8 @@ class Report(unittest.TestCase):
         heads = re.findall(r'<button type="button">([^<]*)</button>',
                            text[text.index('id="counters"'):])
         self.assertEqual(heads, ["name", "issue", "kernel ms median"])
-        self.assertEqual(len(re.findall("<td>row ", text)), 200)
-        self.assertIn("The first 200 of 250 rows; counters.csv has all.", text)
+        self.assertEqual(len(re.findall("<td>row ", text)), 150)
+        self.assertIn("The first 150 of 250 rows; counters.csv has all.", text)
 
     def test_pairs_of_pictures(self):
         self.folder.mkdir()
