@@ -1,5 +1,6 @@
 #include "wavefront/run_block_cpu.h"
 
+#include "common/transport/mask.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -9,11 +10,16 @@ using Slots = std::array<std::uint32_t, RayBlock::size_max>;
 
 // Traces the next rays of the paths in `count` slots; `send(slot, next)` takes each on.
 template <class Send>
-void run_block(const PathRays& stage, const BlockTraits& traits, const Scene& scene,
-               const Slots& slots, std::uint32_t count, Send&& send) {
+void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+               const Scene& scene, const Slots& slots, std::uint32_t count, Send&& send) {
   RayBlock rays;
   for (std::uint32_t i = 0; i < count; ++i) {
-    rays.append(stage.pool.load_ray(slots[i]), infinite_distance);
+    std::uint32_t key = 0;
+    if (traits.has_masks) {
+      const PathState path = stage.pool.load_name(slots[i]);
+      key = next_ray_key(mask_key<MaskedRays>(scene, samples.id_of(path.number)), path.rays);
+    }
+    rays.append(stage.pool.load_ray(slots[i]), infinite_distance, key);
   }
   std::array<Hit, RayBlock::size_max> hits;
   intersect_closest_block(traits, scene, rays, hits.data());
@@ -22,13 +28,18 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const Scene& sc
 
 // Likewise the shadow rays.
 template <class Send>
-void run_block(const ShadowRays& stage, const BlockTraits& traits, const Scene& scene,
-               const Slots& slots, std::uint32_t count, Send&& send) {
+void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+               const Scene& scene, const Slots& slots, std::uint32_t count, Send&& send) {
   RayBlock rays;
   std::uint32_t number;
   for (std::uint32_t i = 0; i < count; ++i) {
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
-    rays.append(shadow.ray, shadow.distance);
+    std::uint32_t key = 0;
+    if (traits.has_masks) {
+      key = shadow_ray_key(mask_key<MaskedRays>(scene, samples.id_of(number)),
+                           stage.pool.load_shadow_rays(slots[i]));
+    }
+    rays.append(shadow.ray, shadow.distance, key);
   }
   const std::uint32_t occluded = intersect_shadow_block(traits, scene, rays);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -38,26 +49,27 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const Scene& 
 }
 
 template <class Stage>
-void run_blocks(const Stage& stage, const BlockTraits& traits, const Scene& scene,
-                const StageQueues& queues) {
+void run_blocks(const Stage& stage, const BlockTraits& traits, const SampleBuffer& samples,
+                const Scene& scene, const StageQueues& queues) {
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
     for_each_block<Stage, RayBlock::size_max>(queues, begin, end,
                                               [&](const Slots& slots, std::uint32_t count) {
-                                                run_block(stage, traits, scene, slots, count, send);
+                                                run_block(stage, traits, samples, scene, slots,
+                                                          count, send);
                                               });
   });
 }
 
 }  // namespace
 
-void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const Scene& scene,
-                    const StageQueues& queues) {
-  run_blocks(stage, traits, scene, queues);
+void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+                    const Scene& scene, const StageQueues& queues) {
+  run_blocks(stage, traits, samples, scene, queues);
 }
 
-void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const Scene& scene,
-                    const StageQueues& queues) {
-  run_blocks(stage, traits, scene, queues);
+void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+                    const Scene& scene, const StageQueues& queues) {
+  run_blocks(stage, traits, samples, scene, queues);
 }
 
 }  // namespace pt

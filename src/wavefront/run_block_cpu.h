@@ -8,20 +8,20 @@
 
 namespace pt {
 
-/// As run_stage_cpu. `traits` are those of the rays.
-void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const Scene& scene,
-                    const StageQueues& queues);
-void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const Scene& scene,
-                    const StageQueues& queues);
+/// As run_stage_cpu. `traits` are those of the rays, `samples` names their paths.
+void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+                    const Scene& scene, const StageQueues& queues);
+void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits,
+                    const SampleBuffer& samples, const Scene& scene, const StageQueues& queues);
 
 /// The traits of a stage's rays; only of stages that trace.
 template <class Traits>
 constexpr BlockTraits block_traits(const IntersectRays<Traits>&) {
-  return {Traits::accel, Traits::geometry};
+  return {Traits::accel, Traits::geometry, Traits::has_masks};
 }
 template <class Traits>
 constexpr BlockTraits block_traits(const TraceShadowRays<Traits>&) {
-  return {Traits::accel, Traits::geometry};
+  return {Traits::accel, Traits::geometry, Traits::has_masks};
 }
 
 /// Whether the stage runs so.

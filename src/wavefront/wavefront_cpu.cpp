@@ -135,7 +135,7 @@ class CpuExecutor {
     if (*queues.count == 0) return;
     part_.timer.time(to_string(id_of(stage)), [&] {
       if constexpr (runs_in_blocks<Stage>) {
-        run_blocks_cpu(stage, block_traits(stage), scene_, queues);
+        run_blocks_cpu(stage, block_traits(stage), stage.samples, scene_, queues);
       } else if constexpr (shades_in_blocks<Stage>) {
         shade_blocks_cpu(stage, scene_, queues);
       } else {

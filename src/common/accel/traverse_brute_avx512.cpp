@@ -7,19 +7,8 @@ namespace pt {
 
 #ifdef __x86_64__
 
-namespace {
-
-bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("bmi") &&
-         __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
-}
-
-}  // namespace
-
 const BruteBlock* brute_block_avx512() {
-  static const bool has = has_avx512();
-  return has ? &brute_block_by<Lanes16> : nullptr;
+  return has_avx512() ? &brute_block_by<Lanes16> : nullptr;
 }
 
 #else

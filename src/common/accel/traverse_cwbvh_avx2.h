@@ -16,13 +16,14 @@ namespace pt {
 struct CwbvhAxesAvx2 {
   __m128 step, near, far;
 
-  PT_AVX2 CwbvhAxesAvx2(const CwbvhNode& node, const CwbvhRay& ray) {
+  /// What lies behind three floats is read, too: it must be there.
+  PT_AVX2 CwbvhAxesAvx2(const CwbvhNode& node, const float* ray_origin, const float* ray_inverse) {
     const __m128 step_bits = _mm_castsi128_ps(_mm_setr_epi32(-256, -256, -256, 0));
     const __m128 sign = _mm_set1_ps(-0.0f);
-    const __m128 inverse = three(&ray.inverse.x);
+    const __m128 inverse = three(ray_inverse);
     const __m128 packed = _mm_loadu_ps(reinterpret_cast<const float*>(node.packed));
     step = _mm_and_ps(packed, step_bits) * inverse;
-    const __m128 base = (three(&node.origin.x) - three(&ray.origin.x)) * inverse;
+    const __m128 base = (three(&node.origin.x) - three(ray_origin)) * inverse;
     const __m128 slack = _mm_andnot_ps(sign, base) * _mm_set1_ps(cwbvh_origin_tolerance) +
                          _mm_andnot_ps(sign, step) * _mm_set1_ps(cwbvh_grid_tolerance);
     near = base - slack;
@@ -36,7 +37,6 @@ struct CwbvhAxesAvx2 {
   }
 
  private:
-  /// What lies behind three floats is read, too: it must be there.
   PT_AVX2 static __m128 three(const float* p) {
     return _mm_blend_ps(_mm_loadu_ps(p), _mm_setzero_ps(), 8);
   }
@@ -44,12 +44,12 @@ struct CwbvhAxesAvx2 {
 
 /// Narrows [near, far] to where the ray is between the slots' planes of axis i.
 template <int i>
-PT_AVX2 inline void clip_to_axis(const CwbvhNode& node, const CwbvhRay& ray,
+PT_AVX2 inline void clip_to_axis(const CwbvhNode& node, std::uint32_t octant,
                                  const CwbvhAxesAvx2& axes, __m256& near, __m256& far) {
   // A slot's two planes are neighbours, the low one first: those where the ray enters become the
   // first eight bytes.
   const __m128i low_first = _mm_setr_epi8(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15);
-  const __m128i negative = _mm_set1_epi8(static_cast<char>(ray.octant >> i & 1u));
+  const __m128i negative = _mm_set1_epi8(static_cast<char>(octant >> i & 1u));
   const __m128i planes =
       _mm_shuffle_epi8(_mm_load_si128(reinterpret_cast<const __m128i*>(node.planes[i])),
                        _mm_xor_si128(low_first, negative));
@@ -61,17 +61,22 @@ PT_AVX2 inline void clip_to_axis(const CwbvhNode& node, const CwbvhRay& ray,
   far = _mm256_min_ps(leaves * step + CwbvhAxesAvx2::axis<i>(axes.far), far);
 }
 
-/// As intersect_cwbvh_node.
-PT_AVX2 inline std::uint32_t intersect_cwbvh_node_avx2(const CwbvhNode& node, const CwbvhRay& ray,
+/// As intersect_cwbvh_node, of CwbvhRay's members.
+PT_AVX2 inline std::uint32_t intersect_cwbvh_node_avx2(const CwbvhNode& node, const float* origin,
+                                                       const float* inverse, std::uint32_t octant,
                                                        float t_min, float t_max) {
-  const CwbvhAxesAvx2 axes(node, ray);
+  const CwbvhAxesAvx2 axes(node, origin, inverse);
   __m256 near = _mm256_set1_ps(t_min), far = _mm256_set1_ps(t_max);
-  clip_to_axis<0>(node, ray, axes, near, far);
-  clip_to_axis<1>(node, ray, axes, near, far);
-  clip_to_axis<2>(node, ray, axes, near, far);
+  clip_to_axis<0>(node, octant, axes, near, far);
+  clip_to_axis<1>(node, octant, axes, near, far);
+  clip_to_axis<2>(node, octant, axes, near, far);
   const __m256 limit = far * _mm256_set1_ps(1.0f + slab_tolerance);
   const int met = _mm256_movemask_ps(_mm256_cmp_ps(near, limit, _CMP_LE_OQ));
   return static_cast<std::uint32_t>(met) & node.used_mask();
+}
+PT_AVX2 inline std::uint32_t intersect_cwbvh_node_avx2(const CwbvhNode& node, const CwbvhRay& ray,
+                                                       float t_min, float t_max) {
+  return intersect_cwbvh_node_avx2(node, &ray.origin.x, &ray.inverse.x, ray.octant, t_min, t_max);
 }
 
 /// Where a ray meets the triangles of four slots: bit k of the result says that it meets the k-th

@@ -26,7 +26,9 @@ bool is_on_cuda(const Options& options) {
 /// ones are faster (results/ and docs/cpu.md have the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
   if (!is_on_cuda(options)) {
-    return has_avx2() && scene.opacities.empty() ? Accel::cwbvh : Accel::bvh2;
+    const bool masks_in_blocks = options.mode == Mode::wavefront && scene.instances.empty();
+    const bool pays = has_avx2() && (scene.opacities.empty() || masks_in_blocks);
+    return pays ? Accel::cwbvh : Accel::bvh2;
   }
   const bool is_plain = scene.instances.empty() && scene.spheres.empty();
   if (options.mode == Mode::megakernel) {

@@ -10,10 +10,11 @@ namespace {
 template <Accel accel, Geometry geometry>
 using Plain = Traits<accel, geometry, Lighting::sky>;
 
-// What no block is made for: instances, and brute force on a processor without lanes. Calls
-// function(traits) with the traits of one ray.
+// What no block is made for: instances, and a processor without lanes. Calls function(traits) with
+// the traits of one ray.
 template <class Function>
 auto alone(const BlockTraits& traits, Function&& function) {
+  if (traits.has_masks) return function(MaskedRays{});
   if (traits.geometry == Geometry::spheres_and_quads) {
     return function(Plain<Accel::brute, Geometry::spheres_and_quads>{});
   }
@@ -25,8 +26,20 @@ auto alone(const BlockTraits& traits, Function&& function) {
 using PrimitivesBesides = Plain<Accel::bvh2, Geometry::mixed>;
 
 bool has_block(const BlockTraits& traits, const Scene& scene) {
-  return scene.triangles.instance_count == 0 &&
-         (traits.accel == Accel::cwbvh_avx2 || brute_block() != nullptr);
+  const bool has_lanes =
+      traits.accel == Accel::brute ? brute_block() != nullptr : tree_block() != nullptr;
+  return scene.triangles.instance_count == 0 && has_lanes;
+}
+
+// As MaskedQuery asks, of the ray's own hit.
+bool mask_hides_block_ray(const void* scene_of_block, const RayBlock& rays, std::uint32_t i,
+                          std::uint32_t slot) {
+  const Scene& scene = *static_cast<const Scene*>(scene_of_block);
+  const Triangle& triangle = scene.triangles.triangles[slot];
+  const Ray ray = rays.ray(i);
+  const TriangleHit hit = intersect_triangle(make_triangle_ray(ray.origin, ray.direction),
+                                             triangle.v0, triangle.v1, triangle.v2);
+  return MaskTest{scene, rays.key[i]}.hides(triangle, hit, 0);
 }
 
 }  // namespace
@@ -36,11 +49,12 @@ void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayB
   if (!has_block(traits, scene)) {
     for (std::uint32_t i = 0; i < rays.count; ++i) {
       hits[i] = alone(traits, [&](auto plain) {
-        return intersect_closest<decltype(plain)>(scene, rays.ray(i));
+        return intersect_closest<decltype(plain)>(scene, rays.ray(i), rays.key[i]);
       });
     }
     return;
   }
+  const BlockMask mask = {&scene, mask_hides_block_ray};
   std::fill_n(hits, rays.count, Hit());
   std::uint32_t first_number = 0;  // of what the block tests
   HitBlock found;
@@ -57,7 +71,7 @@ void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayB
       rays.fill_lanes();
       brute_block()->closest_triangles(scene.triangles, rays, found);
     } else {
-      closest_triangles_in_turns(scene.triangles, rays, found);
+      tree_block()->closest(scene.triangles, rays, traits.has_masks ? &mask : nullptr, found);
     }
   }
   for (std::uint32_t i = 0; i < rays.count; ++i) {
@@ -73,8 +87,9 @@ std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& sce
   if (!has_block(traits, scene)) {
     for (std::uint32_t i = 0; i < rays.count; ++i) {
       const ShadowRay shadow = {rays.ray(i), rays.t_max[i]};
-      const bool is_occluded = alone(
-          traits, [&](auto plain) { return intersect_shadow<decltype(plain)>(scene, shadow); });
+      const bool is_occluded = alone(traits, [&](auto plain) {
+        return intersect_shadow<decltype(plain)>(scene, shadow, rays.key[i]);
+      });
       occluded |= (is_occluded ? 1u : 0u) << i;
     }
     return occluded;
@@ -90,7 +105,9 @@ std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& sce
     }
   }
   if (traits.accel != Accel::brute) {
-    return occluded | any_triangles_in_turns(scene.triangles, rays);
+    const BlockMask mask = {&scene, mask_hides_block_ray};
+    return occluded |
+           tree_block()->any(scene.triangles, rays, traits.has_masks ? &mask : nullptr);
   }
   rays.fill_lanes();
   return occluded | brute_block()->any_triangle(scene.triangles, rays);

@@ -7,17 +7,22 @@
 
 namespace pt {
 
-/// Which kind of rays there is: a scene's without lights and masks.
+/// Which kind of rays there is: a scene's without lights.
 struct BlockTraits {
   Accel accel;
   Geometry geometry;
+  bool has_masks = false;
 };
 
 /// Whether rays of such scenes are traced in blocks: where that is another way to trace them, so
 /// that nothing need be compiled for one ray as well.
 template <class Traits>
 inline constexpr bool traces_blocks =
-    !Traits::has_masks && (Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2);
+    Traits::has_masks ? Traits::accel == Accel::cwbvh
+                      : Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2;
+
+/// Of whose masks rays have keys (mask_key).
+using MaskedRays = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
 
 /// The closest hits of rays whose t_max is infinite_distance; hits[i] is ray i's. `rays` is filled
 /// up to whole lanes.
