@@ -4,6 +4,7 @@
 #include "common/accel/traverse_triangles.h"
 #include "common/transport/intersect.h"
 #include "common/transport/intersect_block.h"
+#include "masked_room.h"
 #include "mixed_scene.h"
 #include "nasty_rays.h"
 #include "primitive_scenes.h"
@@ -19,7 +20,7 @@ void expect_same_hits(SceneData& scene, AccelKind accel) {
   options.accel = accel;
   prepare_scene(scene, options);
   const Scene view = host_view(scene, 32, 32);
-  const BlockTraits traits = {T::accel, T::geometry};
+  const BlockTraits traits = {T::accel, T::geometry, T::has_masks};
   TestRandom random(5);
   const Vec3 center = scene.camera.look_at;
   const double size = glm::length(scene.camera.look_from - center);
@@ -30,16 +31,19 @@ void expect_same_hits(SceneData& scene, AccelKind accel) {
   int hits_found = 0, occluded_found = 0;
   for_each_block(200, random, make, [&](const RayBlock& block) {
     RayBlock far = block, near = block;
-    std::fill_n(far.t_max, far.count, infinite_distance);
+    for (std::uint32_t i = 0; i < block.count; ++i) {
+      far.key[i] = near.key[i] = 7 * i;
+      far.t_max[i] = infinite_distance;
+    }
     Hit hits[RayBlock::size_max];
     intersect_closest_block(traits, view, far, hits);
     const std::uint32_t occluded = intersect_shadow_block(traits, view, near);
     for (std::uint32_t i = 0; i < block.count; ++i) {
-      const Hit expected = intersect_closest<T>(view, block.ray(i));
+      const Hit expected = intersect_closest<T>(view, block.ray(i), 7 * i);
       ASSERT_EQ(hits[i].primitive, expected.primitive) << "ray " << i;
       ASSERT_EQ(float_to_bits(hits[i].t), float_to_bits(expected.t)) << "ray " << i;
       ASSERT_EQ(hits[i].instance, expected.instance) << "ray " << i;
-      const bool any = intersect_shadow<T>(view, {block.ray(i), block.t_max[i]});
+      const bool any = intersect_shadow<T>(view, {block.ray(i), block.t_max[i]}, 7 * i);
       ASSERT_EQ((occluded >> i & 1u) != 0, any) << "ray " << i;
       hits_found += expected.is_miss() ? 0 : 1, occluded_found += any ? 1 : 0;
     }
@@ -74,6 +78,11 @@ TEST(IntersectBlock, MeetsTheSameByTheWideTree) {
   SceneData one_level = triangles_and_spheres(), instances = mixed_scene();
   expect_same_hits<Rays<Accel::cwbvh_avx2, Geometry::mixed>>(one_level, AccelKind::cwbvh);
   expect_same_hits<Rays<Accel::cwbvh_avx2, Geometry::mixed>>(instances, AccelKind::cwbvh);
+}
+
+TEST(IntersectBlock, MeetsTheSameThroughMasks) {
+  SceneData scene = masked_room();
+  expect_same_hits<MaskedRays>(scene, AccelKind::cwbvh);
 }
 
 }  // namespace
