@@ -1,9 +1,10 @@
 // What shading reads at places that depend on chance, asked of memory for paths whose turn comes
-// later. In two steps: what the first one asks for says where the second's lies.
+// later. In three steps: what one asks for says where the next one's lies.
 #pragma once
 
 #include "common/sampling/alias_table.h"
 #include "common/scene/scene.h"
+#include "common/texture/sample_texture.h"
 
 namespace pt {
 
@@ -49,6 +50,38 @@ inline void prefetch_attributes(const Scene& scene, const Hit& hit, const Vec4& 
   const AliasSample cell = sample_alias(env.alias, env.width * env.bands(), light.x, light.y);
   prefetch(&env.texels[cell.index]);
   if (env.height > 1) prefetch(&env.texels[cell.index + env.width]);
+}
+
+/// Where about a ray meets a triangle, as weights of v1 and v2.
+inline Vec2 rough_barycentric(const Ray& ray, float t, const Triangle& triangle) {
+  const Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
+  const Vec3 p = ray.origin + t * ray.direction - triangle.v0;
+  const Vec3 normal = glm::cross(edge1, edge2);
+  const float scale = 1.0f / dot(normal, normal);
+  return {scale * dot(glm::cross(p, edge2), normal), scale * dot(glm::cross(edge1, p), normal)};
+}
+
+/// The texels, in both rows, of the image that colours the material there, in a scene without
+/// instances.
+inline void prefetch_texels(const Scene& scene, const Ray& ray, const Hit& hit) {
+  const Triangle* const triangle = triangle_of(scene, hit);
+  if (triangle == nullptr || (triangle->attributes & TriangleAttributes::uvs) == 0) return;
+  const std::uint32_t number = scene.parameters[triangle->material].texture;
+  if (number == no_texture) return;
+  const Texture& texture = scene.textures[number];
+  if (texture.kind != TextureKind::image) return;
+  const Vec2 b = rough_barycentric(ray, hit.t, *triangle);
+  const Vec2 uv = scene.corners[triangle->id].uv_at(Vec3(1.0f - b.x - b.y, b.x, b.y));
+  const Vec2 mapped = map_coordinates(texture, uv);
+  const TexelPair x = find_texels(wrap_coordinate(mapped.x, texture.wrap_u), texture.width,
+                                  texture.wrap_u);
+  const TexelPair y = find_texels(1.0f - wrap_coordinate(mapped.y, texture.wrap_v),
+                                  texture.height, texture.wrap_v);
+  const std::size_t bytes = texture.format == TextureFormat::rgb32f ? 12 : 4;
+  const std::byte* const texels = scene.texels + texture.offset;
+  for (const std::uint32_t row : {y.first, y.second}) {
+    prefetch(texels + bytes * (std::size_t{row} * texture.width + x.first));
+  }
 }
 
 }  // namespace pt

@@ -65,7 +65,7 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
                       const StageQueues& queues) {
   using Stage = ShadeSurface<Traits, branching, DrawnSource>;
   constexpr bool prefetches = Traits::lighting == Lighting::full;  // its scenes may be large
-  constexpr std::uint32_t ahead = 4;                               // slots
+  constexpr std::uint32_t attributes_ahead = 6, texels_ahead = 3;  // slots
   const StageContext<Source>& c = stage.context;
   static const bool fast = has_avx2();
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
@@ -83,9 +83,16 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
           for (std::uint32_t i = 0; prefetches && i < count; ++i) {
             prefetch_records(scene, c.pool.load_hit(slots[i]), light.at(i));
           }
-          for (std::uint32_t i = 0; i < ahead; ++i) ask_for_attributes(i);
+          const auto ask_for_texels = [&](std::uint32_t i) {
+            if (prefetches && i < count && scene.triangles.instance_count == 0) {
+              prefetch_texels(scene, c.pool.load_ray(slots[i]), c.pool.load_hit(slots[i]));
+            }
+          };
+          for (std::uint32_t i = 0; i < attributes_ahead; ++i) ask_for_attributes(i);
+          for (std::uint32_t i = 0; i < texels_ahead; ++i) ask_for_texels(i);
           for (std::uint32_t i = 0; i < count; ++i) {
-            ask_for_attributes(i + ahead);
+            ask_for_attributes(i + attributes_ahead);
+            ask_for_texels(i + texels_ahead);
             drawn.context.source.place = i;
             const std::uint32_t slot = slots[i];
             send(slot, fast ? shade_slot(drawn, scene, slot) : drawn(scene, slot, 0));

@@ -111,12 +111,17 @@ PT_HD Color sample_checkerboard(const Texture& texture, const Vec2& uv) {
   return right == upper ? texture.color0 : texture.color1;
 }
 
+/// The coordinates of a surface to the texture's.
+PT_HD Vec2 map_coordinates(const Texture& texture, const Vec2& uv) {
+  const float *a = texture.u_row, *b = texture.v_row;
+  return {fused_multiply_add(a[0], uv.x, fused_multiply_add(a[1], uv.y, a[2])),
+          fused_multiply_add(b[0], uv.x, fused_multiply_add(b[1], uv.y, b[2]))};
+}
+
 /// The linear colour of a texture at the coordinates of a surface. `texels` is the scene's texel
 /// memory, 16-byte aligned.
 PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, const Vec2& uv) {
-  const float *a = texture.u_row, *b = texture.v_row;
-  const Vec2 mapped(fused_multiply_add(a[0], uv.x, fused_multiply_add(a[1], uv.y, a[2])),
-                    fused_multiply_add(b[0], uv.x, fused_multiply_add(b[1], uv.y, b[2])));
+  const Vec2 mapped = map_coordinates(texture, uv);
   if (texture.kind == TextureKind::checkerboard) return sample_checkerboard(texture, mapped);
   return multiply_rounded(sample_image(texture, texels, mapped), texture.color0);
 }
