@@ -15,8 +15,8 @@ void prefetch(const T* p) {
   constexpr std::size_t line_bytes = 64;
   for (std::size_t i = 0; i < sizeof(T); i += line_bytes) __builtin_prefetch(begin + i);
   __builtin_prefetch(begin + sizeof(T) - 1);
-  // GCC takes functions that do nothing but prefetch for functions that do nothing (seen: 12.2), and
-  // leaves out their calls. Not one that does this:
+  // GCC takes functions that do nothing but prefetch for functions that do nothing (seen: 12.2),
+  // and leaves out their calls. Not one that does this:
   asm volatile("" : : "r"(p));
 }
 
@@ -73,10 +73,10 @@ inline void prefetch_texels(const Scene& scene, const Ray& ray, const Hit& hit) 
   const Vec2 b = rough_barycentric(ray, hit.t, *triangle);
   const Vec2 uv = scene.corners[triangle->id].uv_at(Vec3(1.0f - b.x - b.y, b.x, b.y));
   const Vec2 mapped = map_coordinates(texture, uv);
-  const TexelPair x = find_texels(wrap_coordinate(mapped.x, texture.wrap_u), texture.width,
-                                  texture.wrap_u);
-  const TexelPair y = find_texels(1.0f - wrap_coordinate(mapped.y, texture.wrap_v),
-                                  texture.height, texture.wrap_v);
+  const TexelPair x =
+      find_texels(wrap_coordinate(mapped.x, texture.wrap_u), texture.width, texture.wrap_u);
+  const TexelPair y =
+      find_texels(1.0f - wrap_coordinate(mapped.y, texture.wrap_v), texture.height, texture.wrap_v);
   const std::size_t bytes = texture.format == TextureFormat::rgb32f ? 12 : 4;
   const std::byte* const texels = scene.texels + texture.offset;
   for (const std::uint32_t row : {y.first, y.second}) {

@@ -52,11 +52,10 @@ template <class Stage>
 void run_blocks(const Stage& stage, const BlockTraits& traits, const SampleBuffer& samples,
                 const Scene& scene, const StageQueues& queues) {
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
-    for_each_block<Stage, RayBlock::size_max>(queues, begin, end,
-                                              [&](const Slots& slots, std::uint32_t count) {
-                                                run_block(stage, traits, samples, scene, slots,
-                                                          count, send);
-                                              });
+    for_each_block<Stage, RayBlock::size_max>(
+        queues, begin, end, [&](const Slots& slots, std::uint32_t count) {
+          run_block(stage, traits, samples, scene, slots, count, send);
+        });
   });
 }
 

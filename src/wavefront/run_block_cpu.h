@@ -11,8 +11,8 @@ namespace pt {
 /// As run_stage_cpu. `traits` are those of the rays, `samples` names their paths.
 void run_blocks_cpu(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
                     const Scene& scene, const StageQueues& queues);
-void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits,
-                    const SampleBuffer& samples, const Scene& scene, const StageQueues& queues);
+void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
+                    const Scene& scene, const StageQueues& queues);
 
 /// The traits of a stage's rays; only of stages that trace.
 template <class Traits>

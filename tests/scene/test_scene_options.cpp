@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/options/option_list.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
@@ -124,6 +125,22 @@ TEST(SceneOptions, PersistentWarpsTakeAWideTree) {
     masked.materials[0].opacity.offset = 0.5f;
     EXPECT_EQ(accel_of(masked), accel);
   }
+}
+
+// Where blocks of rays go through masks.
+TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
+  const auto accel_of = [](const char* name, Mode mode) {
+    SceneData masked = build_scene(with_scene(name));
+    masked.materials[0].opacity.offset = 0.5f;
+    Options options;
+    options.device.kind = DeviceChoice::Kind::cpu;
+    options.mode = mode;
+    prepare_scene(masked, options);
+    return masked.traits.accel;
+  };
+  EXPECT_EQ(accel_of("boxes", Mode::wavefront), has_avx2() ? Accel::cwbvh : Accel::bvh2);
+  EXPECT_EQ(accel_of("boxes", Mode::megakernel), Accel::bvh2);
+  EXPECT_EQ(accel_of("instances:20", Mode::wavefront), Accel::bvh2);
 }
 
 TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {

@@ -13,7 +13,8 @@ struct RayBlock {
   alignas(64) float origin[3][size_max];
   float direction[3][size_max];
   float t_max[size_max];  ///< hits count for 0 < t < t_max: 0 or less for a ray that meets nothing
-  std::uint32_t key[size_max];  ///< for masks (transport/mask.h); read only in scenes that have them
+  std::uint32_t
+      key[size_max];  ///< for masks (transport/mask.h); read only in scenes that have them
 
   void append(const Ray& ray, float ray_t_max, std::uint32_t ray_key = 0) {
     key[count] = ray_key;

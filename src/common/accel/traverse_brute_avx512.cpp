@@ -7,9 +7,7 @@ namespace pt {
 
 #ifdef __x86_64__
 
-const BruteBlock* brute_block_avx512() {
-  return has_avx512() ? &brute_block_by<Lanes16> : nullptr;
-}
+const BruteBlock* brute_block_avx512() { return has_avx512() ? &brute_block_by<Lanes16> : nullptr; }
 
 #else
 

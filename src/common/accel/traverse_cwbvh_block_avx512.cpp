@@ -68,8 +68,7 @@ struct TurnsByAvx512 {
     const __m128 packed = _mm_loadu_ps(reinterpret_cast<const float*>(node.packed));
     const __m128 step_bits = _mm_castsi128_ps(_mm_setr_epi32(-256, -256, -256, 0));
     const __m128 step = _mm_and_ps(packed, step_bits) * inverse;
-    const __m128 base =
-        (_mm_loadu_ps(&node.origin.x) - _mm_loadu_ps(ray.origin)) * inverse;
+    const __m128 base = (_mm_loadu_ps(&node.origin.x) - _mm_loadu_ps(ray.origin)) * inverse;
     const __m128 slack = _mm_andnot_ps(sign, base) * _mm_set1_ps(cwbvh_origin_tolerance) +
                          _mm_andnot_ps(sign, step) * _mm_set1_ps(cwbvh_grid_tolerance);
     const __m256 steps = _mm256_xor_ps(_mm256_broadcast_f32x4(step), upper_sign);
@@ -93,9 +92,9 @@ struct TurnsByAvx512 {
     const std::uint32_t leaves = node.leaf_mask(), seconds = node.pair_mask();
     const std::uint32_t met =
         _pext_u32(by_slot(hits & leaves, hits & seconds), by_slot(leaves, seconds));
-    const __m512i slots = _mm512_add_epi32(
-        _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
-        _mm512_set1_epi32(static_cast<int>(node.triangle_base)));
+    const __m512i slots =
+        _mm512_add_epi32(_mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
+                         _mm512_set1_epi32(static_cast<int>(node.triangle_base)));
     _mm512_storeu_si512(&pairs.slots[pairs.count],
                         _mm512_maskz_compress_epi32(static_cast<__mmask16>(met), slots));
     _mm_storeu_si128(reinterpret_cast<__m128i*>(&pairs.rays[pairs.count]),

@@ -89,20 +89,20 @@ PT_LANES std::uint32_t make_turn_ray(const Ray& ray, float t_max, TurnRay& resul
   const Vec3 length = glm::abs(ray.direction);
   const unsigned z = unsigned{length.z >= length.x} & unsigned{length.z >= length.y};
   const std::uint32_t axis = 2 * z + ((z ^ 1u) & unsigned{length.y >= length.x});
-  const __m128 safe = _mm_or_ps(_mm_max_ps(size, _mm_set1_ps(cwbvh_least_direction)),
-                                _mm_and_ps(sign, d));
+  const __m128 safe =
+      _mm_or_ps(_mm_max_ps(size, _mm_set1_ps(cwbvh_least_direction)), _mm_and_ps(sign, d));
   const __m128 largest = _mm_permutevar_ps(d, _mm_set1_epi32(static_cast<int>(axis)));
   const __m128 inverse = _mm_set1_ps(1.0f) / _mm_blend_ps(safe, largest, 8);
   const __m128 slopes = _mm_xor_ps(sign, d) * _mm_permute_ps(inverse, 0xff);
   const auto make_axis = [slopes](const AxisRow& row) PT_LANES {
-    const __m128 taken = _mm_permutevar_ps(
-        slopes, _mm_load_si128(reinterpret_cast<const __m128i*>(row.from)));
-    return _mm_or_ps(
-        _mm_and_ps(taken, _mm_load_ps(reinterpret_cast<const float*>(row.taken))),
-        _mm_load_ps(row.constant));
+    const __m128 taken =
+        _mm_permutevar_ps(slopes, _mm_load_si128(reinterpret_cast<const __m128i*>(row.from)));
+    return _mm_or_ps(_mm_and_ps(taken, _mm_load_ps(reinterpret_cast<const float*>(row.taken))),
+                     _mm_load_ps(row.constant));
   };
-  _mm_store_ps(result.origin, _mm_blend_ps(_mm_setr_ps(ray.origin.x, ray.origin.y, ray.origin.z,
-                                                       0.0f), inverse, 8));
+  _mm_store_ps(
+      result.origin,
+      _mm_blend_ps(_mm_setr_ps(ray.origin.x, ray.origin.y, ray.origin.z, 0.0f), inverse, 8));
   const __m128 last = _mm_castsi128_ps(_mm_set1_epi32(static_cast<int>(axis)));
   _mm_store_ps(result.x_axis, _mm_blend_ps(make_axis(x_axis_rows[axis]), last, 8));
   _mm_store_ps(result.y_axis, _mm_blend_ps(make_axis(y_axis_rows[axis]), _mm_set1_ps(t_max), 8));
@@ -219,8 +219,8 @@ class TurnsOfBlock {
       const std::uint32_t count = count_;
       for (std::uint32_t k = 0; k < count; ++k) {
         const Way& way = ways_[going_[k]];
-        hits[k] = static_cast<std::uint8_t>(
-            Isa::meet_node(*way.node, rays_[going_[k]], way.octant));
+        hits[k] =
+            static_cast<std::uint8_t>(Isa::meet_node(*way.node, rays_[going_[k]], way.octant));
       }
       for (std::uint32_t k = 0; k < count; ++k) visit_node(going_[k], hits[k]);
       if (pairs_.count > 0) test_pairs();

@@ -22,8 +22,9 @@ bool is_on_cuda(const Options& options) {
   return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
 }
 
-/// Persistent warps and AVX2 make the most of wide trees; for threads that follow rays alone binary
-/// ones are faster (results/ and docs/cpu.md have the measurements).
+/// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
+/// blocks; for threads that follow rays alone binary ones are faster (results/ and docs/cpu.md have
+/// the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
   if (!is_on_cuda(options)) {
     const bool masks_in_blocks = options.mode == Mode::wavefront && scene.instances.empty();

@@ -106,8 +106,7 @@ std::uint32_t intersect_shadow_block(const BlockTraits& traits, const Scene& sce
   }
   if (traits.accel != Accel::brute) {
     const BlockMask mask = {&scene, mask_hides_block_ray};
-    return occluded |
-           tree_block()->any(scene.triangles, rays, traits.has_masks ? &mask : nullptr);
+    return occluded | tree_block()->any(scene.triangles, rays, traits.has_masks ? &mask : nullptr);
   }
   rays.fill_lanes();
   return occluded | brute_block()->any_triangle(scene.triangles, rays);
