@@ -66,7 +66,7 @@ LAYERS = [
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
-    ("platform", ["common/lane_counter.h", "common/platform.h",
+    ("platform", ["common/half_float.h", "common/lane_counter.h", "common/platform.h",
                   "common/platform_cpu.h", "common/type_list.h"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/

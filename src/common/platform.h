@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "common/half_float.h"
+
 #define PT_PRAGMA(x) _Pragma(#x)
 
 #ifdef __CUDACC__
@@ -24,6 +26,13 @@
 #endif
 
 namespace pt {
+
+/// Whether pairs of halves (below) are computed by instructions.
+#ifdef __CUDA_ARCH__
+inline constexpr bool has_half_pairs = true;
+#else
+inline constexpr bool has_half_pairs = false;
+#endif
 
 PT_HD std::uint32_t float_to_bits(float x) {
 #ifdef __CUDA_ARCH__
@@ -267,6 +276,60 @@ PT_HD std::uint32_t shift_in_sign(std::uint32_t bits, float x) {
 #endif
 }
 
+// Two numbers of half precision side by side in a word, for which CUDA has instructions.
+
+/// Both rounded to the nearest half, `first` into the lower bits.
+PT_HD std::uint32_t pack_halves(float first, float second) {
+#ifdef __CUDA_ARCH__
+  std::uint32_t pair;
+  asm("cvt.rn.f16x2.f32 %0, %2, %1;" : "=r"(pair) : "f"(first), "f"(second));
+  return pair;
+#else
+  return to_half(first) | static_cast<std::uint32_t>(to_half(second)) << 16;
+#endif
+}
+
+/// a * b + c of both, rounded once.
+PT_HD std::uint32_t multiply_add_halves(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+#ifdef __CUDA_ARCH__
+  std::uint32_t pair;
+  asm("fma.rn.f16x2 %0, %1, %2, %3;" : "=r"(pair) : "r"(a), "r"(b), "r"(c));
+  return pair;
+#else
+  const auto fused = [&](int shift) -> std::uint32_t {
+    const auto part = [&](std::uint32_t pair) {
+      return from_half(static_cast<std::uint16_t>(pair >> shift));
+    };
+    return to_half(part(a) * part(b) + part(c));
+  };
+  return fused(0) | fused(16) << 16;
+#endif
+}
+
+PT_HD std::uint32_t negate_halves(std::uint32_t pair) {
+#ifdef __CUDA_ARCH__
+  std::uint32_t negative;
+  asm("neg.f16x2 %0, %1;" : "=r"(negative) : "r"(pair));
+  return negative;
+#else
+  return pair ^ 0x80008000u;
+#endif
+}
+
+/// The signs of the halves of a and then of b, from the lowest byte on: 0 or 255 each.
+PT_HD std::uint32_t sign_bytes(std::uint32_t a, std::uint32_t b) {
+#ifdef __CUDA_ARCH__
+  std::uint32_t signs;
+  asm("prmt.b32 %0, %1, %2, 0xfdb9;" : "=r"(signs) : "r"(a), "r"(b));
+  return signs;
+#else
+  const auto bytes = [](std::uint32_t pair) {
+    return (pair >> 15 & 1) * 0xffu | (pair >> 31) * 0xff00u;
+  };
+  return bytes(a) | bytes(b) << 16;
+#endif
+}
+
 PT_HD int count_leading_zeros(std::uint32_t x) {
 #ifdef __CUDA_ARCH__
   return __clz(static_cast<int>(x));
@@ -280,6 +343,48 @@ PT_HD int count_bits(std::uint32_t x) {
   return __popc(x);
 #else
   return __builtin_popcount(x);
+#endif
+}
+
+/// False, which the compiler does not know: a loop while it is true stays a loop, around which code
+/// branches. What is rarely needed would else be executed by predicated instructions, always.
+PT_HD bool is_never() {
+#ifdef __CUDA_ARCH__
+  unsigned lane;
+  asm volatile("mov.u32 %0, %%laneid;" : "=r"(lane));
+  return lane > 31;
+#else
+  return false;
+#endif
+}
+
+PT_HD std::uint32_t min_integer(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
+
+/// The place of the highest bit that is set; x is not 0.
+PT_HD std::uint32_t highest_bit(std::uint32_t x) {
+#ifdef __CUDA_ARCH__
+  std::uint32_t place;
+  asm("bfind.u32 %0, %1;" : "=r"(place) : "r"(x));
+  return place;
+#else
+  return 31u - static_cast<std::uint32_t>(count_leading_zeros(x));
+#endif
+}
+
+/// a * b: both words of it.
+struct WideProduct {
+  std::uint32_t low, high;
+};
+PT_HD WideProduct multiply_wide(std::uint32_t a, std::uint32_t b) {
+#ifdef __CUDA_ARCH__
+  WideProduct p;  // a shift of the 64 bits becomes an addition of 0
+  asm("{ .reg .b64 p; mul.wide.u32 p, %2, %3; mov.b64 {%0, %1}, p; }"
+      : "=r"(p.low), "=r"(p.high)
+      : "r"(a), "r"(b));
+  return p;
+#else
+  const std::uint64_t p = std::uint64_t{a} * b;
+  return {static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(p >> 32)};
 #endif
 }
 

@@ -380,7 +380,7 @@ class CudaModes : public CudaTest {};
 
 // More than 48 KiB of shared memory have to be asked for.
 TEST_F(CudaModes, ManySpheresInSharedMemory) {
-  const Settings settings{{"spheres", "5000"},
+  const Settings settings{{"spheres", "10000"},
                           {"accel", "brute"},
                           {"width", tiny_width},
                           {"height", tiny_height},

@@ -1,38 +1,10 @@
 // Tests every primitive: the paper's way, and for a few dozen spheres the fastest one.
 #pragma once
 
+#include "common/accel/scan_halves.h"
 #include "common/geometry/primitives.h"
-#include "common/math/frame.h"
 
 namespace pt {
-
-/// A ray as seen along its own direction: what lies on it lies at the origin of a plane. A sphere's
-/// centre falls on the point (dot(x_axis, centre) - x, dot(y_axis, centre) - y) of that plane, and
-/// the line meets the sphere when this point is within the radius: nine operations per sphere, less
-/// than any test in three dimensions.
-class ProjectedRay {
- public:
-  PT_HD ProjectedRay(const Ray& ray, const Vec3& scan_center) {
-    const Frame frame = make_frame(ray.direction);
-    const Vec3 origin = ray.origin - scan_center;
-    x_axis_ = frame.tangent;
-    y_axis_ = frame.bitangent;
-    x_ = glm::dot(x_axis_, origin);
-    y_ = glm::dot(y_axis_, origin);
-  }
-
-  /// Negative when the line misses the sphere, one of Primitives::scan.
-  PT_HD float nearness(const Sphere& sphere) const {
-    const Vec3& c = sphere.center;
-    const float x = c.x * x_axis_.x + (c.y * x_axis_.y + (c.z * x_axis_.z - x_));
-    const float y = c.x * y_axis_.x + (c.y * y_axis_.y + (c.z * y_axis_.z - y_));
-    return sphere.radius_squared - x * x - y * y;
-  }
-
- private:
-  Vec3 x_axis_, y_axis_;
-  float x_, y_;
-};
 
 inline constexpr int scan_group = 4;  ///< scanned spheres come in groups of this size
 inline constexpr int scan_chunk = 32;
@@ -61,16 +33,17 @@ PT_HD std::uint32_t sphere_candidates(const Sphere* spheres, First first, std::u
   return ~missed;
 }
 
-/// Calls visit(distance, primitive) for the candidates until it returns true.
-template <class Visit>
-PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t first,
-                              std::uint32_t candidates, const Ray& ray, Visit&& visit) {
+/// Calls visit(distance, primitive) for the candidates until it returns true. `number_of(bit)`: the
+/// sphere of a bit.
+template <class NumberOf, class Visit>
+PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t candidates,
+                              const Ray& ray, NumberOf&& number_of, Visit&& visit) {
   while (candidates != 0) {
     lanes_of(ray).count(LanePoint::primitive);
-    const int j = count_leading_zeros(candidates);
-    candidates &= ~(0x80000000u >> j);
-    const std::uint32_t primitive = first + j;
-    if (primitive >= primitives.sphere_count) return false;  // a ray that is NaN meets fillers, too
+    const std::uint32_t bit = highest_bit(candidates);
+    candidates &= ~(1u << bit);
+    // A ray that is NaN has fillers for candidates, too, and meets nothing, whatever is tested.
+    const std::uint32_t primitive = min_integer(number_of(bit), primitives.sphere_count - 1);
     if (visit(sphere_distance(load_wide(&primitives.spheres[primitive]), ray), primitive)) {
       return true;
     }
@@ -78,20 +51,52 @@ PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t first,
   return false;
 }
 
+/// Calls chunk(first) for 0, size, ... below `count`, the first two of them constants, until it
+/// returns true.
+template <std::uint32_t size, class Chunk>
+PT_HD bool for_each_chunk(std::uint32_t count, Chunk&& chunk) {
+  if (count > 0 && chunk(std::integral_constant<std::uint32_t, 0>{})) return true;
+  if (count > size && chunk(std::integral_constant<std::uint32_t, size>{})) return true;
+  for (std::uint32_t first = 2 * size; first < count; first += size) {
+    if (chunk(first)) return true;
+  }
+  return false;
+}
+
+/// Calls visit(distance, primitive) for every sphere that the ray may meet until it returns true.
+template <class Visit>
+PT_HD bool for_each_sphere(const Primitives& primitives, const Ray& ray, Visit&& visit) {
+  const ProjectedRay projected(ray, primitives.scan_center);
+  const std::uint32_t count = primitives.scan_count;
+  return for_each_chunk<scan_chunk>(count, [&](auto first) {
+    return resolve_candidates(
+        primitives, sphere_candidates(primitives.scan, first, count, projected), ray,
+        [&](std::uint32_t bit) { return first + 31 - bit; }, visit);
+  });
+}
+
+/// The same by candidates in half precision.
+template <class Visit>
+PT_HD bool for_each_half_sphere(const Primitives& primitives, const Ray& ray, Visit&& visit) {
+  const ProjectedRay projected(ray, primitives.scan_center);
+  const HalfProjectedRay halves(projected, primitives.half_scale);
+  const std::uint32_t count = primitives.half_count;
+  return for_each_chunk<half_groups>(count, [&](auto first) {
+    const std::uint32_t groups = groups_of_chunk(first, count);
+    return resolve_candidates(
+        primitives, half_candidates(primitives.halves, first, count, halves), ray,
+        [&](std::uint32_t bit) { return first * HalfSpheres::count + half_number(bit, groups); },
+        visit);
+  });
+}
+
 /// Calls visit(distance, primitive) for every intersection until it returns true.
 template <class Visit>
 PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, Visit&& visit) {
-  const ProjectedRay projected(ray, primitives.scan_center);
-  const std::uint32_t count = primitives.scan_count;
-  const auto chunk = [&](auto first) {
-    if (first >= count) return false;
-    const std::uint32_t candidates = sphere_candidates(primitives.scan, first, count, projected);
-    return resolve_candidates(primitives, first, candidates, ray, visit);
-  };
-  if (chunk(std::integral_constant<std::uint32_t, 0>{})) return true;
-  if (chunk(std::integral_constant<std::uint32_t, scan_chunk>{})) return true;
-  for (std::uint32_t first = 2 * scan_chunk; first < count; first += scan_chunk) {
-    if (chunk(first)) return true;
+  if constexpr (has_half_pairs) {
+    if (for_each_half_sphere(primitives, ray, visit)) return true;
+  } else {
+    if (for_each_sphere(primitives, ray, visit)) return true;
   }
   for (std::uint32_t i = 0; i < primitives.quad_count; ++i) {
     lanes_of(ray).count(LanePoint::primitive);
@@ -103,7 +108,10 @@ PT_HD bool for_each_intersection(const Primitives& primitives, const Ray& ray, V
 PT_HD Hit closest_hit_brute(const Primitives& primitives, const Ray& ray) {
   Hit hit;
   for_each_intersection(primitives, ray, [&](float t, std::uint32_t primitive) {
-    keep_nearer(hit, t, primitive);
+    if (t > 0.0f && t < hit.t) {  // of equal distances the first is the lowest number's
+      hit.t = t;
+      hit.primitive = primitive;
+    }
     return false;
   });
   return hit;

@@ -8,21 +8,21 @@ namespace pt {
 __device__ inline Scene SceneStorage<SceneMemory::global>::bind() const { return scene; }
 
 __device__ inline Scene SceneStorage<SceneMemory::shared>::bind() const {
-  extern __shared__ Sphere shared_spheres[];
+  extern __shared__ HalfSpheres shared_spheres[];
   const std::uint32_t threads = blockDim.x * blockDim.y;
-  for (std::uint32_t i = threadIdx.y * blockDim.x + threadIdx.x; i < scene.primitives.scan_count;
+  for (std::uint32_t i = threadIdx.y * blockDim.x + threadIdx.x; i < scene.primitives.half_count;
        i += threads) {
-    store_wide(&shared_spheres[i], load_wide(&scene.primitives.scan[i]));
+    store_wide(&shared_spheres[i], load_wide(&scene.primitives.halves[i]));
   }
   __syncthreads();
   Scene bound = scene;
-  bound.primitives.scan = shared_spheres;
+  bound.primitives.halves = shared_spheres;
   return bound;
 }
 
 __device__ inline Scene SceneStorage<SceneMemory::constant>::bind() const {
   Scene bound = scene;
-  bound.primitives.scan = spheres;
+  bound.primitives.halves = spheres;
   return bound;
 }
 

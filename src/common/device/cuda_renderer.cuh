@@ -76,10 +76,11 @@ class CudaRenderer : public FilmRenderer {
   template <class Function>
   void with_scene_storage(Function&& function) const {
     if (scene_memory_ == SceneMemory::shared) {
-      function(SceneStorage<SceneMemory::shared>{scene_}, scan_spheres_.size() * sizeof(Sphere));
+      function(SceneStorage<SceneMemory::shared>{scene_},
+               half_spheres_.size() * sizeof(HalfSpheres));
     } else if (scene_memory_ == SceneMemory::constant) {
       SceneStorage<SceneMemory::constant> storage{scene_, {}};
-      std::copy(scan_spheres_.begin(), scan_spheres_.end(), storage.spheres);
+      std::copy(half_spheres_.begin(), half_spheres_.end(), storage.spheres);
       function(storage, std::size_t{0});
     } else {
       function(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
@@ -164,7 +165,7 @@ class CudaRenderer : public FilmRenderer {
   std::string driver_;
   std::uint64_t primitive_count_;
   TreeFacts tree_facts_;  ///< of a tree built on the device
-  std::vector<Sphere> scan_spheres_;
+  std::vector<HalfSpheres> half_spheres_;
   SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;

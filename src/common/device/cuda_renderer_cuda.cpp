@@ -53,7 +53,7 @@ CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int d
       traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
-      scan_spheres_(scene.scan_spheres) {
+      half_spheres_(scene.half_spheres) {
   const Stopwatch watch;
   check_cuda(cudaSetDevice(device), "cudaSetDevice");
   check_cuda(cudaGetDeviceProperties(&properties_, device), "cudaGetDeviceProperties");
@@ -79,8 +79,8 @@ CudaRenderer::~CudaRenderer() {
 }
 
 void CudaRenderer::upload(const SceneData& scene) {
-  const std::size_t sphere_bytes = scene.scan_spheres.size() * sizeof(Sphere);
-  const bool fits_constant = scene.scan_spheres.size() <= constant_spheres_max;
+  const std::size_t sphere_bytes = scene.half_spheres.size() * sizeof(HalfSpheres);
+  const bool fits_constant = scene.spheres.size() <= constant_spheres_max;
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
     scene_memory_ = fits_constant && traits_.geometry == Geometry::spheres_and_quads &&

@@ -36,7 +36,8 @@ template <>
 struct SceneStorage<SceneMemory::constant> {
   static constexpr SceneMemory memory = SceneMemory::constant;
   Scene scene;
-  Sphere spheres[constant_spheres_max];  // in the constant bank, being a parameter
+  HalfSpheres spheres[constant_spheres_max /
+                      HalfSpheres::count];  // in the constant bank, being a parameter
 
   __device__ Scene bind() const;
 };

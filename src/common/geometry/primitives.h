@@ -1,6 +1,7 @@
 // The geometry of a scene as arrays, and one primitive's intersection by number.
 #pragma once
 
+#include "common/geometry/half_spheres.h"
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 
@@ -14,10 +15,14 @@ struct Primitives {
   std::uint32_t quad_count = 0;
   // The spheres once more, for the pass that tests them all: relative to `scan_center`, widened by
   // more than that test's rounding error, filled up to a multiple of four with ones that no ray
-  // meets. They may lie elsewhere (SceneMemory).
+  // meets.
   const Sphere* scan = nullptr;
   std::uint32_t scan_count = 0;
   Vec3 scan_center = Vec3(0.0f);
+  // And once more, for the same pass on CUDA. They may lie elsewhere (SceneMemory).
+  const HalfSpheres* halves = nullptr;
+  std::uint32_t half_count = 0;
+  float half_scale = 1.0f;
 
   PT_HD std::uint32_t count() const { return sphere_count + quad_count; }
   PT_HD bool is_sphere(std::uint32_t primitive) const { return primitive < sphere_count; }

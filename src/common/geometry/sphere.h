@@ -22,10 +22,10 @@ PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   const float b = glm::dot(oc, ray.direction);
   const Vec3 off = oc - b * ray.direction;
   const float discriminant = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
-  if (discriminant < 0.0f) return -1.0f;
   const float half_chord = fast_sqrt(discriminant);
   const float near = b - half_chord;
-  return near > 0.0f ? near : b + half_chord;
+  // Without a branch: where a warp tests candidates one of its rays meets a sphere mostly.
+  return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : b + half_chord);
 }
 
 /// The point of the surface nearest to the ray's point at `t`.

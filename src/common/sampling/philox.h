@@ -16,11 +16,9 @@ struct Uint4 {
 PT_HD Uint4 philox4x32_10(Uint4 counter, std::uint32_t key0, std::uint32_t key1) {
   PT_UNROLL(10)
   for (int round = 0; round < 10; ++round) {
-    const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * counter.x;
-    const std::uint64_t p1 = std::uint64_t{0xCD9E8D57u} * counter.z;
-    counter = {
-        static_cast<std::uint32_t>(p1 >> 32) ^ counter.y ^ key0, static_cast<std::uint32_t>(p1),
-        static_cast<std::uint32_t>(p0 >> 32) ^ counter.w ^ key1, static_cast<std::uint32_t>(p0)};
+    const WideProduct p0 = multiply_wide(0xD2511F53u, counter.x);
+    const WideProduct p1 = multiply_wide(0xCD9E8D57u, counter.z);
+    counter = {p1.high ^ counter.y ^ key0, p1.low, p0.high ^ counter.w ^ key1, p0.low};
     key0 += 0x9E3779B9u;
     key1 += 0xBB67AE85u;
   }

@@ -29,6 +29,15 @@ struct PixelFilter {
   /// From the pixel's lower edge, in pixels; u in [0, 1).
   PT_HD float offset(float u) const { return has_table == 0 ? u : 0.5f + from_centre(u); }
 
+  /// (offset(x), offset(y)), past whose table a box branches.
+  PT_HD Vec2 offsets(float x, float y) const {
+    for (bool look_up = has_table != 0; look_up; look_up = is_never()) {
+      x = offset(x);
+      y = offset(y);
+    }
+    return {x, y};
+  }
+
   /// Whether the sample that these two numbers place is of a negative part.
   PT_HD bool is_negative(float u0, float u1) const {
     return ((changes_within(u0) ^ changes_within(u1)) & 1u) != 0;

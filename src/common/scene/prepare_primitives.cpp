@@ -6,6 +6,7 @@
 #include "common/accel/build/build_bvh2.h"
 #include "common/accel/traverse_brute.h"
 #include "common/geometry/primitive_bounds.h"
+#include "common/scene/prepare_half_spheres.h"
 
 namespace pt {
 namespace {
@@ -102,6 +103,9 @@ void make_scan(SceneData& scene) {
     const float radius = s.radius() + padding;
     scene.scan_spheres.push_back({s.center - center, radius * radius});
   }
+  HalfScan halves = prepare_half_spheres(scene.scan_spheres);
+  scene.half_spheres = std::move(halves.groups);
+  scene.half_scale = halves.scale;
   while (scene.scan_spheres.size() % scan_group != 0) {
     scene.scan_spheres.push_back({Vec3(0.0f), -HUGE_VALF});
   }

@@ -56,6 +56,8 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.primitives.quad_count = count(scene.quads);
   view.primitives.scan_count = count(scene.scan_spheres);
   view.primitives.scan_center = scene.scan_center;
+  view.primitives.half_count = count(scene.half_spheres);
+  view.primitives.half_scale = scene.half_scale;
   view.light_count = count(scene.lights);
   view.triangles = scene.tree.view();
   view.triangles.embree = scene.embree.get();

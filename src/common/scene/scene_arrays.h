@@ -12,6 +12,7 @@ template <class Function>
 void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.primitives.spheres, scene.spheres, "scene");
   function(view.primitives.scan, scene.scan_spheres, "scene");
+  function(view.primitives.halves, scene.half_spheres, "scene");
   function(view.primitives.quads, scene.quads, "scene");
   function(view.filter.quantiles, scene.filter_quantiles, "scene");
   function(view.materials, scene.material_records, "scene");

@@ -80,6 +80,8 @@ struct SceneData {
   std::vector<std::uint32_t> light_emission;     ///< by light
   std::vector<Sphere> scan_spheres;              ///< Primitives::scan
   Vec3 scan_center = Vec3(0.0f);
+  std::vector<HalfSpheres> half_spheres;  ///< Primitives::halves
+  float half_scale = 1.0f;
   // In scenes with triangles:
   TriangleTreeData tree;                     ///< empty where --builder leaves it to the device
   std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`

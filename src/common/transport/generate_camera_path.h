@@ -12,8 +12,9 @@ namespace pt {
 /// x, y for the point, z, w for the lens.
 PT_HD Ray generate_camera_path(const Scene& scene, std::uint32_t pixel, const Vec4& u) {
   lanes_of(scene).count(LanePoint::generate);
-  Ray ray = camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + scene.filter.offset(u.x),
-                       static_cast<float>(pixel_y(pixel)) + scene.filter.offset(u.y), u.z, u.w);
+  const Vec2 offset = scene.filter.offsets(u.x, u.y);
+  Ray ray = camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + offset.x,
+                       static_cast<float>(pixel_y(pixel)) + offset.y, u.z, u.w);
   set_lanes(ray, lanes_of(scene));
   return ray;
 }

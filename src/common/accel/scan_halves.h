@@ -1,0 +1,93 @@
+// The candidates of brute force (traverse_brute.h), in half precision: two spheres by each
+// instruction. prepare_half_spheres.h says why it loses no hit.
+#pragma once
+
+#include <type_traits>
+
+#include "common/accel/projected_ray.h"
+#include "common/geometry/half_spheres.h"
+
+namespace pt {
+
+inline constexpr std::uint32_t half_chunk = 32;
+inline constexpr std::uint32_t half_groups = half_chunk / HalfSpheres::count;
+
+/// How many groups the chunk of 32 spheres has that begins with group `first` of `count`.
+PT_HD std::uint32_t groups_of_chunk(std::uint32_t first, std::uint32_t count) {
+  return count - first < half_groups ? count - first : half_groups;
+}
+
+/// A bit of a chunk's candidates belongs to this sphere of the chunk. A chunk of n groups has its
+/// first n spheres in the highest byte, one of each group, from the highest bit on, the next n in
+/// the byte below: sphere (3 - byte) n + 7 - bit of the byte.
+PT_HD std::uint32_t half_number(std::uint32_t bit, std::uint32_t groups) {
+  return (bit >> 3) * (half_groups - groups) + (3 * groups + 7 - bit);
+}
+
+/// Where sphere i lies: in which group, and which byte of sign_bytes is its own.
+struct HalfPlace {
+  std::uint32_t group;
+  int byte;
+};
+PT_HD HalfPlace half_place(std::uint32_t i, std::uint32_t count) {
+  const std::uint32_t first = i / half_chunk * half_groups, groups = groups_of_chunk(first, count);
+  const std::uint32_t place = i % half_chunk;
+  return {first + place % groups, 3 - static_cast<int>(place / groups)};
+}
+
+/// A ProjectedRay for two spheres at once.
+class HalfProjectedRay {
+ public:
+  /// `scale`: that of the spheres.
+  PT_HD HalfProjectedRay(const ProjectedRay& ray, float scale)
+      : x_(ray.x_axis(), -scale * ray.x()), y_(ray.y_axis(), -scale * ray.y()) {}
+
+  /// ProjectedRay::nearness of two of the four.
+  PT_HD std::uint32_t nearness(const HalfSpheres& s, int pair) const {
+    const std::uint32_t x = x_.of(s.x[pair], s.y[pair], s.z[pair]);
+    const std::uint32_t y = y_.of(s.x[pair], s.y[pair], s.z[pair]);
+    return multiply_add_halves(negate_halves(y), y,
+                               multiply_add_halves(negate_halves(x), x, s.radius_squared[pair]));
+  }
+
+ private:
+  struct Coordinate {
+    std::uint32_t x, y, z, constant;
+
+    PT_HD Coordinate(const Vec3& axis, float first)
+        : x(pack_halves(axis.x, axis.x)),
+          y(pack_halves(axis.y, axis.y)),
+          z(pack_halves(axis.z, axis.z)),
+          constant(pack_halves(first, first)) {}
+
+    PT_HD std::uint32_t of(std::uint32_t cx, std::uint32_t cy, std::uint32_t cz) const {
+      return multiply_add_halves(cx, x,
+                                 multiply_add_halves(cy, y, multiply_add_halves(cz, z, constant)));
+    }
+  };
+
+  Coordinate x_, y_;
+};
+
+/// The candidates among the groups [first, first + 8) of `count`; see half_place.
+template <class First>
+PT_HD std::uint32_t half_candidates(const HalfSpheres* groups, First first, std::uint32_t count,
+                                    const HalfProjectedRay& ray) {
+  const auto scan = [&](auto is_full) {
+    std::uint32_t candidates = 0;
+    PT_UNROLL(8)
+    for (std::uint32_t group = 0; group < half_groups; ++group) {
+      if (is_full || first + group < count) {
+        const HalfSpheres spheres = load_wide(groups + first + group);
+        const std::uint32_t missed = sign_bytes(ray.nearness(spheres, 0), ray.nearness(spheres, 1));
+        candidates |= ~missed & 0x80808080u >> group;
+      }
+    }
+    return candidates;
+  };
+  // Without a branch for each group the loads of one overlap with the arithmetic of another.
+  if (first + half_groups <= count) return scan(std::true_type{});
+  return scan(std::false_type{});
+}
+
+}  // namespace pt
