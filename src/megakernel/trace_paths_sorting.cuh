@@ -41,7 +41,8 @@ struct PathShare {
 
 /// A lane of a block. Traits: of triangles alone.
 template <class Traits>
-using SortingLane = CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>>;
+using SortingLane =
+    CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>;
 
 /// What a block shares, in shared memory: of `places` only those that it has slots for.
 template <class Lane, int threads>
@@ -184,7 +185,8 @@ struct BlockRays {
 
 /// Of a lane, where it is in the tree and what it has met, while its block does other things: in
 /// its stack's memory, beyond the stack.
-inline constexpr int sorting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
+inline constexpr int sorting_stack_size =
+    bvh_depth_max + CwbvhLane<PathQuery, true>::parked_size + 1;
 
 /// Keeps nothing of a surface's shading in registers (surface_steps.h).
 template <class Source>

@@ -117,8 +117,8 @@ PersistentKernel choose_persistent(RayType type, const TriangleTree& tree) {
     return any ? persistent_kernel<InstancedLane<AnyTriangle>>()
                : persistent_kernel<InstancedLane<ClosestTriangle>>();
   }
-  return any ? persistent_kernel<CwbvhLane<AnyTriangle>>()
-             : persistent_kernel<CwbvhLane<ClosestTriangleId>>();
+  return any ? persistent_kernel<CwbvhLane<AnyTriangle, true>>()
+             : persistent_kernel<CwbvhLane<ClosestTriangleId, true>>();
 }
 
 }  // namespace

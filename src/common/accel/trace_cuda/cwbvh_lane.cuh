@@ -29,15 +29,21 @@ __device__ inline CwbvhGroup leaf_children(const CwbvhWords& node, std::uint32_t
 }
 
 /// A lane's traversal, which can stop between any two steps and go on later. Query: one with
-/// offer_nearer. A lane that has found leaves tests them before it goes on: without knowing the hit
-/// it would visit nodes behind it. The two triangles of a leaf are tested side by side.
-template <class QueryType>
+/// offer_nearer. The two triangles of a leaf are tested side by side.
+///
+/// A lane that has found leaves tests them before it goes on: without knowing the hit it would
+/// visit nodes behind it. If speculative it does so all the same until it has found leaves of a
+/// second node, and can take part in whatever more of its warp's lanes want (Aila and Laine 2009,
+/// "Understanding the Efficiency of Ray Traversal on GPUs"); it begins at the root's children
+/// (PreparedRays::meet_root). That pays where there are 72 registers.
+template <class QueryType, bool speculative = false>
 class CwbvhLane {
  public:
   using Query = QueryType;
   using Rays = PreparedRays;
   struct Memory {};  ///< nothing in shared memory
   static constexpr bool has_instances = false;
+  static constexpr bool is_speculative = speculative;
   static constexpr int stack_size = bvh_depth_max;
 
   __device__ CwbvhLane(const TriangleTree& tree, const SlotOrder& order, uint2* stack,
@@ -47,16 +53,24 @@ class CwbvhLane {
   PT_LANE_COUNTER;  ///< of the lane's ray
 
   __device__ bool wants_test() const { return leaves_.has_slots(); }
-  __device__ bool wants_step() const { return !wants_test() && nodes_.has_slots(); }
+  __device__ bool wants_step() const {
+    return nodes_.has_slots() && !(speculative ? later_leaves_ : leaves_).has_slots();
+  }
   __device__ bool is_active() const { return nodes_.has_slots() || leaves_.has_slots(); }
   __device__ const Query& query() const { return query_; }
 
-  /// At the root.
+  /// At the root, or at its children.
   __device__ void begin(const PreparedRay& ray, const Query& query) {
     set_ray(ray);
     query_ = query;
     const std::uint32_t octant = ray.octant << 8;
-    nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
+    if constexpr (speculative) {
+      const CwbvhWords root = load_cwbvh_masks(&tree_.cwbvh[tree_.root]);
+      nodes_ = inner_children(root, ray.root_misses, {0, octant});
+      leaves_ = leaf_children(root, ray.root_misses);
+    } else {
+      nodes_ = {tree_.root, ray.t_max > 0.0f ? octant | 1u : 0u};  // the root as a child in slot 0
+    }
   }
 
   /// What begin() took of the same ray besides the query.
@@ -68,7 +82,7 @@ class CwbvhLane {
   }
 
   /// So many places park() needs.
-  static constexpr int parked_size = 3;
+  static constexpr int parked_size = speculative ? 4 : 3;
 
   /// Puts away where the lane is in the tree, for code between two steps that needs all registers.
   /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
@@ -79,11 +93,16 @@ class CwbvhLane {
     place[1].x = leaves_.base;
     place[1].y = leaves_.bits;
     place[2].x = static_cast<std::uint32_t>(depth_);
+    if constexpr (speculative) {
+      place[3].x = later_leaves_.base;
+      place[3].y = later_leaves_.bits;
+    }
   }
   __device__ void unpark(const volatile uint2* place, const Query& query) {
     nodes_ = {place[0].x, place[0].y};
     leaves_ = {place[1].x, place[1].y};
     depth_ = static_cast<int>(place[2].x);
+    if constexpr (speculative) later_leaves_ = {place[3].x, place[3].y};
     query_ = query;
   }
 
@@ -94,7 +113,7 @@ class CwbvhLane {
     nodes_.bits ^= bit;
     const CwbvhWords node = load_cwbvh_words(&tree_.cwbvh[child]);
     const std::uint32_t misses = missed_slots(node, origin_, inverse_, planes(), query_.t_max());
-    leaves_ = leaf_children(node, misses);
+    (speculative && leaves_.has_slots() ? later_leaves_ : leaves_) = leaf_children(node, misses);
     const SlotGroup inner = inner_children(node, misses, nodes_);
     const bool goes_down = inner.has_slots(), has_rest = nodes_.has_slots();
     if (goes_down && has_rest) stack_[depth_++] = {nodes_.base, nodes_.bits};
@@ -111,6 +130,9 @@ class CwbvhLane {
   __device__ void test_leaf(const Work& work) {
     lanes_of(*this).count(LanePoint::primitive);
     const CwbvhLeaf leaf = take_leaf(leaves_);
+    if constexpr (speculative) {
+      if (!leaves_.has_slots()) leaves_ = later_leaves_, later_leaves_.bits = 0;
+    }
     const std::uint32_t last = leaf.first + leaf.count - 1;
     const Triangle a = load_wide(&tree_.triangles[leaf.first]);
     const Triangle b = load_wide(&tree_.triangles[last]);
@@ -122,7 +144,7 @@ class CwbvhLane {
       drop_hidden(work, leaf, ask_a, ask_b, t_a, t_b);
     }
     if (query_.offer_nearer(tree_, {t_a, leaf.first, a.id}, {t_b, last, b.id})) {
-      nodes_.bits = leaves_.bits = 0;
+      nodes_.bits = leaves_.bits = later_leaves_.bits = 0;
       depth_ = 0;
     }
   }
@@ -167,7 +189,7 @@ class CwbvhLane {
   NearPlanes planes_{};
   TriangleRay triangle_ray_{};
   SlotGroup nodes_{0, 0};
-  CwbvhGroup leaves_{0, 0};
+  CwbvhGroup leaves_{0, 0}, later_leaves_{0, 0};  ///< the latter only if there are the former
   uint2* stack_;  ///< no member itself: an array would keep the members beside it out of registers
   int depth_ = 0;
 };

@@ -32,6 +32,12 @@ __device__ inline CwbvhWords load_cwbvh_words(const CwbvhNode* node) {
   return words;
 }
 
+/// Those with its masks and bases alone.
+__device__ inline CwbvhWords load_cwbvh_masks(const CwbvhNode* node) {
+  const auto* part = reinterpret_cast<const uint4*>(node);
+  return {{__ldg(part), __ldg(part + 1)}};
+}
+
 inline constexpr float byte_bias = 256.0f;
 
 /// In place of cwbvh_origin_tolerance: the distance of the grid's origin is at most that of a plane

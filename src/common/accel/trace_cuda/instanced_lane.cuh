@@ -19,6 +19,7 @@ class InstancedLane {
   using Rays = WorldRays;
   using Memory = InstancedLanes;
   static constexpr bool has_instances = true;
+  static constexpr bool is_speculative = false;
   /// Of either level a group for each of its nodes' levels; and where an instance is entered, those
   /// beside it and the mark.
   static constexpr int stack_size = 2 * bvh_depth_max + 2;

@@ -33,11 +33,13 @@ struct PersistentMemory {
   PersistentWarp<Lane> warps[block_size / 32];
 };
 
-/// Threads of a block; 1024 of them, with 64 registers each, fill a multiprocessor. Large blocks
-/// have fewer tables of children's order, which leaves L1 more: 256 with instances, since more need
-/// over 48 kB.
+/// Threads of a block; 1024 of them, with 64 registers each, fill a multiprocessor, or 896 with 72.
+/// Large blocks have fewer tables of children's order, which leaves L1 more: 256 with instances,
+/// since more need over 48 kB.
 template <class Lane>
-inline constexpr int persistent_block = Lane::has_instances ? 256 : 512;
+inline constexpr int persistent_block = Lane::has_instances    ? 256
+                                        : Lane::is_speculative ? 448
+                                                               : 512;
 template <class Lane>
 inline constexpr int persistent_blocks_least = 1024 / persistent_block<Lane>;
 
@@ -62,7 +64,7 @@ class PersistentTracer {
 
   __device__ PersistentTracer(const TriangleTree& tree, Work& work, const SlotOrder& order,
                               Warp& warp, uint2* stack)
-      : work_(work), warp_(warp), lane_(tree, order, stack, warp.lanes) {}
+      : tree_(tree), work_(work), warp_(warp), lane_(tree, order, stack, warp.lanes) {}
 
   __device__ Lane& lane() { return lane_; }
 
@@ -83,21 +85,20 @@ class PersistentTracer {
       const bool tests = lane_.wants_test(), steps = lane_.wants_step();
       const unsigned testing = __ballot_sync(whole_warp, tests);
       const unsigned stepping = __ballot_sync(whole_warp, steps);
-      const int test_count = __popc(testing), step_count = __popc(stepping);
       bool enters = false;
       unsigned entering = 0;
       if constexpr (Lane::has_instances) {
         enters = lane_.wants_enter();
         entering = __ballot_sync(whole_warp, enters);
       }
-      const int enter_count = __popc(entering);
-      const int busy_count = test_count + step_count + enter_count;
+      const unsigned busy = testing | stepping | entering;
+      const int busy_count = __popc(busy);
       if (busy_count <= few) {
-        const bool is_drained = !refill(~(testing | stepping | entering));
+        const bool is_drained = !refill(~busy);
         if (is_drained && busy_count <= pausing) return;
         few = is_drained ? pausing : enough_idle;
       } else {
-        const Turn turn = choose_turn(step_count, test_count, enter_count);
+        const Turn turn = choose_turn<Lane>(__popc(stepping), __popc(testing), __popc(entering));
         if (turn == Turn::step) {
           if (steps) lane_.step();
         } else if (turn == Turn::test) {
@@ -144,13 +145,21 @@ class PersistentTracer {
     RayRecord record;
     int count;
     const std::uint32_t first = work_.fetch(lane, warp_.reserved, record, count);
-    if constexpr (requires { work_.name(first); }) {
-      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, work_.name(first + lane));
-    } else {
-      if (static_cast<int>(lane) < count) warp_.rays.store(lane, record, first + lane);
-    }
+    if (static_cast<int>(lane) < count) prepare(lane, record, first + lane);
     __syncwarp();
     return count;
+  }
+
+  __device__ void prepare(unsigned place, const RayRecord& record, std::uint32_t number) {
+    std::uint32_t name = number;
+    if constexpr (requires { work_.name(number); }) name = work_.name(number);
+    warp_.rays.store(place, record, name);
+    if constexpr (Lane::is_speculative) {
+      if constexpr (counts_lanes && requires { work_.lanes(name); }) {
+        work_.lanes(name).count(LanePoint::node);
+      }
+      warp_.rays.meet_root(place, tree_);
+    }
   }
 
   __device__ void begin(const auto& ray) {
@@ -166,6 +175,7 @@ class PersistentTracer {
     }
   }
 
+  const TriangleTree& tree_;
   Work& work_;
   Warp& warp_;
   Lane lane_;

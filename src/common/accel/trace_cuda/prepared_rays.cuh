@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/ray_record.h"
-#include "common/accel/traverse_cwbvh.h"
+#include "common/accel/trace_cuda/cwbvh_step.cuh"
 
 namespace pt {
 
@@ -14,7 +14,8 @@ struct PreparedRay {
   float t_max;  ///< negative: not to be traced, a miss
   TriangleRay triangles;
   std::uint32_t number;
-  std::uint32_t octant;  ///< bit `axis`: the direction is negative
+  std::uint32_t octant;       ///< bit `axis`: the direction is negative
+  std::uint32_t root_misses;  ///< after meet_root: missed_slots
 };
 
 /// 32 prepared rays in shared memory. Preparing takes a hundred instructions: done for 32 rays at
@@ -33,16 +34,33 @@ class PreparedRays {
     inverse_[place] = t.inverse;
   }
 
+  /// The step at the root, with which all rays begin. Taken for 32 rays at once it has all lanes,
+  /// and reads one node.
+  __device__ void meet_root(unsigned place, const TriangleTree& tree) {
+    const float4 a = part_[0][place], b = part_[1][place];
+    const Vec3 origin = {a.x, a.y, a.z}, inverse = {b.x, b.y, b.z};
+    const float t_max = b.w;
+    const CwbvhWords root = load_cwbvh_words(&tree.cwbvh[tree.root]);
+    std::uint32_t misses = 0xffu;
+    if (t_max > 0.0f) {
+      misses = missed_slots(root, origin, inverse, select_near_planes(inverse), t_max);
+    }
+    float& word = part_[3][place].w;
+    word = __uint_as_float(__float_as_uint(word) | misses << 5);
+  }
+
   __device__ PreparedRay load(unsigned place) const {
     const float4 a = part_[0][place], b = part_[1][place], c = part_[2][place], d = part_[3][place];
     const Vec3 origin = {a.x, a.y, a.z};
+    const std::uint32_t word = __float_as_uint(d.w);
     return {origin,
             a.w,
             {b.x, b.y, b.z},
             b.w,
-            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, inverse_[place], __float_as_uint(d.w) >> 3},
+            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, inverse_[place], word >> 3 & 3u},
             __float_as_uint(c.w),
-            __float_as_uint(d.w) & 7u};
+            word & 7u,
+            word >> 5};
   }
 
  private:
