@@ -43,6 +43,7 @@ class CountingLane {
   using Rays = CountedRays;
   struct Memory {};
   static constexpr bool has_instances = false;
+  static constexpr bool is_speculative = false;
   static constexpr int stack_size = 1;
 
   CountingLane(const TriangleTree&, const SlotOrder&, uint2*, const Memory&) {}
