@@ -48,11 +48,15 @@ void expect_hits_of_cpu(const std::vector<Mesh>& meshes, const std::vector<Insta
   const TriangleTree tree = data.view();
   const RaySet rays = rays_through(3000, RayType::closest);
   const std::vector<Hit> hits = trace_emulated<Lane>(tree, rays);
+  // Spatial splits put a triangle into several slots, of which the order of visits chooses one.
+  const auto id_of = [&](const Hit& hit) {
+    return hit.is_miss() ? no_primitive : tree.triangles[hit.primitive].id;
+  };
   int found = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const RayRecord& r = rays.rays[i];
     const Hit hit = closest_triangle_cwbvh<instanced>(tree, r.ray(), r.t_min, r.t_max);
-    EXPECT_EQ(hits[i].primitive, hit.primitive) << i;
+    EXPECT_EQ(id_of(hits[i]), id_of(hit)) << i;
     if (hit.is_miss()) continue;
     ++found;
     EXPECT_EQ(hits[i].t, hit.t) << i;
