@@ -371,21 +371,24 @@ PT_HD std::uint32_t highest_bit(std::uint32_t x) {
 #endif
 }
 
-/// a * b: both words of it.
+/// a * b: both words of it. On CUDA the shift of the 64 bits becomes an addition of 0, unless the
+/// product is `split` by hand.
 struct WideProduct {
   std::uint32_t low, high;
 };
+template <bool split>
 PT_HD WideProduct multiply_wide(std::uint32_t a, std::uint32_t b) {
 #ifdef __CUDA_ARCH__
-  WideProduct p;  // a shift of the 64 bits becomes an addition of 0
-  asm("{ .reg .b64 p; mul.wide.u32 p, %2, %3; mov.b64 {%0, %1}, p; }"
-      : "=r"(p.low), "=r"(p.high)
-      : "r"(a), "r"(b));
-  return p;
-#else
+  if constexpr (split) {
+    WideProduct p;
+    asm("{ .reg .b64 p; mul.wide.u32 p, %2, %3; mov.b64 {%0, %1}, p; }"
+        : "=r"(p.low), "=r"(p.high)
+        : "r"(a), "r"(b));
+    return p;
+  }
+#endif
   const std::uint64_t p = std::uint64_t{a} * b;
   return {static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(p >> 32)};
-#endif
 }
 
 /// Adds to a counter that other threads add to, and returns its former value.

@@ -29,7 +29,7 @@ struct PixelFilter {
   /// From the pixel's lower edge, in pixels; u in [0, 1).
   PT_HD float offset(float u) const { return has_table == 0 ? u : 0.5f + from_centre(u); }
 
-  /// (offset(x), offset(y)), past whose table a box branches.
+  /// (offset(x), offset(y)), past whose table a box branches: for small kernels, as lean Philox.
   PT_HD Vec2 offsets(float x, float y) const {
     for (bool look_up = has_table != 0; look_up; look_up = is_never()) {
       x = offset(x);

@@ -29,13 +29,14 @@ struct SamplerSource {
   const Chains* chains = nullptr;
 
   struct Stream {
+    static constexpr bool is_lean = false;
     PhiloxSource::Stream philox;
     Sampler sampler;
     const Chains* chains;
 
     PT_HD Vec4 draw(std::uint32_t block) {
       const bool alone = sampler.kind == SamplerKind::independent && chains == nullptr;
-      return alone ? philox.draw(block) : draw_apart(*this, block);
+      return alone ? philox.draw<is_lean>(block) : draw_apart(*this, block);
     }
   };
 
@@ -45,9 +46,9 @@ struct SamplerSource {
     PhiloxSource::Stream& philox = stream.philox;
     const Sampler& sampler = stream.sampler;
     if (stream.chains != nullptr) return stream.chains->draw(philox.pixel, philox.sample, block);
-    const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits(block, 2);
+    const Uint4 pattern = PhiloxSource::Stream{philox.seed, philox.pixel, 0}.bits<false>(block, 2);
     if (sampler.kind == SamplerKind::sobol) return sobol_block(philox.sample, pattern);
-    return stratified_block(philox.draw(block), sampler.grid, sampler.samples, philox.sample,
+    return stratified_block(philox.draw<false>(block), sampler.grid, sampler.samples, philox.sample,
                             pattern);
   }
 
