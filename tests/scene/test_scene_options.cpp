@@ -127,6 +127,22 @@ TEST(SceneOptions, PersistentWarpsTakeAWideTree) {
   }
 }
 
+// On CUDA a pass over spheres is in half precision.
+TEST(SceneOptions, MoreSpheresAreScannedOnCudaThanOnTheCpu) {
+  const auto accel_of = [](int spheres, DeviceChoice::Kind device) {
+    Options options;
+    options.scene = "spheres", options.spheres = spheres;  // and the ground
+    options.device.kind = device;
+    SceneData scene = make_scene(options);
+    prepare_scene(scene, options);
+    return scene.traits.accel;
+  };
+  EXPECT_EQ(accel_of(95, DeviceChoice::Kind::cpu), Accel::brute);
+  EXPECT_EQ(accel_of(96, DeviceChoice::Kind::cpu), Accel::bvh2);
+  EXPECT_EQ(accel_of(255, DeviceChoice::Kind::cuda), Accel::brute);
+  EXPECT_EQ(accel_of(256, DeviceChoice::Kind::cuda), Accel::bvh2);
+}
+
 // Where blocks of rays go through masks.
 TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
   const auto accel_of = [](const char* name, Mode mode) {

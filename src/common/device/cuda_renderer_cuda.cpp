@@ -83,10 +83,11 @@ void CudaRenderer::upload(const SceneData& scene) {
   const bool fits_constant = scene.spheres.size() <= constant_spheres_max;
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
-    scene_memory_ = fits_constant && traits_.geometry == Geometry::spheres_and_quads &&
-                            traits_.accel == Accel::brute
-                        ? SceneMemory::constant
-                        : SceneMemory::global;
+    const bool are_few = scene.spheres.size() <= constant_spheres_best;
+    scene_memory_ =
+        are_few && traits_.geometry == Geometry::spheres_and_quads && traits_.accel == Accel::brute
+            ? SceneMemory::constant
+            : SceneMemory::global;
   }
   if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(

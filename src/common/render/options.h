@@ -143,7 +143,7 @@ struct Options {
   StageBlocks stage_block = default_stage_blocks();
 
   // The paper's toggles
-  SceneMemory scene_memory = SceneMemory::automatic;  ///< constant where the spheres fit
+  SceneMemory scene_memory = SceneMemory::automatic;  ///< constant for few spheres
   Branching branching = Branching::divergent;
   RngKind rng = RngKind::philox;
 

@@ -18,10 +18,6 @@
 namespace pt {
 namespace {
 
-bool is_on_cuda(const Options& options) {
-  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
-}
-
 /// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
 /// blocks; for threads that follow rays alone binary ones are faster (results/ and docs/cpu.md have
 /// the measurements).

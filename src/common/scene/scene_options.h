@@ -26,6 +26,10 @@ inline bool may_vote(const Options& options) {
   return options.work == Work::persistent && threads % 32 == 0 && threads <= voting_threads_max;
 }
 
+inline bool is_on_cuda(const Options& options) {
+  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+}
+
 /// Whether a megakernel whose blocks sort suits the options if nobody asks for it: it has blocks of
 /// its own (megakernel/trace_paths_sorting.cuh).
 inline bool may_sort(const Options& options) {
