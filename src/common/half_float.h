@@ -8,7 +8,6 @@ namespace pt {
 
 /// Half an ulp of a half, relative to the number.
 inline constexpr double half_float_rounding = 0x1p-11;
-inline constexpr double half_float_max = 65504.0;
 
 /// The nearest, of two equally near the even one.
 inline std::uint16_t to_half(double x) {

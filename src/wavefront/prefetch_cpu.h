@@ -77,7 +77,7 @@ inline void prefetch_texels(const Scene& scene, const Ray& ray, const Hit& hit) 
       find_texels(wrap_coordinate(mapped.x, texture.wrap_u), texture.width, texture.wrap_u);
   const TexelPair y =
       find_texels(1.0f - wrap_coordinate(mapped.y, texture.wrap_v), texture.height, texture.wrap_v);
-  const std::size_t bytes = texture.format == TextureFormat::rgb32f ? 12 : 4;
+  const std::size_t bytes = texel_bytes(texture.format);
   const std::byte* const texels = scene.texels + texture.offset;
   for (const std::uint32_t row : {y.first, y.second}) {
     prefetch(texels + bytes * (std::size_t{row} * texture.width + x.first));

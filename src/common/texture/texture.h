@@ -12,6 +12,10 @@ enum class TextureFormat : std::uint8_t {
   alpha8,   ///< 4 bytes a texel: of these A, for all components
   rgb32f    ///< three floats a texel, linear
 };
+constexpr std::size_t texel_bytes(TextureFormat format) {
+  return format == TextureFormat::rgb32f ? 12 : 4;
+}
+
 enum class TextureWrap : std::uint8_t { repeat, clamp, mirror };
 enum class TextureFilter : std::uint8_t { bilinear, nearest };
 

@@ -19,7 +19,7 @@ int only_component(const Color& weights) {
 
 bool is_grey(const TextureImage& image) {
   const std::size_t size = image.format == TextureFormat::rgb32f ? 4 : 1;  // of a component
-  const std::size_t step = image.format == TextureFormat::rgb32f ? 12 : 4;
+  const std::size_t step = texel_bytes(image.format);
   for (std::size_t i = 0; i < image.texels.size(); i += step) {
     const std::byte* texel = image.texels.data() + i;
     if (std::memcmp(texel, texel + size, size) != 0) return false;
