@@ -1,5 +1,5 @@
-// Builds the binary BVH on the CPU with the binned surface area heuristic (Wald 2007, 'On fast
-// Construction of SAH-based Bounding Volume Hierarchies').
+// Builds the binary BVH over spheres and quads on the CPU, as that over triangles is built: by the
+// binned surface area heuristic on all three axes (build_sah.h).
 #pragma once
 
 #include <cstdint>

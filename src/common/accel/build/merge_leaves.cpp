@@ -1,5 +1,7 @@
 #include "common/accel/build/merge_leaves.h"
 
+#include <algorithm>
+
 #include "common/accel/build/invoke_both.h"
 #include "common/accel/build/leaf_members.h"
 
@@ -11,7 +13,8 @@ constexpr int task_depth = 10;  // so far down, the two children are tasks of th
 
 class Merger {
  public:
-  Merger(BinaryTree& tree, const TreeCosts& costs) : tree_(tree), costs_(costs) {}
+  Merger(BinaryTree& tree, const TreeCosts& costs, std::uint32_t first_of_second_kind)
+      : tree_(tree), costs_(costs), second_kind_(first_of_second_kind) {}
 
   Bvh2 merge() {
     const Subtree all = weigh(tree_.root, tree_.bounds.half_area(), 0);
@@ -54,7 +57,7 @@ class Merger {
     sum.slots = half[0].slots + half[1].slots;
     sum.members = half[0].members;
     sum.members.add(half[1].members);
-    if (sum.members.size() <= costs_.leaf_max) {
+    if (sum.members.size() <= costs_.leaf_max && are_of_one_kind(sum.members)) {
       const Subtree leaf = as_leaf(sum, area);
       if (leaf.cost <= sum.cost) sum = leaf;
     }
@@ -68,6 +71,12 @@ class Merger {
     sum.nodes = 0;
     sum.slots = sum.members.size();
     return sum;
+  }
+
+  bool are_of_one_kind(const LeafMembers& members) const {
+    const auto is_second = [&](std::uint32_t i) { return i >= second_kind_; };
+    return std::all_of(members.begin(), members.end(), is_second) ||
+           std::none_of(members.begin(), members.end(), is_second);
   }
 
   bool becomes_leaf(std::uint32_t child) const {
@@ -106,11 +115,14 @@ class Merger {
 
   BinaryTree& tree_;
   TreeCosts costs_;
+  std::uint32_t second_kind_;
   Bvh2 result_;
 };
 
 }  // namespace
 
-Bvh2 merge_leaves(BinaryTree&& tree, const TreeCosts& costs) { return Merger(tree, costs).merge(); }
+Bvh2 merge_leaves(BinaryTree&& tree, const TreeCosts& costs, std::uint32_t first_of_second_kind) {
+  return Merger(tree, costs, first_of_second_kind).merge();
+}
 
 }  // namespace pt

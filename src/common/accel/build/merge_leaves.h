@@ -7,7 +7,9 @@
 namespace pt {
 
 /// Makes a leaf of every subtree that is cheaper as one; a leaf names a primitive once. The root is
-/// node 0 and a node even if all is one leaf, which then is its first child. Uses up `tree`.
-Bvh2 merge_leaves(BinaryTree&& tree, const TreeCosts& costs);
+/// node 0 and a node even if all is one leaf, which then is its first child. Primitives below
+/// `first_of_second_kind` and the others never share a leaf. Uses up `tree`.
+Bvh2 merge_leaves(BinaryTree&& tree, const TreeCosts& costs,
+                  std::uint32_t first_of_second_kind = build_primitives_max);
 
 }  // namespace pt
