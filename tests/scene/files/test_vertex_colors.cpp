@@ -269,8 +269,43 @@ TEST(VertexColors, MitsubasMeshAttributes) {
   expect_near(reflectance(faces.scene, 1, corners[2]), {0.1f, 0.2f, 0.4f});
   const LoadedFile none("a.xml", attribute_scene("vertex_color"), quad("", ""));
   expect_near(reflectance(none.scene, 1, middle), Color(0.5f));
+  EXPECT_EQ(none.count("no attribute 'vertex_color'"), 1u);
+  EXPECT_EQ(vertices.count("attribute"), 0u);
+  EXPECT_EQ(faces.count("attribute"), 0u);
   const LoadedFile unknown("a.xml", attribute_scene("vertex_dirt"), quad("float", floats));
   EXPECT_EQ(unknown.count("mesh_attribute 'vertex_dirt' is not supported"), 1u);
+}
+
+std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size()) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+// mi.Mesh.write_ply() of Mitsuba 3.9.1 calls the components of an attribute `color` by numbers.
+std::string numbered(std::string ply) {
+  const char* const names[3][2] = {{"red", "r"}, {"green", "g"}, {"blue", "b"}};
+  for (int i = 0; i < 3; ++i) {
+    for (const char* name : names[i]) {
+      ply = replaced_all(ply, std::string(" ") + name + "\n", " color_" + std::to_string(i) + "\n");
+    }
+  }
+  return ply;
+}
+
+TEST(VertexColors, AreFoundAsMitsubaWritesThem) {
+  const std::string by_vertex = numbered(quad("float", floats));
+  ASSERT_NE(by_vertex.find("property float color_2\n"), std::string::npos);
+  const LoadedFile vertices("a.xml", attribute_scene("vertex_color"), by_vertex);
+  expect_near(reflectance(vertices.scene, 0, corners[1]), {0, 0.25f, 0});
+  EXPECT_EQ(vertices.count("attribute"), 0u);
+  const LoadedFile faces(
+      "a.xml", attribute_scene("face_color"),
+      numbered(quad("float", floats, "rgb",
+                    "property float r\nproperty float g\nproperty float b\n", "0.2 0.4 0.8")));
+  expect_near(reflectance(faces.scene, 1, corners[2]), {0.1f, 0.2f, 0.4f});
+  EXPECT_EQ(faces.count("attribute"), 0u);
 }
 
 }  // namespace

@@ -28,9 +28,9 @@ struct MeshFileOptions {
 
 /// PLY: ASCII or binary of either byte order, any properties in any order. Vertices give x y z,
 /// optional nx ny nz, optional texture coordinates (u v, s t, texture_u texture_v or
-/// texture_s texture_t) and colours (red green blue or r g b); faces give vertex_indices or
-/// vertex_index, and optional colours. Colours that are integers are in the sRGB curve, floats are
-/// linear. May return an empty mesh.
+/// texture_s texture_t) and colours (red green blue, r g b, or color_0 color_1 color_2 as Mitsuba
+/// writes them); faces give vertex_indices or vertex_index, and optional colours. Colours that are
+/// integers are in the sRGB curve, floats are linear. May return an empty mesh.
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options = {});
 
 /// All faces of an OBJ file as one mesh, ignoring its materials.

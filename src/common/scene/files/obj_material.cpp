@@ -11,6 +11,7 @@
 #include "common/error.h"
 #include "common/scene/files/find_file.h"
 #include "common/scene/files/mapped_file.h"
+#include "common/scene/files/text_number.h"
 
 namespace pt {
 namespace {
@@ -120,7 +121,7 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
 }  // namespace
 
 void decode_mtl(std::string_view bytes, const std::filesystem::path& path, ObjFile& file) {
-  std::istringstream stream{std::string(bytes)};
+  std::istringstream stream{std::string(without_byte_order_mark(bytes))};
   std::map<std::string, int> numbers;
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;

@@ -153,6 +153,7 @@ std::string_view next_line(std::string_view& text, std::string& joined, std::siz
 void parse_obj(std::string_view file, ObjSink& sink) {
   ObjLines lines(sink);
   std::string joined;
+  file = without_byte_order_mark(file);
   for (std::size_t number = 0; !file.empty();) {
     const std::string_view line = next_line(file, joined, number);
     try {

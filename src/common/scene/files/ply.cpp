@@ -7,6 +7,7 @@
 #include "common/scene/files/mesh_files.h"
 #include "common/scene/files/mesh_finish.h"
 #include "common/scene/files/ply_elements.h"
+#include "common/scene/files/text_number.h"
 
 namespace pt {
 namespace {
@@ -51,7 +52,8 @@ Mesh read_text(std::string_view body, const PlyHeader& header) {
   }
 }
 
-Mesh decode(std::string_view bytes, const MeshFileOptions& options) {
+Mesh decode(std::string_view file, const MeshFileOptions& options) {
+  const std::string_view bytes = without_byte_order_mark(file);
   const PlyHeader header = read_ply_header(bytes);
   const std::string_view body = bytes.substr(header.bytes);
   Mesh mesh;

@@ -27,8 +27,9 @@ std::size_t find_indices(const PlyElement& element) {
 using FaceColor = std::array<std::optional<std::size_t>, 3>;
 
 FaceColor find_color(const PlyElement& element) {
-  const FaceColor color = {element.find({"red", "r"}), element.find({"green", "g"}),
-                           element.find({"blue", "b"})};
+  const FaceColor color = {element.find({"red", "r", "color_0"}),
+                           element.find({"green", "g", "color_1"}),
+                           element.find({"blue", "b", "color_2"})};
   for (const auto& component : color) {
     if (!component || element.properties[*component].count_type) return {};
   }

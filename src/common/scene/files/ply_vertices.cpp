@@ -22,9 +22,9 @@ Roles find_roles(const PlyElement& element) {
                  element.find({"nx"}),
                  element.find({"ny"}),
                  element.find({"nz"}),
-                 element.find({"red", "r", "diffuse_red"}),
-                 element.find({"green", "g", "diffuse_green"}),
-                 element.find({"blue", "b", "diffuse_blue"}),
+                 element.find({"red", "r", "diffuse_red", "color_0"}),
+                 element.find({"green", "g", "diffuse_green", "color_1"}),
+                 element.find({"blue", "b", "diffuse_blue", "color_2"}),
                  element.find({"u", "s", "texture_u", "texture_s"}),
                  element.find({"v", "t", "texture_v", "texture_t"})};
   if (!roles[x] || !roles[y] || !roles[z]) throw Error("vertices without x, y and z");

@@ -1,4 +1,4 @@
-// Numbers in text.
+// Words and numbers in text.
 #pragma once
 
 #include <string_view>
@@ -6,6 +6,11 @@
 namespace pt {
 
 inline bool is_text_space(char c) { return c == ' ' || ('\t' <= c && c <= '\r'); }
+
+/// `text` without the UTF-8 byte order mark that editors on Windows put before the first line.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
+}
 
 /// Takes the next word, without the white space around it, off the front of `text`; empty at the
 /// end.

@@ -59,7 +59,7 @@ VertexColors::Use VertexColors::use_of(std::uint32_t number) const {
   Use use;
   const auto note = [&](std::uint32_t texture) {
     if (texture == no_texture) return;
-    (is_ours(texture) ? use.colors : use.others) = true;
+    (texture == vertex_ ? use.by_vertex : texture == face_ ? use.by_face : use.others) = true;
   };
   for (const Parameter& p : material.parameters) note(p.texture);
   note(material.emission.texture), note(material.opacity.texture);
@@ -70,7 +70,8 @@ VertexColors::Use VertexColors::use_of(std::uint32_t number) const {
   use.others |= material.node >= MaterialNode::normal_map;
   for (const std::uint32_t child : material.children) {
     const Use inside = use_of(child);
-    use.colors |= inside.colors, use.others |= inside.others;
+    use.by_vertex |= inside.by_vertex, use.by_face |= inside.by_face;
+    use.others |= inside.others;
   }
   return use;
 }
@@ -131,9 +132,18 @@ void VertexColors::show_means(Mesh& mesh) {
   });
 }
 
+void VertexColors::report_lack(const char* attribute, bool lacks) {
+  if (!lacks || !lacks_.insert(attribute).second) return;
+  options_.report(
+      fmt::format("scene '{}': a mesh has no attribute '{}' for its material: white is used",
+                  scene_.name, attribute));
+}
+
 bool VertexColors::shows_texels(Mesh& mesh) {
   const Use use = use_of(mesh.material);
-  if (!use.colors) return false;
+  if (!use.colors()) return false;
+  report_lack("vertex_color", use.by_vertex && mesh.colors.empty());
+  report_lack("face_color", use.by_face && mesh.face_colors.empty());
   const bool uniform = all_equal(mesh.colors) && all_equal(mesh.face_colors);
   if (use.others && !uniform) {
     report_mean(fmt::format("scene '{}'", scene_.name));

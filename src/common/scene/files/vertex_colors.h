@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -22,7 +23,7 @@ class VertexColors {
   VertexColors(SceneData& scene, const LoadOptions& options) : scene_(scene), options_(options) {}
 
   /// Textures that stand for the colours of whatever mesh has them, in any parameter of a material.
-  /// White where a mesh has none.
+  /// White where a mesh has none, which is reported.
   std::uint32_t by_vertex() { return number_of(vertex_); }
   std::uint32_t by_face() { return number_of(face_); }
 
@@ -39,7 +40,8 @@ class VertexColors {
 
   /// What a material needs texture coordinates for.
   struct Use {
-    bool colors = false, others = false;
+    bool by_vertex = false, by_face = false, others = false;
+    bool colors() const { return by_vertex || by_face; }
   };
   using Change = std::function<void(MaterialDescription&)>;
 
@@ -48,6 +50,7 @@ class VertexColors {
   Use use_of(std::uint32_t material) const;
   std::uint32_t changed(std::uint32_t material, const Change& change);
   bool is_ours(std::uint32_t texture) const { return texture == vertex_ || texture == face_; }
+  void report_lack(const char* attribute, bool lacks);
   /// Whether the mesh's colours are to have texels; else its material is without them.
   bool shows_texels(Mesh& mesh);
   void show_means(Mesh& mesh);
@@ -55,6 +58,7 @@ class VertexColors {
   SceneData& scene_;
   const LoadOptions& options_;
   bool reported_ = false;
+  std::set<std::string> lacks_;  ///< attributes whose absence was reported
   std::uint32_t vertex_ = none, face_ = none;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> tinted_;  ///< by material and `emits`
 };
