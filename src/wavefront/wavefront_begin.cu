@@ -17,10 +17,9 @@ __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_cou
 }  // namespace
 
 void WavefrontCuda::begin_wave() {
-  const int finish_paths = chains() == nullptr ? options_.finish_paths : 0;
+  const std::uint32_t finish_paths = chains() == nullptr ? finish_paths_ : 0;
   launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_,
-         options_.regenerate, static_cast<std::uint32_t>(finish_paths), buffers_.half_ring(), loop_,
-         clock());
+         options_.regenerate, finish_paths, buffers_.half_ring(), loop_, clock());
 }
 
 }  // namespace pt

@@ -12,6 +12,7 @@
 #include "common/device/cpu_renderer.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
+#include "wavefront/path_costs.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/shade_block_cpu.h"
@@ -170,6 +171,7 @@ class WavefrontCpu : public CpuRenderer {
     WaveBuffers common;
     common.compaction = compaction_info(options.compaction);
     common.fused = fused;
+    finish_paths_ = finish_paths_of(options, scene);
     common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
     common.shades_by_kind = options.shade == Shade::material && !fused;
     common.orders_surfaces = (common.compaction.orders && !fused) || common.shades_by_kind;
@@ -232,8 +234,7 @@ class WavefrontCpu : public CpuRenderer {
     const StageContext<Source> context{
         buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
         this->limits_, this->chains()};
-    const std::uint64_t finish_paths =
-        of_chains ? 0 : static_cast<std::uint64_t>(options_.finish_paths) / parts_.size();
+    const std::uint64_t finish_paths = of_chains ? 0 : std::uint64_t{finish_paths_} / parts_.size();
     CpuExecutor execute(scene_, options_, part, runs, of_chains,
                         static_cast<std::uint32_t>(finish_paths));
     while (execute.more()) run_wave<Traits, branching>(execute, buffers, context);

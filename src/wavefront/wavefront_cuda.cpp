@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include "common/device/profiler_range.cuh"
 #include "common/error.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
+#include "wavefront/path_costs.h"
 
 namespace pt {
 namespace {
@@ -25,16 +25,6 @@ constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 20;
 constexpr int waves_per_turn = 2;
 
 constexpr double mib = 1024.0 * 1024.0;
-
-/// Whether the surfaces of scenes with these kinds of BSDFs (a bit for each) are shaded faster in
-/// order: where warps would meet many, or one that is much longer than the others. Kernels for each
-/// kind give no more (results/ has the measurement).
-bool order_pays_for(std::uint32_t kinds) {
-  constexpr int few = 5;
-  constexpr std::uint32_t one = 1, long_ones = one << static_cast<int>(kind_of<Principled>) |
-                                               one << static_cast<int>(kind_of<PrincipledThin>);
-  return std::popcount(kinds) > ((kinds & long_ones) != 0 ? 1 : few);
-}
 
 }  // namespace
 
@@ -57,6 +47,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.kinds = kinds_of(scene);
   buffers_.only_triangles = scene_.has_only_triangles();
   buffers_.fused = fuses_stages(options_, traits_);
+  finish_paths_ = finish_paths_of(options_, scene);
   buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
   stages_ = to_string(buffers_.fused ? Stages::fused : Stages::split);
   buffers_.shades_by_kind = options_.shade == Shade::material && !buffers_.fused;
@@ -247,7 +238,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
         read_counters();
     } while (host_counters_->intersect > 0);
   }
-  if (options_.finish_paths > 0 && chains() == nullptr) enqueue_finish(batch);
+  if (finish_paths_ > 0 && chains() == nullptr) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 

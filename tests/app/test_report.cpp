@@ -35,6 +35,7 @@ RenderReport make_report() {
   report.schedule = "host";
   report.stages = "split";
   report.pool_size = 1024;
+  report.finish_paths = 77;
   report.primitives = 51;
   report.scene_ms = 1.5;
   report.setup_ms = 2.5;
@@ -153,6 +154,7 @@ TEST(ReportJson, HasEverything) {
   EXPECT_EQ(json["used"]["schedule"], "host");
   EXPECT_EQ(json["used"]["stages"], "split");
   EXPECT_EQ(json["used"]["pool_size"], 1024);
+  EXPECT_EQ(json["used"]["finish_paths"], 77);
   EXPECT_EQ(json["used"]["primitives"], 51);
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["samples_done"], 50);

@@ -311,10 +311,17 @@ void add_execution(std::vector<OptionEntry>& list) {
            "queues of rays through a wide tree, in scenes without spheres;\n"
            "off: a thread per ray")
       .only(wavefront, cuda)
-      .add(integer("finish-paths", &Options::finish_paths, 0, 1 << 30),
+      .add(custom(
+               "finish-paths", OptionForm::number, "N|auto",
+               [](Options& o, const std::string& s) {
+                 o.finish_paths = parse_finish_paths("finish-paths", s);
+               },
+               [](const Options& o) {
+                 return o.finish_paths ? std::to_string(*o.finish_paths) : "auto";
+               }),
            "wavefront: when no sample is left to start and so many paths\n"
            "are still alive, a thread follows each to its end; 0: waves\n"
-           "to the last ray")
+           "to the last ray; auto: the fewer the dearer a path is")
       .only(wavefront, any_device)
       .add(choice("schedule", &Options::schedule),
            "wavefront: the host launches every stage, or one CUDA graph\n"

@@ -163,6 +163,11 @@ std::uint64_t parse_pool_size(const std::string& name, const std::string& text) 
   return parse_size(name, text, "auto or a number of paths", max_pool_size);
 }
 
+std::optional<std::uint32_t> parse_finish_paths(const std::string& name, const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  return static_cast<std::uint32_t>(parse_integer(name, text, 0, std::uint64_t{1} << 30));
+}
+
 int parse_runs(const std::string& name, const std::string& text, std::uint64_t least) {
   return static_cast<int>(parse_integer(name, text, least, 1'000'000));
 }

@@ -37,6 +37,8 @@ std::uint64_t parse_size(const std::string& name, const std::string& text, const
                          std::uint64_t most);
 /// "auto" (0) or a number of paths, likewise.
 std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
+/// Absent where `text` is "auto".
+std::optional<std::uint32_t> parse_finish_paths(const std::string& name, const std::string& text);
 
 template <NamedEnum E>
 E parse_name(const std::string& name, const std::string& text) {

@@ -204,6 +204,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
                   {"schedule", report.schedule},
                   {"stages", report.stages},
                   {"pool_size", report.pool_size},
+                  {"finish_paths", report.finish_paths},
                   {"primitives", report.primitives},
                   {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
   json["scene"] = scene_json(report.scene);

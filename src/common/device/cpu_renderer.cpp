@@ -337,6 +337,7 @@ void CpuRenderer::describe(RenderReport& report) const {
   report.accel = accel_name(traits_.accel);
   report.stages = stages_;
   report.pool_size = pool_size_;
+  report.finish_paths = finish_paths_;
   report.primitives = primitive_count_;
   report.setup_ms = setup_ms_;
   report.counts = summarize(tally_);

@@ -101,6 +101,7 @@ class CudaRenderer : public FilmRenderer {
   CudaMemory memory_;
   cudaDeviceProp properties_{};
   std::uint64_t pool_size_ = 0;
+  std::uint32_t finish_paths_ = 0;
   std::string schedule_, stages_;
 
  private:

@@ -543,6 +543,7 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.schedule = schedule_;
   report.stages = stages_;
   report.pool_size = pool_size_;
+  report.finish_paths = finish_paths_;
   report.primitives = primitive_count_;
   if (tree_facts_.nodes > 0) report.scene.tree = tree_facts_;
   report.setup_ms = setup_ms_;

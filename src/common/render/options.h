@@ -138,7 +138,8 @@ struct Options {
   Shade shade = Shade::automatic;     ///< wavefront: who shades surfaces
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
   int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
-  int finish_paths = 131072;  ///< so many paths left are followed to their ends at once; 0: none
+  /// So many paths left are followed to their ends at once, 0: none; absent: automatic.
+  std::optional<std::uint32_t> finish_paths;
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
   StageBlocks stage_block = default_stage_blocks();
 

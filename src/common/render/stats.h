@@ -110,7 +110,8 @@ struct RenderReport {
   std::string accel;        ///< the structure used, e.g. "bvh2"
   std::string schedule;  ///< of --schedule, as used: "host" or "graph"; empty where there is none
   std::string stages;    ///< of --stages, likewise: "split" or "fused"
-  std::uint64_t pool_size = 0;  ///< paths in flight used; 0 in modes without a pool
+  std::uint64_t pool_size = 0;     ///< paths in flight used; 0 in modes without a pool
+  std::uint32_t finish_paths = 0;  ///< of --finish-paths, as used; 0 in modes without a pool
   std::uint64_t primitives = 0;
   SceneFacts scene;
   double scene_ms = 0;     ///< loading and preparing the scene (host wall time)

@@ -9,15 +9,17 @@ namespace pt {
 
 namespace {
 
-constexpr TreeCosts primitive_costs = {1.0f, 1.0f, leaf_size_max};
+// Of a sphere relative to a node's two boxes: measured on an H200 from 51 to 1,025 spheres, where
+// 0.5 is faster than 0.35, 0.7 and 1 in both modes.
+constexpr TreeCosts primitive_costs = {1.0f, 0.5f, leaf_size_max};
 
 // Sorts `order` by kind, keeping each kind's sequence, and renumbers the leaves.
 void number_by_kind(Bvh2& tree, std::uint32_t first_of_second_kind) {
   const auto is_first = [&](std::uint32_t primitive) { return primitive < first_of_second_kind; };
   std::vector<std::uint32_t> place(tree.order.size()), sorted(tree.order.size());
   std::uint32_t first = 0;
-  auto second = static_cast<std::uint32_t>(
-      std::count_if(tree.order.begin(), tree.order.end(), is_first));
+  auto second =
+      static_cast<std::uint32_t>(std::count_if(tree.order.begin(), tree.order.end(), is_first));
   for (std::size_t i = 0; i < place.size(); ++i) {
     place[i] = is_first(tree.order[i]) ? first++ : second++;
     sorted[place[i]] = tree.order[i];
