@@ -41,10 +41,11 @@ struct DeltaLight {
   float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
   float cos_outer = -1.0f;   ///< none beyond this one,
   SpotFalloff falloff = SpotFalloff::smooth;  ///< in between
-  Vec3 right{1, 0, 0};  ///< projector: where the picture's u grows, over the tangent of half its
-                        ///< angle
+  Vec3 right{1, 0, 0};  ///< where the picture's u grows; projector: over the tangent of half its
+                        ///< angle; spot: of unit length
   float aspect = 1.0f;  ///< width over height; negative where the map to the world mirrors
-  std::uint32_t texture = no_texture;  ///< the picture, of intensity / cos^3 about the axis
+  std::uint32_t texture = no_texture;  ///< the picture; projector: of intensity / cos^3 about the
+                                       ///< axis; spot: multiplies the intensity
 };
 
 /// Between 0 and 1: the share of its intensity that a spot light sends at an angle to its axis.

@@ -191,6 +191,9 @@ class Lister {
       light.c = delta.right;
       light.triangle = float_to_bits(delta.aspect);
       light.emission_texture = delta.texture;
+    } else if (delta.kind == LightKind::spot && delta.texture != no_texture) {
+      light.triangle = pack_roll(delta);
+      light.emission_texture = delta.texture;
     }
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
     data_.lights.push_back(light);

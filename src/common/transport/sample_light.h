@@ -69,6 +69,8 @@ PT_NOINLINE inline PlainLight sample_other_light(Light light, Vec3 from, float u
     const Projection projection = project(light, -s.wi);
     uv = projection.uv;
     s.irradiance *= projection.factor;
+  } else if (light.emission_texture != no_texture) {
+    uv = spot_uv(light, -s.wi);
   }
   return {{s.wi, s.end, s.irradiance, 1.0f, true}, uv};
 }

@@ -44,6 +44,12 @@ void add_spot(Context& context, const Object& emitter) {
   }
   light.cos_inner = cosine(beam);
   light.cos_outer = cosine(cutoff);
+  const ColorTexture picture =
+      read_color_texture(context, emitter, "texture", Color(1.0f), Quantity::reflectance);
+  light.intensity *= picture.color;
+  light.texture = picture.texture;
+  light.right = glm::normalize(to_world.vector({1, 0, 0}));
+  if (to_world.determinant() < 0.0f) light.aspect = -1.0f;
   context.scene.delta_lights.push_back(light);
 }
 

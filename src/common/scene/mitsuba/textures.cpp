@@ -107,6 +107,7 @@ ColorTexture read_checkerboard(Context& context, const Object& object, Quantity 
   if (quantity == Quantity::number) {
     texture.color0 = Color(dot(texture.color0, luminance_weights));
     texture.color1 = Color(dot(texture.color1, luminance_weights));
+    std::swap(texture.color0, texture.color1);  // as eval_1() of Mitsuba 3 has them
   }
   set_uv_map(texture, read_uv_map(object));
   return {Color(1.0f), context.textures.add_plain(texture)};
