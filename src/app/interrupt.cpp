@@ -1,27 +1,51 @@
 #include "app/interrupt.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
+#include <string_view>
 
 namespace pt {
 namespace {
 
-std::atomic<bool> signalled{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // or a handler must not touch it
+std::atomic<int> signalled{0};
+static_assert(std::atomic<int>::is_always_lock_free);  // or a handler must not touch it
 
-void handle_interrupt(int) { signalled = true; }
+// Only what a signal handler may call.
+void end_now(int signal) {
+  constexpr std::string_view text =
+      "\nptexp: interrupted: no sample was finished, no image written\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+  _exit(128 + signal);
+}
+
+void note_signal(int signal) {
+  int none = 0;
+  signalled.compare_exchange_strong(none, signal);
+}
+
+void handle(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // spares all I/O an EINTR
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    struct sigaction before {};
+    sigaction(signal, nullptr, &before);
+    if (before.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);  // nohup, background jobs
+  }
+}
 
 }  // namespace
 
-void catch_interrupt() {
-  struct sigaction action {};
-  action.sa_handler = handle_interrupt;
-  // RESETHAND gives the second signal its usual effect; RESTART spares all I/O an EINTR.
-  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-}
+void end_on_signal() { handle(end_now); }
 
-bool interrupted() { return signalled; }
+void note_signals() { handle(note_signal); }
+
+bool interrupted() { return signalled != 0; }
+
+int exit_code_of_signal() { return 128 + signalled; }
 
 }  // namespace pt

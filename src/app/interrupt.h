@@ -1,12 +1,19 @@
-// Ctrl-C ends a render early but keeps what it has.
+// SIGINT (Ctrl-C) and SIGTERM (a cluster's warning) end the program early but keep what it has.
 #pragma once
 
 namespace pt {
 
-/// From now on the first SIGINT only makes interrupted() true; a second one ends the program as
-/// usual.
-void catch_interrupt();
+/// From now on both signals end the program at once, with 128 and its number as the exit code:
+/// nothing is there yet that could be kept.
+void end_on_signal();
+
+/// From now on they only make interrupted() true, however often they come: what there is will be
+/// saved, and nothing must stop that.
+void note_signals();
 
 bool interrupted();
+
+/// 128 and the signal's number, as shells have it: 130 after SIGINT, 143 after SIGTERM.
+int exit_code_of_signal();
 
 }  // namespace pt

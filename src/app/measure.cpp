@@ -18,7 +18,8 @@ Measurement measure(Renderer& renderer, const Options& options, Progress& progre
   const RenderHooks hooks{
       [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); },
       stop,
-      {options.time_limit, options.target_error, {}}};
+      {options.time_limit, options.target_error, {}},
+      stop};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {

@@ -24,8 +24,6 @@
 namespace pt {
 namespace {
 
-constexpr int exit_interrupted = 130;  // what a shell reports for a program ended by SIGINT
-
 /// Runs `work` and returns its wall time.
 template <typename Work>
 double timed_ms(const Work& work) {
@@ -134,7 +132,7 @@ int render_command(const RenderCommand& command) {
   const DeviceInfo device = find_device(command);
   Options options = command.options;
   options.device = device.choice;  // what is reported is the device that was used
-  catch_interrupt();
+  end_on_signal();
 
   RenderReport report;
   SceneData scene;
@@ -148,6 +146,7 @@ int render_command(const RenderCommand& command) {
   }
   const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
 
+  note_signals();
   Progress progress(stderr, progress_style(stderr, options.quiet));
   const Measurement measurement = measure(*renderer, options, progress, interrupted);
   const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
@@ -162,7 +161,7 @@ int render_command(const RenderCommand& command) {
   }
   if (!measurement.interrupted) return 0;
   say_interrupted(options, measurement, has_image);
-  return exit_interrupted;
+  return exit_code_of_signal();
 }
 
 }  // namespace pt

@@ -11,13 +11,19 @@
 namespace pt {
 namespace {
 
-/// A thread of the CPU is a warp of one.
+/// A thread of the CPU is a warp of one. `Cancelled` tells whether no path more is to be traced.
+template <class Cancelled>
 class PathRange {
  public:
   /// Every `step`-th path of [first, end), or chain where they go on by themselves.
   PathRange(const ChainRun* chains, const SampleBuffer& batch, std::uint32_t first,
-            std::uint32_t end, std::uint32_t step)
-      : chains_(chains), samples_(batch.samples), next_(first), end_(end), step_(step) {}
+            std::uint32_t end, std::uint32_t step, const Cancelled& cancelled)
+      : chains_(chains),
+        samples_(batch.samples),
+        next_(first),
+        end_(end),
+        step_(step),
+        cancelled_(cancelled) {}
 
   bool any(bool value) const { return value; }
 
@@ -26,6 +32,7 @@ class PathRange {
     for (; next_ < end_; advance()) {
       number = next_;
       if (chains_ == nullptr) {
+        if (cancelled_()) return false;
         advance();
         return true;
       }
@@ -40,6 +47,7 @@ class PathRange {
   const ChainRun* chains_;
   Sample* samples_;
   std::uint32_t next_, end_, step_;
+  const Cancelled& cancelled_;
 };
 
 class MegakernelCpu : public CpuRenderer {
@@ -49,6 +57,7 @@ class MegakernelCpu : public CpuRenderer {
 
  private:
   void trace_batch(const SampleBuffer& batch) override {
+    const auto cancelled = [this] { return is_cancelled(); };
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
       dispatch_traits(
@@ -57,7 +66,7 @@ class MegakernelCpu : public CpuRenderer {
             dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
-                  PathRange work(chains(), batch, first, end, step);
+                  PathRange work(chains(), batch, first, end, step, cancelled);
                   trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
                 });
               });

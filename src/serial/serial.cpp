@@ -26,7 +26,7 @@ class SerialRenderer : public CpuRenderer {
 
   template <class Traits, class Source>
   void trace_all(const Source& source, const SampleBuffer& batch) {
-    for (std::uint32_t i = 0; i < batch.path_count; ++i) {
+    for (std::uint32_t i = 0; i < batch.path_count && !is_cancelled(); ++i) {
       const PathId id = batch.id_of(i);
       auto random = source.open(id);
       PathState path;

@@ -38,6 +38,9 @@ class PathRuns {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(length, path_count_ - begin));
   }
 
+  /// No path more is to be started.
+  void end() { next_.store(path_count_, std::memory_order_relaxed); }
+
  private:
   std::atomic<std::uint64_t> next_{0};
   const std::uint64_t path_count_;
@@ -237,7 +240,10 @@ class WavefrontCpu : public CpuRenderer {
     const std::uint64_t finish_paths = of_chains ? 0 : std::uint64_t{finish_paths_} / parts_.size();
     CpuExecutor execute(scene_, options_, part, runs, of_chains,
                         static_cast<std::uint32_t>(finish_paths));
-    while (execute.more()) run_wave<Traits, branching>(execute, buffers, context);
+    while (execute.more()) {
+      run_wave<Traits, branching>(execute, buffers, context);
+      if (is_cancelled()) runs.end();
+    }
     if (!of_chains) run_finish<Traits>(execute, buffers, context);
   }
 

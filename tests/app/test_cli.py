@@ -388,36 +388,78 @@ class BadInput(CommandLine):
 
 
 class Interruption(CommandLine):
-    def test_sigint_keeps_the_samples_so_far(self):
+    def start(self, *arguments):
+        """The program at work; it is gone when the test ends."""
+        process = subprocess.Popen(
+            [PTEXP, "--device", "cpu", *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def end(self, process, *signals, after_s=1.5):
+        """Sends the signals once the process has computed for so long; what it prints. It answers
+        within a second; three allow for a machine that is busy."""
+        self.wait_for_work(process, after_s)
+        begin = time.monotonic()
+        for number in signals:
+            process.send_signal(number)
+            time.sleep(0.02)
+        out, err = process.communicate(timeout=TIMEOUT_S)
+        self.assertLess(time.monotonic() - begin, 3)
+        self.assertEqual(process.returncode, 128 + signals[0], out + err)
+        self.assertRegex(err, r"(?i)interrupt")
+        return err
+
+    def test_a_signal_keeps_the_samples_so_far(self):
+        for mode in MODES:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                with self.subTest(mode=mode, number=number):
+                    name = f"{mode}-{number}.ppm"
+                    process = self.start("--mode", mode, "--width", "200", "--height", "100",
+                                         "--spp", "1000000", "--output", name)
+                    err = self.end(process, number)
+                    self.assertRegex(err, r"\d[\d,]* (of|samples)")
+                    width, height, values = read_ppm(self.folder / name)
+                    self.assertEqual((width, height), (200, 100))
+                    self.assertGreater(len(set(values)), 20, "the samples are in the image")
+                    self.assertIn(name, self.files())
+                    self.assertEqual([n for n in self.files() if not n.endswith(".ppm")], [])
+
+    def test_more_signals_do_not_lose_the_image(self):
+        process = self.start("--width", "200", "--height", "100", "--spp", "1000000",
+                             "--output", "twice.ppm")
+        self.end(process, signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGINT)
+        self.assertIn("twice.ppm", self.files())
+
+    def test_a_batch_is_not_waited_for(self):
         for mode in MODES:
             with self.subTest(mode=mode):
-                output = self.folder / f"{mode}.ppm"
-                with subprocess.Popen(
-                        [PTEXP, "--device", "cpu", "--mode", mode, "--width", "200", "--height",
-                         "100", "--spp", "1000000", "--output", output], cwd=self.folder,
-                        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                        text=True) as process:
-                    try:
-                        self.interrupt_at_work(process)
-                        out, err = process.communicate(timeout=TIMEOUT_S)
-                    finally:
-                        process.kill()
-                self.assertEqual(process.returncode, 130, out + err)
-                self.assertRegex(err, r"(?i)interrupt")
-                self.assertRegex(err, r"\d[\d,]* (of|samples)")
-                width, height, values = read_ppm(output)
-                self.assertEqual((width, height), (200, 100))
-                self.assertGreater(len(set(values)), 20, "the samples are in the image")
+                process = self.start("--mode", mode, "--scene", "boxes", "--width", "64",
+                                     "--height", "64", "--spp", "20000", "--output", f"{mode}.ppm")
+                self.end(process, signal.SIGINT)
                 self.assertIn(f"{mode}.ppm", self.files())
-                self.assertEqual([name for name in self.files() if not name.endswith(".ppm")], [])
 
-    def interrupt_at_work(self, process):
-        """Sends SIGINT once the process has computed for long enough to be rendering."""
+    def test_nor_is_a_sample_of_a_large_image(self):
+        for mode in MODES:
+            with self.subTest(mode=mode):
+                process = self.start("--mode", mode, "--scene", "boxes", "--width", "6000",
+                                     "--height", "6000", "--spp", "1", "--output", "large.ppm")
+                err = self.end(process, signal.SIGINT, after_s=3)
+                self.assertIn("no sample was finished", err)
+                self.assertEqual(self.files(), [])
+
+    def test_nor_is_a_tree(self):
+        process = self.start("--scene", "terrain:4M", "--output", "tree.ppm")
+        err = self.end(process, signal.SIGTERM)
+        self.assertIn("no image written", err)
+        self.assertEqual(self.files(), [])
+
+    def wait_for_work(self, process, seconds):
         give_up = time.monotonic() + TIMEOUT_S
-        while process.poll() is None and processor_time_s(process.pid) < 1.5:
+        while process.poll() is None and processor_time_s(process.pid) < seconds:
             self.assertLess(time.monotonic(), give_up)
             time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
 
 
 if __name__ == "__main__":

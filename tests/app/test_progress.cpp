@@ -176,25 +176,34 @@ TEST(Measure, StoppedBetweenRendersKeepsTheCompleteOnes) {
   EXPECT_EQ(measurement.runs.size(), 2u);
 }
 
-TEST(Interrupt, TheFirstSignalSetsAFlagAndTheSecondEnds) {
+TEST(Interrupt, EndsAtOnceWhileThereIsNothingToKeep) {
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
-  EXPECT_EXIT(
-      {
-        catch_interrupt();
-        if (interrupted()) std::exit(1);
-        std::raise(SIGINT);
-        if (!interrupted()) std::exit(2);
-        std::exit(0);
-      },
-      testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(
-      {
-        catch_interrupt();
-        std::raise(SIGINT);
-        std::raise(SIGINT);
-        std::exit(1);
-      },
-      testing::KilledBySignal(SIGINT), "");
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EXIT(
+        {
+          end_on_signal();
+          std::raise(signal);
+          std::exit(1);
+        },
+        testing::ExitedWithCode(128 + signal), "no image written");
+  }
+}
+
+TEST(Interrupt, SetsAFlagHoweverOftenItComes) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EXIT(
+        {
+          end_on_signal();
+          note_signals();
+          if (interrupted()) std::exit(1);
+          std::raise(signal);
+          std::raise(SIGINT);
+          std::raise(SIGTERM);
+          std::exit(interrupted() ? exit_code_of_signal() : 2);
+        },
+        testing::ExitedWithCode(128 + signal), "^$");
+  }
 }
 
 }  // namespace

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <atomic>
+#include <map>
+
 #include "common/accel/traverse_brute_block.h"
 #include "common/render/dispatch.h"
 #include "common/render/path_limits_of.h"
@@ -306,25 +309,69 @@ RenderHooks stop_after(std::size_t batches, Progress& progress) {
 TEST_F(Batches, AnInterruptionLeavesTheImageOfTheSamplesTaken) {
   constexpr std::uint64_t pixels = 512 * 500, total = 9 * pixels;
   const Options serial = batch_options("serial");
-  const Rendered expected[] = {render_options(with(serial, {{"spp", "3"}})),
-                               render_options(with(serial, {{"spp", "6"}})),
-                               render_options(serial)};
-  const Progress all{{3 * pixels, total}, {6 * pixels, total}, {9 * pixels, total}};
+  std::map<int, Rendered> expected;  // by samples: how many a batch has depends on the time
+  const auto after = [&](int samples) -> const Rendered& {
+    const auto [entry, is_new] = expected.try_emplace(samples);
+    if (is_new) entry->second = render_options(with(serial, {{"spp", std::to_string(samples)}}));
+    return entry->second;
+  };
   for (const char* mode : {"serial", "megakernel", "wavefront"}) {
     const Options options = batch_options(mode);
     const DeviceInfo device = choose_device(options.device);
     const SceneData scene = make_scene_for(options, device);
     const auto renderer = make_renderer(options, scene, device);
     // The third time, the same renderer renders all, as if nothing had happened.
-    for (const std::size_t batches : {1, 2, 3}) {
+    for (const std::size_t batches : {1, 2, 1000}) {
       SCOPED_TRACE(testing::Message() << mode << ", stopped after " << batches);
       Progress progress;
       const Rendered stopped = take_image(*renderer, stop_after(batches, progress));
-      EXPECT_EQ(stopped.run.samples_done, 3 * static_cast<int>(batches));
-      expect_same(stopped, expected[batches - 1]);
-      EXPECT_EQ(progress, Progress(all.begin(), all.begin() + static_cast<int>(batches)));
+      const int samples = stopped.run.samples_done;
+      EXPECT_TRUE(progress.size() == batches || samples == 9) << progress.size();
+      EXPECT_EQ(progress.back(), std::pair(static_cast<std::uint64_t>(samples) * pixels, total));
+      expect_same(stopped, after(samples));
+      if (batches == 1) {
+        EXPECT_EQ(samples, 1) << "of unknown duration";
+      }
+      if (batches == 1000) {
+        EXPECT_EQ(samples, 9);
+      }
     }
   }
+}
+
+// An abandoned batch leaves nothing in the image, and the same renderer renders all afterwards.
+TEST_F(Batches, AnAbandonedBatchLeavesTheSamplesBeforeIt) {
+  const Options serial = batch_options("serial");
+  const Rendered one = render_options(with(serial, {{"spp", "1"}}));
+  const Rendered all = render_options(serial);
+  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+    SCOPED_TRACE(mode);
+    const Options options = batch_options(mode);
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    const auto renderer = make_renderer(options, scene, device);
+    std::atomic<bool> is_second = false;
+    RenderHooks hooks;
+    hooks.progress = [&](std::uint64_t, std::uint64_t) { is_second = true; };
+    hooks.cancel = [&] { return is_second.load(); };
+    const Rendered cut = take_image(*renderer, hooks);
+    EXPECT_EQ(cut.run.samples_done, 1);
+    EXPECT_EQ(cut.run.ended_by, RunEnd::interrupted);
+    expect_same(cut, one);
+    expect_same(take_image(*renderer), all);
+  }
+}
+
+TEST(BatchPaces, GiveBatchesOfHalfASecond) {
+  BatchPace pace(1000);
+  EXPECT_EQ(pace.next(64, 10), 64) << "few enough whatever they cost";
+  EXPECT_EQ(pace.next(500, 10), 100);
+  EXPECT_EQ(pace.next(500, 5000), 1) << "at least one";
+  pace.note(1000, 0.01);  // 100,000 paths a second
+  EXPECT_EQ(pace.next(1 << 30, 10), 5000);
+  EXPECT_EQ(pace.next(7000, 10), 7000) << "little more than half a second";
+  pace.note(1000, 0.0);  // says nothing
+  EXPECT_EQ(pace.next(1 << 30, 10), 5000);
 }
 
 }  // namespace

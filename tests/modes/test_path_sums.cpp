@@ -111,8 +111,10 @@ BatchList batches_of(int spp, int per_batch, std::uint64_t pixels = 10) {
                                progress.push_back(done);
                              },
                              {}};
-  const BatchRun run = for_each_batch(spp, per_batch, pixels, hooks,
-                                      [&](int first, int n) { batches.emplace_back(first, n); });
+  const BatchRun run = for_each_batch(spp, per_batch, pixels, hooks, [&](int first, int n) {
+    batches.emplace_back(first, n);
+    return true;
+  });
   EXPECT_EQ(run.samples, spp);
   EXPECT_EQ(run.ended_by, RunEnd::samples);
   EXPECT_EQ(progress.size(), batches.size());

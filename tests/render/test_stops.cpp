@@ -20,6 +20,7 @@ struct FakeTime {
     return for_each_batch(spp, per_batch, 10, hooks, [&](int, int samples) {
       now += per_sample * samples;
       if (batches != nullptr) batches->push_back(samples);
+      return true;
     });
   }
 };
@@ -64,7 +65,7 @@ TEST(TargetError, IsCheckedAtFixedNumbers) {
     RenderHooks hooks;
     hooks.stops.relative_error = 0.1;
     const BatchRun run = for_each_batch(
-        1 << 30, per_batch, 10, hooks, [&](int, int samples) { done += samples; },
+        1 << 30, per_batch, 10, hooks, [&](int, int samples) { return done += samples, true; },
         [&] {
           checks.push_back(done);
           return 1.0 / std::sqrt(done);

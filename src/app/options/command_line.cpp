@@ -32,8 +32,10 @@ constexpr const char* compact_text =
     "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
-    "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C; the\n"
-    "image then has the samples that were finished. `ptexp compare --help` tells more.";
+    "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by "
+    "SIGTERM; the\n"
+    "SIGTERM; the image then has the samples that were finished. `ptexp compare --help` tells "
+    "more.";
 
 /// CLI11 splits the arguments and lays out the help; values are parsed by option_list, because
 /// their errors should name the option, the value and what was expected in one line.

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <fstream>
 #include <span>
-#include <thread>
 
 #include "common/device/huge_pages.h"
 #include "common/film/develop.h"
@@ -19,8 +20,10 @@
 namespace pt {
 namespace {
 
-// Small enough for a quick answer to an interruption, large enough to keep the threads busy.
+// Large enough to keep the threads busy; the first ones, whose rate is not known yet, small enough
+// for a quick answer to an interruption.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 20;
+constexpr std::uint64_t first_paths = std::uint64_t{1} << 15;
 
 std::uint64_t free_host_memory() {
   std::ifstream file("/proc/meminfo");
@@ -37,6 +40,14 @@ std::uint64_t free_host_memory() {
 void check_host_memory(std::uint64_t size_bytes, const std::string& purpose) {
   const std::uint64_t available = free_host_memory();
   if (size_bytes > available) throw memory_error("memory", purpose, size_bytes, available);
+}
+
+int cpu_threads(int wanted) {
+  using tbb::global_control;
+  const auto allowed =
+      static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+  const int most = std::max(1, std::min(allowed, tbb::info::default_concurrency()));
+  return wanted > 0 ? std::min(wanted, most) : most;
 }
 
 void StageTimer::add(const StageTime& time) {
@@ -78,7 +89,7 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
     : FilmRenderer(options, scene),
       traits_(cpu_traits(scene.traits)),
       scene_(seeded_view(scene, options)),
-      threads_(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency())),
+      threads_(cpu_threads(threads)),
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
@@ -87,7 +98,7 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
   make_samples({"memory", free_host_memory(), plan_.bytes_per_pixel() + image_bytes,
-                sizeof(Sample) + state_bytes, batch_paths_max},
+                sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
                {}, [&](std::uint64_t paths) {
                  sample_memory_.resize(paths);
                  if (state_bytes > 0) states_.resize(paths);
@@ -134,14 +145,21 @@ void CpuRenderer::time_in_arena(RenderRun& run, Function&& function) {
   run.kernel_ms += elapsed.count();
 }
 
-void CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+bool CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
+                               const std::function<bool()>& cancel) {
+  bool is_whole = true;
   time_in_arena(run, [&] {
+    cancel_ = &cancel;
     trace_batch(batch);
+    is_whole = !is_cancelled();
+    cancel_ = nullptr;
+    if (!is_whole) return;
     if (plan_.feature_planes() > 0) {
       timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
     }
     timer_.time("accumulate", [&] { accumulate(batch); });
   });
+  return is_whole;
 }
 
 void CpuRenderer::end_render(RenderRun& run) {

@@ -61,6 +61,9 @@ class CpuRenderer : public FilmRenderer {
   /// Null: the batch is of paths. Else it is of chains that go on by themselves (continue_chain).
   const ChainRun* chains() const { return chains_go_on_ ? &chain_run_ : nullptr; }
 
+  /// Whether the batch is to be abandoned: no path more needs to be traced.
+  bool is_cancelled() const { return cancel_ != nullptr && *cancel_ && (*cancel_)(); }
+
   void note_memory(const char* name, std::uint64_t size_bytes);
   int threads() const { return threads_; }
 
@@ -76,7 +79,8 @@ class CpuRenderer : public FilmRenderer {
   void allocate_chains();
   void store_film(const Film& film) override;
   void begin_render(const Film& film) override;
-  void render_batch(const SampleBuffer& batch, RenderRun& run) override;
+  bool render_batch(const SampleBuffer& batch, RenderRun& run,
+                    const std::function<bool()>& cancel) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
   template <class Function>
@@ -102,7 +106,8 @@ class CpuRenderer : public FilmRenderer {
   void accumulate_features(const SampleBuffer& batch);
   FilmView film_view();
 
-  std::uint32_t first_sample_ = 0;  ///< of the film
+  const std::function<bool()>* cancel_ = nullptr;  ///< while a batch of paths is traced
+  std::uint32_t first_sample_ = 0;                 ///< of the film
   int threads_;
   tbb::task_arena arena_;
   std::uint64_t primitive_count_;
@@ -117,6 +122,10 @@ class CpuRenderer : public FilmRenderer {
   std::vector<std::vector<char>> chain_memory_;  ///< of chain_arrays_
   std::vector<BufferSize> memory_;
 };
+
+/// The threads that run where `wanted` are asked for (0: all): no more than oneTBB has for this
+/// process, which minds its affinity.
+int cpu_threads(int wanted);
 
 /// Throws Error when `size_bytes` exceed the memory that the machine has free.
 void check_host_memory(std::uint64_t size_bytes, const std::string& purpose);

@@ -138,7 +138,8 @@ class CudaRenderer : public FilmRenderer {
   void time_batch(RenderRun& run, Enqueue&& enqueue);
   void store_film(const Film& film) override;
   void begin_render(const Film& film) override;
-  void render_batch(const SampleBuffer& batch, RenderRun& run) override;
+  bool render_batch(const SampleBuffer& batch, RenderRun& run,
+                    const std::function<bool()>& cancel) override;
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
   void begin_chains(const ChainWindow& window) override;

@@ -25,6 +25,7 @@ namespace {
 
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
+constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of unknown speed
 
 /// Two chains for each thread that the device holds at once, about 2^19 on an H200. More take more
 /// mutations a second, but each walks a shorter way from its start: half as many and twice as many
@@ -137,7 +138,7 @@ void CudaRenderer::allocate_film() {
   const std::uint64_t pixels = image_window().pixel_count();
   const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
   make_samples({"device memory", CudaMemory::free_bytes(), plan_.bytes_per_pixel(),
-                sizeof(Sample) + state_bytes, batch_paths_max},
+                sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
                chain_defaults(properties_), [&](std::uint64_t paths) {
                  allocate_planes(pixels);
                  Sample* samples = memory_.allocate<Sample>("samples", paths);
@@ -242,7 +243,7 @@ HardwareCounters CudaRenderer::count_hardware() {
   HardwareCounters result = counters_->count([&] {
     begin_render(film);
     RenderRun run;
-    render_batch(batch, run);
+    render_batch(batch, run, {});
     take_wave_count();
   });
   predict_bytes(result.launches);
@@ -268,7 +269,8 @@ void CudaRenderer::time_batch(RenderRun& run, Enqueue&& enqueue) {
   run.kernel_ms += elapsed_ms;
 }
 
-void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
+bool CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
+                                const std::function<bool()>&) {
   constexpr int block = 256;
   const ProfilerRange range(fmt::format("batch of {} paths", batch.path_count));
   prepare_batch(batch);
@@ -281,6 +283,7 @@ void CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run) {
     set_wave(-1);
     accumulate(batch);
   });
+  return true;
 }
 
 void CudaRenderer::allocate_chains() {
@@ -450,7 +453,7 @@ void CudaRenderer::load_kernels() {
     mutate_chains(1, {}, 0, run);
     finish_chains(1, {}, run);
   } else {
-    render_batch({samples(), window, 0, 1}, run);
+    render_batch({samples(), window, 0, 1}, run, {});
   }
   take_wave_count();
   load_ms_ = watch.ms();

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <thread>
-
+#include "common/device/cpu_renderer.h"
 #include "common/error.h"
 
 namespace pt {
@@ -15,9 +14,11 @@ struct Devices {
 };
 
 Devices find_devices() {
-  const unsigned threads = std::thread::hardware_concurrency();
+  const int threads = cpu_threads(0);
   Devices devices;
-  devices.list.push_back({{DeviceChoice::Kind::cpu, 0}, "CPU", fmt::format("{} threads", threads)});
+  devices.list.push_back({{DeviceChoice::Kind::cpu, 0},
+                          "CPU",
+                          fmt::format("{} thread{}", threads, threads == 1 ? "" : "s")});
 #ifdef PTEXP_CUDA
   devices.about_gpus = append_cuda_devices(devices.list);
 #else

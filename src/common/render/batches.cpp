@@ -48,16 +48,33 @@ int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max) {
   return static_cast<int>((wanted + batches - 1) / batches);
 }
 
+int BatchPace::next(int left, std::uint64_t pixels) const {
+  constexpr double batch_s = 0.5;
+  const double fitting = (paths_per_s_ > 0 ? batch_s * paths_per_s_ : double(first_paths_)) /
+                         static_cast<double>(pixels);
+  if (left <= 1.5 * fitting) return left;
+  return std::max(1, static_cast<int>(fitting));
+}
+
 BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
-                        const std::function<void(int first_sample, int samples)>& run_batch,
-                        const std::function<double()>& error) {
+                        const std::function<bool(int first_sample, int samples)>& run_batch,
+                        const std::function<double()>& error, BatchPace* pace) {
   const std::uint64_t total = pixels * static_cast<std::uint64_t>(spp);
   StopClock clock(hooks.stops);
   BatchRun run;
   while (run.samples < spp) {
-    const int samples = std::min({per_batch, spp - run.samples, clock.next(run.samples)});
-    run_batch(run.samples, samples);
+    const int left = spp - run.samples;
+    const int samples = std::min({per_batch, left, clock.next(run.samples),
+                                  pace != nullptr ? pace->next(left, pixels) : left});
+    const double begin_s = clock.elapsed_s();
+    if (!run_batch(run.samples, samples)) {
+      run.ended_by = RunEnd::interrupted;
+      break;
+    }
     run.samples += samples;
+    if (pace != nullptr) {
+      pace->note(pixels * static_cast<std::uint64_t>(samples), clock.elapsed_s() - begin_s);
+    }
     if (clock.wants_error(run.samples)) run.relative_error = error();
     const std::uint64_t paths = pixels * static_cast<std::uint64_t>(run.samples);
     if (hooks.progress) hooks.progress(paths, clock.expected(paths, total, run.relative_error));

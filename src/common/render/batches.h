@@ -14,8 +14,27 @@ struct FilmMemory {
   const char* name;  ///< "memory" or "device memory"
   std::uint64_t free_bytes;
   std::uint64_t bytes_per_pixel;
-  std::uint64_t bytes_per_path;   ///< sample and, if it is stored, random state
-  std::uint64_t batch_paths_max;  ///< more do not pay
+  std::uint64_t bytes_per_path;                 ///< sample and, if it is stored, random state
+  std::uint64_t batch_paths_max;                ///< more do not pay
+  std::uint64_t first_paths = batch_paths_max;  ///< of a batch of unknown duration
+};
+
+/// How large batches are, so that whoever waits for the end of one does not wait long: as many
+/// samples as take half a second at the rate of the last batch. Images do not depend on it.
+class BatchPace {
+ public:
+  /// `first_paths`: while the rate is not known.
+  explicit BatchPace(std::uint64_t first_paths) : first_paths_(first_paths) {}
+
+  /// Samples of the next batch, at least one; `left` of them if these take little longer.
+  int next(int left, std::uint64_t pixels) const;
+  void note(std::uint64_t paths, double seconds) {
+    if (seconds > 0) paths_per_s_ = static_cast<double>(paths) / seconds;
+  }
+
+ private:
+  std::uint64_t first_paths_;
+  double paths_per_s_ = 0;  ///< 0: not known
 };
 
 /// Paths of the largest batch, for which a sample buffer is made: half of the free memory is left
@@ -37,10 +56,11 @@ struct BatchRun {
   std::optional<double> relative_error;  ///< the last estimate
 };
 
-/// Calls run_batch(first_sample, samples) until `spp` samples are taken or the hooks stop it. With
-/// a StopRule batches are no larger than it says, and `error` is asked where it wants to know.
+/// Calls run_batch(first_sample, samples) until `spp` samples are taken, the hooks stop it, or it
+/// returns false: then the batch was abandoned. Batches have at most `per_batch` samples, and are
+/// no larger than a StopRule and `pace` say; `error` is asked where the rule wants to know.
 BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
-                        const std::function<void(int first_sample, int samples)>& run_batch,
-                        const std::function<double()>& error = {});
+                        const std::function<bool(int first_sample, int samples)>& run_batch,
+                        const std::function<double()>& error = {}, BatchPace* pace = nullptr);
 
 }  // namespace pt

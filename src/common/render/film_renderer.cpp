@@ -98,10 +98,13 @@ RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderH
       samples, largest, pixels, hooks,
       [&](int first, int count) {
         const std::uint32_t first_sample = film.next_sample + static_cast<std::uint32_t>(first);
-        render_batch({samples_, window_, first_sample, static_cast<std::uint32_t>(count)}, run);
+        const SampleBuffer batch{samples_, window_, first_sample,
+                                 static_cast<std::uint32_t>(count)};
+        if (!render_batch(batch, run, hooks.cancel)) return false;
         pixel_samples_ = before + static_cast<std::uint32_t>(first + count);
+        return true;
       },
-      [&] { return estimate_error(); });
+      [&] { return estimate_error(); }, &pace_);
   run.samples_done = batches.samples;
   run.ended_by = batches.ended_by;
   run.relative_error = batches.relative_error;

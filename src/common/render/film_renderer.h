@@ -28,6 +28,7 @@ class FilmRenderer : public Renderer, protected ChainDevice {
       batch_paths_ = chain_plan_.batch_paths();
     } else {
       batch_paths_ = plan_batches(options_, memory);
+      pace_ = BatchPace(memory.first_paths);
     }
     samples_ = make(batch_paths_);
   }
@@ -70,8 +71,10 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   virtual void store_film(const Film& film) = 0;
   /// The same, and begins to measure.
   virtual void begin_render(const Film& film) = 0;
-  /// Traces the batch, adds it to the device's film and its time to `run`.
-  virtual void render_batch(const SampleBuffer& batch, RenderRun& run) = 0;
+  /// Traces the batch, adds it to the device's film and its time to `run`. False: `cancel`, a hook,
+  /// abandoned it, and the film is as before.
+  virtual bool render_batch(const SampleBuffer& batch, RenderRun& run,
+                            const std::function<bool()>& cancel) = 0;
   /// Notes what was measured since begin_render but the batches' time.
   virtual void end_render(RenderRun& run) = 0;
   /// Fills in the pixels and counts of a film, whose window is that of the last render.
@@ -92,6 +95,7 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   Window window_;
   std::uint64_t pixel_samples_ = 0;
   std::uint64_t batch_paths_ = 0;
+  BatchPace pace_{1};
   ChainPlan chain_plan_;
   Sample* samples_ = nullptr;
 };

@@ -293,6 +293,7 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
     step.kind = ChainStep::Kind::mutate;
     device.mutate_chains(chains, step, static_cast<std::uint32_t>(first + count), run);
     in_segment += count;
+    return true;
   };
   RenderHooks rest = hooks;
   if (rest.stops.seconds > 0) {

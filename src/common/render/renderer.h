@@ -28,6 +28,9 @@ struct RenderHooks {
   /// Polled between batches; true ends the render early with the samples that it has. May be empty.
   std::function<bool()> stop;
   StopRule stops{};
+  /// Polled while a batch is traced, by any thread; true abandons it: its samples are lost, and the
+  /// render ends with those that it had before. May be empty. CUDA finishes its batch.
+  std::function<bool()> cancel{};
 };
 
 class Renderer {
