@@ -298,6 +298,10 @@ class RandomNumbers(unittest.TestCase):
             "scenes (1.00 times its time); +0 MiB of memory; 4.00 times less error at equal samples "
             "(of one image each, without an interval)"])
         self.assertEqual(numbers.cost(rows[1]), 2 * numbers.cost(rows[0]))
+        for made in rows:
+            made["render_init_ms_median"] = ""
+        numbers.put_efficiency(rows)  # error times time: 0.2, 0.4, 2, 0.5
+        self.assertEqual([made["efficiency"] for made in rows], ["1", "0.5", "0.1", "0.4"])
 
 
 class Depth(unittest.TestCase):
