@@ -70,7 +70,7 @@ def conclude(rows, _arguments):
 EXPERIMENT = Experiment(
     "block_size", __doc__.splitlines()[0], configurations,
     Plot("lines", "Block size: spheres, depth 50", "threads per block"),
-    finish=finish, conclude=conclude, table=("idle", "lanes", "occupancy"))
+    finish=finish, conclude=conclude, table=("idle", "lanes", "occupancy"), needs_gpu=True)
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT))

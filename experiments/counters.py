@@ -5,7 +5,7 @@ Renders a few scenes with `ptexp --counters`, by the megakernel and by the wavef
 shade, to gather paths and to lay them out. A row is a kernel of one of them, or all together: SIMT
 efficiency, issue, occupancy, hit rates, bytes, and for the wavefront's stages what their records
 need (docs/experiments.md, "Hardware counters"). A configuration that cannot be counted is a row that
-says why.
+says why. Needs a GPU that may be profiled.
 """
 import json
 import shlex
@@ -116,6 +116,7 @@ def run(experiment, arguments):
         for configuration in chosen:
             print(shlex.join(command_of(program, device, configuration, arguments, ".")))
         return 0
+    harness.check_gpu(experiment, device)
     path = harness.table_path(experiment, device, arguments)
     facts = {**harness.provenance(experiment, program, device, arguments), "date": harness.now(),
              "configurations": {c.name: c.arguments for c in chosen}}
@@ -147,7 +148,7 @@ def filled(rows):
 
 
 EXPERIMENT = Experiment("counters", __doc__.splitlines()[0], configurations, None,
-                        add_arguments=add_arguments)
+                        add_arguments=add_arguments, needs_gpu=True)
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT, runner=run))

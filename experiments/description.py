@@ -70,6 +70,7 @@ class Experiment:
     plot: Plot  # None: a table without a picture
     add_arguments: Callable = no_arguments
     finish: Callable = no_columns  # fills in labels of measured rows: (rows, arguments)
+    needs_gpu: bool = False  # on a CPU it says so in one line and measures nothing
     table: tuple = ()  # labels to print besides name and time
     conclude: Callable = no_conclusions  # sentences for below the table: (rows, arguments)
     # Options of the images that are compared before the measurement, instead of the configuration's

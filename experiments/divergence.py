@@ -115,8 +115,7 @@ def run(experiment, arguments):
         for command in commands.values():
             print(shlex.join([str(program), *command]))
         return 0
-    if device.kind != "cuda":
-        raise HarnessError(f"--device {device.choice}: lanes are counted on a GPU alone")
+    harness.check_gpu(experiment, device)
     print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
     path = harness.table_path(experiment, device, arguments)
     facts = harness.provenance(experiment, program, device, arguments)
@@ -139,7 +138,7 @@ EXPERIMENT = Experiment(
     "divergence", __doc__.splitlines()[0], configurations,
     Plot("lines", "Active lanes: 1024 x 1024, 4 samples, depth 8", "rays of a path",
          "active lanes of 32, mean", y="mean_lanes", log_y=False),
-    add_arguments=add_scene_files)
+    add_arguments=add_scene_files, needs_gpu=True)
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT, runner=run))

@@ -14,7 +14,7 @@ from description import Configuration, Experiment, HarnessError, Plot, Refused  
 from image_check import check_images
 from journal import Journal
 from options import parse_arguments
-from program import ROOT, find_device, find_program, run_ptexp  # noqa: F401
+from program import ROOT, check_gpu, find_device, find_program, run_ptexp  # noqa: F401
 from provenance import now, provenance  # noqa: F401
 from rounds import command_line, measure_all, plan, rows_of
 from session import Session, constant_origin, is_complete, key_of, origin
@@ -98,6 +98,7 @@ def run(experiment, arguments):
             print(shlex.join(command_line(session, configuration)))
         return 0
     device = session.device
+    check_gpu(experiment, device)
     print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
     session.path = table_path(experiment, device, arguments)
     if not arguments.fresh and is_complete(session.path, session.key):

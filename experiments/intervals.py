@@ -3,11 +3,12 @@ import functools
 import itertools
 import math
 import random
+from fractions import Fraction
 from statistics import median
 
 RESAMPLES = 4000
 SEED = 20231122  # fixed: the same times give the same interval
-CONFIDENCE = 0.95
+OUTSIDE = Fraction(1, 40)  # below and above an interval of 95 %
 
 
 def percentile(ordered, share):
@@ -16,8 +17,7 @@ def percentile(ordered, share):
 
 
 def ends(ordered):
-    outside = (1 - CONFIDENCE) / 2
-    return percentile(ordered, outside), percentile(ordered, 1 - outside)
+    return percentile(ordered, OUTSIDE), percentile(ordered, 1 - OUTSIDE)
 
 
 def bootstrap(samples, statistic):

@@ -9,10 +9,16 @@ import argparse
 import sys
 from pathlib import Path
 
-import matplotlib
+try:
+    import matplotlib
+except ImportError as missing:
+    if __name__ == "__main__":
+        sys.exit(f"plot.py: error: {missing}; experiments/README.md says how to install matplotlib")
+    raise
 matplotlib.use("Agg")  # draws into files, needs no screen
 from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-import-position
 
+from sentences import plot_title  # noqa: E402  pylint: disable=wrong-import-position
 from table import read_facts, read_rows  # noqa: E402  pylint: disable=wrong-import-position
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
@@ -139,8 +145,7 @@ def draw(path):
             axes, members, {**style, "x_label": style["x_label"] or panel})
         axes.set_title(panel, fontsize="medium")
         axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)
-    title = f"{style['title']}{' (quick: small images)' if facts['quick'] else ''}"
-    figure.suptitle(f"{title}\n{facts['device']['name']}, {facts['host']['cpu']}",
+    figure.suptitle(f"{plot_title(facts)}\n{facts['device']['name']}, {facts['host']['cpu']}",
                     fontsize="medium")
     picture = path.with_suffix(".png")
     figure.savefig(picture, dpi=130, metadata={"Software": None})

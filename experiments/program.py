@@ -91,6 +91,13 @@ def find_device(program, wanted):
                        f"{', '.join(device.choice for device in devices) or 'no device'}")
 
 
+def check_gpu(experiment, device):
+    """An experiment that measures nothing on a CPU says so before it begins."""
+    if experiment.needs_gpu and device.kind != "cuda":
+        raise HarnessError(f"needs a GPU, and --device {device.choice} is a CPU: expected cuda or "
+                           "cuda:N")
+
+
 def command_line(program, configuration, device, repeat, warmup):
     return [configuration.program or str(program), *shlex.split(configuration.arguments),
             "--device", configuration.device or device.choice,

@@ -65,13 +65,17 @@ def finish(rows, arguments):
         arguments.images.put_errors(
             [row for row in rows if row["panel"].startswith(f"{scene},")], program, device,
             f"--mode wavefront {image} --sampler sobol", arguments.reference_seconds)
+    put_efficiency(rows)
+    arguments.images.remove()
+
+
+def put_efficiency(rows):
     for mine in in_groups(rows, "panel").values():
         base = next((row for row in mine if row["x"] == PHILOX), None)
         for row in mine:
             row["set_up_ms"] = row["render_init_ms_median"]
             if base and cost(row) > 0:
                 row["efficiency"] = f"{cost(base) / cost(row):.3g}"
-    arguments.images.remove()
 
 
 def conclude(rows, _arguments):

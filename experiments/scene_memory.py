@@ -2,14 +2,15 @@
 """Scene memory: where should the spheres lie as they grow in number: global, constant, shared?
 
 Every sphere is tested (--accel brute) or a tree is asked (bvh2), whose nodes are in global memory
-always. What does not fit into constant or shared memory is refused. Needs a GPU.
+always. What does not fit into constant or shared memory is refused. A CPU has one memory only: there the
+rows of the others are refused.
 """
 import sys
 
 import harness
 from harness import Configuration, Experiment, Plot
 from kernels import tracing_kernel
-from sentences import against, best_of, in_groups
+from sentences import against, best_of, in_groups, listed
 
 MEMORIES = ["global", "constant", "shared"]
 # (mode, structure, numbers of spheres); ptexp's kernels take 1,024 as a constant, and a block of an
@@ -42,6 +43,10 @@ def conclude(rows, _arguments):
     lines = []
     for (panel, count), mine in in_groups(rows, "panel", "x").items():
         by_memory = {row["series"]: row for row in mine}
+        if all(row["device_kind"] == "cpu" for row in mine):
+            lines.append(f"{panel}, {count} spheres: measured in {listed(by_memory)} memory alone; "
+                         "the others need a GPU")
+            continue
         others = [f"{memory}: {against(by_memory['global'], row, 'global')}"
                   for memory, row in by_memory.items() if memory != "global"
                   and "global" in by_memory]

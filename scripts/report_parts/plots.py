@@ -2,7 +2,7 @@
 from . import axes, svg
 from .plot_bars import draw_bars
 from .plot_lines import draw_lines
-from .tables import in_groups, interval, is_measured, style_of
+from .tables import in_groups, interval, is_measured, plot_title, style_of
 
 
 def values_of(rows, table):
@@ -35,4 +35,4 @@ def in_page(height, content, label):
 
 
 def title_of(table):
-    return table.plot.get("title") or table.name
+    return plot_title(table.facts) or table.name

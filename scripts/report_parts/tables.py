@@ -101,6 +101,14 @@ def style_of(table, panel):
     return {**table.plot, "x_label": table.plot.get("x_label") or panel}
 
 
+def plot_title(facts):
+    """The plot's title. The sizes in it, behind the colon, are not those of --quick."""
+    title = facts["plot"].get("title") or facts.get("experiment", "")
+    if not facts.get("quick"):
+        return title
+    return f"{title.partition(':')[0]} (quick: small images, not for comparison)"
+
+
 def give_ray_sets_a_plot(table):
     """Tables of `ptexp trace` have no description of a plot: bars, a panel for each set of rays."""
     for row in table.rows:

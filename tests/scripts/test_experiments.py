@@ -213,7 +213,7 @@ class Experiments(unittest.TestCase):
             return
         if script in NEED_GPU:
             self.assertEqual(run.returncode, 2, run.stdout + run.stderr)
-            self.assertIn("refused every configuration", run.stderr)
+            self.assertIn("needs a GPU, and --device cpu is a CPU", run.stderr)
             return
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         rows = self.rows(f"{script}-quick")

@@ -96,6 +96,13 @@ class Intervals(unittest.TestCase):
         self.assertEqual(intervals.bootstrap(
             [before, after], lambda s: median(s[1]) / median(s[0])), (1.5, 1.5))
 
+    def test_percentiles_are_values_of_the_sample(self):
+        # 1..4000: the 100th has 2.5 % at or below it, the 3900th 97.5 %.
+        self.assertEqual(intervals.ends(range(1, 4001)), (100, 3900))
+        self.assertEqual(intervals.ends(range(1, 41)), (1, 39))
+        self.assertEqual(intervals.ends(range(1, 42)), (2, 40))
+        self.assertEqual(intervals.ends([7]), (7, 7))
+
     def test_sharing_into_rounds(self):
         self.assertEqual(intervals.in_rounds([1, 2, 3, 4, 5], 3), [[1, 2], [3, 4], [5]])
 
@@ -114,14 +121,15 @@ class Pooling(unittest.TestCase):
     def test_golden_row(self):
         row = pooling.pooled([self.process([5.0, 1.0], scene_ms="1"),
                               self.process([2.0], scene_ms="4"),
-                              self.process([4.0], scene_ms="2")])
-        expected = {"rounds": "3", "repeat": "4", "kernel_ms_median": "3.000000",
-                    "kernel_ms_min": "1.000000", "kernel_ms_max": "5.000000",
-                    "kernel_ms_low": "1.000000", "kernel_ms_high": "5.000000",
-                    "kernel_ms_runs": "5.000000;1.000000;2.000000;4.000000",
-                    "serial_ms_median": "1.500000", "serial_ms_max": "2.500000",
+                              self.process([12.0], scene_ms="2")])
+        expected = {"rounds": "3", "repeat": "4", "kernel_ms_median": "3.500000",
+                    "kernel_ms_min": "1.000000", "kernel_ms_max": "12.000000",
+                    "kernel_ms_low": "1.000000", "kernel_ms_high": "12.000000",
+                    "kernel_ms_runs": "5.000000;1.000000;2.000000;12.000000",
+                    "serial_ms_median": "1.750000", "serial_ms_max": "6.000000",
                     "other_ms_median": "0.750000", "compact_ms_median": "",
-                    "scene_ms": "2.000000", "mpaths_per_s": "2", "mrays_per_s": "4"}
+                    "scene_ms": "2.000000", "mpaths_per_s": "1.71429",
+                    "mrays_per_s": "3.42857"}  # 6000 paths, 12000 rays in 3.5 ms; the mean is 5
         self.assertEqual({key: row[key] for key in expected}, expected)
 
 
@@ -342,6 +350,16 @@ class Harness(unittest.TestCase):
         self.fake("b", images={"": "other"}, version="d")
         self.assertEqual(self.compare_builds()[0], 2)
 
+    def test_verdicts_on_builds(self):
+        compare = importlib.import_module("compare_builds")
+        for low, high, verdict in ((1.03, 1.5, "SLOWER"), (1.01, 1.5, "slower"),
+                                   (0.99, 1.5, "no significant difference"),
+                                   (0.5, 0.99, "faster"), (1.03, 1.04, "SLOWER")):
+            self.assertEqual(compare.verdict_of(low, high), verdict, (low, high))
+        # 4 times as slow and a quarter of the time cancel: an arithmetic mean has 2.1250.
+        self.assertAlmostEqual(compare.mean_ratio([[1.0], [4.0], [4.0], [1.0]]), 1)
+        self.assertAlmostEqual(compare.mean_ratio([[1.0], [8.0], [4.0], [8.0]]), 4)
+
     def trace(self, _experiment, _program, rays, *_):
         """Stands for the measurement of a set of rays; Ctrl-C at the third."""
         name = Path(rays.rays).name
@@ -370,6 +388,25 @@ class Harness(unittest.TestCase):
         self.assertEqual(len(self.traced), 6 + 1)
         self.assertEqual(run(), 0)
         self.assertEqual(len(self.traced), 6 + 1)  # a complete table is not measured again
+
+    def test_a_missing_matplotlib_is_one_line(self):
+        (self.folder / "matplotlib.py").write_text("raise ImportError('none here')\n")
+        run = subprocess.run([sys.executable, EXPERIMENTS / "plot.py", "a.csv"], text=True,
+                             env={"PYTHONPATH": str(self.folder)}, capture_output=True, check=False)
+        self.assertEqual((run.returncode, len(run.stderr.splitlines())), (1, 1), run.stderr)
+        self.assertIn("plot.py: error: none here; experiments/README.md says", run.stderr)
+
+    def test_titles_of_quick_plots_give_no_full_size(self):
+        title_of = importlib.import_module("sentences").plot_title
+        facts = {"plot": {"title": "Toggles: spheres, 600x300, 50 samples"}, "quick": False}
+        self.assertEqual(title_of(facts), "Toggles: spheres, 600x300, 50 samples")
+        for path in sorted(EXPERIMENTS.glob("*.py")):
+            if "harness.main(" in path.read_text(encoding="utf-8"):
+                plot = importlib.import_module(path.stem).EXPERIMENT.plot
+                if plot:
+                    title = title_of({"plot": {"title": plot.title}, "quick": True})
+                    self.assertNotRegex(title, r"\d+ ?x ?\d+|\d samples|depth", path.stem)
+                    self.assertIn("quick", title)
 
     def test_intervals_are_drawn(self):
         try:

@@ -266,14 +266,20 @@ class ImageSize(unittest.TestCase):
 
 class SceneMemory(unittest.TestCase):
     def test_sentences(self):
-        rows = [row(ms, panel="m", x=50, series=memory)
+        rows = [row(ms, panel="m", x=50, series=memory, device_kind="cuda")
                 for ms, memory in ((2, "global"), (1, "constant"), (1.99, "shared"))]
         said, alone = experiment("scene_memory").conclude(
-            rows + [row(3, panel="m", x=60, series="global")], None)
+            rows + [row(3, panel="m", x=60, series="global", device_kind="cuda")], None)
         self.assertEqual(said, "m, 50 spheres: fastest in constant memory; constant: 2.00 times as "
                                "fast as global; shared: no significant difference to global (0.995 "
                                "times its time)")
         self.assertEqual(alone, "m, 60 spheres: fastest in global memory; nothing else fits")
+
+    def test_a_cpu_says_that_the_others_need_a_gpu(self):
+        said, = experiment("scene_memory").conclude(
+            [row(3, panel="m", x=60, series="global", device_kind="cpu")], None)
+        self.assertEqual(said, "m, 60 spheres: measured in global memory alone; the others need a "
+                               "GPU")
 
 
 class RandomNumbers(unittest.TestCase):
@@ -292,6 +298,10 @@ class RandomNumbers(unittest.TestCase):
             "scenes (1.00 times its time); +0 MiB of memory; 4.00 times less error at equal samples "
             "(of one image each, without an interval)"])
         self.assertEqual(numbers.cost(rows[1]), 2 * numbers.cost(rows[0]))
+        for made in rows:
+            made["render_init_ms_median"] = ""
+        numbers.put_efficiency(rows)  # error times time: 0.2, 0.4, 2, 0.5
+        self.assertEqual([made["efficiency"] for made in rows], ["1", "0.5", "0.1", "0.4"])
 
 
 class Depth(unittest.TestCase):

@@ -13,8 +13,8 @@ PAPER, STATUE = "spheres 600x300", "statue:1M 1024x1024"
 NUMBERS = [
     ("takes the megakernel {:.1f} ms", "by_itself", f"{PAPER}: megakernel", "kernel_ms_median", 1),
     ("the wavefront {:.1f} ms", "by_itself", f"{PAPER}: wavefront", "kernel_ms_median", 1),
-    ("takes one CPU thread {:.0f} s", "image_size", "serial, CPU 2400x1200", "image_ms_median", 1e-3),
-    ("the megakernel {:.0f} ms. On", "image_size", "megakernel, CUDA 2400x1200", "image_ms_median", 1),
+    ("one CPU thread {:.0f} s", "image_size", "serial, CPU 2400x1200", "image_ms_median", 1e-3),
+    ("the megakernel {:.0f} ms, and one", "image_size", "megakernel, CUDA 2400x1200", "image_ms_median", 1),
     ("{:.0f} million paths a second in the megakernel", "by_itself",
      f"{STATUE}: megakernel", "mpaths_per_s", 1),
     ("{:.0f} million paths a second in the wavefront", "by_itself", f"{STATUE}: wavefront",
@@ -24,17 +24,21 @@ NUMBERS = [
         ("{:.1f} ms in one whose blocks sort", "dial:16:0:closed", "0 megakernel at its best"),
         ("{:.1f} ms in a plain wavefront", "dial:16:0:closed", "2 split kernels"),
         ("{:.1f} ms in one with all its steps", "dial:16:0:closed", "12 persistent warps"),
-        ("the paper's spheres {:.1f} ms", "spheres", "0 megakernel"),
+        ("the paper's spheres at 1200x600, 50 samples, {:.1f} ms", "spheres", "0 megakernel"),
         (", {:.1f} ms and", "spheres", "1 split kernels"),
         ("and {:.1f} ms. Why", "spheres", "11 two rays a wave")]],
 ]
 MEASURED = r"[\d.,]+ (?:ms|s|million paths a second)\b"  # what README.md may not say unless listed
 
 
-def number(table, name, column):
+def text_of(table, name, column):
     with open(RESULTS / f"{table}.csv", newline="", encoding="utf-8") as file:
         row, = (row for row in csv.DictReader(file) if row["name"] == name)
-    return float(row[column])
+    return row[column]
+
+
+def number(*cell):
+    return float(text_of(*cell))
 
 
 class ReadmeNumbers(unittest.TestCase):
@@ -50,6 +54,23 @@ class ReadmeNumbers(unittest.TestCase):
     def test_every_measured_number_is_listed(self):
         listed = {found for text in self.expected for found in re.findall(MEASURED, text)}
         self.assertEqual(set(re.findall(MEASURED, self.text)), listed)
+
+    def test_what_is_extrapolated_says_so(self):
+        name = "serial, CPU 2400x1200"
+        if text_of("image_size", name, "extrapolated") == "yes":
+            self.assertRegex(self.text, r"one CPU thread \d+ s: extrapolated from a tenth of the")
+            share = [int(text_of("image_size", name, column)) for column in ("spp", "full_spp")]
+            self.assertEqual(10 * share[0], share[1])
+
+    def test_the_size_of_the_ladders_spheres(self):
+        sizes = [text_of("ladder", "spheres: 0 megakernel", column)
+                 for column in ("width", "height", "spp")]
+        self.assertIn("spheres at {}x{}, {} samples".format(*sizes), self.text)
+
+    def test_the_paper_is_named(self):
+        for name in ("README.md", "CITATION.cff"):
+            self.assertIn("Parallel Path Tracing with CUDA",
+                          (ROOT / name).read_text(encoding="utf-8"), name)
 
 
 if __name__ == "__main__":

@@ -183,7 +183,7 @@ class Report(unittest.TestCase):
         plots = {"toggles": TOGGLES, "image_size": SIZES,
                  "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
                  "sampling": {**SIZES, "y": "relmse"}, "ladder": TOGGLES,
-                 "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
+                 "by_itself": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
                  "random_numbers": TOGGLES, "pool_size": SIZES,
                  "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
                  "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
@@ -300,6 +300,24 @@ class Report(unittest.TestCase):
         nothing = self.judged(toggles=toggles()[:1])
         self.assertEqual(set(nothing.values()), {"not measured"})
         self.assertEqual(len(nothing), 7)
+
+    def test_nothing_is_confirmed_without_significance(self):
+        wide = [{**row, "kernel_ms_min": 0.1, "kernel_ms_max": 9} for row in blocks((1, 2, 3, 4))]
+        self.assertEqual(self.judged(block_size=wide)["Larger"], "refuted")
+        # Half of the default's time, by an interval that has the default in it.
+        self.assertEqual(self.judged(toggles=toggles((0.3, 0.5, 1.5)))["Reduced"], "refuted")
+
+    def test_the_winner_is_the_one_with_less_time(self):
+        for mega, wave, winner in ((1.0, 2.0, "megakernel"), (4.0, 2.0, "wavefront"),
+                                   (2.0, 2.01, "no significant difference")):
+            rows = [{**toggle("room", mode, 0.98 * ms, ms, 1.02 * ms), "mode": mode}
+                    for mode, ms in (("megakernel", mega), ("wavefront", wave))]
+            text = self.make(by_itself=rows)
+            answer = re.sub("<.*?>", " ", text[text.index("Which mode for my scene?"):
+                                               text.index("Which block size?")])
+            answer = " ".join(answer.split())
+            self.assertIn(f"{winner[0].upper()}{winner[1:]}: room.", answer)
+            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} by.itself")
 
     def test_metropolis_is_judged_at_equal_samples(self):
         good, bad, unclear = (7.5, 8.0, 9.0), (0.1, 0.2, 0.3), (1.5, 2.0, 2.5)
@@ -425,6 +443,12 @@ class Report(unittest.TestCase):
         self.assertIn("Over 3 configurations that both measured, Device B takes 2.00 times the "
                       "time of Device A (geometric mean; from 2.00 to 2.00). It is slower in 3. 1 "
                       "more have equal names but other images", text)
+        rows[0] |= {f"kernel_ms_{part}": 8 * rows[0][f"kernel_ms_{part}"]
+                    for part in ("min", "median", "max")}
+        write(other, "toggles", rows, facts("toggles", TOGGLES, device={"name": "Device B"}))
+        self.run_report(self.folder, other, "-o", page)
+        self.assertIn("takes 4.00 times the time of Device A (geometric mean; from 2.00 to 16.0)",
+                      page.read_text(encoding="utf-8"))  # 16, 2, 2; arithmetically 6.67
         first, second = plots_in(text)
         self.assertEqual(self.places(first, "x"), self.places(second, "x"))
         shutil.copy(self.folder / "toggles.json", other / "toggles.json")
