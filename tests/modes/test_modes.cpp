@@ -8,6 +8,7 @@
 #include <map>
 
 #include "common/accel/traverse_brute_block.h"
+#include "common/render/batches.h"
 #include "common/render/dispatch.h"
 #include "common/render/path_limits_of.h"
 #include "common/sampling/random.h"
