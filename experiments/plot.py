@@ -18,7 +18,7 @@ except ImportError as missing:
 matplotlib.use("Agg")  # draws into files, needs no screen
 from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-import-position
 
-from sentences import plot_title  # noqa: E402  pylint: disable=wrong-import-position
+from sentences import plot_title, short  # noqa: E402  pylint: disable=wrong-import-position
 from table import read_facts, read_rows  # noqa: E402  pylint: disable=wrong-import-position
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
@@ -83,7 +83,7 @@ def draw_lines(axes, rows, style):
     axes.set_xlabel(style["x_label"])
     ticks = sorted({float(row["x"]) for row in rows})
     if len(ticks) <= TICKS:
-        axes.set_xticks(ticks, [f"{tick:,.0f}" for tick in ticks], rotation=30, ha="right")
+        axes.set_xticks(ticks, [short(tick) for tick in ticks], rotation=30, ha="right")
         axes.xaxis.set_minor_locator(ticker.NullLocator())
     else:
         label_times(axes.xaxis)

@@ -68,7 +68,12 @@ def which_mode(device):
     return (paragraph("The faster one, each with its fastest options measured. "
                       + " ".join(part[0].upper() + part[1:] for part in parts))
             + html_table(["scene", "megakernel, ms", "wavefront, ms", "megakernel / wavefront",
-                          "faster", "table", "commit"], lines))
+                          "faster", "table", "commit"], lines,
+                         caption="Fastest times of both modes, scene by scene"))
+
+
+def commit_of(table):
+    return "commit " + ", ".join(commit[:7] for commit in table.commits)
 
 
 def which_block(device):
@@ -96,7 +101,7 @@ def which_block(device):
                 f"{bad} threads take up to {show(everywhere[bad])} times as long.")
     return paragraph(text) + html_table(
         ["image", "execution", "best, threads", "kernel time, ms", "no significant difference",
-         "worst, threads"], lines)
+         "worst, threads"], lines, caption=f"Block sizes ({commit_of(table)})")
 
 
 def effect(idea, where, default, value, source):
@@ -166,7 +171,8 @@ def each_idea(device):
                      "before it for the ladder): above 1 the "
                      "choice costs, below 1 it gains. The interval follows from the extremes of "
                      "both.") + html_table(
-                         ["choice", "where", "time ratio", "verdict", "table"], lines)
+                         ["choice", "where", "time ratio", "verdict", "table"], lines,
+                             caption="Each choice against its lack; commits are said at the tables")
 
 
 QUESTIONS = (("Which mode for my scene?", which_mode), ("Which block size?", which_block),

@@ -46,4 +46,4 @@ def side_by_side(names, tables, column):
                         if word == "no significant difference" else f"not judged in {count}"
                         for word, count in counts.items()) + "." + others)
     heads = ["configuration", *(f"{name}, ms" for name in names), "time ratio", names[1] + " is"]
-    return paragraph(text) + html_table(heads, lines)
+    return paragraph(text) + html_table(heads, lines, caption=f"{tables[0].name}: {names[0]} and {names[1]}")

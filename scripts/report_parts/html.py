@@ -1,18 +1,20 @@
 """Tables in HTML that sort by a click, and small pieces of the page."""
+import re
 from html import escape
 
-from .tables import number
-from .words import show
+from .tables import interval, number
+from .words import show, with_interval
 
-MEASURES = ["kernel_ms_median", "kernel_ms_low", "kernel_ms_high", "kernel_ms_min",
-            "kernel_ms_max", "time_ms", "time_min_ms", "time_max_ms", "mpaths_per_s",
-            "mrays_per_s", "waves", "memory_bytes"]
+MEASURES = ["kernel_ms_median", "time_ms", "mpaths_per_s", "mrays_per_s"]
 RAY_SETS = ["mesh", "ray_file", "accel", "builder", "variant", "build_ms", "bytes_per_triangle"]
-NOT_SHOWN = {"experiment"}
+# The file has them; the ends of an interval stand beside its median.
+NOT_SHOWN = {"experiment", "kernel_ms_runs", "scene_hash", "rounds", "message", "alive", "command"}
+ENDS = re.compile(r"(.+)_(?:low|high|min|max)(_ms)?")
 # Where tables without a schema version, whose columns are their experiment's, say what was measured.
 ORIGIN = {"version", "commit", "build_type", "compiler", "cuda", "fast_math", "command", "device",
           "device_kind", "threads", "driver", "repeat", "warmup", "scene_hash"}
 MOST_ROWS = 150  # of a table; the file has all
+OPEN_ROWS = 40  # longer tables are folded away, and paper names their files alone
 
 
 def cell(text):
@@ -25,21 +27,30 @@ def cell(text):
     return f'<td class="n" data-v="{escape(text)}"{title}>{shown}</td>'
 
 
-def html_table(heads, rows, name=""):
-    """`rows` of texts, or of cells that are HTML already (they begin with <td)."""
-    rows = [[text if text.startswith("<td") else cell(text) for text in row] for row in rows]
+def row_head(text):
+    return '<th scope="row"' + text[3:].removesuffix("</td>") + "</th>"
+
+
+def html_table(heads, rows, name="", caption="", rich=""):
+    """`rows` of texts, or of cells that are HTML already (they begin with <td). The
+    first of a row is its head. `rich` is HTML behind the caption."""
+    rows = [[row_head(text) if column == 0 else text for column, text in enumerate(row)] for row in [
+        [text if text.startswith("<td") else cell(text) for text in row] for row in rows]]
     right = [any(row[column].startswith('<td class="n"') for row in rows)
              for column in range(len(heads))]
     head = "".join(f'<th scope="col"{" class=n" * is_number}><button type="button">{escape(head)}'
                    "</button></th>" for head, is_number in zip(heads, right))
     body = "".join(f"<tr>{''.join(row)}</tr>\n" for row in rows)
-    return (f'<div class="scroll {name}"><table class="sortable"><thead><tr>{head}</tr></thead>'
+    label = escape(caption or ", ".join(heads))
+    title = f"<caption>{escape(caption)}{rich}</caption>" if caption else ""
+    return (f'<div class="scroll {name}" tabindex="0" role="region" aria-label="{label}">'
+            f'<table class="sortable">{title}<thead><tr>{head}</tr></thead>'
             f"<tbody>\n{body}</tbody></table></div>")
 
 
 def verdict_cell(word):
     name = {"slower": "bad", "faster": "good", "refuted": "bad", "confirmed": "good",
-            "depends": "mixed"}.get(word, "quiet")
+            "depends": "mixed"}.get(word, "good" if word.startswith("yes") else "quiet")
     return f'<td><span class="verdict {name}">{escape(word)}</span></td>'
 
 
@@ -67,13 +78,49 @@ def columns_shown(table):
                                        and any(row[column] for row in table.rows)]))
 
 
+def measure_of(row, column, columns):
+    """The cell of a column: a median with the interval that other columns have."""
+    stem = column.removesuffix("_median")
+    value = interval(row, stem) if column.endswith(("_median", "_ms")) else None
+    if value is None or not value.known or not any(ENDS.fullmatch(c) for c in columns):
+        return row[column]
+    return f'<td class="n" data-v="{escape(row[column])}">{with_interval(value, digits=4)}</td>'
+
+
+def without_ends(table, columns):
+    """Less the columns that are the ends of another one's interval."""
+    def is_an_end(column):
+        found = ENDS.fullmatch(column)
+        return found and any(f"{found[1]}{rest}" in table.columns
+                             for rest in ("_median", found[2] or ""))
+    return [column for column in columns if column not in NOT_SHOWN and not is_an_end(column)]
+
+
+def caption_of(table):
+    """What the table is and which commit it is of: tables of one page may be of several."""
+    parts = [f"{table.name}.csv, {len(table.rows)} rows"]
+    commits = [commit[:7] for commit in table.commits] or re.findall(
+        r"commit (\w{7})", " ".join(table.facts.get("program", [])))
+    parts.append(f"measured at commit{'s' * (len(commits) > 1)} " + ", ".join(commits)
+                 if commits else "names no commit")
+    if table.facts.get("date"):
+        parts.append(table.facts["date"][:10])
+    return "; ".join(parts)
+
+
 def table_of(table):
-    columns = columns_shown(table)
+    columns = without_ends(table, columns_shown(table))
     text = html_table([column.replace("_", " ") for column in columns],
-                      [[row[column] for column in columns] for row in table.rows[:MOST_ROWS]])
+                      [[measure_of(row, column, table.columns) for column in columns]
+                       for row in table.rows[:MOST_ROWS]],
+                      "long" * (len(table.rows) > OPEN_ROWS), caption_of(table),
+                      f'. <a href="{escape(table.name)}.csv">All columns</a>')
     if len(table.rows) > MOST_ROWS:
         text += (f'<p class="note">The first {MOST_ROWS} of {len(table.rows)} rows; '
                  f"{escape(table.name)}.csv has all.</p>")
+    if len(table.rows) > OPEN_ROWS or not table.facts:
+        text = (f"<details><summary>{escape(caption_of(table))}</summary>{text}</details>"
+                f'<p class="paper-only">{escape(caption_of(table))}: in the file.</p>')
     return text
 
 
@@ -87,7 +134,7 @@ def stages_of(table):
     rows = [[row["name"], *(row[stage] for stage in stages)] for row in table.measured]
     heads = ["name", *(stage.removesuffix("_ms_median").replace("_", " ") for stage in stages)]
     return ("<details><summary>Where the time goes: stages, ms</summary>"
-            f"{html_table(heads, rows)}</details>")
+            f"{html_table(heads, rows, 'long', f'{table.name}: stages, median ms')}</details>")
 
 
 def paragraph(text):

@@ -19,7 +19,7 @@ function sort(head) {
   table.querySelectorAll("th").forEach((other) => other.removeAttribute("aria-sort"));
   head.setAttribute("aria-sort", down ? "descending" : "ascending");
 }
-document.querySelectorAll(".sortable th").forEach((head) =>
+document.querySelectorAll(".sortable thead th").forEach((head) =>
   head.querySelector("button").addEventListener("click", () => sort(head)));
 
 // The numbers of a point, at once and on a touch screen: <title> stays for those without a script.
@@ -54,13 +54,3 @@ document.querySelectorAll(".pair").forEach((pair) => {
   difference.addEventListener("change", show);
   gain.addEventListener("input", show);
 });
-
-// Paper shows what was folded away.
-const folded = [];
-window.addEventListener("beforeprint", () =>
-  document.querySelectorAll("details:not([open])").forEach((part) => {
-    part.open = true;
-    folded.push(part);
-  }));
-window.addEventListener("afterprint", () =>
-  folded.splice(0).forEach((part) => { part.open = false; }));

@@ -27,7 +27,7 @@ def for_each(devices, make):
     if len(devices) == 1:
         return make(devices[0])
     return '<div class="beside">' + "".join(
-        f'<div><h4 class="device">{escape(device.name)}</h4>{make(device)}</div>'
+        f'<div><h3 class="device">{escape(device.name)}</h3>{make(device)}</div>'
         for device in devices) + "</div>"
 
 
@@ -40,7 +40,8 @@ def audit_table(device):
     rows = [[f"<td>{escape(claim)}<small>{escape(rule)}</small></td>", html.verdict_cell(verdict),
              f"<td>{escape(numbers)}</td>", source]
             for claim, rule, verdict, numbers, source in audit(device)]
-    return html.html_table(["claim", "verdict", "what was measured", "table"], rows, "audit")
+    return html.html_table(["claim", "verdict", "what was measured", "table"], rows, "audit",
+                           "The paper's claims, each with the rule of its verdict")
 
 
 def figures(table, shared):
@@ -100,7 +101,7 @@ def on_a_device(table, shared):
         parts.append(figures(table, shared))
     parts.append(f'<div class="meaning">{sentences(table)}</div>{own_words(table)}')
     rows = html.table_of(table) if table.rows else '<p class="note">The table has no rows.</p>'
-    parts.append(f"<h4>{escape(table.name)}.csv</h4>{rows}{html.stages_of(table)}")
+    parts.append(f"<h3>{escape(table.name)}.csv</h3>{rows}{html.stages_of(table)}")
     if table.facts:
         parts.append(f"<details><summary>Environment</summary>{environment(table)}</details>")
     return "".join(parts)
@@ -142,7 +143,9 @@ def page(devices, limit_bytes):
     return Template(asset("page.html")).substitute(
         title=escape(" and ".join(device.name for device in devices)), style=asset("page.css")
         + asset("plot.css"), script=asset("page.js"), answers=answers(devices),
-        subtitle=escape(f"{len(names)} tables, {span}, measured at {commits} commits"),
+        subtitle=escape(f"{len(names)} tables, {span}, measured at "
+                        + ("one commit" if commits == 1 else
+                           f"{commits} commits; each table's caption says which")),
         contents="".join(f'<a href="#{anchor(name)}">{escape(name.replace("_", " "))}</a>'
                          for name in names), audit=for_each(devices, audit_table),
         experiments="\n".join(experiment(name, devices) for name in names), images=pictures)

@@ -15,13 +15,14 @@ def grid(x_scale, y_scale, style, places):
         parts.append(svg.line(LEFT, y_scale(value), RIGHT, y_scale(value), "grid"))
         parts.append(svg.text(LEFT - 7, y_scale(value) + 3.6, short(value), "tick y",
                               f' data-value="{value!r}"'))
-    last = -100
+    end = -100  # of the last label
     for value in places if len(places) <= MOST_TICKS else x_scale.ticks():
         here = x_scale(value)
         parts.append(svg.line(here, BOTTOM, here, BOTTOM + 4, "base"))
-        if here - last > 30:
+        half = svg.text_width(short(value)) / 2
+        if here - half > end + 4:
             parts.append(svg.text(here, BOTTOM + 16, short(value), "tick x"))
-            last = here
+            end = here + half
     parts.append(svg.text((LEFT + RIGHT) / 2, BOTTOM + 33, style.get("x_label", ""),
                           "axis middle"))
     return parts

@@ -22,6 +22,11 @@ def text(x, y, words, name, more=""):
     return f'<text class="{name}" x="{place(x)}" y="{place(y)}"{more}>{escape(words)}</text>'
 
 
+def text_width(words):
+    """At most, in units of a panel."""
+    return 6.6 * len(words)
+
+
 def look(number):
     """The classes of a series, and its marker's outline."""
     return f"s{number % SERIES}", MARKERS[(number + number // SERIES) % len(MARKERS)]

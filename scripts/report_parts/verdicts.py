@@ -70,13 +70,6 @@ def about_series(name, pairs, style):
     if len(pairs) < 2:
         return ""
     (first, low), (last, high) = pairs[0], pairs[-1]
-    if style.get("mark") is not None:
-        above = [x for x, value in pairs if value.known and value.low > style["mark"]]
-        where = (f"nowhere clearly above {style['mark']:g}" if not above else
-                 f"everywhere above {style['mark']:g}" if len(above) == len(pairs) else
-                 f"clearly above {style['mark']:g} with {listed(plain(x) for x in above)} {label}")
-        return (f"{name}: {where}; from {with_interval(low)} with {plain(first)} to "
-                f"{with_interval(high)} with {plain(last)} {label}.")
     power = exponent([(x, value.middle) for x, value in pairs])
     middles = [value.middle for _, value in pairs]
     if unit and power is not None and power >= STEADY and middles == sorted(middles):
@@ -97,15 +90,37 @@ def about_panel(rows, style):
     sentences = [about_series(capital(series) or "All", pairs_of(members, style["y"], "x"), style)
                  for series, members in in_groups(rows, "series").items()]
     sentences = [sentence for sentence in sentences if sentence]
-    if style.get("mark") is None:
-        last = max((number(row["x"]) for row in rows if is_measured(row)
-                    and number(row["x"])), default=None)
-        there = [row for row in rows if number(row["x"]) == last]
-        best = ranking(pairs_of(there, style["y"], "series"), unit, style["y"].endswith("_ms"),
-                       str)
-        if best:
-            sentences.append(f"With {plain(last)} {style.get('x_label', '')}: {best}")
+    last = max((number(row["x"]) for row in rows if is_measured(row) and number(row["x"])),
+               default=None)
+    there = [row for row in rows if number(row["x"]) == last]
+    best = ranking(pairs_of(there, style["y"], "series"), unit, style["y"].endswith("_ms"), str)
+    if best:
+        sentences.append(f"With {plain(last)} {style.get('x_label', '')}: {best}")
     return " ".join(sentences)
+
+
+def about_mark(table):
+    """Of each series, where its interval is above the mark: one sentence for all panels."""
+    mark, never = f"{table.plot['mark']:g}", []
+    for series, rows in in_groups([row for row in table.drawn if is_measured(row)],
+                                  "series").items():
+        values = [(row, interval(row, table.plot["y"])) for row in rows]
+        values = [(row, value) for row, value in values if value]
+        above = in_groups([row for row, value in values
+                           if value.known and value.low > table.plot["mark"]], "panel")
+        count = sum(map(len, above.values()))
+        ends = [show(end(value.middle for _, value in values)) for end in (min, max)]
+        if not above:
+            never.append(f"{series} (at most {ends[1]})")
+        elif count == len(values):
+            yield capital(series), f"everywhere above {mark}, {ends[0]} to {ends[1]}."
+        else:
+            yield capital(series), (
+                f"{ends[0]} to {ends[1]}; clearly above {mark} in {count} of {len(values)} cases: "
+                + "; ".join(f"{panel or 'here'} with {listed(plain(number(row['x'])) for row in mine)}"
+                            for panel, mine in above.items()) + ".")
+    if never:
+        yield "", f"Nowhere clearly above {mark}: {listed(never)}."
 
 
 def about_gains(table):
@@ -150,6 +165,8 @@ def meaning(table):
         found = about_gains(table)
     elif {"gain", "panel"} <= set(table.columns):
         found = list(about_steps(table))
+    elif table.plot and table.plot.get("mark") is not None:
+        found = list(about_mark(table))
     elif table.plot:
         found = [(panel, about_panel(rows, style_of(table, panel)))
                  for panel, rows in in_groups(table.drawn, "panel").items()]

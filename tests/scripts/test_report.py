@@ -197,7 +197,7 @@ class Report(unittest.TestCase):
         self.assertEqual(page.wrong, [])
         self.assertEqual(len(page.ids), len(set(page.ids)))
         for reference in page.references:
-            self.assertRegex(reference, r"^(#|data:image/png;base64,)")
+            self.assertRegex(reference, r"^(#|data:image/png;base64,|[\w-]+\.csv$)")
             if reference.startswith("#"):
                 self.assertIn(reference[1:], page.ids)
         self.assertNotRegex(text, r"@import|url\(|https?://")
@@ -210,8 +210,11 @@ class Report(unittest.TestCase):
                   for point in svg.iter() if (point.get("class") or "").startswith("point")]
         for row, column in ([(row, "kernel_ms") for row in toggles()]
                             + [(row, "image_ms") for row in sizes()]):
-            for part in ("median", "min", "max"):
-                self.assertIn(str(row[f"{column}_{part}"]), exact)
+            self.assertIn(str(row[f"{column}_median"]), exact)
+            if row["repeat"] > 1:
+                low, middle, high = (words.show(row[f"{column}_{part}"], 4)
+                                     for part in ("min", "median", "max"))
+                self.assertIn(f">{middle} [{low}, {high}]</td>", text)
             self.assertIn(row[f"{column}_median"], points)
         self.assertEqual(len(points), 4 + 9)
         self.assertIn("rng &lt;odd&gt; &amp;", text)
@@ -288,7 +291,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.judged(toggles=toggles(), image_size=sizes(),
                                      block_size=blocks((4, 3, 2, 1)), sampling=sampling(4, 2)),
                          {"Time": "refuted", "Larger": "refuted", "Shared": "refuted",
-                          "Reduced": "refuted", "The": "depends", "Importance": "confirmed",
+                          "Reduced": "refuted", "The": "yes, by 1,000 times", "Importance": "confirmed",
                           "Metropolis": "not measured"})
         other = self.judged(toggles=toggles((0.4, 0.5, 0.6)), image_size=sizes(10, power=4),
                             block_size=blocks((1, 2, 3, 4)), sampling=sampling(2, 4))
@@ -414,7 +417,7 @@ class Report(unittest.TestCase):
         heads = re.findall(r'<button type="button">([^<]*)</button>',
                            text[text.index('id="counters"'):])
         self.assertEqual(heads, ["name", "issue", "kernel ms median"])
-        self.assertEqual(len(re.findall("<td>row ", text)), 150)
+        self.assertEqual(len(re.findall('<th scope="row">row ', text)), 150)
         self.assertIn("The first 150 of 250 rows; counters.csv has all.", text)
 
     def test_pairs_of_pictures(self):
