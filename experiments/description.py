@@ -70,10 +70,10 @@ class Experiment:
     plot: Plot  # None: a table without a picture
     add_arguments: Callable = no_arguments
     finish: Callable = no_columns  # fills in labels of measured rows: (rows, arguments)
-    needs_gpu: bool = False  # on a CPU it says so in one line and measures nothing
     table: tuple = ()  # labels to print besides name and time
     conclude: Callable = no_conclusions  # sentences for below the table: (rows, arguments)
     # Options of the images that are compared before the measurement, instead of the configuration's
     # own. More paths than --finish-paths, or no image would come from the wavefront's stages.
     image_check: str = "--width 256 --height 256 --spp 8"
     quick_image_check: str = "--width 24 --height 12 --spp 2"
+    needs_gpu: bool = False  # on a CPU it says so in one line and measures nothing

@@ -397,7 +397,10 @@ SCENES = {
         rotate("z", 30), scale("[1.7]", 2.6), move(0.3, 0.1, 0)), raw=True))),
     # sensors and the whole
     **{f"sensor_{name}": lit_by(LAMP, SKY) for name in ("fov_axis", "thinlens", "crop",
-                                                       "focal_length")},
+                                                       "focal_length", "near_far", "orthographic",
+                                                       "principal_point")},
+    "sensor_hide_emitters": lit_by(
+        LAMP, SKY, shape("sphere", scale(0.3) + move(0.1, 1.1, 0.9), BLACK, glow("[3] 4 5"))),
     "room": room(),
     "scale_1000": large(made_of(bsdf("roughplastic", diffuse_reflectance=RED, **ROUGH))),
 }
@@ -450,6 +453,12 @@ SETTINGS = {
                               focus_distance=3.9),
     "sensor_crop": film(40, 32, values({"crop_offset_x": 9, "crop_offset_y": 7, "crop_width": 20,
                                         "crop_height": 18})),
+    "sensor_near_far": sensor(fov=36.0, near_clip="[4.3]", far_clip=5.6),
+    "sensor_orthographic": {**film(24, 16), **sensor(
+        "orthographic", scale("[1.6]", 2.1, 1.3) + VIEW, near_clip=3.1, far_clip=6.0)},
+    "sensor_principal_point": {**film(24, 16), **sensor(
+        fov=36.0, principal_point_offset_x="[0.2]", principal_point_offset_y=-0.15)},
+    "sensor_hide_emitters": {"integrator": values({"hide_emitters": True}), **NOISY},
     "sensor_focal_length": sensor("perspective", VIEW, tag("string", "focal_length", "60mm")),
     "scale_1000": sensor(
         view='<lookat origin="300,2300,4600" target="0,600,0" up="0,1,0"/>', fov=36.0),

@@ -23,6 +23,13 @@ ImageDifference compare_files(const std::string& a, const Image& image_a, const 
   }
 }
 
+/// Where no pixel differs nothing is seen, which need not be computed.
+std::vector<float> flip_of(const Image& a, const Image& b, bool is_hdr,
+                           const ImageDifference& difference) {
+  if (difference.differing_pixels == 0) return std::vector<float>(b.rgb.size() / 3, 0.0f);
+  return is_hdr ? hdr_flip(a, b) : ldr_flip(a, b);
+}
+
 double mean_of(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -39,7 +46,7 @@ int compare_command(const std::string& a, const std::string& b, double tolerance
   const Image image_b = read_image(b);
   const ImageDifference difference = compare_files(a, image_a, b, image_b, tolerance);
   const bool is_hdr = image_ending(a) == ".exr" || image_ending(b) == ".exr";
-  const std::vector<float> flip = is_hdr ? hdr_flip(image_a, image_b) : ldr_flip(image_a, image_b);
+  const std::vector<float> flip = flip_of(image_a, image_b, is_hdr, difference);
   if (!difference_file.empty()) write_difference(difference_file, image_a, image_b, flip);
   // {} prints a double with the digits that reproduce it.
   fmt::print("size                   {}x{}\n", image_b.width, image_b.height);

@@ -15,7 +15,8 @@ int MegakernelCuda::sorting_slots() const {
 bool MegakernelCuda::can_sort() const {
   using Masked = Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>;
   const bool is_plain = traits_ == SortingTraits<false>::value();
-  const bool is_masked = traits_ == Masked::value() && scene_.has_only_triangles();
+  const bool is_masked =
+      !scene_.camera.is_limited && traits_ == Masked::value() && scene_.has_only_triangles();
   return (is_plain || is_masked) && options_.work == Work::persistent && sorting_slots() > 0;
 }
 

@@ -43,8 +43,9 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         radiance = add_rounded(radiance, scattering.emitted);
         if constexpr (Traits::has_lights) {
           if (!is_black(scattering.shadow.radiance) &&
-              !intersect_shadow<Traits>(scene, scattering.shadow,
-                                        shadow_ray_key(mask_key<Traits>(scene, id), path.rays))) {
+              !intersect_shadow<Traits>(
+                  scene, scattering.shadow,
+                  shadow_ray_key(scene, mask_key<Traits>(scene, id), path.rays))) {
             radiance = add_rounded(radiance, scattering.shadow.radiance);
           }
         }
@@ -52,8 +53,8 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         ended = !scattering.alive;
       }
       if (!ended) {
-        hit = intersect_closest<Traits>(scene, ray,
-                                        next_ray_key(mask_key<Traits>(scene, id), path.rays));
+        hit = intersect_closest<Traits>(
+            scene, ray, next_ray_key(scene, mask_key<Traits>(scene, id), path.rays));
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
           radiance = add_rounded(radiance, Integrator::template miss<Traits::lighting>(

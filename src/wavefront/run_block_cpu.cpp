@@ -17,7 +17,7 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
     std::uint32_t key = 0;
     if (traits.has_masks) {
       const PathState path = stage.pool.load_name(slots[i]);
-      key = next_ray_key(mask_key<MaskedRays>(scene, samples.id_of(path.number)), path.rays);
+      key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.number)), path.rays);
     }
     rays.append(stage.pool.load_ray(slots[i]), infinite_distance, key);
   }
@@ -36,7 +36,7 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleB
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
     std::uint32_t key = 0;
     if (traits.has_masks) {
-      key = shadow_ray_key(mask_key<MaskedRays>(scene, samples.id_of(number)),
+      key = shadow_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(number)),
                            stage.pool.load_shadow_rays(slots[i]));
     }
     rays.append(shadow.ray, shadow.distance, key);

@@ -167,7 +167,7 @@ struct IntersectRays : PathRays {
     std::uint32_t key = 0;
     if constexpr (Traits::has_masks) {
       const PathState path = pool.load_name(slot);
-      key = next_ray_key(mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
+      key = next_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
     }
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
@@ -321,7 +321,7 @@ struct TraceShadowRays : ShadowRays {
     ShadowRay shadow = pool.load_shadow(slot, number);
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     if constexpr (Traits::has_masks) {
-      key = shadow_ray_key(mask_key<Traits>(scene, samples.id_of(number)),
+      key = shadow_ray_key(scene, mask_key<Traits>(scene, samples.id_of(number)),
                            pool.load_shadow_rays(slot));
     }
     return finish(number, shadow, intersect_shadow<Traits>(scene, shadow, key));

@@ -32,7 +32,7 @@ class WavefrontCuda : public CudaRenderer {
   template <class Traits>
   static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
   bool traces_queues_here() const {
-    return options_.persistent && scene_.primitives.count() == 0 &&
+    return options_.persistent && !scene_.camera.is_limited && scene_.primitives.count() == 0 &&
            scene_.triangles.triangle_count > 0 &&
            (scene_.triangles.instance_count == 0 || !traits_.has_masks);
   }

@@ -66,7 +66,7 @@ TEST(CompactCommandLine, RefusesWhatItCannotDo) {
   refuse({"--strategy", "sort"}, "--strategy sort: orders surfaces");
   refuse({"--cache", "hot"}, "--cache hot");
   refuse({"--repeat", "0"}, "--repeat 0");
-  refuse({"--items", "1", "--items", "2"}, "given twice");
+  refuse({"--items", "1", "--items", "0"}, "--items 0");  // the last holds
   refuse({"--spp", "5"}, "--spp");
 }
 

@@ -43,7 +43,8 @@ TEST(TraceCommandLine, RefusesWhatItCannotDo) {
   refuse({"trace", "--mesh", "m", "--rays", "r", "--accel", "embree"}, "--accel embree");
   refuse({"trace", "--mesh", "m", "--rays", "r", "--variant", "fast"}, "--variant fast");
   refuse({"trace", "--mesh", "m", "--rays", "r", "--repeat", "0"}, "--repeat 0");
-  refuse({"trace", "--mesh", "m", "--mesh", "n", "--rays", "r"}, "given twice");
+  refuse({"trace", "--accel", "bvh2", "--mesh", "m", "--rays", "r", "--accel", "embree"},
+         "--accel embree");  // the last holds
   refuse({"rays", "--mesh", "m", "--output", "r", "--size", "100"}, "--size 100");
   refuse({"rays", "--mesh", "m"}, "--output");
 }

@@ -187,5 +187,19 @@ TEST(Dial, TheLampHangsInTheRoomAndShinesDown) {
   EXPECT_EQ(make_dial_scene({2, 0, false}).meshes.size(), 3u) << "the floor has a sky alone";
 }
 
+// Whatever BSDFs there are: the scene is a benchmark.
+TEST(Dial, HasItsOwnListOfKinds) {
+  constexpr MaterialKind kinds[] = {
+      kind_of<Diffuse>,         kind_of<Conductor>,  kind_of<Plastic>,
+      kind_of<RoughPlastic>,    kind_of<Principled>, kind_of<Phong>,
+      kind_of<Ward>,            kind_of<OrenNayar>,  kind_of<Metal>,
+      kind_of<PrincipledThin>,  kind_of<ThinDielectric>, kind_of<Dielectric>,
+      kind_of<RoughDielectric>};
+  ASSERT_EQ(std::size(kinds), dial_kinds);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    EXPECT_EQ(make_dial_material(i).kind, kinds[i % dial_kinds]) << i;
+  }
+}
+
 }  // namespace
 }  // namespace pt

@@ -105,10 +105,16 @@ Parser::Parser() {
   app.get_formatter()->column_width(34);
 }
 
-std::string only_value(CLI::Option& option, const std::string& name) {
-  const auto values = option.results();
-  if (values.size() > 1) throw Error(fmt::format("--{}: is given twice", name));
-  return values.front();
+/// Of an option that is given more than once the last holds, as in other programs: so a script's
+/// options can be overridden behind them.
+std::string last_value(const CLI::Option& option) { return option.results().back(); }
+
+/// The same for three numbers, which are one argument or three.
+std::string last_vector(const CLI::Option& option) {
+  const std::string all = CLI::detail::join(option.results(), ",");
+  const std::vector<std::string> numbers = CLI::detail::split(all, ',');
+  if (numbers.size() <= 3 || numbers.size() % 3 != 0) return all;
+  return CLI::detail::join(std::vector<std::string>(numbers.end() - 3, numbers.end()), ",");
 }
 
 CompareCommand parse_compare(const Parser& parser) {
@@ -117,9 +123,9 @@ CompareCommand parse_compare(const Parser& parser) {
         "compare: expected two images, `ptexp compare A B [--tolerance T] [--difference FILE]`");
   CompareCommand command{parser.image_a->results()[0], parser.image_b->results()[0]};
   if (parser.difference->count() > 0)
-    command.difference = only_value(*parser.difference, "difference");
+    command.difference = last_value(*parser.difference);
   if (parser.tolerance->count() == 0) return command;
-  const std::string text = only_value(*parser.tolerance, "tolerance");
+  const std::string text = last_value(*parser.tolerance);
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, command.tolerance);
   if (error != std::errc() || stop != end || !(command.tolerance >= 0) ||
@@ -136,8 +142,7 @@ RenderCommand parse_render(const Parser& parser) {
     if (entry->form == OptionForm::list) {
       for (const std::string& value : option->results()) entry->set(command.options, value);
     } else {
-      entry->set(command.options, is_vector ? CLI::detail::join(option->results(), ",")
-                                            : only_value(*option, entry->name));
+      entry->set(command.options, is_vector ? last_vector(*option) : last_value(*option));
     }
     command.given.insert(entry->name);
   }

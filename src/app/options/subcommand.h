@@ -37,7 +37,8 @@ class Subcommand {
 
   bool is_parsed() const { return app_->parsed(); }
 
-  /// Throws Error for options that are given twice, missing, or have bad values.
+  /// The last value of an option that is given twice. Throws Error for options that are missing or
+  /// have bad values.
   Command parse() const {
     Command command;
     for (std::size_t i = 0; i < options_.size(); ++i) {
@@ -45,8 +46,7 @@ class Subcommand {
       const auto values = added_[i]->results();
       if (option.is_required && values.empty())
         throw Error(fmt::format("{}: expected --{} {}", name_, option.name, option.placeholder));
-      if (values.size() > 1) throw Error(fmt::format("--{}: is given twice", option.name));
-      if (!values.empty()) option.set(command, values.front());
+      if (!values.empty()) option.set(command, values.back());
     }
     return command;
   }

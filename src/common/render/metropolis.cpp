@@ -168,7 +168,7 @@ void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFi
            "a filter with negative parts is no density; expected box, tent or gaussian");
   }
   if (traits.has_masks) {
-    refuse("a scene with masks",
+    refuse("a scene with masks, clip planes or hidden emitters",
            "whether a mask hides is no random number that a chain could keep; "
            "expected materials without an opacity between 0 and 1");
   }

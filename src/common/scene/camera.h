@@ -1,4 +1,5 @@
-// A thin-lens perspective camera, precomputed so that a camera ray costs six multiply-adds.
+// A thin-lens perspective or an orthographic camera, precomputed so that a camera ray costs six
+// multiply-adds.
 #pragma once
 
 #include "common/geometry/ray.h"
@@ -20,7 +21,20 @@ struct CameraParameters {
   float focus_distance = 1.0f;  ///< distance of the plane in perfect focus, > 0
   bool mirrored = false;        ///< left and right exchanged
   FovAxis fov_axis = FovAxis::vertical;
+  Vec2 principal_point{0, 0};    ///< how far the axis lies left of and above the image's centre, in
+                                 ///< parts of the image's width and height
+  bool orthographic = false;     ///< parallel rays; neither angle of view nor lens
+  Vec2 orthographic_size{1, 1};  ///< half the width of what is seen; half the height of what a
+                                 ///< square image would see
+  float near_clip = 0.0f;  ///< camera rays meet nothing in front of the plane at this distance
+  float far_clip = infinite_distance;  ///< nor behind this one
+  bool hides_emitters = false;         ///< camera rays pass through lamps and see no environment
 };
+
+/// Whether camera rays do not meet all that other rays would.
+PT_HD bool is_limited(const CameraParameters& camera) {
+  return camera.near_clip > 0.0f || camera.far_clip < infinite_distance || camera.hides_emitters;
+}
 
 /// The tangent of half the vertical angle of view of an image of this size.
 PT_HD float vertical_tangent(const CameraParameters& parameters, int width, int height) {
@@ -40,6 +54,11 @@ PT_HD float vertical_tangent(const CameraParameters& parameters, int width, int 
   }
 }
 
+/// Distances along a ray.
+struct ViewInterval {
+  float near = 0.0f, far = infinite_distance;
+};
+
 /// Directions are relative to `origin`; pixel (0, 0) is the upper left corner.
 struct Camera {
   Vec3 origin;
@@ -47,6 +66,17 @@ struct Camera {
   Vec3 step_x;          ///< one pixel to the right
   Vec3 step_y;          ///< one pixel down
   Vec3 lens_x, lens_y;  ///< half axes of the lens disk
+  Vec3 forward;         ///< unit length: the axis, and the direction of all orthographic rays
+  float near_clip = 0.0f, far_clip = infinite_distance;  ///< along the axis
+  bool is_orthographic = false;
+  bool hides_emitters = false;
+  bool is_limited = false;  ///< camera rays do not meet all that other rays would
+
+  /// The part of a camera ray in which it may meet something.
+  PT_HD ViewInterval view_of(const Vec3& direction) const {
+    const float stretch = 1.0f / dot(direction, forward);
+    return {near_clip * stretch, fminf(far_clip * stretch, infinite_distance)};
+  }
 };
 
 /// `parameters` must describe a camera: see check_camera.
@@ -54,19 +84,35 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
   const Vec3 backward = normalize(parameters.look_from - parameters.look_at);
   const Vec3 right = normalize(glm::cross(parameters.up, backward));
   const Vec3 up = glm::cross(backward, right);
+  const bool orthographic = parameters.orthographic;
   const float plane_height =
       2.0f * parameters.focus_distance * vertical_tangent(parameters, width, height);
   const float pixel = plane_height / static_cast<float>(height);
-  const Vec3 step_x = (parameters.mirrored ? -pixel : pixel) * right;
-  const Vec3 step_y = -pixel * up;
-  const float lens_radius = 0.5f * parameters.aperture;
-  return {parameters.look_from,
-          -parameters.focus_distance * backward - 0.5f * static_cast<float>(width) * step_x -
-              0.5f * static_cast<float>(height) * step_y,
-          step_x,
-          step_y,
-          lens_radius * right,
-          lens_radius * up};
+  const Vec2 size = parameters.orthographic_size * (2.0f / static_cast<float>(width));
+  const float pixel_x = orthographic ? size.x : pixel, pixel_y = orthographic ? size.y : pixel;
+  const Vec3 step_x = (parameters.mirrored ? -pixel_x : pixel_x) * right;
+  const Vec3 step_y = -pixel_y * up;
+  const float plane_distance = orthographic ? 0.0f : parameters.focus_distance;
+  const float lens_radius = orthographic ? 0.0f : 0.5f * parameters.aperture;
+  Camera camera{parameters.look_from,
+                -plane_distance * backward - 0.5f * static_cast<float>(width) * step_x -
+                    0.5f * static_cast<float>(height) * step_y,
+                step_x,
+                step_y,
+                lens_radius * right,
+                lens_radius * up,
+                -backward,
+                parameters.near_clip,
+                parameters.far_clip,
+                orthographic,
+                parameters.hides_emitters};
+  const Vec2& shift = parameters.principal_point;
+  if (shift.x != 0.0f || shift.y != 0.0f) {
+    camera.corner += shift.x * static_cast<float>(width) * step_x +
+                     shift.y * static_cast<float>(height) * step_y;
+  }
+  camera.is_limited = is_limited(parameters);
+  return camera;
 }
 
 /// The ray through film position (x, y), in pixels; `u` in [0, 1)^2 chooses the point of the lens.
@@ -74,6 +120,7 @@ PT_HD Ray camera_ray(const Camera& camera, float x, float y, float u0, float u1)
   const Disk lens = sample_unit_disk(u0, u1);
   const Vec3 offset = lens.x * camera.lens_x + lens.y * camera.lens_y;
   const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
+  if (camera.is_orthographic) return {camera.origin + to_focus, camera.forward};
   return {camera.origin + offset, normalize(to_focus - offset)};
 }
 

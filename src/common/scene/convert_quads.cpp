@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "common/scene/prepare_materials.h"
+
 namespace pt {
 
 void convert_quads(SceneData& scene) {
@@ -18,7 +20,7 @@ void convert_quads(SceneData& scene) {
   }
   for (auto& [material, mesh] : by_material) {
     mesh.material = material;
-    mesh.masked = !scene.materials[material].opacity.is_opaque();
+    mesh.masked = is_masked(scene, scene.materials[material]);
     scene.meshes.push_back(std::move(mesh));
   }
   scene.quads.clear();

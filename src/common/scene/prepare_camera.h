@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/render/options.h"
-#include "common/scene/camera.h"
+#include "common/scene/scene_data.h"
 
 namespace pt {
 
@@ -10,5 +10,9 @@ void override_camera(CameraParameters& camera, const CameraOverrides& overrides)
 
 /// Throws Error naming the option that can mend it when the parameters describe no camera.
 void check_camera(const CameraParameters& camera);
+
+/// Takes away clip planes that cut nothing in an image of this size: rays that know none are
+/// faster.
+void drop_idle_clips(SceneData& scene, int width, int height);
 
 }  // namespace pt

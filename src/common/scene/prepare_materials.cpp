@@ -69,15 +69,19 @@ Material pack(const MaterialDescription& source, bool multiple_scattering, Scene
   return material;
 }
 
+/// With a camera that does not see all, masks' kernels are those that ask which ray it is.
 void list_opacities(SceneData& scene) {
   scene.opacities.clear();
-  bool any = false;
+  bool any = is_limited(scene.camera);
   for (const MaterialDescription& m : scene.materials) any = any || !m.opacity.is_opaque();
   for (Mesh& mesh : scene.meshes) {
-    mesh.masked = !scene.materials[mesh.material].opacity.is_opaque();
+    mesh.masked = is_masked(scene, scene.materials[mesh.material]);
   }
   if (!any) return;
-  for (const MaterialDescription& m : scene.materials) scene.opacities.push_back(m.opacity);
+  for (const MaterialDescription& m : scene.materials) {
+    Opacity& opacity = scene.opacities.emplace_back(m.opacity);
+    if (is_hidden_lamp(scene, m)) opacity.cutoff = Opacity::lamp_hidden;
+  }
   for (const std::uint32_t material : scene.sphere_material) {
     if (!scene.materials[material].opacity.is_opaque()) {
       throw Error(
@@ -89,6 +93,14 @@ void list_opacities(SceneData& scene) {
 }
 
 }  // namespace
+
+bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material) {
+  return scene.camera.hides_emitters && !is_black(material.emission.radiance);
+}
+
+bool is_masked(const SceneData& scene, const MaterialDescription& material) {
+  return !material.opacity.is_opaque() || is_hidden_lamp(scene, material);
+}
 
 bool is_rough_conductor(const MaterialDescription& material) {
   return material.node == MaterialNode::none && material.kind == kind_of<Conductor> &&

@@ -8,6 +8,12 @@ namespace pt {
 /// Whether --multiple-scattering changes it.
 bool is_rough_conductor(const MaterialDescription& material);
 
+/// Camera rays do not meet it.
+bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material);
+
+/// Whether its triangles are there in part, or not for all rays.
+bool is_masked(const SceneData& scene, const MaterialDescription& material);
+
 /// A bit for each MaterialKind of the materials that surfaces have.
 std::uint32_t kinds_of(const SceneData& scene);
 

@@ -33,6 +33,10 @@ void build_structure(SceneData& scene, const Bounds& others) {
   Bounds all;
   for (const Bounds& b : bounds) all.grow(b);
   all.grow(scene.camera.look_from);
+  if (scene.camera.orthographic) {  // whose rays begin about it
+    const Vec3 around(4.0f * (scene.camera.orthographic_size.x + scene.camera.orthographic_size.y));
+    all.grow(scene.camera.look_from - around), all.grow(scene.camera.look_from + around);
+  }
   if (!others.is_empty()) all.grow(others);
   const float scale = std::max(max_abs(all.min), max_abs(all.max));
   const auto sphere_count = static_cast<std::uint32_t>(scene.spheres.size());

@@ -38,10 +38,11 @@ void prepare_scene(SceneData& scene, const Options& options) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
-  check_scene_options(options, scene);
-  prepare_materials(scene, options.multiple_scattering);
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
+  drop_idle_clips(scene, options.width, options.height);
+  check_scene_options(options, scene);
+  prepare_materials(scene, options.multiple_scattering);
   prepare_filter(scene, filter_of(options, scene));
   if (is_lean(scene, options)) {
     prepare_primitives_only(scene, options);

@@ -22,6 +22,7 @@ namespace {
 /// blocks; for threads that follow rays alone binary ones are faster (results/ and docs/cpu.md have
 /// the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
+  if (is_limited(scene.camera)) return Accel::bvh2;  // its rays go alone
   if (!is_on_cuda(options)) {
     const bool masks_in_blocks = options.mode == Mode::wavefront && scene.instances.empty();
     const bool pays = has_avx2() && (scene.opacities.empty() || masks_in_blocks);
@@ -98,8 +99,10 @@ void prepare_triangles(SceneData& scene, const Options& options) {
   const Accel accel = structure_of(scene, options);
   const bool masked = !scene.opacities.empty();
   if (masked && accel == Accel::embree) {
-    throw Error(fmt::format("--accel embree: scene '{}' has masks; expected brute, bvh2 or cwbvh",
-                            scene.name));
+    throw Error(
+        fmt::format("--accel embree: scene '{}' has masks, clip planes or hidden emitters; "
+                    "expected brute, bvh2 or cwbvh",
+                    scene.name));
   }
   const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
                      accel == Accel::brute || accel == Accel::embree;

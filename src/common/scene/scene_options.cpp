@@ -32,7 +32,8 @@ std::string unless(E value, Usual... usual) {
 bool has_triangles(const SceneData& scene, const Options& o) { return !is_lean(scene, o); }
 
 bool has_triangles_alone(const SceneData& scene, const Options& o) {
-  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty();
+  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty() &&
+         !is_limited(scene.camera);
 }
 
 bool has_plain_triangles_alone(const SceneData& scene, const Options& o) {
@@ -66,16 +67,17 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::sort);
      },
      has_plain_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, masks or no triangles, expected "
-     "auto or loop"},
+     "traces triangles alone; scene '{}' has spheres, instances, masks, clip planes, hidden "
+     "emitters or no triangles, expected auto or loop"},
     {"kernel",
      [](const Options& o) {
        return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop,
                      MegakernelKind::vote);
      },
      has_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances or no triangles, expected auto or "
-     "loop"},
+     "traces triangles alone; scene '{}' has spheres, instances, clip planes, hidden emitters or "
+     "no "
+     "triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -112,9 +114,9 @@ bool is_lean(const SceneData& scene, const Options& o) {
 }
 
 bool has_primitives_only(const SceneData& scene) {
-  return scene.meshes.empty() && scene.delta_lights.empty() && scene.environment.width == 0 &&
-         scene.sun.one_minus_cos == 0.0f && scene.textures.empty() &&
-         std::ranges::none_of(scene.materials, needs_triangles);
+  return !is_limited(scene.camera) && scene.meshes.empty() && scene.delta_lights.empty() &&
+         scene.environment.width == 0 && scene.sun.one_minus_cos == 0.0f &&
+         scene.textures.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 MegakernelKind automatic_kernel(const SceneData& scene, const Options& options) {

@@ -85,7 +85,7 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   is_negative = scene.filter.is_negative(u.x, u.y);
   const Ray ray = generate_camera_path(scene, id.pixel, u);
   const Hit hit =
-      intersect_closest<Traits>(scene, ray, next_ray_key(mask_key<Traits>(scene, id), 0));
+      intersect_closest<Traits>(scene, ray, next_ray_key(scene, mask_key<Traits>(scene, id), 0));
   return first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
 }
 

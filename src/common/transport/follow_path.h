@@ -22,7 +22,7 @@ PT_HD Scattering scatter_path(const Scene& scene, const Ray& ray, const Hit& hit
 template <class Traits, class Stream>
 PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
                       const PathLimits& limits, Stream& random, std::uint32_t path_key) {
-  const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(path_key, path.rays));
+  const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays));
   ++path.rays;
   if (hit.is_miss()) {
     radiance = add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
@@ -32,7 +32,8 @@ PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radi
   const Scattering scattering = scatter_path<Traits>(scene, ray, hit, path, limits, random);
   radiance = add_rounded(radiance, scattering.emitted);
   if (Traits::has_lights && !is_black(scattering.shadow.radiance) &&
-      !intersect_shadow<Traits>(scene, scattering.shadow, shadow_ray_key(path_key, path.rays))) {
+      !intersect_shadow<Traits>(scene, scattering.shadow,
+                                shadow_ray_key(scene, path_key, path.rays))) {
     radiance = add_rounded(radiance, scattering.shadow.radiance);
   }
   ray = scattering.ray;

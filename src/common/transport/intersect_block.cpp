@@ -10,8 +10,8 @@ namespace {
 template <Accel accel, Geometry geometry>
 using Plain = Traits<accel, geometry, Lighting::sky>;
 
-// What no block is made for: instances, and a processor without lanes. Calls function(traits) with
-// the traits of one ray.
+// What no block is made for: instances, limits of camera rays, and a processor without lanes. Calls
+// function(traits) with the traits of one ray.
 template <class Function>
 auto alone(const BlockTraits& traits, Function&& function) {
   if (traits.has_masks) return function(MaskedRays{});
@@ -28,7 +28,7 @@ using PrimitivesBesides = Plain<Accel::bvh2, Geometry::mixed>;
 bool has_block(const BlockTraits& traits, const Scene& scene) {
   const bool has_lanes =
       traits.accel == Accel::brute ? brute_block() != nullptr : tree_block() != nullptr;
-  return scene.triangles.instance_count == 0 && has_lanes;
+  return scene.triangles.instance_count == 0 && has_lanes && !scene.camera.is_limited;
 }
 
 // As MaskedQuery asks, of the ray's own hit.

@@ -41,6 +41,22 @@ PT_HD std::uint32_t shadow_ray_key(std::uint32_t path_key, std::uint32_t rays_tr
   return combine_hash(path_key, 2 * rays_traced + 1);
 }
 
+/// The same in a scene whose camera rays do not meet all that other rays would: there the last bit
+/// tells them from others.
+PT_HD std::uint32_t next_ray_key(const Scene& scene, std::uint32_t path_key,
+                                 std::uint32_t rays_traced) {
+  const std::uint32_t key = next_ray_key(path_key, rays_traced);
+  return scene.camera.is_limited ? (key & ~1u) | (rays_traced == 0 ? 1u : 0u) : key;
+}
+PT_HD std::uint32_t shadow_ray_key(const Scene& scene, std::uint32_t path_key,
+                                   std::uint32_t rays_traced) {
+  const std::uint32_t key = shadow_ray_key(path_key, rays_traced);
+  return scene.camera.is_limited ? key & ~1u : key;
+}
+PT_HD bool is_limited_camera_ray(const Scene& scene, std::uint32_t ray_key) {
+  return scene.camera.is_limited && (ray_key & 1u) != 0;
+}
+
 PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& uv) {
   if (opacity.texture == no_texture) return opacity.offset;
   const Color c = sample_texture(scene.textures[opacity.texture], scene.texels, uv);
@@ -54,6 +70,7 @@ struct MaskTest {
 
   PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, std::uint32_t instance) const {
     const Opacity opacity = load_wide(&scene.opacities[triangle.material]);
+    if (opacity.hides_from_camera() && is_limited_camera_ray(scene, ray_key)) return true;
     Vec2 uv(hit.b1, hit.b2);
     if ((triangle.attributes & TriangleAttributes::uvs) != 0) {
       uv = load_wide(&scene.corners[triangle.id])

@@ -13,6 +13,9 @@ template <Lighting lighting>
 PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path,
                        MisHeuristic mis) {
   lanes_of(scene).at(path.rays - 1u).count(LanePoint::shade_miss);
+  if constexpr (lighting == Lighting::full) {
+    if (scene.camera.hides_emitters && path.rays == 1) return Color(0.0f);
+  }
   Color radiance = sky_radiance(scene.sky, ray_direction);
   if constexpr (lighting == Lighting::full) {
     if (scene.light_selector.environment_probability > 0.0f) {

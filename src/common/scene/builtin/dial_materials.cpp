@@ -28,7 +28,8 @@ Look look_of(std::uint32_t number, std::uint32_t round) {
 
 using Maker = MaterialDescription (*)(const Look&);
 
-/// One of each BSDF that scenes can have without options. The numbers make the albedos alike.
+/// The dial's own list: a new BSDF does not join it, for the scene is a benchmark. The numbers make the
+/// albedos alike.
 constexpr Maker makers[] = {
     [](const Look& l) { return make_diffuse(0.75f * l.hue); },
     [](const Look& l) {
@@ -64,9 +65,7 @@ constexpr Maker makers[] = {
                                            l.roughness, l.is_beckmann);
     },
 };
-static_assert(std::size(makers) == dial_kinds && dial_kinds + 1 == Bsdfs::size &&
-                  dial_kinds == index_in<CompensatedConductor>(Bsdfs{}),
-              "a new BSDF belongs in the dial");
+static_assert(std::size(makers) == dial_kinds);
 
 }  // namespace
 

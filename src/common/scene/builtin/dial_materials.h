@@ -7,7 +7,7 @@
 
 namespace pt {
 
-/// BSDFs that the dial has: all that scenes can have without options.
+/// BSDFs that the dial has.
 inline constexpr std::uint32_t dial_kinds = 13;
 
 /// Material `number` of the dial. The first ones are one of each BSDF: ten that reflect about 0.75

@@ -61,10 +61,7 @@ void read_integrator(Context& context, const Object& integrator) {
                                   "tracing",
                                   type));
   }
-  if (integrator.boolean("hide_emitters", false)) {
-    context.warn_once("hide_emitters", integrator.element(),
-                      "hide_emitters is not supported: emitters are visible");
-  }
+  context.scene.camera.hides_emitters = integrator.boolean("hide_emitters", false);
   read_max_depth(context, integrator, integrator.integer("max_depth").value_or(-1));
   if (direct) context.scene.defaults.max_depth = 2;
   context.scene.defaults.rr_depth = integrator.integer("rr_depth");

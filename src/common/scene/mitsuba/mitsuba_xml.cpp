@@ -37,9 +37,10 @@ void load_sensor(Context& context, const Object& root) {
 }
 
 void load_objects(Context& context, const Object& root) {
-  if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
   for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
   load_sensor(context, root);
+  // What the camera sees is up to it.
+  if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
   for (const Object* emitter : root.children("emitter")) add_emitter(context, *emitter);
   for (const Object* emitter : root.children("luminaire")) add_emitter(context, *emitter);
 }

@@ -38,7 +38,7 @@ double focal_length_mm(const Object& sensor) {
 }
 
 /// Mitsuba's camera looks along its z, with y up and x to the left of the image.
-void place_camera(Context& context, const Object& sensor) {
+void place_camera(Context& context, const Object& sensor, bool may_scale) {
   const Affine map = sensor.transform("to_world");
   const Vec3 left = map.vector({1, 0, 0}), up = map.vector({0, 1, 0});
   const Vec3 forward = map.vector({0, 0, 1});
@@ -51,13 +51,39 @@ void place_camera(Context& context, const Object& sensor) {
   camera.mirrored = map.determinant() < 0.0f;
   const float size = glm::length(forward);
   const auto differs = [&](float a, float b) { return std::abs(a - b) > 1e-3f * size; };
-  if (differs(size, 1.0f) || differs(glm::length(left), size) || differs(glm::length(up), size) ||
-      differs(glm::dot(left, forward) / size, 0.0f) ||
-      differs(glm::dot(up, forward) / size, 0.0f) || differs(glm::dot(left, up) / size, 0.0f)) {
+  const bool scales =
+      differs(size, 1.0f) || differs(glm::length(left), size) || differs(glm::length(up), size);
+  const auto leans = [&](const Vec3& a, const Vec3& b) {
+    return std::abs(glm::dot(a, b)) > 1e-3f * glm::length(a) * glm::length(b);
+  };
+  if ((scales && !may_scale) || leans(left, forward) || leans(up, forward) || leans(left, up)) {
     context.warn_once("camera scale", sensor.element(),
                       "to_world of the sensor scales or shears: its view and up direction are "
                       "used without that");
   }
+}
+
+/// What Mitsuba's [-1, 1]^2 of the sensor's plane measures.
+void read_orthographic(Context& context, const Object& sensor) {
+  const Affine map = sensor.transform("to_world");
+  CameraParameters& camera = context.scene.camera;
+  camera.orthographic = true;
+  camera.orthographic_size = {glm::length(map.vector({1, 0, 0})),
+                              glm::length(map.vector({0, 1, 0}))};
+}
+
+/// Distances from the pinhole, the lens or the sensor, along the axis. Rays of Mitsuba's
+/// orthographic sensor begin at the near plane as to_world scales it and are far - near long.
+void read_clips(const Object& sensor, CameraParameters& camera) {
+  const float near = sensor.number("near_clip", 1e-2f), far = sensor.number("far_clip", 1e4f);
+  if (!(near > 0.0f) || !(far > near)) {
+    fail(sensor.element(),
+         fmt::format("near_clip {}, far_clip {}; expected 0 < near_clip < far_clip", near, far));
+  }
+  const float scale =
+      camera.orthographic ? glm::length(sensor.transform("to_world").vector({0, 0, 1})) : 1.0f;
+  camera.near_clip = scale * near;
+  camera.far_clip = camera.near_clip + (far - near);
 }
 
 void read_lens(const Object& sensor, CameraParameters& camera) {
@@ -93,16 +119,25 @@ void read_sensor(Context& context, const Object& sensor) {
   defaults.filter = default_filter(FilterKind::gaussian);
   if (const Object* film = sensor.child("film")) read_film(context, *film);
   if (const Object* sampler = sensor.child("sampler")) read_sampler(context, *sampler);
-  if (type != "perspective" && type != "thinlens") {
+  const bool orthographic = type == "orthographic";
+  if (type != "perspective" && type != "thinlens" && !orthographic) {
     context.warn_once("sensor " + type, sensor.element(),
                       fmt::format("sensor '{}' is not supported: perspective is used", type));
   }
-  context.scene.camera = {};
-  read_fov(sensor, context.scene.camera);
-  place_camera(context, sensor);
-  sensor.ignore({"near_clip", "far_clip", "shutter_open", "shutter_close"});
+  CameraParameters& camera = context.scene.camera;
+  camera = {};
+  place_camera(context, sensor, orthographic);
+  if (orthographic) {
+    read_orthographic(context, sensor);
+  } else {
+    read_fov(sensor, camera);
+    camera.principal_point = {sensor.number("principal_point_offset_x", 0.0f),
+                              sensor.number("principal_point_offset_y", 0.0f)};
+  }
+  read_clips(sensor, camera);
+  sensor.ignore({"shutter_open", "shutter_close"});
   if (type == "thinlens") {
-    read_lens(sensor, context.scene.camera);
+    read_lens(sensor, camera);
   } else {
     sensor.ignore({"focus_distance"});
   }

@@ -5,8 +5,8 @@
 
 namespace pt::mitsuba {
 
-/// `perspective` or `thinlens` as the scene's camera; other sensors become a pinhole with a
-/// warning. Width, height and samples per pixel become defaults.
+/// `perspective`, `thinlens` or `orthographic` as the scene's camera; other sensors become a
+/// pinhole with a warning. Width, height and samples per pixel become defaults.
 void read_sensor(Context& context, const Object& sensor);
 
 /// The angle of view of a sensor or a projector, along the axis that the file fixes, whatever the
@@ -19,7 +19,7 @@ void read_film(Context& context, const Object& film);
 /// Samples per pixel.
 void read_sampler(Context& context, const Object& sampler);
 
-/// max_depth and rr_depth; every integrator becomes a path tracer.
+/// max_depth, rr_depth and hide_emitters; every integrator becomes a path tracer.
 void read_integrator(Context& context, const Object& integrator);
 
 }  // namespace pt::mitsuba
