@@ -65,10 +65,12 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
     EXPECT_EQ(refusal(scene, "kernel", "sort"),
               "--kernel sort: traces triangles alone; scene '" + scene +
-                  "' has spheres, instances or no triangles, expected auto or loop");
+                  "' has spheres, instances, clip planes, hidden emitters or no triangles, expected auto "
+                  "or loop");
     EXPECT_EQ(refusal(scene, "kernel", "vote"),
               "--kernel vote: traces triangles alone; scene '" + scene +
-                  "' has spheres, instances, masks or no triangles, expected auto or loop");
+                  "' has spheres, instances, masks, clip planes, hidden emitters or no triangles, "
+                  "expected auto or loop");
     EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
   }
 }
@@ -129,18 +131,21 @@ TEST(SceneOptions, PersistentWarpsTakeAWideTree) {
 
 // On CUDA a pass over spheres is in half precision.
 TEST(SceneOptions, MoreSpheresAreScannedOnCudaThanOnTheCpu) {
-  const auto accel_of = [](int spheres, DeviceChoice::Kind device) {
+  const auto accel_of = [](int spheres, DeviceChoice::Kind device, Mode mode = Mode::wavefront) {
     Options options;
     options.scene = "spheres", options.spheres = spheres;  // and the ground
     options.device.kind = device;
+    options.mode = mode;
     SceneData scene = make_scene(options);
     prepare_scene(scene, options);
     return scene.traits.accel;
   };
   EXPECT_EQ(accel_of(95, DeviceChoice::Kind::cpu), Accel::brute);
   EXPECT_EQ(accel_of(96, DeviceChoice::Kind::cpu), Accel::bvh2);
-  EXPECT_EQ(accel_of(255, DeviceChoice::Kind::cuda), Accel::brute);
-  EXPECT_EQ(accel_of(256, DeviceChoice::Kind::cuda), Accel::bvh2);
+  EXPECT_EQ(accel_of(383, DeviceChoice::Kind::cuda), Accel::brute);
+  EXPECT_EQ(accel_of(384, DeviceChoice::Kind::cuda), Accel::bvh2);
+  EXPECT_EQ(accel_of(223, DeviceChoice::Kind::cuda, Mode::megakernel), Accel::brute);
+  EXPECT_EQ(accel_of(224, DeviceChoice::Kind::cuda, Mode::megakernel), Accel::bvh2);
 }
 
 // Where blocks of rays go through masks.

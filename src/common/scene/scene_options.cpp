@@ -76,8 +76,7 @@ constexpr SceneRule rules[] = {
      },
      has_triangles_alone,
      "traces triangles alone; scene '{}' has spheres, instances, clip planes, hidden emitters or "
-     "no "
-     "triangles, expected auto or loop"},
+     "no triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
