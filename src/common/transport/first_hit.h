@@ -62,6 +62,9 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   const std::uint32_t primitives = scene.primitives.count();
   if (hit.primitive < primitives) {
     first.primitive = scene.primitive_numbers[hit.primitive];
+    if constexpr (Traits::lighting == Lighting::full) {
+      if (surface.material.is(Material::textured)) first.uv.y = 1.0f - first.uv.y;
+    }
     return first;
   }
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
