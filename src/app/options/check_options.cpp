@@ -176,6 +176,10 @@ constexpr InertRule inert_rules[] = {
      "with --integrator mlt: chains go on to the last wave"},
     {"focus-distance", [](const Options& o) { return o.camera.aperture == 0.0f; },
      "with --aperture 0: all is in focus"},
+    {"builder", [](const Options& o) { return o.accel == AccelKind::brute; },
+     "with --accel brute: there is no tree"},
+    {"builder", [](const Options& o) { return o.accel == AccelKind::embree; },
+     "with --accel embree: it builds its own tree"},
 };
 
 /// A value that is the default asks for nothing, so that scripts may name it.

@@ -16,7 +16,7 @@ inline constexpr double flip_pixels_per_degree = 0.7 * 3840 / 0.7 * 3.1415926535
 /// How one looks, and at how much at once.
 struct FlipView {
   double pixels_per_degree = flip_pixels_per_degree;
-  int tile = 128;  ///< pixels: large beside what the filters reach, small enough for a cache
+  int tile = 256;  ///< pixels: large beside what the filters reach, small enough for a cache
 };
 
 /// The exposures, in stops, at which HDR images are looked at.
