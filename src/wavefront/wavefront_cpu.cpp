@@ -10,6 +10,7 @@
 
 #include "common/accel/traverse_brute_block.h"
 #include "common/device/cpu_renderer.h"
+#include "common/host_memory.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
 #include "wavefront/path_costs.h"
