@@ -274,7 +274,7 @@ class Statistics(CommandLine):
             self.assertRegex(text, word)
 
     def test_samples_that_are_asked_for_limit_a_stop(self):
-        for stop in ("--target-error 0.000001", "--time-limit 60"):
+        for stop in ("--target-error 0.5", "--time-limit 20"):
             self.render_ok("--stats", "run.json", "--spp", "6", *stop.split())
             run = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
             self.assertEqual((run["samples_done"], run["ended_by"], run["complete"]),
