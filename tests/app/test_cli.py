@@ -285,6 +285,20 @@ class Statistics(CommandLine):
         for word in ["schema", "wavefront", "Philox|philox", "rays", "median", "generate"]:
             self.assertRegex(text, word)
 
+    def test_samples_that_are_asked_for_limit_a_stop(self):
+        for stop in ("--target-error 0.5", "--time-limit 20"):
+            self.render_ok("--stats", "run.json", "--spp", "6", *stop.split())
+            run = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+            self.assertEqual((run["samples_done"], run["ended_by"], run["complete"]),
+                             (6, "samples", True), stop)
+        # Where they are not asked for, the stop decides: the default of samples would be enough.
+        run = self.run_ptexp("--width", "8", "--height", "4", "--time-limit", "0.4", "--stats",
+                             "run.json", "--output", "image.ppm", "--device", "cpu")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        run = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+        self.assertEqual((run["ended_by"], run["complete"]), ("time_limit", True))
+        self.assertGreater(run["samples_done"], 50)
+
     def test_modes_trace_the_same_rays(self):
         counts = set()
         for mode in MODES:

@@ -40,7 +40,8 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, 
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const BsdfSample sample = bsdf.sample(wo, Vec3(u));
-    albedo = sample.outside * sample.weight;
+    // Beyond a boundary radiance is eta^2 times that before it, in glass or out of it.
+    albedo = (sample.eta * sample.eta) * sample.weight;
   });
   return albedo;
 }
