@@ -153,7 +153,7 @@ inline bool fuses_stages(const Options& options, const SceneTraits& traits) {
 //   run(stage, queues)       a stage over its slots, a thread for each
 //   kinds_have_kernels       whether it has a kernel for each kind of BSDF; else the one for all
 //                            shades their ranges
-//   shades_in_steps          whether it is short of registers (StoredSteps)
+//   streams_shading          whether it is short of registers (PoolSink)
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
 //   traces_queues_here()     in this very one;
@@ -189,12 +189,12 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
 }
 
-/// Surfaces by one kernel, in steps where that pays.
+/// Surfaces by one kernel, which streams its results where that pays.
 template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
                        const StageQueues& surfaces) {
-  constexpr bool in_steps = Executor::shades_in_steps && Shading::lighting == Lighting::full;
-  execute.run(ShadeSurface<Shading, branching, Source, in_steps>{context}, surfaces);
+  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
+  execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
 /// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can

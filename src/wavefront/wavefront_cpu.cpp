@@ -130,7 +130,7 @@ class CpuExecutor {
 
   // They would take minutes to compile and gain nothing where threads do not run in warps.
   static constexpr bool kinds_have_kernels = false;
-  static constexpr bool shades_in_steps = false;
+  static constexpr bool streams_shading = false;
 
   template <class Traits>
   static constexpr bool traces_queues = false;  // a thread is no warp

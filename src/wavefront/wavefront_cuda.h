@@ -24,7 +24,7 @@ class WavefrontCuda : public CudaRenderer {
   void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
   static constexpr bool kinds_have_kernels = true;
-  static constexpr bool shades_in_steps = true;
+  static constexpr bool streams_shading = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
   /// Wide trees, where a thread per ray would wait for the slowest of its warp. Scenes with spheres

@@ -18,7 +18,7 @@ template <bool persistent>
 class Notes {
  public:
   static constexpr bool kinds_have_kernels = true;
-  static constexpr bool shades_in_steps = persistent;
+  static constexpr bool streams_shading = persistent;
   template <class Traits>
   static constexpr bool traces_queues = persistent;
 
