@@ -81,6 +81,12 @@ TEST(MitsubaSphere, CoordinatesAndDerivativesAreMitsubas) {
                {-0.3f, -0.6f, 0.74162f}});
 }
 
+// Else a scene for the paper's kernels, which know no frames.
+TEST(MitsubaSphere, BubblesAreInsideOut) {
+  const Seen bubble = seen_at(sphere("", "<bsdf type='dielectric'/>" + flip), 0.5f, 0.1f);
+  expect_near(bubble.normal, {-0.5f, -0.1f, -0.860233f}, 1e-6f);
+}
+
 TEST(MitsubaSphere, DerivativesGrowWithTheRadius) {
   const Seen one = seen_at(sphere("", bumpy), 0.3f, 0.4f);
   const Seen three = seen_at(
