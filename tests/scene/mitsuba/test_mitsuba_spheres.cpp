@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/prepare_scene.h"
-#include "common/transport/surface.h"
+#include "common/transport/first_hit.h"
 #include "mitsuba_scene.h"
 #include "mode_cases.h"
 
@@ -44,8 +44,9 @@ Seen seen_at(const std::string& xml, float x, float y) {
   using Full = Traits<Accel::bvh2, Geometry::mixed, Lighting::full>;
   const Surface surface = surface_at<Full>(view, ray, hit);
   EXPECT_EQ(surface.point.normal, surface.shading_normal);
-  return {
-      {surface.uv.x, 1.0f - surface.uv.y}, surface.dp_du, -surface.dp_dv, surface.shading_normal};
+  // As the AOV has it, where the material is textured.
+  const Vec2 uv = first_hit<Full>(view, ray, hit, Vec4(0.5f)).uv;
+  return {uv, surface.dp_du, -surface.dp_dv, surface.shading_normal};
 }
 
 void expect_seen(const Seen& seen, const Seen& golden) {
@@ -79,6 +80,12 @@ TEST(MitsubaSphere, CoordinatesAndDerivativesAreMitsubas) {
                {-0.934972f, 1.63242f, 0.942478f},
                {-2.6519f, -0.613135f, -1.5688f},
                {-0.3f, -0.6f, 0.74162f}});
+}
+
+// Else a scene for the paper's kernels, which know no frames.
+TEST(MitsubaSphere, BubblesAreInsideOut) {
+  const Seen bubble = seen_at(sphere("", "<bsdf type='dielectric'/>" + flip), 0.5f, 0.1f);
+  expect_near(bubble.normal, {-0.5f, -0.1f, -0.860233f}, 1e-6f);
 }
 
 TEST(MitsubaSphere, DerivativesGrowWithTheRadius) {
