@@ -56,7 +56,7 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(choice("integrator", &Options::integrator),
            "path: path tracing, each path on its own; mlt: Metropolis light\n"
            "transport, paths that are mutations of each other\n"
-           "(docs/metropolis.md)")
+           "(docs/design/metropolis.md)")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
