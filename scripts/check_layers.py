@@ -42,7 +42,7 @@ LAYERS = [
                  "common/render/stats.h", "common/render/hardware_counters.*"], ["choices"]),
     ("choices", ["common/sampling/choices.h"], ["platform"]),
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
-               "common/build_info.h"], []),
+               "common/host_memory.*", "common/build_info.h"], []),
     # Around the physics: renderers and batches; what becomes of the samples.
     ("render", ["common/render/*"], ["film", "image", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),

@@ -28,6 +28,12 @@ def values(parameters):
     return inside
 
 
+def spectrum(name, *samples):
+    """Of samples every 50 nm."""
+    pairs = ", ".join(f"{400 + 50 * i}:{value}" for i, value in enumerate(samples))
+    return tag("spectrum", name, pairs)
+
+
 def plugin(element, kind, *inside, **parameters):
     return f'<{element} type="{kind}">{values(parameters)}{"".join(inside)}</{element}>'
 
@@ -212,6 +218,9 @@ def large(inside):
 ROUGH = {"distribution": "ggx", "alpha": "[0.3]"}
 BECKMANN = {"distribution": "beckmann", "alpha": "[0.3]"}
 MAPPED = diffuse("[0.8] 0.3 0.1")
+# Of wavelengths.
+GOLD = spectrum("eta", 1.66, 1.5, 0.92, 0.35, 0.24, 0.16, 0.13) + spectrum(
+    "k", 1.95, 1.88, 1.85, 2.69, 3.07, 3.59, 4.1)
 GLASS = bsdf("dielectric", int_ior=1.5, ext_ior=1.0)
 OLD = {"use_shadowing_function": False, "flip_invalid_normals": False}
 
@@ -234,6 +243,9 @@ SCENES = {
     "diffuse": made_of(diffuse("[0.8] 0.3 0.1")),
     "diffuse_back": card(MAPPED, CARD_BACK, shape("sphere", BALL, MAPPED)),
     "conductor_gold": made_of(bsdf("conductor", material="Au", specular_reflectance="[0.9] 0.8 1")),
+    "conductor_spectra": made_of(bsdf("conductor", GOLD)) + shape(
+        "sphere", scale(0.25) + move(0, 0.3, 1.2), BLACK,
+        emitter("area", spectrum("radiance", 1, 2, 4, 5, 7, 8, 9))),
     "conductor_eta_k": made_of(bsdf("conductor", eta="0.2 0.92 1.1", k="[3.9] 2.45 2.14")),
     "roughconductor_ggx": made_of(bsdf("roughconductor", **ROUGH, **COPPER)),
     "roughconductor_beckmann": made_of(bsdf("roughconductor", material="Al", **BECKMANN)),
@@ -303,6 +315,10 @@ SCENES = {
     "bumpmap": card(bumps(diffuse(RED), scale="[0.4]")),
     "bumpmap_old": card(bumps(diffuse(RED), scale="[0.4]", **OLD)),
     "bumpmap_twosided": card(two_sided(bumps(diffuse(RED), scale="[0.4]")), CARD_BACK),
+    "bumpmap_disk": shape("disk", scale(1.3) + rotate("x", -50) + move(0, 0.9, 0),
+                          bumps(diffuse(RED), scale="[0.4]")) + STAGE,
+    "bumpmap_sphere": shape("sphere", scale(0.9) + rotate("x", 50) + rotate("y", 40) + move(
+        -0.3, 1, 0), bumps(diffuse(RED), scale="[0.4]")) + STAGE,
     "bumpmap_patch": patch("ply", two_sided(bumps(diffuse(RED), scale="[0.3]"))),
     # Not rotated: then Mitsuba 3.9.1's slopes are not those of its heights.
     "bumpmap_transform": card(bsdf("bumpmap", bitmap(
@@ -368,6 +384,12 @@ SCENES = {
     # shapes
     "shape_sphere": shape("sphere", rotate("x", 50) + rotate("y", 40) + move(0, 1, 0),
                           CHECKS) + STAGE,
+    "shape_sphere_textured": shape(
+        "sphere", scale(0.8) + rotate("x", 50) + rotate("y", 40) + move(-0.9, 0.85, 0),
+        bsdf("diffuse", bitmap("picture.exr", "reflectance", uv(scale("[2.3]", 1.7)), raw=True)))
+    + shape("sphere", scale(0.6, 0.6, -0.6) + rotate("x", 40) + move(0.9, 0.75, 0.3), two_sided(
+        diffuse(BLUE), PICTURE)) + shape("sphere", scale(0.4) + move(0, 0.45, 1), two_sided(
+            diffuse(BLUE), diffuse(RED)), flip_normals=True) + STAGE,
     "shape_disk": shape("disk", scale(1.3) + rotate("x", -50) + move(0, 0.9, 0), CHECKS) + STAGE,
     "shape_cube": shape("cube", scale(0.8) + rotate("y", 30) + rotate("x", 15) + move(0, 0.9, 0),
                         CHECKS) + STAGE,
@@ -387,6 +409,14 @@ SCENES = {
         "sphere", scale(0.3) + move(0.3, 1.5, 0.4), BLACK, glow("4 3 5")), SKY)
        for name in ("tent", "gaussian", "default", "mitchell", "catmullrom", "lanczos")},
     # textures
+    "texture_checkerboard": card(bsdf("diffuse", texture(
+        "checkerboard", "reflectance", uv(scale(3, 2)),
+        bitmap("picture.exr", "color0", uv(scale("[1.3]", 0.7), move(0.2, 0.1, 0)), raw=True),
+        texture("checkerboard", "color1", uv(rotate("z", 20), scale(7, 8)),
+                bitmap("grey.exr", "color0", raw=True), color1="0.1 0.4 0.9")))),
+    "texture_checkerboard_number": card(bsdf("blendbsdf", MAPPED.replace("[0.8]", "0.8"), diffuse(
+        BLUE), texture("checkerboard", "weight", uv(scale(3, 2)), grey("color0"),
+                       color1="[0.9]"))),
     "texture_nearest": picture(filter_type="nearest"),
     "texture_bilinear": picture(filter_type="bilinear"),
     "texture_mirror": picture(wrap_mode="mirror"),
@@ -428,8 +458,8 @@ def sensor(kind="perspective", view=VIEW, *inside, **parameters):
 
 NOISY = {"samples": 768}
 SETTINGS = {
-    **{name: NOISY for name in """conductor_gold conductor_eta_k roughconductor_anisotropic
-       dielectric_tinted roughdielectric_beckmann thindielectric blend light_rectangle light_sphere
+    **{name: NOISY for name in """conductor_gold conductor_spectra conductor_eta_k
+       roughconductor_anisotropic dielectric_tinted roughdielectric_beckmann thindielectric blend light_rectangle light_sphere
        light_disk light_cube light_cylinder light_mesh light_textured light_many
        light_envmap_and_three normalmap_glass light_sunsky light_sunsky_and_lamps shape_sphere
        shape_cube shape_cylinder shape_flip_normals""".split()},

@@ -7,8 +7,10 @@
 
 #include "app/compact_command.h"
 #include "app/compare_command.h"
+#include "app/interrupt.h"
 #include "app/options/command_line.h"
 #include "app/render_command.h"
+#include "app/standard_output.h"
 #include "common/build_info.h"
 #include "common/device/devices.h"
 #include "common/render/option_names.h"
@@ -67,7 +69,10 @@ int report_error(std::string message) {
 int main(int argc, char** argv) {
   try {
     const auto command = pt::parse_command_line({argv + 1, argv + argc});
-    return std::visit([](const auto& one) { return pt::execute(one); }, command);
+    pt::end_on_signal();
+    const int code = std::visit([](const auto& one) { return pt::execute(one); }, command);
+    pt::flush_output();
+    return code;
   } catch (const std::bad_alloc&) {
     return pt::report_error("not enough host memory for this scene and image size");
   } catch (const std::length_error&) {  // a std::vector that no memory could hold

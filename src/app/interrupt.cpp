@@ -6,17 +6,27 @@
 #include <csignal>
 #include <string_view>
 
+#include "common/image/atomic_file.h"
+
 namespace pt {
 namespace {
 
 std::atomic<int> signalled{0};
 static_assert(std::atomic<int>::is_always_lock_free);  // or a handler must not touch it
 
+std::atomic<const char*> end_text{nullptr};
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+void say(std::string_view text) {
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+}
+
 // Only what a signal handler may call.
 void end_now(int signal) {
-  constexpr std::string_view text =
-      "\nptexp: interrupted: no sample was finished, no image written\n";
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
+  remove_unfinished_file();
+  say("\nptexp: interrupted");
+  say(end_text.load());
+  say("\n");
   _exit(128 + signal);
 }
 
@@ -40,7 +50,10 @@ void handle(void (*handler)(int)) {
 
 }  // namespace
 
-void end_on_signal() { handle(end_now); }
+void end_on_signal(const char* what_is_lost) {
+  end_text = what_is_lost;
+  handle(end_now);
+}
 
 void note_signals() { handle(note_signal); }
 

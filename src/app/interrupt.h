@@ -4,8 +4,9 @@
 namespace pt {
 
 /// From now on both signals end the program at once, with 128 and its number as the exit code:
-/// nothing is there yet that could be kept.
-void end_on_signal();
+/// nothing is there yet that could be kept, and half a file is removed. "interrupted" and
+/// `what_is_lost`, a literal, are printed.
+void end_on_signal(const char* what_is_lost = "");
 
 /// From now on they only make interrupted() true, however often they come: what there is will be
 /// saved, and nothing must stop that.

@@ -4,6 +4,7 @@
 #include "app/trace_command.h"
 #include "app/trace_scene.h"
 #include "common/error.h"
+#include "common/host_memory.h"
 #include "common/image/atomic_file.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/prepare_camera.h"
@@ -21,11 +22,21 @@ CameraParameters default_camera(const Bounds& bounds) {
   return camera;
 }
 
+/// Such files are large: it is said, and asked for disk and memory, before the scene is prepared.
+void check_size(const RaysCommand& command) {
+  const std::uint64_t size_bytes = ray_bytes_max(command.kind, command.size);
+  check_writable(command.output);
+  check_room(command.output, size_bytes);
+  check_host_memory(2 * size_bytes, fmt::format("--size {}: the rays", command.size));
+  fmt::print(stderr, "ptexp: rays: up to {} MB will be written to {}\n",
+             grouped((size_bytes + 999'999) / 1'000'000), command.output);
+}
+
 }  // namespace
 
 int rays_command(const RaysCommand& command) {
   if (command.scene.empty()) throw Error("rays: expected --scene NAME|FILE or --mesh FILE");
-  check_writable(command.output);
+  check_size(command);
   SceneData scene = load_traced_scene(command.scene);
   if (command.scene.ends_with(".mesh")) scene.camera = default_camera(scene_bounds(scene));
   override_camera(scene.camera, command.camera);

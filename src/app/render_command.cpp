@@ -13,6 +13,7 @@
 #include "app/progress.h"
 #include "app/report/csv_file.h"
 #include "app/report/report.h"
+#include "app/standard_output.h"
 #include "common/device/devices.h"
 #include "common/error.h"
 #include "common/image/atomic_file.h"
@@ -47,7 +48,7 @@ DeviceInfo find_device(const RenderCommand& command) {
   check_applicable(options, command.given, device.choice.kind);
   if (!options.quiet) {
     fmt::print("device {}: {} ({})\n", to_string(device.choice), device.name, device.detail);
-    std::fflush(stdout);  // before the wait, even into a pipe
+    flush_output();  // before the wait, even into a pipe
   }
   return device;
 }
@@ -90,7 +91,7 @@ void write_outputs(const Options& options, const Image& image, Renderer& rendere
   if (options.counters && is_complete(options, report)) report.counters = count(renderer);
   if (!options.quiet) {
     fmt::print("{}wrote {}\n", report_table(options, report), options.output);
-    std::fflush(stdout);
+    std::fflush(stdout);  // whether it could be written is asked when all files are there
   }
   if (!options.stats_file.empty())
     write_file_atomically(options.stats_file, report_json(options, report));
@@ -132,7 +133,7 @@ int render_command(const RenderCommand& command) {
   const DeviceInfo device = find_device(command);
   Options options = command.options;
   options.device = device.choice;  // what is reported is the device that was used
-  end_on_signal();
+  end_on_signal(": no sample was finished, no image written");
 
   RenderReport report;
   SceneData scene;

@@ -107,6 +107,9 @@ void check_command(const TraceCommand& command, const DeviceInfo& device) {
   if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
   const bool is_cpu = device.choice.kind == DeviceChoice::Kind::cpu;
   check_builder(command.builder, command.accel, !is_cpu);
+  if (command.accel == AccelKind::brute && command.builder != TreeBuilder::automatic)
+    throw Error(fmt::format("--builder {}: has no effect with --accel brute: there is no tree",
+                            to_string(command.builder)));
   if (is_cpu && command.runs.variant != TraceVariant::automatic)
     throw Error("--variant: has no effect on the CPU");
 }

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "common/film/film.h"
-#include "common/transport/generate_camera_path.h"
-#include "common/transport/shade_any.h"
+#include "common/transport/path_step.h"
 
 namespace pt {
 
@@ -27,6 +26,8 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
   Color radiance(0.0f);
   Ray ray;
   Hit hit;
+  const auto path_key = [&] { return mask_key<Traits>(scene, id); };
+  PathRegisters<Traits, decltype(path_key)> registers{scene, path_key, radiance, ray};
   while (work.any(working)) {
     bool ended = false;
     if (working) {
@@ -35,30 +36,19 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
       if (path.rays == 0) {
         ray = generate_camera_path(scene, random, id.pixel, u);
       } else {
-        const Vec4 light = Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f);
-        const Scattering scattering =
-            branching == Branching::reduced
-                ? shade_any<Traits>(scene, ray, hit, path, limits, u, light)
-                : Integrator::template surface<Traits>(scene, ray, hit, path, limits, u, light);
-        radiance = add_rounded(radiance, scattering.emitted);
-        if constexpr (Traits::has_lights) {
-          if (!is_black(scattering.shadow.radiance) &&
-              !intersect_shadow<Traits>(
-                  scene, scattering.shadow,
-                  shadow_ray_key(scene, mask_key<Traits>(scene, id), path.rays))) {
-            radiance = add_rounded(radiance, scattering.shadow.radiance);
-          }
+        const DrawnSteps steps = draw_steps<Traits>(u, random, path);
+        if constexpr (branching == Branching::reduced) {
+          meet_anything<Traits>(scene, ray, hit, path, limits, steps, registers);
+        } else {
+          meet_surface<Traits>(scene, ray, hit, path, limits, steps, registers);
         }
-        ray = scattering.ray;
-        ended = !scattering.alive;
+        ended = !registers.alive;
       }
       if (!ended) {
-        hit = intersect_closest<Traits>(
-            scene, ray, next_ray_key(scene, mask_key<Traits>(scene, id), path.rays));
+        hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key(), path.rays));
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          radiance = add_rounded(radiance, Integrator::template miss<Traits::lighting>(
-                                               scene, ray.direction, path, limits));
+          leave_scene<Integrator, Traits::lighting>(scene, ray.direction, path, limits, registers);
           ended = true;
         }
       }

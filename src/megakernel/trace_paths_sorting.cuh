@@ -18,10 +18,9 @@
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/device/counting_sort.cuh"
-#include "common/film/film.h"
-#include "common/transport/follow_path.h"
-#include "common/transport/generate_camera_path.h"
+#include "common/film/path_sample.h"
 #include "common/transport/mask_hides.h"
+#include "common/transport/path_step.h"
 #include "megakernel/path_query.cuh"
 #include "megakernel/path_slot.h"
 
@@ -188,26 +187,31 @@ struct BlockRays {
 inline constexpr int sorting_stack_size =
     bvh_depth_max + CwbvhLane<PathQuery, true>::parked_size + 1;
 
-/// Keeps nothing of a surface's shading in registers (surface_steps.h).
-template <class Source>
-struct SlotSteps {
-  const Source& source;
+/// A sink (transport/path_step.h) that keeps a path in its slot. It takes results as shading finds
+/// them (StreamedSteps).
+struct SlotSink {
   const SampleBuffer& samples;
-  const PathState& path;
   PathSlot& slot;
+  bool casts = false, alive = false;
 
-  PT_HD Vec4 scatter() const { return draw(scatter_block(path.rays)); }
-  PT_HD Vec4 light() const { return draw(light_block(path.rays)); }
-  PT_HD Color emit(const Color& emitted) const {
+  PT_HD void emit(const PathState&, const Color& emitted) {
     if (!is_black(emitted)) slot.add_radiance(emitted);
-    return Color(0.0f);
   }
-  static constexpr bool aims = true;
-  PT_HD void aim(const ShadowRay& shadow) const { slot.store_shadow_ray(shadow); }
-
- private:
-  PT_HD Vec4 draw(std::uint32_t block) const {
-    return draw_late(source, samples.id_of(path.number), block);
+  PT_HD void aim(const PathState&, const ShadowRay& shadow) { slot.store_shadow_ray(shadow); }
+  PT_HD void cast(const PathState&, const ShadowRay& shadow) {
+    slot.store_shadow_radiance(shadow.radiance);
+    casts = true;
+  }
+  PT_HD void go_on(const PathState& path, const Ray& ray) {
+    slot.store_path(path, ray);
+    alive = true;
+  }
+  PT_HD void end(const PathState& path) {
+    if (casts) {
+      slot.store_path(path, Ray());  // its counts; it ends with its shadow ray
+    } else {
+      samples.store(path, slot.load_radiance());
+    }
   }
 };
 
@@ -306,10 +310,9 @@ class SortingTracer {
     lanes_of(scene_).at(0).count(LanePoint::turn);
     const PathId id = samples_.id_of(number);
     typename Source::Stream random = source_.open(id);
-    const Vec4 u = random.draw(scatter_block(0));
     PathState path;
     path.number = number;
-    slot.store_path(path, generate_camera_path(scene_, random, id.pixel, u));
+    slot.store_path(path, begin_path(scene_, id, random));
     slot.store_radiance(Color(0.0f), path);
   }
 
@@ -432,43 +435,32 @@ class SortingTracer {
     const bool is_lit = shadow == Shadow::free;
     if (is_lit) radiance = add_rounded(radiance, slot.load_shadow_radiance());
     shadow = Shadow::none;
+    PathSample sample{samples_, radiance};
     if (state == Path::ended) {
-      end_path(path, radiance, state);
+      sample.end(path);
+      state = Path::none;
       return;
     }
     set_lanes(ray, lanes_of(scene_).at(path.rays));
     ++path.rays;
     if (state == Path::miss) {
-      const Color sky =
-          Traits::Integrator::template miss<Traits::lighting>(scene_, ray.direction, path, limits_);
-      end_path(path, add_rounded(radiance, sky), state);
+      leave_scene<typename Traits::Integrator, Traits::lighting>(scene_, ray.direction, path,
+                                                                 limits_, sample);
+      state = Path::none;
       return;
     }
     if (is_lit) slot.store_radiance(radiance, path);
     shade_hit(slot, path, ray, state, shadow);
   }
 
-  __device__ void end_path(const PathState& path, const Color& radiance, Path& state) {
-    samples_.store(path, radiance);
-    state = Path::none;
-  }
-
   __device__ __forceinline__ void shade_hit(PathSlot& slot, PathState& path, const Ray& ray,
                                             Path& state, Shadow& shadow) {
     lanes_of(scene_).at(path.rays).count(LanePoint::turn);
-    const SlotSteps<Source> steps{source_, samples_, path, slot};
-    const Scattering scattering = Traits::Integrator::template surface<Shading>(
-        scene_, ray, slot.load_hit(), path, limits_, steps);
-    const bool asks = !is_black(scattering.shadow.radiance);
-    if (!scattering.alive && !asks) {
-      end_path(path, slot.load_radiance(), state);
-      return;
-    }
-    state = scattering.alive ? Path::ray : Path::ended;
-    slot.store_path(path, scattering.ray);
-    if (!asks) return;
-    shadow = Shadow::ray;
-    slot.store_shadow_radiance(scattering.shadow.radiance);
+    SlotSink sink{samples_, slot};
+    const StreamedSteps steps{source_, samples_, path, sink};
+    meet_surface<Shading>(scene_, ray, slot.load_hit(), path, limits_, steps, sink);
+    state = sink.alive ? Path::ray : sink.casts ? Path::ended : Path::none;
+    shadow = sink.casts ? Shadow::ray : Shadow::none;
   }
 
   const Scene& scene_;

@@ -9,9 +9,8 @@
 
 #include "common/accel/trace_cuda/choose_turn.cuh"
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
-#include "common/film/film.h"
-#include "common/transport/generate_camera_path.h"
-#include "common/transport/path_integrator.h"
+#include "common/film/path_sample.h"
+#include "common/transport/path_step.h"
 #include "megakernel/path_query.cuh"
 
 namespace pt {
@@ -166,9 +165,9 @@ class VotingTracer {
       set_lanes(ray, lanes_of(scene_).at(path.rays));
       ++path.rays;
       if (hit.is_miss()) {
-        samples_.store(path,
-                       add_rounded(radiance, Traits::Integrator::template miss<Traits::lighting>(
-                                                 scene_, ray.direction, path, limits_)));
+        PathSample sample{samples_, radiance};
+        leave_scene<typename Traits::Integrator, Traits::lighting>(scene_, ray.direction, path,
+                                                                   limits_, sample);
         ended = true;
       }
     }
@@ -209,38 +208,53 @@ class VotingTracer {
     const PathId id = samples_.id_of(path.number);
     typename Source::Stream random = source_.open(id);
     const Vec4 u = random.draw(scatter_block(path.rays));
-    bool alive = true, asks = false;
+    LaneSink sink{*this, radiance, ray};
     if (path.rays == 0) {
-      ray = generate_camera_path(scene_, random, id.pixel, u);
+      sink.go_on(path, generate_camera_path(scene_, random, id.pixel, u));
     } else {
-      const Vec4 light = random.draw(light_block(path.rays));
-      const Scattering scattering =
-          Traits::Integrator::template surface<Traits>(scene_, ray, hit, path, limits_, u, light);
-      radiance = add_rounded(radiance, scattering.emitted);
-      ray = scattering.ray;
-      alive = scattering.alive;
-      asks = !is_black(scattering.shadow.radiance);
-      if (asks) {
-        const ShadowRay& shadow = scattering.shadow;
-        warp_.shadow_rays.store(
-            lane_, {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance}, 0);
-        for (int c = 0; c < 3; ++c) warp_.shadow_radiance[c][lane_] = shadow.radiance[c];
-        set_lanes(ray_, lanes_of(shadow.ray));
-        lanes_of(ray_).count(LanePoint::intersect);
-      }
+      meet_surface<Traits>(scene_, ray, hit, path, limits_, draw_steps<Traits>(u, random, path),
+                           sink);
     }
-    if (alive) {
-      warp_.rays.store(lane_, {ray.origin, 0.0f, ray.direction, infinite_distance}, 0);
-      if (!asks) {
-        set_lanes(ray_, lanes_of(ray));
-        lanes_of(ray_).count(LanePoint::intersect);
-      }
-    }
-    if (!alive && !asks) samples_.store(path, radiance);
     store(path, radiance, ray.direction);
-    state_ = asks ? (alive ? State::shadow_then_ray : State::shadow_then_end)
-                  : (alive ? State::ray : State::no_path);
+    state_ = sink.state;
   }
+
+  /// A sink (transport/path_step.h): rays into the lane's part of the warp's memory.
+  struct LaneSink {
+    VotingTracer& tracer;
+    Color& radiance;
+    Ray& ray;  ///< the path's next one
+    State state = State::no_path;
+
+    __device__ void emit(const PathState&, const Color& emitted) {
+      radiance = add_rounded(radiance, emitted);
+    }
+    __device__ void cast(const PathState&, const ShadowRay& shadow) {
+      VotingWarp& warp = tracer.warp_;
+      const unsigned lane = tracer.lane_;
+      warp.shadow_rays.store(lane, {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance},
+                             0);
+      for (int c = 0; c < 3; ++c) warp.shadow_radiance[c][lane] = shadow.radiance[c];
+      count_begun(shadow.ray);
+      state = State::shadow_then_end;
+    }
+    __device__ void go_on(const PathState&, const Ray& next) {
+      ray = next;
+      tracer.warp_.rays.store(tracer.lane_, {ray.origin, 0.0f, ray.direction, infinite_distance},
+                              0);
+      if (state == State::no_path) count_begun(ray);
+      state = state == State::no_path ? State::ray : State::shadow_then_ray;
+    }
+    __device__ void end(const PathState& path) {
+      if (state == State::no_path) tracer.samples_.store(path, radiance);
+    }
+
+   private:
+    __device__ void count_begun(const Ray& traced) {
+      set_lanes(tracer.ray_, lanes_of(traced));
+      lanes_of(tracer.ray_).count(LanePoint::intersect);
+    }
+  };
 
   const Scene& scene_;
   const Source& source_;

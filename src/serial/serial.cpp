@@ -2,7 +2,6 @@
 
 #include "common/device/cpu_renderer.h"
 #include "common/transport/follow_path.h"
-#include "common/transport/generate_camera_path.h"
 
 namespace pt {
 namespace {
@@ -31,8 +30,7 @@ class SerialRenderer : public CpuRenderer {
       auto random = source.open(id);
       PathState path;
       path.number = i;
-      const Vec4 u = random.draw(scatter_block(0));
-      const Ray ray = generate_camera_path(scene_, random, id.pixel, u);
+      const Ray ray = begin_path(scene_, id, random);
       batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
                                             mask_key<Traits>(scene_, id)));
     }

@@ -1,12 +1,10 @@
 // The stages of the wavefront: each loads a slot, calls one transport function, stores, and says
-// which stage the path waits for next. How it gets there is not
-// its affair.
+// which stage the path waits for next. How it gets there is not its affair.
 #pragma once
 
 #include "common/film/markov_chains.h"
 #include "common/render/options.h"
 #include "common/transport/follow_path.h"
-#include "common/transport/generate_camera_path.h"
 #include "wavefront/path_pool.h"
 #include "wavefront/wave_counters.h"
 
@@ -47,8 +45,8 @@ PT_HD StageId id_of(const Stage& stage) {
 template <class Traits>
 inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 512 : 1024;
 
-/// Where surfaces are shaded in steps (StoredSteps) fewer registers do: 96, so that 20 warps fit.
-inline constexpr int steps_block_max = 640;
+/// Where shading streams its results (PoolSink) fewer registers do: 96, so that 20 warps fit.
+inline constexpr int streaming_block_max = 640;
 
 /// Only brute force scans.
 template <class Traits>
@@ -70,25 +68,61 @@ struct StageContext {
   const ChainRun* chains = nullptr;  ///< that go on by themselves: free slots are theirs
 };
 
-/// Ends a path: its sample gets the last radiance and the path's counts. Without lights nothing has
-/// been added before, and the sample need not be read.
-PT_HD void end_path(const SampleBuffer& samples, const PathState& path, const Color& radiance,
-                    bool has_lights) {
-  const Color before = has_lights ? samples.samples[path.number].radiance : Color(0.0f);
-  samples.store(path, add_rounded(before, radiance));
-}
-
 /// The camera ray of a path in a free slot.
 template <class Source>
 PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, std::uint32_t slot,
                       std::uint32_t number) {
   const PathId id = context.samples.id_of(number);
   auto random = context.source.open(id);
-  const Vec4 u = random.draw(scatter_block(0));
-  const Ray ray = generate_camera_path(scene, random, id.pixel, u);
+  const Ray ray = begin_path(scene, id, random);
   context.source.close(id, random);
   context.pool.store_new_path(slot, ray, number);
 }
+
+PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
+  if (is_black(radiance)) return;
+  Color& sum = samples.samples[number].radiance;
+  sum = add_rounded(sum, radiance);
+}
+
+/// The sink (transport/path_step.h) of all stages: keeps a path in its slot of the pool, and what
+/// it brings in its sample. Without lights nothing is added before a path ends, and its sample need
+/// not be read. `streams`: takes results as shading finds them (StreamedSteps), to shorten live
+/// ranges.
+template <bool streams = false>
+struct PoolSink {
+  const PathPool& pool;
+  const SampleBuffer& samples;
+  std::uint32_t slot;
+  bool has_lights;
+  Next next{free_slot};
+  Color emitted = Color(0.0f);  ///< and not yet added
+
+  PT_HD void emit(const PathState& path, const Color& radiance) {
+    if constexpr (streams) {
+      add_radiance(samples, path.number, radiance);
+    } else {
+      emitted = radiance;
+    }
+  }
+  PT_HD void aim(const PathState& path, const ShadowRay& shadow) {
+    pool.store_shadow_ray(slot, shadow, path);
+  }
+  PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
+    if constexpr (!streams) pool.store_shadow_ray(slot, shadow, path);
+    pool.store_shadow_radiance(slot, shadow.radiance, path);
+    next.shadow = true;
+  }
+  PT_HD void go_on(const PathState& path, const Ray& ray) {
+    if (has_lights) add_radiance(samples, path.number, emitted);
+    pool.store_path(slot, ray, path);
+    next.to = StageId::intersect;
+  }
+  PT_HD void end(const PathState& path) {
+    const Color before = has_lights ? samples.samples[path.number].radiance : Color(0.0f);
+    samples.store(path, add_rounded(before, emitted));
+  }
+};
 
 template <class Source>
 struct GeneratePaths {
@@ -206,64 +240,20 @@ struct ShadeMiss {
     PathState path = lighting == Lighting::full ? pool.load_path(slot, ray)
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
-    end_path(samples, path, Integrator::template miss<lighting>(scene, ray.direction, path, limits),
-             has_lights);
-    return {free_slot};
+    PoolSink<> sink{pool, samples, slot, has_lights};
+    leave_scene<Integrator, lighting>(scene, ray.direction, path, limits, sink);
+    return sink.next;
   }
 };
 
-/// What a surface does to a path.
-template <class Traits, Branching branching, class Source>
-PT_HD Scattering scatter_stored_path(const Scene& scene, const StageContext<Source>& context,
-                                     const Ray& ray, const Hit& hit, PathState& path) {
-  const PathId id = context.samples.id_of(path.number);
-  auto random = context.source.open(id);
-  constexpr bool may_miss = branching == Branching::reduced;
-  const Scattering scattering =
-      scatter_path<Traits, may_miss>(scene, ray, hit, path, context.limits, random);
-  context.source.close(id, random);
-  return scattering;
-}
-
-PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
-  if (is_black(radiance)) return;
-  Color& sum = samples.samples[number].radiance;
-  sum = add_rounded(sum, radiance);
-}
-
-/// Keeps nothing of a surface's shading in registers (surface_steps.h): numbers are drawn when they
-/// are asked for, what is known is stored at once. For sources whose streams have no state.
-template <class Source>
-struct StoredSteps {
-  const StageContext<Source>& context;
-  const PathState& path;
-  std::uint32_t slot;
-
-  PT_HD Vec4 scatter() const { return draw(scatter_block(path.rays)); }
-  PT_HD Vec4 light() const { return draw(light_block(path.rays)); }
-  PT_HD Color emit(const Color& emitted) const {
-    add_radiance(context.samples, path.number, emitted);
-    return Color(0.0f);
-  }
-  static constexpr bool aims = true;
-  PT_HD void aim(const ShadowRay& shadow) const {
-    context.pool.store_shadow_ray(slot, shadow, path);
-  }
-
- private:
-  PT_HD Vec4 draw(std::uint32_t block) const {
-    return draw_late(context.source, context.samples.id_of(path.number), block);
-  }
-};
-
-/// `in_steps`: by StoredSteps, else all is kept until the end.
-template <class Traits, Branching branching, class Source, bool in_steps = false>
+/// `streams`: see PoolSink.
+template <class Traits, Branching branching, class Source, bool streams = false>
 struct ShadeSurface {
   static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::shade_surface;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr int block_max = in_steps ? steps_block_max : shading_block_max<Traits>;
+  static constexpr int block_max = streams ? streaming_block_max : shading_block_max<Traits>;
   /// The only BSDF that it knows; null: it knows several.
   static constexpr const char* kind =
       Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
@@ -271,30 +261,28 @@ struct ShadeSurface {
 
   /// As a function of its own it would be handed the scene in local memory.
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const PathPool& pool = context.pool;
+    const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
     ++path.rays;
-    Scattering scattering;
-    if constexpr (in_steps) {
-      scattering = Traits::Integrator::template surface<Traits>(
-          scene, ray, pool.load_hit(slot), path, context.limits,
-          StoredSteps<Source>{context, path, slot});
+    const Hit hit = pool.load_hit(slot);
+    PoolSink<streams> sink{pool, samples, slot, has_lights};
+    if constexpr (streams) {
+      meet_surface<Traits>(scene, ray, hit, path, limits,
+                           StreamedSteps{source, samples, path, sink}, sink);
     } else {
-      scattering =
-          scatter_stored_path<Traits, branching>(scene, context, ray, pool.load_hit(slot), path);
+      const PathId id_of_path = samples.id_of(path.number);
+      auto random = source.open(id_of_path);
+      const DrawnSteps steps = draw_steps<Traits>(random, path);
+      if constexpr (branching == Branching::reduced) {
+        meet_anything<Traits>(scene, ray, hit, path, limits, steps, sink);
+      } else {
+        meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
+      }
+      source.close(id_of_path, random);
     }
-    const bool shadow = has_lights && !is_black(scattering.shadow.radiance);
-    if (shadow && !in_steps) pool.store_shadow_ray(slot, scattering.shadow, path);
-    if (shadow) pool.store_shadow_radiance(slot, scattering.shadow.radiance, path);
-    if (!scattering.alive) {
-      end_path(context.samples, path, scattering.emitted, has_lights);
-      return {free_slot, shadow};
-    }
-    if (has_lights) add_radiance(context.samples, path.number, scattering.emitted);
-    pool.store_path(slot, scattering.ray, path);
-    return {StageId::intersect, shadow};
+    return sink.next;
   }
 };
 
@@ -336,7 +324,9 @@ struct FollowPaths {
   static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::bounce;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
-  static constexpr SphereAccess spheres = sphere_access<Traits>;
+  /// With the paper's generator they are in global memory alone (check_toggles).
+  static constexpr SphereAccess spheres =
+      std::is_same_v<Source, PhiloxSource> ? sphere_access<Traits> : SphereAccess::once;
   static constexpr int block_max = shading_block_max<Traits>;
   StageContext<Source> context;
   StageId as;                 ///< bounce or finish
@@ -354,10 +344,7 @@ struct FollowPaths {
     }
     const PathId id_of_path = samples.id_of(path.number);
     auto random = source.open(id_of_path);
-    if (starts_paths) {
-      const Vec4 u = random.draw(scatter_block(0));
-      ray = generate_camera_path(scene, random, id_of_path.pixel, u);
-    }
+    if (starts_paths) ray = begin_path(scene, id_of_path, random);
     set_lanes(ray, lanes_of(scene).at(path.rays));
     lanes_of(ray).count(as == StageId::bounce ? LanePoint::bounce : LanePoint::finish);
     Color radiance(0.0f);

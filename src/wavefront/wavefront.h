@@ -151,9 +151,9 @@ inline bool fuses_stages(const Options& options, const SceneTraits& traits) {
 //   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
-//   kinds_have_kernels       whether it has a kernel for each kind of BSDF; else the one for all
-//                            shades their ranges
-//   shades_in_steps          whether it is short of registers (StoredSteps)
+//   kinds_have_kernels<Traits>  whether it has a kernel for each kind of BSDF in such scenes; else
+//                            the one for all shades their ranges
+//   streams_shading          whether it is short of registers (PoolSink)
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
 //   traces_queues_here()     in this very one;
@@ -189,12 +189,12 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
 }
 
-/// Surfaces by one kernel, in steps where that pays.
+/// Surfaces by one kernel, which streams its results where that pays.
 template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
                        const StageQueues& surfaces) {
-  constexpr bool in_steps = Executor::shades_in_steps && Shading::lighting == Lighting::full;
-  execute.run(ShadeSurface<Shading, branching, Source, in_steps>{context}, surfaces);
+  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
+  execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
 /// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can
@@ -210,7 +210,8 @@ void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext
     shade_surfaces_by<Kind, Branching::divergent>(execute, context, range);
   };
   for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    using Kind = std::conditional_t<Executor::kinds_have_kernels, OneKind<Shading, Bsdf>, Shading>;
+    using Kind = std::conditional_t<Executor::template kinds_have_kernels<Shading>,
+                                    OneKind<Shading, Bsdf>, Shading>;
     shade(std::type_identity<Kind>{}, kind_of<Bsdf>);
   });
   shade(std::type_identity<Shading>{}, several_kinds);

@@ -10,6 +10,7 @@
 
 #include "common/accel/traverse_brute_block.h"
 #include "common/device/cpu_renderer.h"
+#include "common/host_memory.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
 #include "wavefront/path_costs.h"
@@ -128,8 +129,9 @@ class CpuExecutor {
   }
 
   // They would take minutes to compile and gain nothing where threads do not run in warps.
+  template <class>
   static constexpr bool kinds_have_kernels = false;
-  static constexpr bool shades_in_steps = false;
+  static constexpr bool streams_shading = false;
 
   template <class Traits>
   static constexpr bool traces_queues = false;  // a thread is no warp

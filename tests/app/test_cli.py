@@ -186,6 +186,18 @@ class Images(CommandLine):
             means.append(sum(values) / len(values))
         self.assertEqual(means, sorted(set(means)))
 
+    def test_no_more_threads_run_than_there_are_processors(self):
+        def use_one():
+            os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+        run = self.render("--threads", "64", "--quiet", "--stats", "run.json", "--csv", "runs.csv",
+                          preexec_fn=use_one)
+        self.assertEqual((run.returncode, run.stdout + run.stderr), (0, ""))
+        stats = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+        self.assertEqual(stats["device"]["name"], "CPU, 1 thread")
+        with open(self.folder / "runs.csv", newline="", encoding="utf-8") as file:
+            self.assertEqual(next(csv.DictReader(file))["device_name"], "CPU, 1 thread")
+
     def test_quiet_says_nothing(self):
         run = self.render_ok("--quiet", "--output", "image.ppm")
         self.assertEqual(run.stdout + run.stderr, "")
@@ -272,6 +284,20 @@ class Statistics(CommandLine):
         self.assertIsInstance(json.loads(text), dict)
         for word in ["schema", "wavefront", "Philox|philox", "rays", "median", "generate"]:
             self.assertRegex(text, word)
+
+    def test_samples_that_are_asked_for_limit_a_stop(self):
+        for stop in ("--target-error 0.5", "--time-limit 20"):
+            self.render_ok("--stats", "run.json", "--spp", "6", *stop.split())
+            run = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+            self.assertEqual((run["samples_done"], run["ended_by"], run["complete"]),
+                             (6, "samples", True), stop)
+        # Where they are not asked for, the stop decides: the default of samples would be enough.
+        run = self.run_ptexp("--width", "8", "--height", "4", "--time-limit", "0.4", "--stats",
+                             "run.json", "--output", "image.ppm", "--device", "cpu")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        run = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+        self.assertEqual((run["ended_by"], run["complete"]), ("time_limit", True))
+        self.assertGreater(run["samples_done"], 50)
 
     def test_modes_trace_the_same_rays(self):
         counts = set()
@@ -387,11 +413,80 @@ class BadInput(CommandLine):
                 self.assertEqual(self.files(), [])
 
 
+    def test_too_many_primitives(self):
+        def limit_memory():
+            resource.setrlimit(resource.RLIMIT_AS, (4_000_000_000, 4_000_000_000))
+
+        if self.run_ptexp("--version", preexec_fn=limit_memory).returncode != 0:
+            self.skipTest("this build needs more memory to begin with (a sanitizer's shadow)")
+        for scene in [["terrain:50M"], ["statue:50M"], ["instances:50M"],
+                      ["spheres", "--spheres", "50000000"]]:
+            with self.subTest(scene=scene):
+                begin = time.monotonic()
+                run = self.render("--quiet", "--scene", *scene, preexec_fn=limit_memory)
+                self.assert_refused(run, " ".join(scene[-2:]))
+                self.assertRegex(run.stderr, r"needs [\d,]+ MiB, [\d,]+ MiB are free")
+                self.assertLess(time.monotonic() - begin, 5, "before anything is made")
+        self.assertEqual(self.files(), [])
+
+    def test_rays_without_room(self):
+        def limit_file_size():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (10_000_000, 10_000_000))
+
+        run = self.run_ptexp("rays", "--scene", "terrain:4M", "--kind", "ao", "--size", "256",
+                             "--output", "rays", preexec_fn=limit_file_size)
+        self.assert_refused(run, "rays", "17 MB are needed, 10 MB are free")
+        self.assertEqual(self.files(), [])
+
+
+class StandardOutput(CommandLine):
+    """What is printed is a result like any other: it is there, or the exit code tells."""
+
+    def setUp(self):
+        super().setUp()
+        if not Path("/dev/full").exists():
+            self.skipTest("the machine has no /dev/full")
+
+    def run_into_full(self, *arguments):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            return subprocess.run([PTEXP, *arguments], cwd=self.folder, stdout=full,
+                                  stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True,
+                                  check=False, timeout=TIMEOUT_S)
+
+    def test_of_every_command(self):
+        self.render_ok("--output", "a.ppm")
+        self.run_ok("rays", "--scene", "boxes", "--size", "16", "--output", "r")
+        before = self.files()
+        for arguments in [["--help"], ["--version"], ["--list-scenes"], ["--list-devices"],
+                          ["compare", "--help"], ["compare", "a.ppm", "a.ppm"],
+                          ["trace", "--mesh", "boxes", "--rays", "r", "--device", "cpu"],
+                          ["compact", "--device", "cpu", "--items", "1K", "--repeat", "1"],
+                          ["--device", "cpu", "--spp", "1"]]:
+            with self.subTest(arguments=arguments):
+                run = self.run_into_full(*arguments)
+                self.assertEqual(run.returncode, 2, run.stderr)
+                self.assertRegex(run.stderr, r"^ptexp: error: .*No space left on device\n$")
+                self.assertEqual(self.files(), before, "refused before the image is rendered")
+
+    def test_silence_needs_none(self):
+        run = self.run_into_full("--device", "cpu", "--spp", "1", "--quiet")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+
+    def test_rays_are_announced(self):
+        run = self.run_ok("rays", "--scene", "boxes", "--kind", "ao", "--size", "256", "--output",
+                          "r")
+        self.assertRegex(run.stderr, r"^ptexp: rays: up to 17 MB will be written to r\n$")
+        self.assertLessEqual((self.folder / "r").stat().st_size, 17_000_000)
+
+
 class Interruption(CommandLine):
     def start(self, *arguments):
-        """The program at work; it is gone when the test ends."""
+        """A render at work; it is gone when the test ends."""
+        return self.start_command("--device", "cpu", *arguments)
+
+    def start_command(self, *arguments):
         process = subprocess.Popen(
-            [PTEXP, "--device", "cpu", *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+            [PTEXP, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
@@ -454,6 +549,24 @@ class Interruption(CommandLine):
         err = self.end(process, signal.SIGTERM)
         self.assertIn("no image written", err)
         self.assertEqual(self.files(), [])
+
+    def test_nor_are_other_commands(self):
+        for name in "ab":
+            (self.folder / f"{name}.ppm").write_bytes(b"P6 4000 3000 255\n" +
+                                                      os.urandom(3 * 4000 * 3000))
+        self.run_ok("rays", "--scene", "boxes", "--size", "64", "--output", "few")
+        before = self.files()
+        for arguments in [["compare", "a.ppm", "b.ppm"],
+                          ["compact", "--device", "cpu", "--repeat", "1000000"],
+                          ["trace", "--device", "cpu", "--mesh", "terrain:4M", "--rays", "few"],
+                          ["trace", "--device", "cpu", "--mesh", "boxes", "--rays", "few",
+                           "--repeat", "1000000"],
+                          ["rays", "--scene", "terrain:4M", "--output", "many"],
+                          ["rays", "--scene", "boxes", "--kind", "diffuse", "--size", "4096",
+                           "--output", "many"]]:
+            with self.subTest(arguments=arguments):
+                self.end(self.start_command(*arguments), signal.SIGTERM, after_s=1)
+                self.assertEqual(self.files(), before)
 
     def wait_for_work(self, process, seconds):
         give_up = time.monotonic() + TIMEOUT_S

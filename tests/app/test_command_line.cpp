@@ -504,6 +504,28 @@ TEST(Refused, WhatFusedOrSplitStagesDoNotKnow) {
     EXPECT_NO_THROW(parse(line)) << line;
 }
 
+TEST(Refused, WhatAnotherOptionLeavesNothingToDo) {
+  expect_refused({
+      {"--nee off --mis balance", "--mis balance: has no effect with --nee off"},
+      {"--nee off --mis none", "--mis none: has no effect with --nee off"},
+      {"--light-selection tree --nee off", "--light-selection tree: has no effect with --nee off"},
+      {"--integrator mlt --large-step-probability 1 --mutation-size 0.1",
+       "--mutation-size 0.1: has no effect with --large-step-probability 1"},
+      {"--integrator mlt --finish-paths 7",
+       "--finish-paths 7: has no effect with --integrator mlt"},
+      {"--aperture 0 --focus-distance 3", "--focus-distance 3: has no effect with --aperture 0"},
+      {"--accel brute --builder sah", "--builder sah: has no effect with --accel brute"},
+      {"--builder sbvh --accel embree", "--builder sbvh: has no effect with --accel embree"},
+  });
+  for (const char* line :
+       {"--nee off --mis power --light-selection auto", "--nee on --mis none", "--mis none",
+        "--nee off --sampling uniform", "--integrator mlt --mutation-size 0.1",
+        "--integrator mlt --finish-paths auto", "--aperture 0.1 --focus-distance 3",
+        "--focus-distance 3", "--device cuda --accel bvh2 --scene-memory constant",
+        "--accel brute --builder auto", "--accel bvh2 --builder sbvh", "--builder sah"})
+    EXPECT_NO_THROW(parse(line)) << line;
+}
+
 TEST(Refused, WithoutEffectOnTheDevice) {
   expect_refused({
       {"--device cpu --schedule graph",

@@ -181,7 +181,7 @@ TEST(Interrupt, EndsAtOnceWhileThereIsNothingToKeep) {
   for (const int signal : {SIGINT, SIGTERM}) {
     EXPECT_EXIT(
         {
-          end_on_signal();
+          end_on_signal(": no image written");
           std::raise(signal);
           std::exit(1);
         },

@@ -47,6 +47,8 @@ TEST(TraceCommandLine, RefusesWhatItCannotDo) {
          "--accel embree");  // the last holds
   refuse({"rays", "--mesh", "m", "--output", "r", "--size", "100"}, "--size 100");
   refuse({"rays", "--mesh", "m"}, "--output");
+  refuse({"rays", "--scene", "s", "--mesh", "m", "--output", "r"},
+         "--scene s: expected either --scene or --mesh m");
 }
 
 class TraceFiles : public testing::Test {
@@ -107,6 +109,15 @@ TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {
     expect_error([&] { trace_command(command_); },
                  "--builder " + to_string(builder) + ": needs a CUDA device");
   }
+}
+
+TEST_F(TraceFiles, NoBuilderWithoutATree) {
+  command_.accel = AccelKind::brute;
+  command_.builder = TreeBuilder::sbvh;
+  expect_error([&] { trace_command(command_); },
+               "--builder sbvh: has no effect with --accel brute");
+  command_.builder = TreeBuilder::automatic;
+  EXPECT_EQ(trace_command(command_), 0);
 }
 
 TEST_F(TraceFiles, VariantsAreCudas) {

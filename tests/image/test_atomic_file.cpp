@@ -3,12 +3,14 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
 
 #include "common/image/atomic_file.h"
+#include "common/image/temporary_file.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -39,6 +41,48 @@ class FileSizeLimit {
  private:
   void (*handler_)(int);
   rlimit old_{};
+};
+
+/// A process in the middle of a write; `last` is what it does at SIGUSR1.
+class Writer {
+ public:
+  using Act = void (*)();
+
+  explicit Writer(const std::string& target, Act last = nullptr) {
+    int ready[2];
+    EXPECT_EQ(::pipe(ready), 0);
+    id_ = ::fork();
+    if (id_ == 0) {
+      std::signal(SIGTERM, SIG_DFL);
+      TemporaryFile file(target);
+      file.descriptor().write("half");
+      static Act final_act = nullptr;
+      final_act = last;
+      std::signal(SIGUSR1, [](int) {
+        final_act();
+        ::_exit(0);
+      });
+      [[maybe_unused]] const auto written = ::write(ready[1], "x", 1);
+      for (;;) ::pause();
+    }
+    ::close(ready[1]);
+    char byte = 0;
+    EXPECT_EQ(::read(ready[0], &byte, 1), 1);
+    ::close(ready[0]);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer() { end(SIGKILL); }
+
+  void end(int signal) {
+    if (id_ <= 0) return;
+    ::kill(id_, signal);
+    ::waitpid(id_, nullptr, 0);
+    id_ = 0;
+  }
+
+ private:
+  pid_t id_ = 0;
 };
 
 TEST(AtomicFile, WritesAndReplaces) {
@@ -199,6 +243,47 @@ TEST(AtomicFile, ANameInTheCurrentFolder) {
   write_file_atomically("a", "here");
   fs::current_path(before);
   EXPECT_EQ(read_text(folder.file("a")), "here");
+}
+
+TEST(AtomicFile, TheNextWriterRemovesWhatAKilledOneLeft) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.exr");
+  for (const bool asks_first : {false, true}) {
+    Writer(path).end(SIGKILL);
+    ASSERT_EQ(folder.entries().size(), asks_first ? 2 : 1);
+    if (asks_first) {
+      check_writable(path);
+    } else {
+      write_file_atomically(path, "whole");
+    }
+    EXPECT_EQ(folder.entries(), Names{"a.exr"});
+    EXPECT_EQ(read_text(path), "whole");
+  }
+}
+
+TEST(AtomicFile, WhatIsNotItsOwnIsLeftAlone) {
+  const TempFolder folder;
+  const std::string path = folder.file("a.exr"), other = folder.file("b.exr");
+  Writer(other).end(SIGKILL);  // another target's
+  const Writer alive(path);    // another process's, at work
+  write_text(folder.file(".ptexp-0123456789abcdef-01234567.tmp"), "of a third target");
+  const Names before = folder.entries();
+  ASSERT_EQ(before.size(), 3);
+  write_file_atomically(path, "whole");
+  Names after = folder.entries();
+  EXPECT_EQ(std::erase(after, "a.exr"), 1);
+  EXPECT_EQ(after, before);
+}
+
+TEST(AtomicFile, AHandlerOfSignalsCanRemoveWhatIsUnfinished) {
+  const TempFolder folder;
+  Writer writer(folder.file("a.exr"), remove_unfinished_file);
+  ASSERT_EQ(folder.entries().size(), 1);
+  writer.end(SIGUSR1);
+  EXPECT_EQ(folder.entries(), Names{});
+  write_file_atomically(folder.file("a.exr"), "whole");
+  remove_unfinished_file();  // there is none
+  EXPECT_EQ(folder.entries(), Names{"a.exr"});
 }
 
 }  // namespace

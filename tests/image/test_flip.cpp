@@ -1,6 +1,7 @@
 // FLIP against the values of an independent program: scripts/flip_reference.py prints them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -71,6 +72,39 @@ TEST(Flip, OfEqualImagesIsZeroAndOfBadValuesFinite) {
   for (const float error : hdr_flip(image, reference)) ASSERT_TRUE(error >= 0 && error <= 1);
   const Image black{width, height, std::vector<float>(image.rgb.size())};
   for (const float error : hdr_flip(image, black)) ASSERT_TRUE(error >= 0 && error <= 1);
+}
+
+/// Images of several tiles, which differ in single pixels: in a corner, at the border of two tiles,
+/// beside it as far as the filters reach and a pixel further, and all along the lower edge.
+std::pair<Image, Image> make_large_images() {
+  constexpr int w = 300, h = 520;
+  Image test{w, h, {}};
+  for (int y = 0; y < h; ++y) {
+    for (int x = 0; x < w; ++x) {
+      for (int c = 0; c < 3; ++c)
+        test.rgb.push_back(static_cast<float>(std::exp(2 * reference_value(x, y, c) - 1)));
+    }
+  }
+  Image reference = test;
+  const auto change = [&](int x, int y) {
+    test.rgb[3 * static_cast<std::size_t>(y * w + x)] *= 1.3f;
+  };
+  for (const int x : {0, 64, 255, 256, 266, 277}) change(x, x / 2);
+  for (int x = 0; x < w; ++x) change(x, h - 1);
+  return {test, reference};
+}
+
+TEST(Flip, ByTilesIsThatOfTheWholeToTheLastBit) {
+  const auto [test, reference] = make_large_images();
+  FlipView whole;
+  whole.tile = 1000;
+  EXPECT_EQ(ldr_flip(test, reference), ldr_flip(test, reference, whole));
+  const std::vector<float> errors = hdr_flip(test, reference);
+  EXPECT_EQ(errors, hdr_flip(test, reference, whole));
+  FlipView narrow;
+  narrow.tile = 17;
+  EXPECT_EQ(errors, hdr_flip(test, reference, narrow));
+  EXPECT_GT(std::ranges::count(errors, 0.0f), 300 * 200) << "where nothing differs";
 }
 
 TEST(DifferencePicture, IsBrighterWhereTheErrorIsLarger) {

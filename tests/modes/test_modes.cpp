@@ -52,7 +52,7 @@ Color follow_path(const Scene& scene, std::uint32_t pixel, const PathLimits& lim
     }
     const Vec4 u = draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);
-    const Scattering s = shade_surface<Traits>(scene, ray, hit, path, limits, u, light);
+    const Scattering s = shade_surface<Traits>(scene, ray, hit, path, limits, DrawnSteps{u, light});
     radiance += s.emitted;
     if (!is_black(s.shadow.radiance)) {
       ++sum.shadow_rays;

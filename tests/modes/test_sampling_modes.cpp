@@ -63,6 +63,52 @@ TEST_P(SamplingModesOf, EqualSerial) {
   }
 }
 
+/// The lit room with small lamps all over, one kind of which shines down, the other up.
+SceneData room_of_many_lamps(int lamps) {
+  SceneData scene = lit_room();
+  const std::uint32_t glow =
+      scene.add_material(make_diffuse(Color(0.2f), Color(30 / static_cast<float>(lamps))));
+  TestRandom random(3);
+  for (int i = 0; i < lamps; ++i) {
+    const Vec3 place(7 * random.unit() - 3.5f, 0.3f + 4 * random.unit(), 7 * random.unit() - 3.5f);
+    const float up = i % 2 == 0 ? 0.6f : -0.6f;
+    scene.meshes.push_back(parallelogram({}, place, {0.6f, 0, 0}, {0, 0.1f, up}, glow));
+  }
+  return scene;
+}
+
+// What a path has to remember of a surface, so as to know how likely a lamp was that it meets: with
+// few lamps nearly every surface chooses alike, and a forgotten one changes little.
+TEST(SamplingModes, ManyLampsByTreeEqualSerial) {
+  const auto render = [](const Settings& more) {
+    const Options options = with(with(Options(), {{"device", "cpu"},
+                                                  {"width", "32"},
+                                                  {"height", "24"},
+                                                  {"max-depth", "5"},
+                                                  {"spp", "4"},
+                                                  {"light-selection", "tree"}}),
+                                 more);
+    SceneData scene = room_of_many_lamps(40);
+    prepare_scene(scene, options);
+    return take_image(*make_renderer(options, scene, choose_device(options.device)));
+  };
+  const Rendered serial = render({{"mode", "serial"}});
+  expect_same(render({{"mode", "megakernel"}}), serial);
+  for (const char* stages : {"split", "fused"}) {
+    for (const char* layout : {"soa", "sectors", "aos"}) {
+      for (const char* finish : {"0", "100"}) {
+        SCOPED_TRACE(testing::Message() << stages << ' ' << layout << " finish " << finish);
+        expect_same(render({{"mode", "wavefront"},
+                            {"stages", stages},
+                            {"layout", layout},
+                            {"pool-size", "333"},
+                            {"finish-paths", finish}}),
+                    serial);
+      }
+    }
+  }
+}
+
 /// Of 8 x 6 tiles: the means over some seeds.
 std::vector<MeanEstimate> tile_means(const Settings& settings, int first_seed, int seeds) {
   std::vector<MeanEstimate> tiles(48);

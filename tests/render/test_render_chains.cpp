@@ -26,8 +26,8 @@ class ClockedDevice : public ChainDevice {
   std::uint32_t steps = 0;
 
   void begin_chains(const ChainWindow&) override {}
-  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun&) override {
-    now_s += 0.125;
+  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override {
+    now_s += 0.125, run.kernel_ms += 125;
     EXPECT_EQ(first, targets_.size());
     for (std::uint32_t i = first; i < first + count; ++i)
       targets_.push_back(i < dark ? 0.0f : 2.0f);
@@ -50,22 +50,27 @@ class ClockedDevice : public ChainDevice {
     chain_step = step;
   }
   void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
-                     RenderRun&) override {
+                     RenderRun& run) override {
     EXPECT_EQ(step.kind, ChainStep::Kind::mutate);
-    now_s += 0.0625 * (last - steps);
-    sums_ += std::uint64_t{chains} * (last - steps);
+    const std::uint32_t count = last - steps;
+    now_s += 0.0625 * count, run.kernel_ms += 62.5 * count;
+    sums_ += std::uint64_t{chains} * count;
+    tally_ = tally_ + ChainTally{30 * count, 6 * count, 70 * count, 49 * count};
     steps = last;
   }
   void finish_chains(std::uint32_t, const ChainStep& step, RenderRun&) override {
     EXPECT_EQ(step.kind, ChainStep::Kind::finish);
   }
   ChainSums take_chain_sums() override {
-    return {std::vector<SplatSum>(3 * side * side, std::exchange(sums_, 0)), {}, {}};
+    return {std::vector<SplatSum>(3 * side * side, std::exchange(sums_, 0)),
+            std::exchange(tally_, {}),
+            {}};
   }
 
  private:
   std::vector<float> targets_;
   SplatSum sums_ = 0;
+  ChainTally tally_;  ///< of 100 chains: 30 large steps of which 6, 70 small ones of which 49
 };
 
 ChainPlan plan_of(std::uint64_t bootstrap, bool is_timed) {
@@ -115,6 +120,28 @@ TEST(RenderChains, ATimedBootstrapEndsAfterHalfOfTheTime) {
   EXPECT_EQ(outcome.run.metropolis->bootstrap, 8000u);
   EXPECT_EQ(outcome.run.ended_by, RunEnd::time_limit);
   EXPECT_NEAR(device.now_s, 2.0, 0.06);
+}
+
+// The image is divided by what was mutated, not by what was planned; so are the rates.
+TEST(RenderChains, WhatATimeLimitLeavesIsAWholeImage) {
+  ClockedDevice device;
+  const Outcome outcome = render_on(device, plan_of(1 << 20, true), 1 << 20, 2.0);
+  const auto mutations = 100.0 * device.steps;
+  EXPECT_NEAR(device.steps, 16u, 1u);  // of a sixteenth of a second, in the second half
+  EXPECT_EQ(outcome.run.samples_done, static_cast<int>(mutations / (side * side)));
+  const double share = device.chain_step.weights.bootstrap_share;
+  const double expected =
+      side * side * (share / device.bootstrap_step.scale + 1 / device.chain_step.scale);
+  const FilmPixel& pixel = outcome.film.pixels[7];
+  EXPECT_NEAR(pixel.sum[2] / static_cast<double>(pixel.samples), expected, 1e-9 * expected);
+  const MetropolisStats stats = outcome.run.metropolis.value();
+  EXPECT_EQ(stats.chains, 100u);
+  EXPECT_EQ(static_cast<double>(stats.mutations), mutations);
+  EXPECT_DOUBLE_EQ(stats.large_share, 0.3);
+  EXPECT_DOUBLE_EQ(stats.large_acceptance, 0.2);
+  EXPECT_DOUBLE_EQ(stats.small_acceptance, 0.7);
+  EXPECT_DOUBLE_EQ(stats.bootstrap_ms, 8 * 125);
+  EXPECT_DOUBLE_EQ(stats.mutations_per_s, 100 / 0.0625);
 }
 
 // The limit is over before any chain has moved: there is an image even so.

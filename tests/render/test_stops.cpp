@@ -25,13 +25,14 @@ struct FakeTime {
   }
 };
 
-TEST(TimeLimit, IsMetToASample) {
-  for (const double per_sample : {0.0007, 0.01, 0.13}) {
+// The last sample ends nearer to the limit than the one before it did, or one more would.
+TEST(TimeLimit, IsMetToHalfASample) {
+  for (const double per_sample : {0.0007, 0.01, 0.13, 0.29, 0.35, 0.44, 0.46}) {
     for (const int per_batch : {1, 7, 100000}) {
       FakeTime time{100, per_sample};
       const BatchRun run = time.run(2.0, 1 << 30, per_batch);
       EXPECT_EQ(run.ended_by, RunEnd::time_limit);
-      EXPECT_NEAR(time.now - 100, 2.0, per_sample) << per_batch;
+      EXPECT_NEAR(time.now - 100, 2.0, 0.5 * per_sample + 1e-9) << per_batch;
       EXPECT_EQ(run.samples, std::lround((time.now - 100) / per_sample));
     }
   }
@@ -55,6 +56,34 @@ TEST(TimeLimit, TakesAtLeastOneSampleAndNotMoreThanAskedFor) {
   const BatchRun run = fast.run(1.0, 100, 10);
   EXPECT_EQ(run.samples, 100);
   EXPECT_EQ(run.ended_by, RunEnd::samples);
+}
+
+// Whoever asks to stop when the last sample is taken gets a whole image.
+TEST(Stops, NothingInterruptsARenderThatIsDone) {
+  for (const int per_batch : {10, 5}) {
+    RenderHooks hooks;
+    hooks.stop = [] { return true; };
+    const BatchRun run = for_each_batch(10, per_batch, 1, hooks, [](int, int) { return true; });
+    EXPECT_EQ(run.samples, per_batch);
+    EXPECT_EQ(run.ended_by, per_batch == 10 ? RunEnd::samples : RunEnd::interrupted);
+  }
+  FakeTime time{0, 0.5};
+  EXPECT_EQ(time.run(2.0, 4, 1).ended_by, RunEnd::samples);
+  EXPECT_EQ(time.run(2.0, 5, 1).ended_by, RunEnd::time_limit);
+}
+
+// Four times the error needs sixteen times the samples; an eighth of the time has an eighth.
+TEST(Stops, ProgressKnowsHowManySamplesThereWillBe) {
+  double now = 50;
+  const StopRule error{0, 0.1, {}}, time{8, 0, [&] { return now; }};
+  const StopClock by_error(error), by_time(time);
+  now = 51;
+  EXPECT_EQ(by_error.expected(100, 1 << 20, 0.4), 1600u);
+  EXPECT_EQ(by_error.expected(100, 1000, 0.4), 1000u);
+  EXPECT_EQ(by_error.expected(100, 1 << 20, 0.05), 100u);
+  EXPECT_EQ(by_error.expected(100, 1 << 20, {}), std::uint64_t{1} << 20);
+  EXPECT_EQ(by_time.expected(100, 1 << 20, {}), 800u);
+  EXPECT_EQ(by_time.expected(100, 300, {}), 300u);
 }
 
 // The error falls as the root of the samples; it is asked at the same numbers whatever the batches.

@@ -108,6 +108,58 @@ TEST(Samplers, EachSampleIsUniformAndPairsAreIndependent) {
   }
 }
 
+/// How the mean over a pixel's 64 samples of (u - 1/2) (v - 1/2), whose own mean is 0, varies with
+/// the seed, by what it is for independent numbers: u of one place in the blocks, v of another.
+double relative_variance(SamplerKind kind, std::pair<std::uint32_t, int> u,
+                         std::pair<std::uint32_t, int> v) {
+  constexpr int seeds = 300;
+  double sum2 = 0;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto first = block_of(kind, 64, u.first, seed),
+               second = block_of(kind, 64, v.first, seed);
+    double mean = 0;
+    for (std::size_t i = 0; i < 64; ++i) {
+      mean += (first[i][u.second] - 0.5) * (second[i][v.second] - 0.5) / 64;
+    }
+    sum2 += mean * mean / seeds;
+  }
+  return sum2 * 144 * 64;
+}
+
+// Numbers of two pairs that were shuffled alike would go along with each other within a pixel,
+// though each sample by itself was uniform over the seeds: then the mean varies as that of few
+// samples. Sobol's shuffle keeps runs of 2^m together, so that of n samples n / 2 are independent
+// in their first bits: up to twice the variance.
+TEST(Samplers, PairsAreShuffledApart) {
+  for (const SamplerKind kind : {SamplerKind::stratified, SamplerKind::sobol}) {
+    for (const int a : {0, 1}) {
+      for (const int b : {2, 3}) {
+        EXPECT_NEAR(relative_variance(kind, {2, a}, {2, b}), 1.3, 0.8) << a << b;
+      }
+    }
+    EXPECT_NEAR(relative_variance(kind, {2, 0}, {3, 0}), 1.3, 0.8);
+    EXPECT_NEAR(relative_variance(kind, {2, 2}, {4, 2}), 1.3, 0.8);
+    EXPECT_LT(relative_variance(kind, {2, 0}, {2, 1}), 0.2) << "a pair";
+  }
+}
+
+// A sample and the one that many later meet in a cell of 16 as often as any two.
+TEST(Samplers, RoundsOfStrataDoNotRepeat) {
+  constexpr int seeds = 400;
+  for (const int pair : {0, 2}) {
+    int equal = 0;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      const SamplerSource source{seed, make_sampler(SamplerKind::stratified, 16)};
+      const auto cell = [&](std::uint32_t sample) {
+        const Vec4 u = source.open({pixel, sample, 0}).draw(1);
+        return static_cast<int>(4 * u[pair]) * 4 + static_cast<int>(4 * u[pair + 1]);
+      };
+      for (std::uint32_t i = 0; i < 16; ++i) equal += cell(i) == cell(16 + i);
+    }
+    EXPECT_NEAR(equal, seeds, 5 * std::sqrt(seeds)) << "pair " << pair;
+  }
+}
+
 // The integral of x y over the unit square, 1/4: strata divide the variance of n numbers by about
 // n, Owen's nets by more.
 TEST(Samplers, IntegrateWithLessVariance) {

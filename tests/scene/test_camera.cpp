@@ -201,6 +201,18 @@ TEST(CameraOptions, TheAngleIsVertical) {
   EXPECT_EQ(c.fov_axis, FovAxis::vertical);
 }
 
+TEST(CameraOptions, APinholeHasNoFocus) {
+  CameraParameters pinhole;
+  pinhole.aperture = 0;
+  CameraOverrides overrides;
+  overrides.focus_distance = 3;
+  expect_error([&] { override_camera(pinhole, overrides); },
+               "--focus-distance 3: has no effect in the scene's pinhole camera");
+  overrides.aperture = 0.1f;
+  override_camera(pinhole, overrides);
+  EXPECT_EQ(pinhole.focus_distance, 3.0f);
+}
+
 TEST(CameraOptions, ErrorsNameTheOption) {
   const auto expect = [](const char* option, const auto& change) {
     CameraOverrides overrides;

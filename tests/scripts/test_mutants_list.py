@@ -1,4 +1,5 @@
 """The planted bugs of tests/mutants still apply to the sources, and the list is what it promises."""
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -33,6 +34,11 @@ class MutantsList(unittest.TestCase):
         mutant_list.mutated_files(mutants, ROOT / "src")
         self.assertGreaterEqual(len(mutants), 120)
         self.assertGreaterEqual(sum(m.is_device_only for m in mutants), 15)
+
+    def test_help_is_the_text_as_it_stands(self):
+        run = subprocess.run([sys.executable, ROOT / "scripts" / "mutants", "--help"], text=True,
+                             capture_output=True, check=True)
+        self.assertIn("ends with 1 where less than 95 % are caught. Tests that", run.stdout)
 
     def test_expressions_and_statements(self):
         number = mutant_list.zlib.crc32(b"one") | 1

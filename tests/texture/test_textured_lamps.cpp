@@ -66,8 +66,8 @@ TEST(TexturedLamps, TheirWeightTakesTheTexturesMeanIntoAccount) {
                       (0.2126 * 0.5 + 0.7152 * 0.5 + 0.0722 * 0.2)) /
                      16;
   const double board = 0.5 * ((0.2126 * 4 + 0.7152 * 1 + 0.0722 * 0.5) + 0.5);
-  EXPECT_NEAR(mean_luminance(scene.textures[0], scene.texels.data()), dim, 1e-6);
-  EXPECT_NEAR(mean_luminance(scene.textures[1], scene.texels.data()), board, 1e-6);
+  EXPECT_NEAR(mean_luminance(scene.textures.data(), 0, scene.texels.data()), dim, 1e-6);
+  EXPECT_NEAR(mean_luminance(scene.textures.data(), 1, scene.texels.data()), board, 1e-6);
   ASSERT_EQ(scene.light_list.lights.size(), 4u);
   const double powers[] = {dim * 0.5 * (0.2126 * 1 + 0.7152 * 2 + 0.0722 * 3),
                            board * 0.5 * (0.2126 * 2 + 0.7152 * 2 + 0.0722 * 1)};
@@ -83,10 +83,10 @@ TEST(TexturedLamps, MeansOfBytesAreLinear) {
   const unsigned char bytes[16] = {255, 255, 255, 255, 0, 0, 0, 255};
   scene.texels.resize(16);
   std::memcpy(scene.texels.data(), bytes, 16);
-  EXPECT_NEAR(mean_luminance(texture, scene.texels.data()), 0.5, 1e-6);
+  EXPECT_NEAR(mean_luminance(&texture, 0, scene.texels.data()), 0.5, 1e-6);
   texture.width = 1;
   scene.texels[0] = scene.texels[1] = scene.texels[2] = std::byte{188};
-  EXPECT_NEAR(mean_luminance(texture, scene.texels.data()), 0.5029, 1e-3) << "sRGB 188 / 255";
+  EXPECT_NEAR(mean_luminance(&texture, 0, scene.texels.data()), 0.5029, 1e-3) << "sRGB 188 / 255";
 }
 
 TEST(TexturedLamps, LightSamplingDoesNotChangeTheMean) {

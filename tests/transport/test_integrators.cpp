@@ -20,9 +20,10 @@ struct AmbientOcclusion {
     return Color(0.0f);
   }
 
-  template <class Traits>
+  template <class Traits, class Steps>
   PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
-                                  PathState& path, const PathLimits&, const Vec4& u, const Vec4&) {
+                                  PathState& path, const PathLimits&, const Steps& steps) {
+    const Vec4 u = steps.scatter();
     const Surface surface = surface_at<Traits>(scene, ray, hit);
     const bool front = dot(surface.point.normal, ray.direction) < 0.0f;
     const Frame frame = make_frame(front ? surface.point.normal : -surface.point.normal);
@@ -110,8 +111,9 @@ struct Executor {
   std::uint32_t path_count, finish_paths, half_ring;
   bool more = true;
 
+  template <class>
   static constexpr bool kinds_have_kernels = false;
-  static constexpr bool shades_in_steps = false;
+  static constexpr bool streams_shading = false;
   template <class>
   static constexpr bool traces_queues = false;
 

@@ -60,8 +60,7 @@ void follow(const Scene& scene, const SamplerSource& source, const PathLimits& l
     const Next next = stage(scene, 0, 0);
     ++path.rays;
     const Scattering expected =
-        shade_surface<Kind>(scene, ray, hit, path, limits, random.draw(scatter_block(path.rays)),
-                            random.draw(light_block(path.rays)));
+        shade_surface<Kind>(scene, ray, hit, path, limits, draw_steps<Kind>(random, path));
     alive = expected.alive, ray = expected.ray;
     EXPECT_EQ(slot.samples[number].radiance, add_rounded(before, expected.emitted));
     EXPECT_EQ(next.to, alive ? StageId::intersect : free_slot);

@@ -17,8 +17,9 @@ using SphereScene = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::
 template <bool persistent>
 class Notes {
  public:
+  template <class>
   static constexpr bool kinds_have_kernels = true;
-  static constexpr bool shades_in_steps = persistent;
+  static constexpr bool streams_shading = persistent;
   template <class Traits>
   static constexpr bool traces_queues = persistent;
 

@@ -159,6 +159,40 @@ void check_voting(const Options& options, const GivenOptions& given) {
   }
 }
 
+/// Another option leaves nothing that this one could change.
+struct InertRule {
+  const char* option;
+  bool (*holds)(const Options&);
+  const char* why;
+};
+
+constexpr InertRule inert_rules[] = {
+    {"mis", [](const Options& o) { return !o.nee; }, "with --nee off: no light is asked"},
+    {"light-selection", [](const Options& o) { return !o.nee; },
+     "with --nee off: no light is asked"},
+    {"mutation-size", [](const Options& o) { return o.large_step_probability == 1.0f; },
+     "with --large-step-probability 1: no step is a small one"},
+    {"finish-paths", [](const Options& o) { return o.integrator == IntegratorKind::mlt; },
+     "with --integrator mlt: chains go on to the last wave"},
+    {"focus-distance", [](const Options& o) { return o.camera.aperture == 0.0f; },
+     "with --aperture 0: all is in focus"},
+    {"builder", [](const Options& o) { return o.accel == AccelKind::brute; },
+     "with --accel brute: there is no tree"},
+    {"builder", [](const Options& o) { return o.accel == AccelKind::embree; },
+     "with --accel embree: it builds its own tree"},
+};
+
+/// A value that is the default asks for nothing, so that scripts may name it.
+void check_inert(const Options& options, const GivenOptions& given) {
+  for (const InertRule& rule : inert_rules) {
+    const OptionEntry& entry = find_option(rule.option);
+    const std::string value = entry.text(options);
+    if (!given.contains(rule.option) || !rule.holds(options)) continue;
+    if (value == entry.text(Options())) continue;
+    throw Error(fmt::format("--{} {}: has no effect {}", rule.option, value, rule.why));
+  }
+}
+
 }  // namespace
 
 void check_consistent(const Options& options, const GivenOptions& given) {
@@ -168,6 +202,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_film(options, given);
   check_camera(options.camera);
   check_voting(options, given);
+  check_inert(options, given);
   if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
     throw Error(
         fmt::format("--shade material: takes ranges of an ordered queue; --compaction {} has no "

@@ -32,9 +32,8 @@ constexpr const char* compact_text =
     "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
-    "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by "
-    "SIGTERM; the\n"
-    "SIGTERM; the image then has the samples that were finished. `ptexp compare --help` tells "
+    "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by\n"
+    "SIGTERM; the image then has the samples that were finished. `ptexp compare --help` tells\n"
     "more.";
 
 /// CLI11 splits the arguments and lays out the help; values are parsed by option_list, because
@@ -122,8 +121,7 @@ CompareCommand parse_compare(const Parser& parser) {
     throw Error(
         "compare: expected two images, `ptexp compare A B [--tolerance T] [--difference FILE]`");
   CompareCommand command{parser.image_a->results()[0], parser.image_b->results()[0]};
-  if (parser.difference->count() > 0)
-    command.difference = last_value(*parser.difference);
+  if (parser.difference->count() > 0) command.difference = last_value(*parser.difference);
   if (parser.tolerance->count() == 0) return command;
   const std::string text = last_value(*parser.tolerance);
   const char* end = text.data() + text.size();

@@ -41,6 +41,12 @@ void parse_kind(const std::string& text, RaysCommand& command) {
   }
 }
 
+void set_scene(const std::string& text, RaysCommand& command) {
+  if (!command.scene.empty())
+    refuse_value("scene", text, "expected either --scene or --mesh " + command.scene);
+  command.scene = text;
+}
+
 float parse_fov(const std::string& text) {
   return parse_number("vfov", text, "degrees between 0 and 180",
                       [](float x) { return x > 0.0f && x < 180.0f; });
@@ -79,7 +85,7 @@ std::vector<SubcommandOption<RaysCommand>> rays_options() {
   using S = const std::string&;
   return {
       {"mesh", "FILE", "Triangles, TRBMESH1; or --scene", [](C& c, S v) { c.scene = v; }},
-      {"scene", "NAME|FILE", "A scene, with its own camera", [](C& c, S v) { c.scene = v; }},
+      {"scene", "NAME|FILE", "A scene, with its own camera", [](C& c, S v) { set_scene(v, c); }},
       {"output", "FILE", "Rays, TRBRAYS1", [](C& c, S v) { c.output = v; }, true},
       {"kind", "KIND [primary]", "primary, ao, diffuse, or bounce:K, of the scene's paths",
        [](C& c, S v) { parse_kind(v, c); }},

@@ -8,12 +8,11 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <fstream>
 #include <span>
 
 #include "common/device/huge_pages.h"
 #include "common/film/develop.h"
-#include "common/memory_error.h"
+#include "common/host_memory.h"
 #include "common/scene/prepare_scene.h"
 #include "common/transport/mask.h"
 
@@ -23,24 +22,9 @@ namespace {
 // Large enough to keep the threads busy; the first ones, whose rate is not known yet, small enough
 // for a quick answer to an interruption.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 20;
-constexpr std::uint64_t first_paths = std::uint64_t{1} << 15;
-
-std::uint64_t free_host_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key, unit;
-  std::uint64_t kib = 0;
-  while (file >> key >> kib && std::getline(file, unit)) {
-    if (key == "MemAvailable:") return kib * 1024;
-  }
-  return ~std::uint64_t{0};  // unknown: let the allocation decide
-}
+constexpr std::uint64_t first_paths = std::uint64_t{1} << 12;
 
 }  // namespace
-
-void check_host_memory(std::uint64_t size_bytes, const std::string& purpose) {
-  const std::uint64_t available = free_host_memory();
-  if (size_bytes > available) throw memory_error("memory", purpose, size_bytes, available);
-}
 
 int cpu_threads(int wanted) {
   using tbb::global_control;

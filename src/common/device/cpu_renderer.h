@@ -127,7 +127,4 @@ class CpuRenderer : public FilmRenderer {
 /// process, which minds its affinity.
 int cpu_threads(int wanted);
 
-/// Throws Error when `size_bytes` exceed the memory that the machine has free.
-void check_host_memory(std::uint64_t size_bytes, const std::string& purpose);
-
 }  // namespace pt

@@ -1,14 +1,20 @@
 // Writing a file so that its readers find the old content or the new one, never a part.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 namespace pt {
 
 /// Throws Error when write_file_atomically(path, ...) could not begin: the folder is missing or
-/// closed to us, or `path` is a folder or write-protected. Leaves nothing behind.
+/// closed to us, or `path` is a folder or write-protected. Leaves nothing behind, and removes what
+/// a process left that was killed while it wrote to `path`.
 void check_writable(const std::string& path);
+
+/// Throws Error when the file system, or the process's limit of a file's size, has less room for a
+/// successor of `path` than `size_bytes`.
+void check_room(const std::string& path, std::uint64_t size_bytes);
 
 /// Replaces `path` by `bytes`: they go to a temporary file in the same folder, which is synced and
 /// then renamed. After any failure `path` is as it was and the temporary is gone. A new file gets
@@ -16,5 +22,8 @@ void check_writable(const std::string& path);
 /// replaced. A device or pipe (/dev/stdout) has nothing to protect and is written directly.
 /// Throws Error naming `path`.
 void write_file_atomically(const std::string& path, std::string_view bytes);
+
+/// Removes the temporary file of a write that will not go on. May be called by signal handlers.
+void remove_unfinished_file();
 
 }  // namespace pt

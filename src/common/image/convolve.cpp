@@ -1,15 +1,13 @@
 #include "common/image/convolve.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <vector>
 
 namespace pt {
 namespace {
 
-/// Adds `count` weighted values. Each sum adds its terms in the kernel's order, whoever calls this for
-/// how many at a time: so vectors of processors change no bit.
+/// Adds `count` weighted values. Each sum adds its terms in the kernel's order, whoever calls this
+/// for how many at a time: so vectors of processors change no bit.
 void add_weighted(const float* from, float weight, float* to, int count) {
   for (int i = 0; i < count; ++i) to[i] += weight * from[i];
 }
@@ -30,21 +28,21 @@ ImagePlane convolve(const ImagePlane& image, std::span<const float> x, std::span
   const auto row_of = [&](auto& plane, int row) {
     return plane.values.data() + std::ptrdiff_t{row} * image.width;
   };
-  tbb::parallel_for(0, image.height, [&](int row) {
+  for (int row = 0; row < image.height; ++row) {
     const int radius = static_cast<int>(x.size() / 2);
     const std::vector<float> from = padded(row_of(image, row), image.width, radius);
     for (std::size_t k = 0; k < x.size(); ++k) {
       add_weighted(&from[k], x[k], row_of(rows, row), image.width);
     }
-  });
-  tbb::parallel_for(0, image.height, [&](int row) {
+  }
+  for (int row = 0; row < image.height; ++row) {
     const int radius = static_cast<int>(y.size() / 2);
     for (int k = -radius; k <= radius; ++k) {
       const int from = std::clamp(row + k, 0, image.height - 1);
-      add_weighted(row_of(rows, from), y[static_cast<std::size_t>(k + radius)],
-                   row_of(result, row), image.width);
+      add_weighted(row_of(rows, from), y[static_cast<std::size_t>(k + radius)], row_of(result, row),
+                   image.width);
     }
-  });
+  }
   return result;
 }
 

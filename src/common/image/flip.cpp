@@ -1,11 +1,10 @@
 #include "common/image/flip.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "common/image/flip_filters.h"
+#include "common/image/flip_tiles.h"
 
 namespace pt {
 namespace {
@@ -110,11 +109,11 @@ Seen look(const Image& image, double pixels_per_degree, PixelOf&& pixel_of) {
   std::array<ImagePlane, 3> opponent;
   opponent.fill(ImagePlane(image.width, image.height));
   ImagePlane achromatic(image.width, image.height);
-  tbb::parallel_for(std::size_t{0}, achromatic.values.size(), [&](std::size_t i) {
+  for (std::size_t i = 0; i < achromatic.values.size(); ++i) {
     const Triple c = to_opponent(pixel_of(&image.rgb[3 * i]));
     for (std::size_t k = 0; k < 3; ++k) opponent[k].values[i] = static_cast<float>(c[k]);
     achromatic.values[i] = static_cast<float>((c[0] + 16) / 116);
-  });
+  }
   return {flip::blur(opponent, pixels_per_degree),
           flip::find_features(achromatic, pixels_per_degree)};
 }
@@ -126,21 +125,20 @@ Triple seen_color(const Seen& seen, std::size_t i) {
   return rgb;
 }
 
+/// Adds the errors of a part of two images, seen as `pixel_of` shows them, to the largest so far.
 /// pixel_of(rgb) gives the displayed colour, linear, in [0, 1].
 template <class PixelOf>
-std::vector<float> flip_of(const Image& test, const Image& reference, double pixels_per_degree,
-                           PixelOf&& pixel_of) {
+void find_errors(const Image& test, const Image& reference, double pixels_per_degree,
+                 PixelOf&& pixel_of, std::vector<float>& largest) {
   const Seen a = look(test, pixels_per_degree, pixel_of);
   const Seen b = look(reference, pixels_per_degree, pixel_of);
-  std::vector<float> errors(a.features.edges.values.size());
-  tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t i) {
+  for (std::size_t i = 0; i < largest.size(); ++i) {
     const double edges = std::abs(a.features.edges.values[i] - b.features.edges.values[i]);
     const double points = std::abs(a.features.points.values[i] - b.features.points.values[i]);
     const double feature = std::pow(std::max(edges, points) / std::sqrt(2.0), qf);
     const double color = color_error(seen_color(a, i), seen_color(b, i));
-    errors[i] = static_cast<float>(std::pow(color, 1 - feature));
-  });
-  return errors;
+    largest[i] = std::max(largest[i], static_cast<float>(std::pow(color, 1 - feature)));
+  }
 }
 
 /// Radiance from 0 to a value whose square is finite.
@@ -184,28 +182,33 @@ FlipExposures flip_exposures(const Image& reference) {
   return exposures;
 }
 
-std::vector<float> ldr_flip(const Image& test, const Image& reference, double pixels_per_degree) {
-  return flip_of(test, reference, pixels_per_degree, [](const float* c) {
-    return Triple{std::min(positive(c[0]), 1.0), std::min(positive(c[1]), 1.0),
-                  std::min(positive(c[2]), 1.0)};
+std::vector<float> ldr_flip(const Image& test, const Image& reference, const FlipView& view) {
+  return flip_by_tiles(test, reference, view, [&](const Image& a, const Image& b) {
+    std::vector<float> errors(a.rgb.size() / 3, 0.0f);
+    const auto displayed = [](const float* c) {
+      return Triple{std::min(positive(c[0]), 1.0), std::min(positive(c[1]), 1.0),
+                    std::min(positive(c[2]), 1.0)};
+    };
+    find_errors(a, b, view.pixels_per_degree, displayed, errors);
+    return errors;
   });
 }
 
-std::vector<float> hdr_flip(const Image& test, const Image& reference, double pixels_per_degree) {
+std::vector<float> hdr_flip(const Image& test, const Image& reference, const FlipView& view) {
   const FlipExposures exposures = flip_exposures(reference);
-  std::vector<float> largest(reference.rgb.size() / 3, 0.0f);
-  for (int i = 0; i < exposures.count; ++i) {
-    const double stops =
-        exposures.start + (exposures.stop - exposures.start) * i / (exposures.count - 1);
-    const double scale = std::exp2(stops);
-    const std::vector<float> errors =
-        flip_of(test, reference, pixels_per_degree, [&](const float* c) {
-          return Triple{aces(scale * positive(c[0])), aces(scale * positive(c[1])),
-                        aces(scale * positive(c[2]))};
-        });
-    for (std::size_t k = 0; k < errors.size(); ++k) largest[k] = std::max(largest[k], errors[k]);
-  }
-  return largest;
+  return flip_by_tiles(test, reference, view, [&](const Image& a, const Image& b) {
+    std::vector<float> errors(a.rgb.size() / 3, 0.0f);
+    for (int i = 0; i < exposures.count; ++i) {
+      const double stops =
+          exposures.start + (exposures.stop - exposures.start) * i / (exposures.count - 1);
+      const auto displayed = [scale = std::exp2(stops)](const float* c) {
+        return Triple{aces(scale * positive(c[0])), aces(scale * positive(c[1])),
+                      aces(scale * positive(c[2]))};
+      };
+      find_errors(a, b, view.pixels_per_degree, displayed, errors);
+    }
+    return errors;
+  });
 }
 
 }  // namespace pt

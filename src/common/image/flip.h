@@ -13,6 +13,12 @@ namespace pt {
 /// Pixels per degree of the papers' viewer: 0.7 m before a display 0.7 m wide of 3840 pixels.
 inline constexpr double flip_pixels_per_degree = 0.7 * 3840 / 0.7 * 3.14159265358979323846 / 180;
 
+/// How one looks, and at how much at once.
+struct FlipView {
+  double pixels_per_degree = flip_pixels_per_degree;
+  int tile = 256;  ///< pixels: large beside what the filters reach, small enough for a cache
+};
+
 /// The exposures, in stops, at which HDR images are looked at.
 struct FlipExposures {
   double start = 0, stop = 0;
@@ -23,12 +29,10 @@ struct FlipExposures {
 FlipExposures flip_exposures(const Image& reference);
 
 /// [y][x], of two images of one size. Values are linear and clamped to [0, 1].
-std::vector<float> ldr_flip(const Image& test, const Image& reference,
-                            double pixels_per_degree = flip_pixels_per_degree);
+std::vector<float> ldr_flip(const Image& test, const Image& reference, const FlipView& view = {});
 
 /// Of linear radiance: the largest LDR-FLIP of all exposures, tone mapped by the ACES curve. What
 /// is negative or not a number counts as 0.
-std::vector<float> hdr_flip(const Image& test, const Image& reference,
-                            double pixels_per_degree = flip_pixels_per_degree);
+std::vector<float> hdr_flip(const Image& test, const Image& reference, const FlipView& view = {});
 
 }  // namespace pt

@@ -1,5 +1,6 @@
 #include "common/image/flip_filters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -29,10 +30,21 @@ double sum_of(const Kernel& kernel) {
   return sum;
 }
 
+int blur_radius(double pixels_per_degree) {
+  return static_cast<int>(std::ceil(3 * std::sqrt(largest_b / (2 * pi * pi)) * pixels_per_degree));
+}
+
+double feature_deviation(double pixels_per_degree) {
+  return 0.5 * feature_width * pixels_per_degree;
+}
+
+int feature_radius(double pixels_per_degree) {
+  return static_cast<int>(std::ceil(3 * feature_deviation(pixels_per_degree)));
+}
+
 ImagePlane blur_channel(const ImagePlane& plane, const std::array<Gaussian, 2>& gaussians,
                         double pixels_per_degree) {
-  const int radius =
-      static_cast<int>(std::ceil(3 * std::sqrt(largest_b / (2 * pi * pi)) * pixels_per_degree));
+  const int radius = blur_radius(pixels_per_degree);
   ImagePlane result(plane.width, plane.height);
   double total = 0;
   for (const Gaussian& g : gaussians) {
@@ -71,6 +83,10 @@ ImagePlane length_of(const ImagePlane& plane, const Kernel& derivative, const Ke
 
 }  // namespace
 
+int reach(double pixels_per_degree) {
+  return std::max(blur_radius(pixels_per_degree), feature_radius(pixels_per_degree));
+}
+
 std::array<ImagePlane, 3> blur(const std::array<ImagePlane, 3>& opponent,
                                double pixels_per_degree) {
   std::array<ImagePlane, 3> result;
@@ -81,8 +97,8 @@ std::array<ImagePlane, 3> blur(const std::array<ImagePlane, 3>& opponent,
 }
 
 Features find_features(const ImagePlane& achromatic, double pixels_per_degree) {
-  const double deviation = 0.5 * feature_width * pixels_per_degree;
-  const int radius = static_cast<int>(std::ceil(3 * deviation));
+  const double deviation = feature_deviation(pixels_per_degree);
+  const int radius = feature_radius(pixels_per_degree);
   const auto gauss = [&](int i) { return std::exp(-i * i / (2 * deviation * deviation)); };
   Kernel across = make_kernel(radius, gauss);
   for (float& value : across) value /= static_cast<float>(sum_of(make_kernel(radius, gauss)));

@@ -10,6 +10,9 @@ namespace pt::flip {
 
 using Kernel = std::vector<float>;
 
+/// How far from a pixel the filters below look, in pixels along x and y.
+int reach(double pixels_per_degree);
+
 /// Contrast sensitivity as sums of Gaussians a sqrt(pi / b) exp(-pi^2 d^2 / b), d in degrees, for
 /// the three opponent channels.
 std::array<ImagePlane, 3> blur(const std::array<ImagePlane, 3>& opponent, double pixels_per_degree);

@@ -20,6 +20,8 @@ std::uint32_t samples_max(RayKind kind) {
   return kind == RayKind::diffuse ? std::numeric_limits<std::uint32_t>::max() : 1;
 }
 
+std::uint32_t rays_per_pixel(RayKind kind) { return kind == RayKind::ao ? ao_rays : 1; }
+
 template <class Traits>
 void follow(const RayPaths<Traits>& paths, RayKind kind, int bounces, std::uint32_t pixel,
             std::uint32_t sample, RayRecord* rays) {
@@ -42,7 +44,7 @@ void follow(const RayPaths<Traits>& paths, RayKind kind, int bounces, std::uint3
 template <class Traits>
 std::vector<RayRecord> collect(const RayPaths<Traits>& paths, RayKind kind, int bounces,
                                std::uint32_t pixels) {
-  const std::size_t per_pixel = kind == RayKind::ao ? ao_rays : 1;
+  const std::size_t per_pixel = rays_per_pixel(kind);
   std::vector<RayRecord> rays, made(per_pixel * pixels);
   for (std::uint32_t sample = 0; sample < samples_max(kind); ++sample) {
     tbb::parallel_for(std::uint32_t{0}, pixels, [&](std::uint32_t i) {
@@ -59,6 +61,11 @@ std::vector<RayRecord> collect(const RayPaths<Traits>& paths, RayKind kind, int 
 }
 
 }  // namespace
+
+std::uint64_t ray_bytes_max(RayKind kind, int size) {
+  const auto side = static_cast<std::uint64_t>(size);
+  return side * side * rays_per_pixel(kind) * sizeof(RayRecord);
+}
 
 RaySet generate_rays(RayKind kind, const SceneData& scene, int size, int bounces) {
   const Scene view = host_view(scene, size, size);

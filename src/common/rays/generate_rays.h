@@ -13,6 +13,9 @@ enum class RayKind {
   bounce,   ///< of the scene's own paths after some bounces (0: its camera rays); closest hit
 };
 
+/// Bytes that a file of such rays has at most: fewer where paths end before.
+std::uint64_t ray_bytes_max(RayKind kind, int size);
+
 /// Of a prepared scene, by pixels in Morton order of an image of `size` x `size`, a power of two.
 /// Paths that end before are left out. In their place, more paths are followed through each pixel:
 /// for diffuse rays until there are size^2, or the whole image finds none; for RayKind::bounce 64

@@ -68,7 +68,8 @@ class RayPaths {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;
       if (hit.is_miss()) return no_ray;
-      const Scattering next = scatter_path<Traits>(scene_, ray, hit, path, limits, random);
+      const Scattering next =
+          shade_surface<Traits>(scene_, ray, hit, path, limits, draw_steps<Traits>(random, path));
       if (!next.alive) return no_ray;
       ray = next.ray;
     }

@@ -102,6 +102,12 @@ void override_camera(CameraParameters& camera, const CameraOverrides& overrides)
                     overrides.aperture ? "aperture" : "focus-distance"));
   }
   camera.aperture = overrides.aperture.value_or(camera.aperture);
+  if (overrides.focus_distance && camera.aperture == 0.0f) {
+    throw Error(
+        fmt::format("--focus-distance {}: has no effect in the scene's pinhole camera; expected "
+                    "--aperture as well, which gives it a lens",
+                    *overrides.focus_distance));
+  }
   camera.focus_distance = overrides.focus_distance.value_or(camera.focus_distance);
 }
 

@@ -46,6 +46,9 @@ void build_structure(SceneData& scene, const Bounds& others) {
   const auto quad_order = order.subspan(sphere_count);
   scene.spheres = permuted(scene.spheres, sphere_order, 0);
   scene.sphere_material = permuted(scene.sphere_material, sphere_order, 0);
+  if (!scene.sphere_frames.empty()) {
+    scene.sphere_frames = permuted(scene.sphere_frames, sphere_order, 0);
+  }
   scene.quads = permuted(scene.quads, quad_order, sphere_count);
   scene.quad_material = permuted(scene.quad_material, quad_order, sphere_count);
   scene.primitive_numbers = permuted(scene.primitive_numbers, order, 0);

@@ -5,6 +5,7 @@
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
+#include "common/geometry/sphere_frame.h"
 #include "common/light/emission.h"
 #include "common/light/environment.h"
 #include "common/light/light_selector.h"
@@ -28,6 +29,7 @@ struct Scene {
   const Parameter* parameters = nullptr;             ///< see Material
   const Emission* emissions = nullptr;               ///< of those that shine
   const std::uint32_t* material_of = nullptr;        ///< [primitive]
+  const SphereFrame* sphere_frames = nullptr;        ///< [sphere]; null: no sphere needs one
   const std::uint32_t* primitive_numbers = nullptr;  ///< [primitive], as the scene's maker had it
   const std::uint32_t* lights = nullptr;             ///< primitives that emit (Lighting::emitters)
   const std::uint32_t* light_emission = nullptr;     ///< what they do

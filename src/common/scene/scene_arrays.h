@@ -19,6 +19,7 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.parameters, scene.parameters, "scene");
   function(view.emissions, scene.emissions, "scene");
   function(view.material_of, scene.material_of, "scene");
+  function(view.sphere_frames, scene.sphere_frames, "scene");
   function(view.primitive_numbers, scene.primitive_numbers, "scene");
   function(view.lights, scene.lights, "scene");
   function(view.light_emission, scene.light_emission, "scene");

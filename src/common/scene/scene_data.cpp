@@ -10,6 +10,15 @@ std::uint32_t SceneData::add_material(const MaterialDescription& material) {
 void SceneData::add_sphere(const Vec3& center, float radius, std::uint32_t material) {
   spheres.push_back({center, radius * radius});
   sphere_material.push_back(material);
+  if (!sphere_frames.empty()) sphere_frames.emplace_back();
+}
+
+void SceneData::add_sphere(const Vec3& center, float radius, std::uint32_t material,
+                           const SphereFrame& frame) {
+  sphere_frames.resize(spheres.size());
+  add_sphere(center, radius, material);
+  sphere_frames.resize(spheres.size());
+  sphere_frames.back() = frame;
 }
 
 void SceneData::add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material) {

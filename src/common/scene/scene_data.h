@@ -65,6 +65,7 @@ struct SceneData {
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
+  std::vector<SphereFrame> sphere_frames;                     ///< by sphere; empty: none needs one
   // Made from the above by prepare_scene():
   SceneTraits traits;
   PixelFilter filter;                      ///< without its table
@@ -95,6 +96,8 @@ struct SceneData {
 
   std::uint32_t add_material(const MaterialDescription& material);
   void add_sphere(const Vec3& center, float radius, std::uint32_t material);
+  void add_sphere(const Vec3& center, float radius, std::uint32_t material,
+                  const SphereFrame& frame);
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };
 

@@ -115,7 +115,8 @@ bool is_lean(const SceneData& scene, const Options& o) {
 bool has_primitives_only(const SceneData& scene) {
   return !is_limited(scene.camera) && scene.meshes.empty() && scene.delta_lights.empty() &&
          scene.environment.width == 0 && scene.sun.one_minus_cos == 0.0f &&
-         scene.textures.empty() && std::ranges::none_of(scene.materials, needs_triangles);
+         scene.textures.empty() && scene.sphere_frames.empty() &&
+         std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 MegakernelKind automatic_kernel(const SceneData& scene, const Options& options) {

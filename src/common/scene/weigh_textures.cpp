@@ -10,17 +10,25 @@
 
 namespace pt {
 
-double mean_luminance(const Texture& texture, const std::byte* texels) {
+double mean_luminance(const Texture* textures, std::uint32_t number, const std::byte* texels,
+                      const Color& factor) {
+  const Texture& texture = textures[number];
   if (texture.kind == TextureKind::checkerboard) {
-    return 0.5 * (double{luminance(texture.color0)} + double{luminance(texture.color1)});
+    const auto mean_of = [&](int square, const Color& color) {
+      const std::uint32_t nested = texture.nested[square];
+      return nested == no_texture ? double{luminance(factor * color)}
+                                  : mean_luminance(textures, nested, texels, factor * color);
+    };
+    return 0.5 * (mean_of(0, texture.color0) + mean_of(1, texture.color1));
   }
+  const Color color = factor * texture.color0;
   // Deterministic: the sum must not depend on the number of threads.
   const double sum = tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::uint32_t>(0, texture.height, 64), 0.0,
       [&](const tbb::blocked_range<std::uint32_t>& rows, double part) {
         for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
           for (std::uint32_t x = 0; x < texture.width; ++x)
-            part += std::fmax(0.0f, luminance(texture.color0 * load_texel(texture, texels, x, y)));
+            part += std::fmax(0.0f, luminance(color * load_texel(texture, texels, x, y)));
         }
         return part;
       },
@@ -32,8 +40,8 @@ void weigh_emission_textures(SceneData& scene) {
   for (MaterialDescription& material : scene.materials) {
     Emission& emission = material.emission;
     if (emission.texture == no_texture || is_black(emission.radiance)) continue;
-    const Texture& texture = scene.textures[emission.texture];
-    const auto mean = static_cast<float>(mean_luminance(texture, scene.texels.data()));
+    const auto mean = static_cast<float>(
+        mean_luminance(scene.textures.data(), emission.texture, scene.texels.data()));
     emission.texture_mean = std::isfinite(mean) ? mean : 1.0f;
     if (emission.texture_mean == 0.0f) emission.radiance = Color(0.0f);  // nothing shines
   }

@@ -105,10 +105,14 @@ PT_HD Color sample_image(const Texture& texture, const std::byte* texels, const 
   return interpolate(head, foot, y.t);
 }
 
-/// Two colours on squares of half a unit, as Mitsuba's texture `checkerboard` has them.
-PT_HD Color sample_checkerboard(const Texture& texture, const Vec2& uv) {
+/// Squares of half a unit, as Mitsuba's texture `checkerboard` has them: whether this is one of the
+/// first colour.
+PT_HD bool is_first_square(const Vec2& uv) {
   const bool right = uv.x - floorf(uv.x) > 0.5f, upper = uv.y - floorf(uv.y) > 0.5f;
-  return right == upper ? texture.color0 : texture.color1;
+  return right == upper;
+}
+PT_HD Color sample_checkerboard(const Texture& texture, const Vec2& uv) {
+  return is_first_square(uv) ? texture.color0 : texture.color1;
 }
 
 /// The coordinates of a surface to the texture's.
@@ -118,12 +122,28 @@ PT_HD Vec2 map_coordinates(const Texture& texture, const Vec2& uv) {
           fused_multiply_add(b[0], uv.x, fused_multiply_add(b[1], uv.y, b[2]))};
 }
 
-/// The linear colour of a texture at the coordinates of a surface. `texels` is the scene's texel
-/// memory, 16-byte aligned.
+/// The linear colour, at the coordinates of a surface, of a texture that names no others. `texels`
+/// is the scene's texel memory, 16-byte aligned.
 PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, const Vec2& uv) {
   const Vec2 mapped = map_coordinates(texture, uv);
   if (texture.kind == TextureKind::checkerboard) return sample_checkerboard(texture, mapped);
   return multiply_rounded(sample_image(texture, texels, mapped), texture.color0);
+}
+
+/// The same of any of the scene's textures, by its number. What a checkerboard names has its own
+/// map of the surface's coordinates, as in Mitsuba.
+PT_HD Color sample_texture(const Texture* textures, std::uint32_t number, const std::byte* texels,
+                           const Vec2& uv) {
+  const Texture* texture = &textures[number];
+  Color factor(1.0f);
+  while (texture->kind == TextureKind::checkerboard) {
+    const bool first = is_first_square(map_coordinates(*texture, uv));
+    const std::uint32_t nested = texture->nested[first ? 0 : 1];
+    if (nested == no_texture) break;
+    factor = multiply_rounded(factor, first ? texture->color0 : texture->color1);
+    texture = &textures[nested];
+  }
+  return multiply_rounded(factor, sample_texture(*texture, texels, uv));
 }
 
 }  // namespace pt

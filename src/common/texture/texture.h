@@ -5,6 +5,8 @@
 
 namespace pt {
 
+inline constexpr std::uint32_t no_texture = 0xffffffffu;
+
 enum class TextureKind : std::uint8_t { image, checkerboard };
 enum class TextureFormat : std::uint8_t {
   srgb8,    ///< 4 bytes a texel, R G B A; R, G and B in the sRGB curve
@@ -32,8 +34,8 @@ struct alignas(16) Texture {
   float v_row[3] = {0, 1, 0};
   Color color0 = Color(1.0f);  ///< image: multiplies; checkerboard: the square at (0, 0)
   Color color1 = Color(0.0f);  ///< checkerboard: the others
+  /// Checkerboard: the numbers of earlier textures that the colours multiply.
+  std::uint32_t nested[2] = {no_texture, no_texture};
 };
-
-inline constexpr std::uint32_t no_texture = 0xffffffffu;
 
 }  // namespace pt

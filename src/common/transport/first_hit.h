@@ -40,7 +40,8 @@ PT_HD Color sampled_albedo(const Scene& scene, const Ray& ray, Surface surface, 
   const SurfaceParameters<Traits> parameters(scene, surface);
   visit<typename Traits::BsdfList>(surface.material.kind, parameters, [&](const auto& bsdf) {
     const BsdfSample sample = bsdf.sample(wo, Vec3(u));
-    albedo = sample.outside * sample.weight;
+    // Beyond a boundary radiance is eta^2 times that before it, in glass or out of it.
+    albedo = (sample.eta * sample.eta) * sample.weight;
   });
   return albedo;
 }
@@ -62,6 +63,9 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   const std::uint32_t primitives = scene.primitives.count();
   if (hit.primitive < primitives) {
     first.primitive = scene.primitive_numbers[hit.primitive];
+    if constexpr (Traits::lighting == Lighting::full) {
+      if (surface.material.is(Material::textured)) first.uv.y = 1.0f - first.uv.y;
+    }
     return first;
   }
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {

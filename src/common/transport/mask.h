@@ -59,7 +59,7 @@ PT_HD bool is_limited_camera_ray(const Scene& scene, std::uint32_t ray_key) {
 
 PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& uv) {
   if (opacity.texture == no_texture) return opacity.offset;
-  const Color c = sample_texture(scene.textures[opacity.texture], scene.texels, uv);
+  const Color c = sample_texture(scene.textures, opacity.texture, scene.texels, uv);
   return fused_multiply_add(opacity.scale, grey_of(c), opacity.offset);
 }
 

@@ -1,10 +1,10 @@
 // The contract of an integrator: what a path is worth where it leaves the scene, and what a surface
 // does with it. The modes call nothing else of an integrator, so it does not know how it is run:
 //   Color miss<lighting>(scene, direction, path, limits)   added to the sample; the path ends
-//   Scattering surface<Traits>(scene, ray, hit, path, limits, scatter, light)
+//   Scattering surface<Traits>(scene, ray, hit, path, limits, steps)
 //                                                          see shade_surface.h
-// `path` may change in surface(), but not in miss(). The blocks of random numbers `scatter` and
-// `light` are those of the ray that hit.
+// `path` may change in surface(), but not in miss(). `steps` (surface_steps.h) has the blocks of
+// random numbers of the ray that hit, and may take results before surface() returns.
 //
 // Adding one: a file here, its name among the IntegratorKinds, and its type with the kinds of
 // scenes for which it has kernels in render/dispatch.h. tests/transport/test_integrators.cpp has a
@@ -24,15 +24,6 @@ struct PathIntegrator {
     return shade_miss<lighting>(scene, direction, path, limits.mis);
   }
 
-  template <class Traits>
-  PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
-                                  PathState& path, const PathLimits& limits, const Vec4& scatter,
-                                  const Vec4& light) {
-    return shade_surface<Traits>(scene, ray, hit, path, limits, scatter, light);
-  }
-
-  /// The same in steps (surface_steps.h), for schedules that are short of registers: where
-  /// Executor::shades_in_steps, an integrator has it, too.
   template <class Traits, class Steps>
   PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
                                   PathState& path, const PathLimits& limits, const Steps& steps) {

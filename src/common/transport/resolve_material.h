@@ -29,17 +29,17 @@ PT_HD MapFrame map_frame(const Surface& surface, bool turned) {
 }
 
 /// The normal of a normal map, or of a bump map, in the frame; not of unit length.
-PT_HD Vec3 mapped_normal(const Texture& texture, const std::byte* texels, const Surface& surface,
+PT_HD Vec3 mapped_normal(const Texture* textures, const std::byte* texels, const Surface& surface,
                          const MapFrame& frame, const Parameter& map) {
   if (surface.material.node == MaterialNode::bump_map) {
-    const Vec2 slope = map.value.x * texture_gradient(texture, texels, surface.uv);
+    const Vec2 slope = map.value.x * texture_gradient(textures[map.texture], texels, surface.uv);
     const auto along = [&](const Vec3& dp, float height) {
       return Vec3(dot(frame.s, dp), dot(frame.t, dp), height);
     };
     const Vec3 n = cross_rounded(along(surface.dp_du, slope.x), along(surface.dp_dv, slope.y));
     return n.z < 0.0f ? -n : n;
   }
-  Vec3 n = 2.0f * sample_texture(texture, texels, surface.uv) - Vec3(1.0f);
+  Vec3 n = 2.0f * sample_texture(textures, map.texture, texels, surface.uv) - Vec3(1.0f);
   if (surface.material.node == MaterialNode::gltf_normal_map) {
     n.x *= map.value.x, n.y *= map.value.x;
     if (dot(frame.t, surface.dp_dv) < 0.0f) n.y = -n.y;
@@ -63,7 +63,7 @@ PT_NOINLINE inline TurnedNormal turned_normal(Surface surface, Parameter map,
                                  surface.map_roughness2};
   if (map.texture == no_texture) return unturned;
   const MapFrame frame = map_frame(surface, turned);
-  const Vec3 n = mapped_normal(textures[map.texture], texels, surface, frame, map);
+  const Vec3 n = mapped_normal(textures, texels, surface, frame, map);
   const float length2 = dot(n, n);
   if (!(length2 > 0.0f)) return unturned;
   const Vec3 local = normalize(n);

@@ -10,13 +10,13 @@ namespace pt {
 /// miss loads and then discards.
 template <class Traits>
 PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                           const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
+                           const PathLimits& limits, const DrawnSteps& steps) {
   using Integrator = typename Traits::Integrator;
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
   const Color sky = Integrator::template miss<Traits::lighting>(scene, ray.direction, path, limits);
   Scattering result = Integrator::template surface<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit,
-                                                           path, limits, scatter, light);
+                                                           path, limits, steps);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;

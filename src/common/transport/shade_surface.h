@@ -179,10 +179,4 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   return result;
 }
 
-template <class Traits>
-PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                               const PathLimits& limits, const Vec4& scatter, const Vec4& light) {
-  return shade_surface<Traits>(scene, ray, hit, path, limits, DrawnSteps{scatter, light});
-}
-
 }  // namespace pt

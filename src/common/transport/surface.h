@@ -23,18 +23,18 @@ struct Surface {
 /// c, multiplied by a texture of this number where there is one.
 PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, const Vec2& uv) {
   if (texture == no_texture) return c;
-  return c * sample_texture(scene.textures[texture], scene.texels, uv);
+  return c * sample_texture(scene.textures, texture, scene.texels, uv);
 }
 
 /// The same, not inlined: a lookup's code is long, and there would be dozens of it.
-PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const std::byte* texels,
-                                          Vec2 uv) {
-  return c * sample_texture(*texture, texels, uv);
+PT_NOINLINE inline Color multiply_texture(Color c, const Texture* textures, std::uint32_t number,
+                                          const std::byte* texels, Vec2 uv) {
+  return c * sample_texture(textures, number, texels, uv);
 }
 PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
                            const Vec2& uv) {
   if (texture == no_texture) return c;
-  return multiply_texture(c, &scene.textures[texture], scene.texels, uv);
+  return multiply_texture(c, scene.textures, texture, scene.texels, uv);
 }
 
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is
@@ -180,6 +180,20 @@ PT_HD std::uint32_t material_number_at(const Scene& scene, const Hit& hit) {
              : scene.triangles.triangles[hit.primitive - primitives].material;
 }
 
+/// A sphere in a scene of which some have a frame.
+PT_HD Surface framed_sphere(const Scene& scene, const Hit& hit, Surface surface) {
+  const SphereFrame frame = load_wide(&scene.sphere_frames[hit.primitive]);
+  const Vec3 local = frame.local(surface.point.normal);
+  if (surface.material.is(Material::textured)) surface.uv = sphere_uv(local);
+  if (surface.material.is(Material::tangents)) {
+    const float radius = scene.primitives.spheres[hit.primitive].radius();
+    surface.dp_du = sphere_dp_du(frame, local, radius);
+    surface.dp_dv = sphere_dp_dv(frame, local, radius);
+  }
+  surface.point.normal = surface.shading_normal = frame.side * surface.point.normal;
+  return surface;
+}
+
 template <class Traits>
 PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
@@ -189,7 +203,11 @@ PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   }
   const SurfacePoint point = surface_point(scene.primitives, ray, hit);
   const std::uint32_t material = scene.material_of[hit.primitive];
-  return {point, point.normal, material, scene.material(material)};
+  const Surface surface = {point, point.normal, material, scene.material(material)};
+  if constexpr (Traits::lighting == Lighting::full) {  // where there are no quads
+    if (scene.sphere_frames != nullptr) return framed_sphere(scene, hit, surface);
+  }
+  return surface;
 }
 
 }  // namespace pt

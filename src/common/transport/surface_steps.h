@@ -1,6 +1,6 @@
 // What shading a surface asks for and tells on its way. Registers are what limits it on a GPU: a
-// caller that has a place for a thing is told of it as soon as it is known, and numbers are drawn
-// when they are needed, so that nobody keeps them meanwhile.
+// caller that has memory for a result is told of it as soon as it is known, and numbers are drawn
+// when they are needed, so that their live ranges are short.
 #pragma once
 
 #include "common/sampling/random.h"
@@ -23,12 +23,35 @@ struct DrawnSteps {
   PT_HD void aim(const ShadowRay&) const {}
 };
 
-/// What steps return that keep no numbers. Anew each time: the compiler would keep a block that it
-/// recognises. Source: one whose streams have no state.
-template <class Source>
-PT_HD Vec4 draw_late(const Source& source, const PathId& id, std::uint32_t block) {
-  auto stream = source.open(id);
-  return stream.draw(float_to_bits(anew(bits_to_float(block))));
-}
+/// Streams results to a sink (path_step.h), to shorten live ranges. It has besides
+///   void aim(const PathState&, const ShadowRay&)  the way of a shadow ray that may be cast
+/// Source: one whose streams have no state. `samples` knows a path's name.
+template <class Source, class Samples, class Sink>
+struct StreamedSteps {
+  const Source& source;
+  const Samples& samples;
+  const PathState& path;
+  Sink& sink;
+
+  PT_HD Vec4 scatter() const { return draw(scatter_block(path.rays)); }
+  PT_HD Vec4 light() const { return draw(light_block(path.rays)); }
+  PT_HD Color emit(const Color& emitted) const {
+    sink.emit(path, emitted);
+    return Color(0.0f);
+  }
+  static constexpr bool aims = true;
+  PT_HD void aim(const ShadowRay& shadow) const { sink.aim(path, shadow); }
+
+ private:
+  /// The block's number is hidden from the optimiser, which else would keep a block that it
+  /// recognises in registers.
+  PT_HD Vec4 draw(std::uint32_t block) const {
+    auto stream = source.open(samples.id_of(path.number));
+    return stream.draw(float_to_bits(anew(bits_to_float(block))));
+  }
+};
+template <class Source, class Samples, class Sink>
+StreamedSteps(const Source&, const Samples&, const PathState&, Sink&)
+    -> StreamedSteps<Source, Samples, Sink>;
 
 }  // namespace pt

@@ -73,6 +73,15 @@ TEST(GltfMaterials, CoatSheenAndSpecular) {
   EXPECT_NEAR(std::pow((eta - 1) / (eta + 1), 2), 0.01, 1e-6);
 }
 
+TEST(GltfMaterials, SpecularColoursCount) {
+  const MaterialDescription m = material_of(
+      with_material({{"extensions",
+                      {{"KHR_materials_specular",
+                        {{"specularFactor", 0.5}, {"specularColorFactor", {0.2, 0.8, 0.4}}}}}}}));
+  const double eta = m.scalar(4);
+  EXPECT_NEAR(std::pow((eta - 1) / (eta + 1), 2), 0.04 * 0.5 * 0.8, 1e-6);
+}
+
 TEST(GltfMaterials, SpecularGlossinessIsDiffuse) {
   const MaterialDescription material = material_of(with_material(
       {{"extensions",

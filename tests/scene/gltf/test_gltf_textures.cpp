@@ -128,7 +128,9 @@ TEST(GltfTextures, ImagesInBufferViewsAndFiles) {
   TempFolder folder;
   std::filesystem::create_directory(folder.file("sub"));
   write_text(folder.file("scene.gltf"), external.gltf());
-  expect_error([&] { load_gltf(folder.file("scene.gltf"), {}); }, "images[0]: cannot read");
+  LoadOptions strict;
+  strict.strict = true;
+  expect_error([&] { load_gltf(folder.file("scene.gltf"), strict); }, "images[0]: cannot read");
   write_text(folder.file("sub/four texels.bmp"), four_texels());
   const SceneData from_file = load_gltf(folder.file("scene.gltf"), {});
   EXPECT_EQ(texel_at(from_file, base_texture(from_file), 0.75f, 0.75f), (std::vector{0, 255, 0}));
@@ -193,9 +195,86 @@ TEST(GltfTextures, NumbersThatCannotBeReadLeaveTheFactor) {
   }
   maker.root["textures"][1] = {{"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}};
   EXPECT_EQ(Loaded(maker).count("textures[1].source"), 1u);
-  maker.root["textures"][1] = {{"source", 1}};
-  pbr["baseColorTexture"] = {{"index", 1}};
-  expect_error([&] { Loaded first_rank(maker); }, "images[1]");
+}
+
+// A base colour, what is emitted, alpha and a normal map, of one image that we lack: KTX2 by its
+// extension and by its name, and no image at all.
+TEST(GltfTextures, ColorsThatCannotBeReadLeaveTheFactor) {
+  GltfMaker maker = with_texture();
+  maker.root["materials"][0] = {
+      {"pbrMetallicRoughness",
+       {{"baseColorFactor", {0.5, 0.25, 0.125, 0.75}}, {"baseColorTexture", {{"index", 0}}}}},
+      {"alphaMode", "BLEND"},
+      {"emissiveFactor", {1, 0.5, 0.25}},
+      {"emissiveTexture", {{"index", 0}}},
+      {"normalTexture", {{"index", 0}}}};
+  maker.root["extensionsUsed"] = maker.root["extensionsRequired"] = {"KHR_texture_basisu"};
+  const Json textures[] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}},
+                           {{"source", 0}}};
+  const Json images[] = {{{"uri", "picture.ktx2"}, {"mimeType", "image/ktx2"}},
+                         {{"uri", "data:image/png;base64,AAAA"}}};
+  for (const Json& texture : textures) {
+    for (const Json& image : images) {
+      maker.root["textures"][0] = texture, maker.root["images"][0] = image;
+      const Loaded loaded(maker);
+      const MaterialDescription& m = loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
+      EXPECT_EQ(m.node, MaterialNode::none) << "no map";
+      EXPECT_EQ(m.color(0), Color(0.5f, 0.25f, 0.125f));
+      EXPECT_EQ(m.emission.radiance, Color(1, 0.5f, 0.25f));
+      EXPECT_EQ(m.opacity.offset, 0.75f);
+      EXPECT_TRUE(m.opacity.is_constant());
+      EXPECT_FALSE(m.is_textured());
+      EXPECT_EQ(loaded.count("the factor alone is used"), 1u);
+      EXPECT_EQ(loaded.count("there is no map"), 1u);
+      expect_error([&] { Loaded strict(maker, true); }, "--strict");
+    }
+  }
+  maker.root["textures"][0] = {{"source", 7}};
+  expect_error([&] { Loaded wrong(maker); }, "textures[0].source");
+}
+
+// Beside an extension's image, one that we can read.
+TEST(GltfTextures, TheFallbackOfAnExtensionIsUsed) {
+  GltfMaker maker = with_texture();
+  maker.root["textures"][0]["extensions"] = {{"KHR_texture_basisu", {{"source", 1}}}};
+  maker.root["images"].push_back({{"uri", "picture.ktx2"}});
+  maker.root["extensionsUsed"] = {"KHR_texture_basisu"};
+  const Loaded loaded(maker);
+  EXPECT_EQ(texel_at(loaded.scene, base_texture(loaded.scene), 0.25f, 0.75f),
+            (std::vector{255, 0, 0}));
+  EXPECT_EQ(loaded.count("the factor alone is used"), 0u);
+}
+
+// By the extension's matrices: translation * rotation * scale, of (u, v) with v downwards.
+TEST(GltfTextures, RotationsComeAfterScales) {
+  const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+  const Loaded loaded(
+      with_texture({{"extensions",
+                     {{"KHR_texture_transform",
+                       {{"offset", {0.1, 0.2}}, {"rotation", angle}, {"scale", {2, 0.5}}}}}}}));
+  const double u = 0.3, v = 0.4, x = 2 * u, y = 0.5 * v;
+  const Vec2 mapped = map_coordinates(base_texture(loaded.scene), Vec2(u, 1 - v));
+  EXPECT_NEAR(mapped.x, c * x + s * y + 0.1, 1e-6);
+  EXPECT_NEAR(1 - mapped.y, -s * x + c * y + 0.2, 1e-6);
+}
+
+// The texels' red is 1, 0, 0, 1; their green 0, 1, 0, 1; their blue 0, 0, 1, 1.
+TEST(GltfTextures, TransmissionIsRed) {
+  GltfMaker maker = with_texture();
+  std::string texels = four_texels();
+  texels[54 + 5] = '\0';  // the white texel's red
+  maker.root["images"][0]["uri"] = "data:image/bmp;base64," + base64(texels);
+  maker.root["materials"][0]["extensions"] = {
+      {"KHR_materials_transmission",
+       {{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}}};
+  const Loaded loaded(maker);
+  const Parameter& p = loaded.scene.materials.at(0).parameters[3];
+  double sum = 0;
+  for (const Vec2 uv :
+       {Vec2(0.25f, 0.25f), Vec2(0.75f, 0.25f), Vec2(0.25f, 0.75f), Vec2(0.75f, 0.75f)}) {
+    sum += sample_texture(loaded.scene.textures.at(p.texture), loaded.scene.texels.data(), uv).x;
+  }
+  EXPECT_EQ(sum, 1.0);  // green and blue are 2
 }
 
 TEST(GltfTextures, OtherCoordinatesAreReported) {

@@ -43,6 +43,10 @@ TEST(GltfLights, Spot) {
   EXPECT_NEAR(light.cos_inner, std::cos(0.5), 1e-6);
   EXPECT_NEAR(light.cos_outer, std::cos(1.0), 1e-6);
   EXPECT_EQ(loaded.count("ranges of lights"), 1u);
+  // The square of what the specification's lightAngleScale and -Offset make of the cosine.
+  const double scale = 1 / (std::cos(0.5) - std::cos(1.0)), cosine = std::cos(0.8);
+  EXPECT_NEAR(spot_share(light, static_cast<float>(cosine)),
+              std::pow(scale * (cosine - std::cos(1.0)), 2), 1e-5);
 }
 
 TEST(GltfLights, Directional) {

@@ -46,27 +46,6 @@ TEST(MitsubaColor, rgbInAllForms) {
   EXPECT_EQ(bright.count("above 1"), 1);
 }
 
-TEST(MitsubaColor, spectraAreSeenByTheObserver) {
-  const std::string list = "value=\"400:0.1,500:.1,600:.2,700:.2\"/>";
-  // Golden, to what the fits of the observer are worth.
-  expect_near(reflectance("<spectrum name=\"reflectance\" " + list),
-              {0.223116f, 0.140664f, 0.0925723f}, 2e-3f);
-  expect_near(radiance("<spectrum name=\"radiance\" value=\"400:1,500:1,600:2,700:2\"/>"),
-              {2.60267f, 1.34425f, 0.831981f}, 0.03f);
-  expect_near(radiance("<spectrum name=\"radiance\" value=\"2\"/>"), {2.40959f, 1.89658f, 1.81783f},
-              1e-4f);
-  EXPECT_EQ(radiance("<spectrum name=\"radiance\" value=\"2\"/>", "0.6.0"), Color(2.0f));
-  EXPECT_EQ(reflectance("<spectrum name=\"reflectance\" value=\"0.5\"/>"), Color(0.5f));
-  expect_near(reflectance("<spectrum name=\"reflectance\" value=\"300:0.7, 900:0.7\"/>"),
-              Color(0.7f));
-  EXPECT_EQ(radiance("<float name=\"radiance\" value=\"2\"/>"), Color(2.0f));
-  expect_error([&] { reflectance("<spectrum name=\"reflectance\" value=\"500:1,400:1\"/>"); },
-               "ascending");
-  const Color warm = radiance("<blackbody name=\"radiance\" temperature=\"2700K\"/>", "0.6.0");
-  EXPECT_GT(warm.x, warm.y);
-  EXPECT_GT(warm.y, warm.z);
-}
-
 TEST(MitsubaSurface, nearestMaterials) {
   EXPECT_TRUE(material_with("").one_sided);
   EXPECT_EQ(material_with("").color(0), Color(0.5f));

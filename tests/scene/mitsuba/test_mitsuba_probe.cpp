@@ -103,6 +103,10 @@ void probe_spheres(const SceneData& scene, const DVec3& o, const DVec3& d, Probe
     if (t <= 1e-6 || t >= nearest.t) continue;
     const DVec3 normal = glm::normalize(t * d - to_center);
     nearest = {t, normal, normal, std::nullopt, scene.sphere_material[i]};
+    if (scene.sphere_frames.empty()) continue;
+    const SphereFrame& frame = scene.sphere_frames[i];
+    nearest.uv = sphere_uv(frame.local(normal));
+    nearest.side *= frame.side, nearest.shading *= frame.side;
   }
 }
 

@@ -131,15 +131,36 @@ TEST(MitsubaShape, tessellationsHaveTheAreaOfTheirShape) {
   const double pi_ = std::acos(-1.0);
   const Mesh ellipsoid = only_mesh(shape("sphere", "<scale value=\"1 2 3\"/>"));
   EXPECT_NEAR(volume(ellipsoid), 8 * pi_, 8 * pi_ * 4e-4);
-  const Mesh inside_out =
-      only_mesh(shape("sphere", "", "<boolean name=\"flip_normals\" value=\"true\"/>"));
-  EXPECT_NEAR(volume(inside_out), -4.0 / 3 * pi_, 2e-3);
+  const Mesh inside_out = only_mesh(shape("sphere", "<scale value=\"1 2 3\"/>",
+                                          "<boolean name=\"flip_normals\" value=\"true\"/>"));
+  EXPECT_NEAR(volume(inside_out), -8 * pi_, 8 * pi_ * 4e-4);
   EXPECT_NEAR(area(only_mesh(shape("disk", "<scale value=\"2\"/>"))), 4 * pi_, 2e-3);
   EXPECT_NEAR(area(only_mesh(shape("cylinder", "",
                                    "<point name=\"p0\" value=\"1,1,1\"/>"
                                    "<point name=\"p1\" value=\"1,1,4\"/>"
                                    "<float name=\"radius\" value=\"0.5\"/>"))),
               3 * pi_, 1e-3);
+}
+
+TEST(MitsubaShape, disksKnowHowFarTheirAnglesAreApart) {
+  const SceneData scene =
+      load_xml(shape("disk", "",
+                     "<bsdf type=\"bumpmap\"><texture type=\"checkerboard\"/><bsdf "
+                     "type=\"diffuse\"/></bsdf>"))
+          .scene;
+  const Mesh& mesh = scene.meshes.at(0);
+  EXPECT_NEAR(area(mesh), std::acos(-1.0), 5e-4);
+  double error = 0;  // of dp/dv, along the circle 2 pi r, on average over the area
+  for (const TriangleIndices& t : mesh.triangles) {
+    const auto& [a, b, c] = t.v;
+    const Vec3 p = mesh.positions[b] - mesh.positions[a], q = mesh.positions[c] - mesh.positions[a];
+    const Vec2 s = mesh.uvs[b] - mesh.uvs[a], r = mesh.uvs[c] - mesh.uvs[a];
+    const Vec3 dp_dv = (-r.x * p + s.x * q) / (s.x * r.y - s.y * r.x);
+    const Vec3 middle = (mesh.positions[a] + mesh.positions[b] + mesh.positions[c]) / 3.0f;
+    const Vec3 exact = 2 * pi * Vec3(middle.y, -middle.x, 0);  // our v goes the other way
+    error += 0.5 * glm::length(glm::cross(p, q)) * glm::length(dp_dv - exact) / glm::length(exact);
+  }
+  EXPECT_LT(error / std::acos(-1.0), 0.03);
 }
 
 TEST(MitsubaShape, normalsAreOnTheSideOfTheTriangles) {

@@ -10,6 +10,7 @@
 #include "common/scene/builtin/generate_terrain.h"
 #include "common/scene/builtin/hidden_light_scenes.h"
 #include "common/scene/builtin/quad_scenes.h"
+#include "common/scene/builtin/scene_memory.h"
 #include "common/scene/prepare_scene.h"
 
 namespace pt {
@@ -35,20 +36,27 @@ SceneData make_sphere_world(SphereWorldKind kind, std::uint32_t count,
 
 template <SphereWorldKind kind>
 SceneData make_spheres(const SceneRequest& request) {
-  return make_sphere_world(kind, static_cast<std::uint32_t>(request.options.spheres),
-                           request.create_world);
+  const auto count = static_cast<std::uint32_t>(request.options.spheres);
+  if (kind == SphereWorldKind::spheres) check_sphere_memory(count);
+  return make_sphere_world(kind, count, request.create_world);
 }
 
 SceneData make_terrain(const SceneRequest& request) {
-  return make_terrain_scene(parse_count(request.name, 1'000'000, terrain_least, terrain_most));
+  const std::uint64_t count = parse_count(request.name, 1'000'000, terrain_least, terrain_most);
+  check_triangle_memory(request, count);
+  return make_terrain_scene(count);
 }
 
 SceneData make_statue(const SceneRequest& request) {
-  return make_statue_scene(parse_count(request.name, 1'000'000, statue_least, statue_most));
+  const std::uint64_t count = parse_count(request.name, 1'000'000, statue_least, statue_most);
+  check_triangle_memory(request, count);
+  return make_statue_scene(count);
 }
 
 SceneData make_instances(const SceneRequest& request) {
-  return make_forest_scene(parse_count(request.name, 10'000, forest_least, forest_most));
+  const std::uint64_t count = parse_count(request.name, 10'000, forest_least, forest_most);
+  check_instance_memory(request, count);
+  return make_forest_scene(count);
 }
 
 const SceneInfo& find_scene(const SceneName& name) {

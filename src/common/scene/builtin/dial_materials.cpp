@@ -28,8 +28,8 @@ Look look_of(std::uint32_t number, std::uint32_t round) {
 
 using Maker = MaterialDescription (*)(const Look&);
 
-/// The dial's own list: a new BSDF does not join it, for the scene is a benchmark. The numbers make the
-/// albedos alike.
+/// The dial's own list: a new BSDF does not join it, for the scene is a benchmark. The numbers make
+/// the albedos alike.
 constexpr Maker makers[] = {
     [](const Look& l) { return make_diffuse(0.75f * l.hue); },
     [](const Look& l) {

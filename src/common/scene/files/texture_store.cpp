@@ -16,7 +16,8 @@ bool same(const Texture& a, const Texture& b) {
   return a.kind == b.kind && a.format == b.format && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v &&
          a.filter == b.filter && a.width == b.width && a.height == b.height &&
          a.offset == b.offset && std::equal(a.u_row, a.u_row + 3, b.u_row) &&
-         std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 && a.color1 == b.color1;
+         std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 &&
+         a.color1 == b.color1 && std::equal(a.nested, a.nested + 2, b.nested);
 }
 
 /// The same file as linear8 and as srgb8, or grey, is two images.

@@ -35,6 +35,12 @@ class VertexColors {
   /// for them in place of their own. Takes the colours away from all.
   void finish();
 
+  /// Whether the material asks for colours of a mesh.
+  bool are_in(std::uint32_t material) const { return use_of(material).colors(); }
+
+  /// Whether the texture stands for such colours.
+  bool is_ours(std::uint32_t texture) const { return texture == vertex_ || texture == face_; }
+
  private:
   static constexpr std::uint32_t none = no_texture - 1;  ///< stands for nothing yet
 
@@ -49,7 +55,6 @@ class VertexColors {
   std::uint32_t number_of(std::uint32_t& texture);
   Use use_of(std::uint32_t material) const;
   std::uint32_t changed(std::uint32_t material, const Change& change);
-  bool is_ours(std::uint32_t texture) const { return texture == vertex_ || texture == face_; }
   void report_lack(const char* attribute, bool lacks);
   /// Whether the mesh's colours are to have texels; else its material is without them.
   bool shows_texels(Mesh& mesh);

@@ -14,6 +14,10 @@
 
 namespace pt::gltf {
 
+/// Of formats of images: a texture that has only such an image is left out with a warning.
+inline constexpr std::array<std::string_view, 4> image_extensions = {
+    "EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"};
+
 /// The extensions that are understood; others are ignored, or an Error where the file needs them.
 inline constexpr std::array<std::string_view, 12> known_extensions = {
     "KHR_lights_punctual",

@@ -22,11 +22,10 @@ using namespace gltf;
 
 void check_extensions(File& file) {
   const auto is_known = [](const std::string& name) {
-    return std::find(known_extensions.begin(), known_extensions.end(), name) !=
-           known_extensions.end();
+    return std::ranges::find(known_extensions, name) != known_extensions.end();
   };
   for (const std::string& name : file.model.extensionsRequired) {
-    if (!is_known(name)) {
+    if (!is_known(name) && std::ranges::find(image_extensions, name) == image_extensions.end()) {
       file.fail("extensionsRequired", fmt::format("{:.80} is not supported", name));
     }
   }

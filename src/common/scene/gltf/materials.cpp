@@ -252,7 +252,8 @@ std::uint32_t Materials::add(const tinygltf::Material& source, const std::string
     use.transform = *transform;
   }
   const auto scale = static_cast<float>(source.normalTexture.scale);
-  const std::uint32_t map = textures_.add_linear(use, place + ".normalTexture");
+  const std::uint32_t map = textures_.add_normals(use, place + ".normalTexture");
+  if (map == no_texture) return scene_.add_material(material);
   MaterialDescription mapped =
       make_mapped(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, 0);
   std::swap(mapped.emission, material.emission);

@@ -66,10 +66,23 @@ const tinygltf::Texture& Textures::texture(const TextureUse& use, const std::str
   return file_.at(file_.model.textures, use.texture, "textures", place + ".index");
 }
 
+const tinygltf::Image& Textures::image_at(int source, const TextureUse& use) const {
+  return file_.at(file_.model.images, source, "images",
+                  fmt::format("textures[{}].source", use.texture));
+}
+
+void Textures::check(const TextureUse& use, const std::string& place) const {
+  const int source = texture(use, place).source;
+  if (source >= 0) image_at(source, use);
+}
+
 Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::string& place) const {
   const int source = texture(use, place).source;
-  const auto& image = file_.at(file_.model.images, source, "images",
-                               fmt::format("textures[{}].source", use.texture));
+  if (source < 0) {
+    file_.fail(fmt::format("textures[{}].source", use.texture),
+               "no image in a format that is supported");
+  }
+  const tinygltf::Image& image = image_at(source, use);
   const std::string image_place = fmt::format("images[{}]", source);
   const auto text = [](const unsigned char* data, std::size_t size) {
     return std::string_view(reinterpret_cast<const char*>(data), size);
@@ -98,8 +111,8 @@ TextureImage Textures::integers(const TextureUse& use, const std::string& place)
   return image;
 }
 
-std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,
-                            const std::optional<Color>& weights) {
+std::uint32_t Textures::decode(const TextureUse& use, const std::string& place,
+                               TextureFormat format, const std::optional<Color>& weights) {
   const Encoded image = encoded_image(use, place);
   if (use.tex_coord != 0) {
     file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
@@ -111,19 +124,19 @@ std::uint32_t Textures::add(const TextureUse& use, const std::string& place, Tex
   return store_.add_memory(image.bytes, image.name, look, weights);
 }
 
-std::uint32_t Textures::add_number(const TextureUse& use, const std::string& place,
-                                   const Color& weights) {
-  texture(use, place);  // a wrong number is an Error, a picture that we lack is not
+std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,
+                            const std::optional<Color>& weights, const char* instead) {
+  check(use, place);
   try {
-    return add(use, place, TextureFormat::linear8, weights);
+    return decode(use, place, format, weights);
   } catch (const Error& error) {
-    file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
+    file_.report(place, fmt::format("{}: {}", error.what(), instead));
     return no_texture;
   }
 }
 
 Color Textures::mean(const TextureUse& use, const std::string& place) {
-  texture(use, place);  // a wrong number is an Error, a picture that we lack is not
+  check(use, place);
   TextureImage image;
   try {
     image = integers(use, place);

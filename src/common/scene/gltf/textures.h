@@ -29,20 +29,25 @@ class Textures {
   /// Adds to `scene`, which outlives this.
   Textures(File& file, SceneData& scene) : file_(file), store_(scene.textures, scene.texels) {}
 
-  /// A colour texture (sRGB); its number in the scene. `place` is that of the textureInfo.
+  // Each gives the number in the scene; `place` is that of the textureInfo. An image that cannot be
+  // decoded is no_texture, with a warning.
+
+  /// A colour texture (sRGB).
   std::uint32_t add_color(const TextureUse& use, const std::string& place) {
     return add(use, place, TextureFormat::srgb8);
   }
-  /// One of numbers, as they are.
-  std::uint32_t add_linear(const TextureUse& use, const std::string& place) {
-    return add(use, place, TextureFormat::linear8);
+  /// A normal map.
+  std::uint32_t add_normals(const TextureUse& use, const std::string& place) {
+    return add(use, place, TextureFormat::linear8, {}, "there is no map");
   }
-  /// One of numbers: the weighted sum of its components, in all of them. no_texture, and a
-  /// warning, where the image cannot be decoded: a factor is then used alone.
-  std::uint32_t add_number(const TextureUse& use, const std::string& place, const Color& weights);
-  /// The alpha of a colour texture; no_texture where it is 1 everywhere.
+  /// One of numbers: the weighted sum of its components, in all of them.
+  std::uint32_t add_number(const TextureUse& use, const std::string& place, const Color& weights) {
+    return add(use, place, TextureFormat::linear8, weights);
+  }
+  /// The alpha of a colour texture; no_texture, too, where it is 1 everywhere.
   std::uint32_t add_alpha(const TextureUse& use, const std::string& place) {
-    return store_.add_alpha_of(add_color(use, place));
+    const std::uint32_t color = add_color(use, place);
+    return color == no_texture ? no_texture : store_.add_alpha_of(color);
   }
 
   /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
@@ -56,8 +61,14 @@ class Textures {
   };
 
   std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format,
-                    const std::optional<Color>& weights = {});
+                    const std::optional<Color>& weights = {},
+                    const char* instead = "the factor alone is used");
+  std::uint32_t decode(const TextureUse& use, const std::string& place, TextureFormat format,
+                       const std::optional<Color>& weights);
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
+  const tinygltf::Image& image_at(int source, const TextureUse& use) const;
+  /// A wrong number is an Error; a picture that we lack, or cannot decode, is not.
+  void check(const TextureUse& use, const std::string& place) const;
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
   TextureImage integers(const TextureUse& use, const std::string& place) const;
 

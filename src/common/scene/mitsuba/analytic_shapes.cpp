@@ -36,6 +36,11 @@ std::optional<float> uniform_scale(const Affine& map) {
   return scale;
 }
 
+SphereFrame frame_of(const Affine& to_world, float scale, bool inside_out) {
+  return {to_world.vector({1, 0, 0}) / scale, to_world.vector({0, 1, 0}) / scale,
+          to_world.vector({0, 0, 1}) / scale, inside_out ? -1.0f : 1.0f};
+}
+
 float positive(const Object& shape, std::string_view name, float fallback) {
   const float value = shape.number(name, fallback);
   if (!(value > 0.0f)) {
@@ -71,13 +76,21 @@ void add_sphere(Context& context, const Object& shape, const Target& target) {
   const Affine to_world = shape.transform("to_world");
   const std::optional<float> factor = uniform_scale(to_world);
   const bool inside_out = turns_edges(shape, to_world);  // as Mitsuba 3 has it for spheres
-  if (factor && target.analytic() && !inside_out) {
-    context.scene.add_sphere(to_world.point(center), *factor * radius, target.material);
-    return;
+  // Lights know spheres that shine outward.
+  const bool shines_inward =
+      inside_out && !is_black(context.scene.materials[target.material].emission.radiance);
+  if (factor && target.group == 0 && !target.needs_mesh && !shines_inward) {
+    const Vec3 middle = to_world.point(center);
+    const float size = *factor * radius;
+    if (!target.textured && !inside_out) {
+      return context.scene.add_sphere(middle, size, target.material);
+    }
+    return context.scene.add_sphere(middle, size, target.material,
+                                    frame_of(to_world, *factor, inside_out));
   }
   context.warn_once("sphere mesh", shape.element(),
-                    "a sphere that is textured, turned inside out, squeezed or repeated: "
-                    "triangles are used");
+                    "a sphere that is squeezed, repeated, masked, or a lamp that is textured or "
+                    "turned inside out: triangles are used");
   const Affine placed = to_world * translate(center) * scale(Vec3(radius));
   Mesh mesh = tessellate_sphere();
   // place_mesh keeps normals outward when mirrored; Mitsuba's spheres do not.
@@ -88,7 +101,8 @@ void add_sphere(Context& context, const Object& shape, const Target& target) {
 }
 
 void add_disk(Context& context, const Object& shape, const Target& target) {
-  add_mesh(context, shape, target, tessellate_disk(), shape.transform("to_world"));
+  add_mesh(context, shape, target, tessellate_disk(target.tangents ? disk_rings : 1),
+           shape.transform("to_world"));
 }
 
 void add_cylinder(Context& context, const Object& shape, const Target& target) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/scene/mitsuba/cie_table.h"
 #include "common/scene/mitsuba/spectra.h"
 
 namespace pt::mitsuba {
@@ -9,19 +10,13 @@ namespace {
 
 using DVec3 = glm::dvec3;
 
-/// A Gaussian with different widths on its two sides; `left` and `right` are 1 / width.
-double lobe(double x, double mean, double left, double right) {
-  const double t = (x - mean) * (x < mean ? left : right);
-  return std::exp(-0.5 * t * t);
-}
-
-/// The CIE 1931 colour matching functions: fits of Wyman, Sloan and Shirley 2013 ('Simple Analytic
-/// Approximations to the CIE XYZ Color Matching Functions', JCGT 2:2), multi-lobe.
-DVec3 observer(double nm) {
-  return {1.056 * lobe(nm, 599.8, 0.0264, 0.0323) + 0.362 * lobe(nm, 442.0, 0.0624, 0.0374) -
-              0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
-          0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
-          1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
+/// Linear between the table's rows; 360 <= nm <= 830.
+CieRow row_at(double nm) {
+  const double x = (nm - cie_first_nm) / cie_step_nm;
+  const int below = std::min(static_cast<int>(x), cie_rows - 2);
+  const CieRow &a = cie_table[below], &b = cie_table[below + 1];
+  const double t = x - below;
+  return {a.xyz + t * (b.xyz - a.xyz), a.d65 + t * (b.d65 - a.d65)};
 }
 
 /// Linear between samples, zero outside of them.
@@ -36,33 +31,27 @@ double value_at(const Samples& samples, double nm) {
   return before->second + t * (after->second - before->second);
 }
 
-/// CIE standard illuminant D65, relative, every 20 nm (ISO 11664-2).
-const Samples& d65() {
-  static const Samples samples = {
-      {360, 46.64},  {380, 49.98},  {400, 82.75},  {420, 93.43},  {440, 104.86}, {460, 117.81},
-      {480, 115.92}, {500, 109.35}, {520, 104.79}, {540, 104.41}, {560, 100.00}, {580, 95.79},
-      {600, 90.01},  {620, 87.70},  {640, 83.70},  {660, 80.21},  {680, 78.28},  {700, 71.61},
-      {720, 61.60},  {740, 75.09},  {760, 46.42},  {780, 63.38},  {800, 59.45},  {830, 60.31}};
-  return samples;
+DVec3 xyz_to_srgb(const DVec3& c) {  // ITU-R BT.709
+  return {3.240479 * c.x - 1.537150 * c.y - 0.498535 * c.z,
+          -0.969256 * c.x + 1.875991 * c.y + 0.041556 * c.z,
+          0.055648 * c.x - 0.204043 * c.y + 1.057311 * c.z};
 }
 
-DVec3 xyz_to_srgb(const DVec3& c) {  // IEC 61966-2-1
-  return {3.2404542 * c.x - 1.5371385 * c.y - 0.4985314 * c.z,
-          -0.9692660 * c.x + 1.8760108 * c.y + 0.0415560 * c.z,
-          0.0556434 * c.x - 0.2040259 * c.y + 1.0572252 * c.z};
-}
+enum class Illuminant { equal_energy, d65 };
 
-/// Linear sRGB of value(nm) * light(nm), where light alone has the luminance 1.
-template <class Value, class Light>
-DVec3 integrate(Value&& value, Light&& light) {
+/// Linear sRGB of a function of nm in an illuminant. The sum is Mitsuba's, a thousandth less than
+/// the integral, so that a file has the same colours in both.
+template <class Value>
+DVec3 integrate(Value&& value, Illuminant illuminant) {
+  constexpr int steps = 1000;
+  constexpr double d65_norm = 98.99741751876255, luminance_norm = 106.7502593994140625;
   DVec3 sum(0.0);
-  double white = 0;
-  for (double nm = 360; nm <= 830; nm += 1) {
-    const DVec3 seen = light(nm) * observer(nm);
-    sum += value(nm) * seen;
-    white += seen.y;
+  for (int i = 0; i < steps; ++i) {
+    const double nm = cie_first_nm + (cie_last_nm - cie_first_nm) * i / (steps - 1);
+    const CieRow row = row_at(nm);
+    sum += value(nm) * (illuminant == Illuminant::d65 ? row.d65 / d65_norm : 1.0) * row.xyz;
   }
-  return xyz_to_srgb(sum / white);
+  return xyz_to_srgb(sum * ((cie_last_nm - cie_first_nm) / (luminance_norm * steps)));
 }
 
 Color nonnegative(const DVec3& c) { return glm::max(Color(c), Color(0.0f)); }
@@ -71,13 +60,8 @@ Color nonnegative(const DVec3& c) { return glm::max(Color(c), Color(0.0f)); }
 
 Color spectrum_to_rgb(const Samples& samples, Quantity quantity) {
   const auto value = [&](double nm) { return value_at(samples, nm); };
-  if (quantity != Quantity::reflectance) {
-    return nonnegative(integrate(value, [](double) { return 1.0; }));
-  }
-  const auto daylight = [](double nm) { return value_at(d65(), nm); };
-  // Divided by what the fits make of white, so that white is white.
-  const DVec3 white = integrate([](double) { return 1.0; }, daylight);
-  return nonnegative(integrate(value, daylight) / white);
+  return nonnegative(integrate(
+      value, quantity == Quantity::emission ? Illuminant::equal_energy : Illuminant::d65));
 }
 
 Color blackbody_to_rgb(double kelvin) {
@@ -86,7 +70,7 @@ Color blackbody_to_rgb(double kelvin) {
     const double m = nm * 1e-9;
     return 2e-9 * h * c * c / (std::pow(m, 5) * std::expm1(h * c / (m * k * kelvin)));
   };
-  return nonnegative(integrate(radiance, [](double) { return 1.0; }));
+  return nonnegative(integrate(radiance, Illuminant::equal_energy));
 }
 
 }  // namespace pt::mitsuba

@@ -51,6 +51,9 @@ class Context {
   std::map<std::pair<const Object*, const Object*>, std::uint32_t> materials;
   std::map<const Object*, std::uint32_t> groups;
 
+  /// Emitters that shapes have, in them or by reference.
+  std::set<const Object*> on_shapes;
+
  private:
   void report_unused(const Object& object);
 

@@ -95,6 +95,7 @@ std::string why_left_out(const std::string& type) {
 }  // namespace
 
 void add_emitter(Context& context, const Object& emitter) {
+  if (context.on_shapes.contains(&emitter)) return;  // they refer to it
   const std::string type = emitter.type();
   if (type == "envmap" && context.scene.environment.width == 0) {
     add_environment_map(context, emitter);

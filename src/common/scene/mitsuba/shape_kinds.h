@@ -9,10 +9,12 @@ namespace pt::mitsuba {
 struct Target {
   std::uint32_t group;
   std::uint32_t material;
-  bool textured;
+  bool textured;    ///< shading asks where on it a point lies
+  bool tangents;    ///< and in which directions u and v grow there
+  bool needs_mesh;  ///< masked, of a mesh's colours, or a lamp with a texture
 
   /// Quads and spheres: in the world, without texture coordinates.
-  bool analytic() const { return group == 0 && !textured; }
+  bool analytic() const { return group == 0 && !textured && !needs_mesh; }
 };
 
 /// Adds a mesh in a shape's own space, placed by `to_world` and the shape's normals and flips.

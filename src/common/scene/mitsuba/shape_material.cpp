@@ -38,6 +38,7 @@ void add_emission(Context& context, const Object& emitter, Surface& surface) {
 const Object* emitter_of(Context& context, const Object& shape, std::uint32_t group) {
   const Object* emitter = shape.child("emitter");
   if (!emitter) emitter = shape.child("luminaire");
+  if (emitter) context.on_shapes.insert(emitter);
   if (!emitter || group == 0) return emitter;
   context.warn_once("instanced emitter", emitter->element(),
                     "an emitter in a shapegroup is not supported: it is black instead");

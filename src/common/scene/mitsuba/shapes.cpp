@@ -54,9 +54,22 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
 bool is_textured(const SceneData& scene, std::uint32_t number) {
   const MaterialDescription& material = scene.materials[number];
   if (material.is_textured() || uses_tangent(material)) return true;
-  if (!material.opacity.is_opaque()) return true;  // masks are on triangles
   return material.node != MaterialNode::none &&
          (is_textured(scene, material.children[0]) || is_textured(scene, material.children[1]));
+}
+
+/// Whether it asks in which directions texture coordinates grow.
+bool needs_tangents(const SceneData& scene, std::uint32_t number) {
+  const MaterialDescription& material = scene.materials[number];
+  if (material.node == MaterialNode::none) return uses_tangent(material);
+  return material.node >= MaterialNode::normal_map || needs_tangents(scene, material.children[0]) ||
+         needs_tangents(scene, material.children[1]);
+}
+
+bool needs_mesh(const Context& context, std::uint32_t number) {
+  const MaterialDescription& material = context.scene.materials[number];
+  return !material.opacity.is_opaque() || material.emission.texture != no_texture ||
+         context.colors.are_in(number);
 }
 
 }  // namespace
@@ -77,7 +90,9 @@ void add_shape(Context& context, const Object& shape, std::uint32_t group) {
   }
   const std::optional<std::uint32_t> material = material_of(context, shape, group);
   if (!material) return shape.ignore_all();
-  adder->second(context, shape, {group, *material, is_textured(context.scene, *material)});
+  adder->second(context, shape,
+                {group, *material, is_textured(context.scene, *material),
+                 needs_tangents(context.scene, *material), needs_mesh(context, *material)});
 }
 
 }  // namespace pt::mitsuba

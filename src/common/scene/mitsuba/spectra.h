@@ -20,8 +20,8 @@ Color read_spectrum_object(Context& context, const Object& object, Quantity quan
 /// wavelength (nm, ascending) -> value
 using Samples = std::vector<std::pair<double, double>>;
 
-/// Linear sRGB of a sampled spectrum, with the CIE 1931 observer. Reflectances are seen under D65,
-/// so that 1 everywhere is white; emission is taken as it is.
+/// Linear sRGB of a sampled spectrum, with the CIE 1931 observer, as Mitsuba's RGB variants have
+/// it. Emission is taken as it is; all else is seen under D65, so that 1 everywhere is white.
 Color spectrum_to_rgb(const Samples& samples, Quantity quantity);
 
 /// Planck's law, W / (m^2 sr nm), as linear sRGB.

@@ -64,17 +64,28 @@ Mesh tessellate_sphere() {
   return mesh;
 }
 
-Mesh tessellate_disk() {
+Mesh tessellate_disk(int rings) {
   Mesh mesh;
+  const Vec3 up(0, 0, 1);
+  const auto radius_of = [&](int row) {
+    return static_cast<float>(std::pow(0.95, rings - 1 - row));
+  };
+  for (int j = 0; j < rings && rings > 1; ++j) {
+    for (int i = 0; i <= circle_segments; ++i) {
+      const Vec2 p = radius_of(j) * on_circle(i, circle_segments);
+      add_vertex(mesh, Vec3(p, 0.0f), up, radius_of(j), static_cast<float>(i) / circle_segments);
+    }
+  }
+  add_grid(mesh, circle_segments, rings - 1, false);
   // The centre once a segment: its angle differs.
+  const float inner = radius_of(0);
   for (int i = 0; i < circle_segments; ++i) {
     const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const float v = static_cast<float>(i) / circle_segments;
     const float next = static_cast<float>(i + 1) / circle_segments;
-    const Vec3 up(0, 0, 1);
     add_vertex(mesh, Vec3(0.0f), up, 0.0f, 0.5f * (v + next));
-    add_vertex(mesh, Vec3(on_circle(i, circle_segments), 0.0f), up, 1.0f, v);
-    add_vertex(mesh, Vec3(on_circle(i + 1, circle_segments), 0.0f), up, 1.0f, next);
+    add_vertex(mesh, Vec3(inner * on_circle(i, circle_segments), 0.0f), up, inner, v);
+    add_vertex(mesh, Vec3(inner * on_circle(i + 1, circle_segments), 0.0f), up, inner, next);
     mesh.triangles.push_back({{first, first + 1, first + 2}});
   }
   return mesh;

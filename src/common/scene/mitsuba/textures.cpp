@@ -99,16 +99,28 @@ ColorTexture read_bitmap(Context& context, const Object& object, Quantity quanti
   }
 }
 
+/// What one kind of a checkerboard's squares shows.
+ColorTexture read_square(Context& context, const Object& object, const char* name, float fallback,
+                         Quantity quantity) {
+  const bool is_number = quantity == Quantity::number;
+  ColorTexture square = read_color_texture(context, object, name, Color(fallback),
+                                           is_number ? quantity : Quantity::reflectance);
+  if (is_number) square.color = Color(dot(square.color, luminance_weights));
+  if (square.texture == no_texture || !context.colors.is_ours(square.texture)) return square;
+  // Their coordinates, which would be the checkerboard's as well, are not the mesh's.
+  context.warn_once("checkerboard of colors", object.element(),
+                    "a mesh_attribute in a checkerboard is not supported: white is used");
+  return {square.color, no_texture};
+}
+
 ColorTexture read_checkerboard(Context& context, const Object& object, Quantity quantity) {
+  ColorTexture first = read_square(context, object, "color0", 0.4f, quantity);
+  ColorTexture second = read_square(context, object, "color1", 0.2f, quantity);
+  if (quantity == Quantity::number) std::swap(first, second);  // as eval_1() of Mitsuba 3 has them
   Texture texture;
   texture.kind = TextureKind::checkerboard;
-  texture.color0 = read_plain_color(context, object, "color0", Color(0.4f), Quantity::reflectance);
-  texture.color1 = read_plain_color(context, object, "color1", Color(0.2f), Quantity::reflectance);
-  if (quantity == Quantity::number) {
-    texture.color0 = Color(dot(texture.color0, luminance_weights));
-    texture.color1 = Color(dot(texture.color1, luminance_weights));
-    std::swap(texture.color0, texture.color1);  // as eval_1() of Mitsuba 3 has them
-  }
+  texture.color0 = first.color, texture.color1 = second.color;
+  texture.nested[0] = first.texture, texture.nested[1] = second.texture;
   set_uv_map(texture, read_uv_map(object));
   return {Color(1.0f), context.textures.add_plain(texture)};
 }

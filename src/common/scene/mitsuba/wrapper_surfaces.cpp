@@ -140,7 +140,8 @@ Surface read_two_sided(Context& context, const Object& bsdf) {
 }
 
 Surface read_mask(Context& context, const Object& bsdf) {
-  const ColorTexture opacity = read_color_texture(context, bsdf, "opacity", Color(0.5f));
+  const ColorTexture opacity =
+      read_color_texture(context, bsdf, "opacity", Color(0.5f), Quantity::number);
   Surface surface = read_surface(context, only_nested(bsdf));
   return node_of(surface.material,
                  product(context, bsdf, textured_opacity(luminance(opacity.color), opacity.texture),
@@ -174,7 +175,7 @@ Surface read_blend(Context& context, const Object& bsdf) {
          fmt::format("bsdf 'blendbsdf' has {} bsdfs inside; expected 2", parts.size()));
   }
   const ColorTexture weight =
-      read_color_texture(context, bsdf, "weight", Color(0.5f), Quantity::plain);
+      read_color_texture(context, bsdf, "weight", Color(0.5f), Quantity::number);
   return blend(context, bsdf, weight, read_surface(context, *parts[0]),
                read_surface(context, *parts[1]));
 }

@@ -1,0 +1,18 @@
+// The memory that the program may still take, and the question for it before it is taken: where
+// memory is overcommitted an allocation succeeds, and the process is killed later.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace pt {
+
+/// The least that the machine, the process's control groups (of containers and batch systems) and
+/// its own limits (ulimit -v) leave; 2^64 - 1 where nothing is known. `root`: of /proc and /sys.
+std::uint64_t free_host_memory(const std::filesystem::path& root = "/");
+
+/// Throws Error when `size_bytes` exceed it; `purpose` is what needs them.
+void check_host_memory(std::uint64_t size_bytes, const std::string& purpose);
+
+}  // namespace pt

@@ -1,0 +1,233 @@
+// Every field of JSON and CSV, of a run in which no two numbers are the same, none is 0 or 1, and
+// the repeats differ in all that they may: a field that shows another one's number is seen.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "app/options/option_list.h"
+#include "app/report/counter_fields.h"
+#include "app/report/report.h"
+
+namespace pt {
+namespace {
+
+RenderRun first_run() {
+  RenderRun run;
+  run.kernel_ms = 8;
+  run.stages = {{"generate", 0.75, 5}, {"intersect", 1.5, 40}, {"denoise", 0.375, 9}};
+  run.waves = 21, run.samples_done = 31;
+  run.ended_by = RunEnd::target_error, run.relative_error = 0.3125;
+  run.metropolis =
+      MetropolisStats{4100, 2'100'000, 2200, 0.2, 0.13, 0.31, 0.12, 0.83, 12.25, 3.25e6};
+  return run;
+}
+
+RenderRun last_run() {
+  RenderRun run;
+  run.kernel_ms = 3;
+  run.stages = {{"generate", 0.25, 7}, {"intersect", 2.75, 46}, {"denoise", 0.875, 11}};
+  run.waves = 23, run.samples_done = 37;
+  run.ended_by = RunEnd::time_limit, run.relative_error = 0.15625;
+  run.metropolis =
+      MetropolisStats{5100, 3'100'000, 3200, 0.6, 0.14, 0.32, 0.11, 0.84, 13.75, 4.75e6};
+  return run;
+}
+
+RenderReport unequal_report() {
+  RenderReport report;
+  report.device_name = "Device", report.device_kind = "kind", report.driver = "driver 5";
+  report.accel = "cwbvh", report.schedule = "graph", report.stages = "fused";
+  report.pool_size = 1111, report.finish_paths = 77, report.primitives = 51;
+  report.scene = {101,
+                  102,
+                  103,
+                  104,
+                  105,
+                  106,
+                  107,
+                  108,
+                  {{"meshes", 201}, {"textures", 202}},
+                  {"sbvh", 301, 302, 303, 304.5, 305.5, 306.5}};
+  report.scene_ms = 401.5, report.setup_ms = 402.5, report.load_ms = 403.5;
+  report.transfer_ms = 404.5, report.image_write_ms = 405.5;
+  report.exposure = 2.25f;
+  report.counts = {11'000'000, 22'000'000, 5'500'000, 13, {11'000'000, 8'000'000, 3'000'000}};
+  report.runs = {first_run(), last_run()};
+  report.memory = {{"film", 3000}, {"pool", 72}};
+  report.kernels = {{"intersect", 61, 16, 128, 256, 0.78125}, {"shadow", 43, 8, 32, 192, 0.625}};
+  return report;
+}
+
+Options two_repeats() {
+  Options options;
+  options.repeat = 2;
+  return options;
+}
+
+// Medians and rates are of both repeats, numbers of things are the last one's: 64 launches.
+constexpr const char* expected_json = R"({
+  "device": {"name": "Device", "kind": "kind", "driver": "driver 5"},
+  "used": {"accel": "cwbvh", "schedule": "graph", "stages": "fused", "pool_size": 1111,
+           "finish_paths": 77, "primitives": 51, "exposure": 2.25},
+  "scene": {"triangles": 101, "meshes": 102, "instances": 103, "spheres": 104, "quads": 105,
+            "materials": 106, "textures": 107, "lights": 108,
+            "memory_bytes": {"meshes": 201, "textures": 202}, "builder": "sbvh",
+            "tree_nodes": 301, "tree_references": 302, "tree_depth": 303, "sah_cost": 304.5,
+            "bytes_per_triangle": 305.5, "build_ms": 306.5},
+  "complete": true, "samples_done": 37, "ended_by": "time_limit", "relative_error": 0.15625,
+  "metropolis": {"chains": 5100, "mutations": 3100000, "bootstrap": 3200, "brightness": 0.6,
+                 "brightness_error": 0.14, "large_share": 0.32, "large_acceptance": 0.11,
+                 "small_acceptance": 0.84, "bootstrap_ms": 13.75, "mmutations_per_s": 4.75},
+  "time_ms": {"kernel": {"median": 5.5, "min": 3.0, "max": 8.0}, "scene": 401.5, "setup": 402.5,
+              "load": 403.5, "transfer": 404.5, "image_write": 405.5},
+  "rates": {"mpaths_per_s": 2000.0, "mrays_per_s": 5000.0},
+  "waves": 23, "launches": 64,
+  "stages": [
+    {"stage": "generate", "time_ms": {"median": 0.5, "min": 0.25, "max": 0.75}, "launches": 7},
+    {"stage": "intersect", "time_ms": {"median": 2.125, "min": 1.5, "max": 2.75}, "launches": 46},
+    {"stage": "denoise", "time_ms": {"median": 0.625, "min": 0.375, "max": 0.875}, "launches": 11}],
+  "counts": {"paths": 11000000, "rays": 22000000, "shadow_rays": 5500000, "nonfinite_samples": 13,
+             "live_paths": [11000000, 8000000, 3000000]},
+  "memory": {"total_bytes": 3072, "buffers": [{"name": "film", "size_bytes": 3000},
+                                              {"name": "pool", "size_bytes": 72}]},
+  "kernels": [
+    {"name": "intersect", "registers": 61, "spill_bytes": 16, "shared_bytes": 128,
+     "block_threads": 256, "occupancy": 0.78125},
+    {"name": "shadow", "registers": 43, "spill_bytes": 8, "shared_bytes": 32,
+     "block_threads": 192, "occupancy": 0.625}],
+  "counters": null,
+  "runs": [
+    {"kernel_ms": 8.0, "waves": 21, "samples_done": 31, "ended_by": "target_error",
+     "relative_error": 0.3125,
+     "metropolis": {"chains": 4100, "mutations": 2100000, "bootstrap": 2200, "brightness": 0.2,
+                    "brightness_error": 0.13, "large_share": 0.31, "large_acceptance": 0.12,
+                    "small_acceptance": 0.83, "bootstrap_ms": 12.25, "mmutations_per_s": 3.25},
+     "stages": [{"stage": "generate", "time_ms": 0.75, "launches": 5},
+                {"stage": "intersect", "time_ms": 1.5, "launches": 40},
+                {"stage": "denoise", "time_ms": 0.375, "launches": 9}]},
+    {"kernel_ms": 3.0, "waves": 23, "samples_done": 37, "ended_by": "time_limit",
+     "relative_error": 0.15625,
+     "metropolis": {"chains": 5100, "mutations": 3100000, "bootstrap": 3200, "brightness": 0.6,
+                    "brightness_error": 0.14, "large_share": 0.32, "large_acceptance": 0.11,
+                    "small_acceptance": 0.84, "bootstrap_ms": 13.75, "mmutations_per_s": 4.75},
+     "stages": [{"stage": "generate", "time_ms": 0.25, "launches": 7},
+                {"stage": "intersect", "time_ms": 2.75, "launches": 46},
+                {"stage": "denoise", "time_ms": 0.875, "launches": 11}]}]})";
+
+TEST(ReportFields, OfTheJson) {
+  auto json = nlohmann::json::parse(report_json(two_repeats(), unequal_report()));
+  for (const char* of_build_and_options : {"schema_version", "program", "options"}) {
+    EXPECT_EQ(json.erase(of_build_and_options), 1u);
+  }
+  const auto expected = nlohmann::json::parse(expected_json);
+  EXPECT_EQ(json, expected) << nlohmann::json::diff(expected, json).dump(1);
+}
+
+TEST(ReportFields, CompleteIsWhatEveryRepeatIs) {
+  const auto complete = [](const RenderReport& report) {
+    return nlohmann::json::parse(report_json(two_repeats(), report))["complete"].get<bool>();
+  };
+  RenderReport report = unequal_report();
+  report.runs[0].ended_by = RunEnd::interrupted;
+  EXPECT_FALSE(complete(report));
+  report = unequal_report();
+  report.runs[1].ended_by = RunEnd::samples;  // 37 of 50
+  EXPECT_FALSE(complete(report));
+  report.runs[1].samples_done = two_repeats().spp;
+  EXPECT_TRUE(complete(report));
+  report.runs.pop_back();
+  EXPECT_FALSE(complete(report));
+}
+
+// All columns but those of the build, the options and the hardware's counters.
+TEST(ReportFields, OfTheCsv) {
+  std::map<std::string, std::string> expected{
+      {"device_name", "Device"},
+      {"device_kind", "kind"},
+      {"driver", "driver 5"},
+      {"used_accel", "cwbvh"},
+      {"used_schedule", "graph"},
+      {"used_stages", "fused"},
+      {"used_pool_size", "1111"},
+      {"used_finish_paths", "77"},
+      {"primitives", "51"},
+      {"used_exposure", "2.25"},
+      {"triangles", "101"},
+      {"instances", "103"},
+      {"lights", "108"},
+      {"used_builder", "sbvh"},
+      {"tree_nodes", "301"},
+      {"tree_references", "302"},
+      {"sah_cost", "304.5"},
+      {"bytes_per_triangle", "305.5"},
+      {"build_ms", "306.500000"},
+      {"samples_done", "37"},
+      {"ended_by", "time_limit"},
+      {"relative_error", "0.15625"},
+      {"mlt_chains", "5100"},
+      {"mlt_mutations", "3100000"},
+      {"mlt_bootstrap", "3200"},
+      {"mlt_brightness", "0.6"},
+      {"mlt_brightness_error", "0.14"},
+      {"mlt_large_share", "0.32"},
+      {"mlt_large_acceptance", "0.11"},
+      {"mlt_small_acceptance", "0.84"},
+      {"mlt_bootstrap_ms", "13.750000"},
+      {"mlt_mmutations_per_s", "4.75"},
+      {"kernel_ms_median", "5.500000"},
+      {"kernel_ms_min", "3.000000"},
+      {"kernel_ms_max", "8.000000"},
+      {"generate_ms_median", "0.500000"},
+      {"generate_ms_min", "0.250000"},
+      {"generate_ms_max", "0.750000"},
+      {"generate_launches", "7"},
+      {"intersect_ms_median", "2.125000"},
+      {"intersect_ms_min", "1.500000"},
+      {"intersect_ms_max", "2.750000"},
+      {"intersect_launches", "46"},
+      {"other_ms_median", "0.625000"},
+      {"other_ms_min", "0.375000"},
+      {"other_ms_max", "0.875000"},
+      {"other_launches", "11"},
+      {"waves", "23"},
+      {"launches", "64"},
+      {"mpaths_per_s", "2000"},
+      {"mrays_per_s", "5000"},
+      {"paths", "11000000"},
+      {"rays", "22000000"},
+      {"shadow_rays", "5500000"},
+      {"nonfinite_samples", "13"},
+      {"live_paths", "11000000;8000000;3000000"},
+      {"scene_ms", "401.500000"},
+      {"setup_ms", "402.500000"},
+      {"load_ms", "403.500000"},
+      {"transfer_ms", "404.500000"},
+      {"image_write_ms", "405.500000"},
+      {"memory_bytes", "3072"},
+      {"kernels", "intersect:61:16:128:256:0.7812;shadow:43:8:32:192:0.6250"},
+      {"counters_problem", ""},
+      {"counted_samples", ""},
+      {"counted_rays", ""},
+      {"counted_kernels", ""}};
+  for (const StageInfo& stage : stage_table) {  // those that did not run
+    for (const char* suffix : {"_ms_median", "_ms_min", "_ms_max", "_launches"}) {
+      expected.try_emplace(std::string(stage.name) + suffix, "");
+    }
+  }
+  for (const auto& field : counter_fields({}, 64)) expected["counted_" + field.first] = "";
+  std::map<std::string, std::string> found;
+  for (const auto& [name, value] : report_csv_row(two_repeats(), unequal_report())) {
+    EXPECT_TRUE(found.emplace(name, value).second) << name;
+  }
+  for (const char* name :
+       {"schema_version", "version", "commit", "build_type", "compiler", "cuda", "fast_math"}) {
+    EXPECT_EQ(found.erase(name), 1u) << name;
+  }
+  for (const OptionEntry& entry : option_list()) EXPECT_EQ(found.erase(option_key(entry)), 1u);
+  for (const auto& [name, value] : expected) EXPECT_EQ(found[name], value) << name;
+  EXPECT_EQ(found.size(), expected.size());
+}
+
+}  // namespace
+}  // namespace pt

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/host_memory.h"
+#include "temp_folder.h"
+
+namespace pt {
+namespace {
+
+constexpr std::uint64_t unlimited = ~std::uint64_t{0};
+
+/// A machine's /proc and /sys.
+class Machine {
+ public:
+  explicit Machine(const std::string& groups) {
+    write("proc/meminfo", "MemTotal: 9000 kB\nMemFree: 10 kB\nMemAvailable:    5000 kB\n");
+    write("proc/self/cgroup", groups);
+  }
+
+  void write(const std::string& path, const std::string& text) const {
+    const std::filesystem::path file = folder_.file(path);
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+
+  std::uint64_t free_bytes() const { return free_host_memory(folder_.file("")); }
+
+ private:
+  TempFolder folder_;
+};
+
+TEST(HostMemory, IsWhatTheMachineHas) {
+  EXPECT_EQ(Machine("").free_bytes(), 5000u * 1024);
+  EXPECT_EQ(free_host_memory(TempFolder().file("")), unlimited) << "where nothing is known";
+}
+
+TEST(HostMemory, IsWhatTheGroupHas) {
+  const Machine machine("0::/batch/job\n");
+  EXPECT_EQ(machine.free_bytes(), 5000u * 1024);
+  machine.write("sys/fs/cgroup/batch/job/memory.max", "max\n");
+  machine.write("sys/fs/cgroup/batch/job/memory.current", "700000\n");
+  EXPECT_EQ(machine.free_bytes(), 5000u * 1024);
+  machine.write("sys/fs/cgroup/batch/job/memory.max", "1000000\n");
+  EXPECT_EQ(machine.free_bytes(), 300000u);
+  machine.write("sys/fs/cgroup/batch/job/memory.stat",
+                "anon 100\nactive_file 1\ninactive_file 50000\n");
+  EXPECT_EQ(machine.free_bytes(), 350000u) << "a cache of files gives way";
+}
+
+TEST(HostMemory, IsWhatTheGroupsAboveHave) {
+  const Machine machine("0::/batch/job\n");
+  machine.write("sys/fs/cgroup/batch/job/memory.max", "1000000\n");
+  machine.write("sys/fs/cgroup/batch/memory.max", "500000\n");
+  machine.write("sys/fs/cgroup/batch/memory.current", "480000\n");
+  EXPECT_EQ(machine.free_bytes(), 20000u);
+  machine.write("sys/fs/cgroup/batch/memory.current", "600000\n");
+  EXPECT_EQ(machine.free_bytes(), 0u);
+}
+
+TEST(HostMemory, IsWhatTheFirstVersionOfGroupsHas) {
+  const Machine machine("5:cpu,cpuacct:/cpu\n4:memory:/docker/1\n0::/unused\n");
+  machine.write("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
+  EXPECT_EQ(machine.free_bytes(), 5000u * 1024);
+  // In a container the group's folder is the root of what it sees.
+  machine.write("sys/fs/cgroup/memory/memory.limit_in_bytes", "2000000\n");
+  machine.write("sys/fs/cgroup/memory/memory.usage_in_bytes", "500000\n");
+  machine.write("sys/fs/cgroup/memory/memory.stat",
+                "inactive_file 7\ntotal_inactive_file 100000\n");
+  EXPECT_EQ(machine.free_bytes(), 1600000u);
+}
+
+TEST(HostMemory, IsWhatTheProcessMayTake) {
+  const std::uint64_t before = free_host_memory();
+  rlimit old{};
+  ASSERT_EQ(::getrlimit(RLIMIT_AS, &old), 0);
+  const rlimit nothing{1, old.rlim_max};
+  ::setrlimit(RLIMIT_AS, &nothing);
+  const std::uint64_t within = free_host_memory();
+  ::setrlimit(RLIMIT_AS, &old);
+  EXPECT_GT(before, 0u);
+  EXPECT_EQ(within, 0u);
+}
+
+TEST(HostMemory, TheErrorTellsWhatIsNeededAndFree) {
+  expect_error([] { check_host_memory(std::uint64_t{1} << 60, "the moon"); },
+               "not enough memory: the moon needs 1099511627776 MiB, ");
+  check_host_memory(1, "nothing");
+}
+
+}  // namespace
+}  // namespace pt
