@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Ray sets: which structure, builder and way of tracing are fastest for which kind of rays?
 
-Makes sets of rays by `ptexp rays` and traces them by `ptexp trace` (docs/tracing.md). Mesh or scene
-files may be named by --scenes.
+Makes sets of rays by `ptexp rays` and traces them by `ptexp trace` (docs/design/tracing.md). Mesh or
+scene files may be named by --scenes.
 """
 import sys
 from functools import partial

@@ -39,7 +39,7 @@ def ways_of(scene, mode, device):
 
 
 def same_image(scene, options):
-    """One hit for every structure (docs/tracing.md) holds for triangles."""
+    """One hit for every structure (docs/design/tracing.md) holds for triangles."""
     return f"{scene}, {'bvh2' if 'bvh2' in options else 'brute'}" if scene in QUADS else scene
 
 

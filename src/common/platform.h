@@ -201,7 +201,7 @@ PT_HD float square_root(float x) {
 // A compiler may contract a product and a sum into one fused operation, and may do so in one kernel
 // and not in another. The wavefront stores a path's state where the megakernel keeps it in
 // registers, so a value that crosses a stage's border must end in an operation that is never fused
-// with the next one. See docs/architecture.md, 'Bit-equal modes'.
+// with the next one. See docs/design/bit_equality.md, 'Rounding'.
 
 /// a * b, rounded, never part of a fused operation.
 PT_HD float multiply_rounded(float a, float b) {

@@ -43,31 +43,27 @@ MegakernelKind MegakernelCuda::choose_kernel() const {
 
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
   check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, stream()), "cudaMemsetAsync");
-  const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
-    with_random_source([&](const auto& source) {
-      constexpr bool in_global =
-          std::remove_cvref_t<decltype(storage)>::memory == SceneMemory::global;
-      if constexpr (in_global || !std::is_same_v<decltype(source), const SamplerSource&>) {
-        if constexpr (std::is_same_v<decltype(source), const SamplerSource&>) {
-          if (kernel_ == MegakernelKind::vote) return launch_voting(source, batch);
-          if (kernel_ == MegakernelKind::sort) {
-            return traits_.has_masks ? launch_sorting<true>(source, batch)
-                                     : launch_sorting<false>(source, batch);
-          }
-        }
-        launch_megakernel(storage, shared_bytes, source, batch);
-      } else {  // samplers are for scenes that brute force does not scan
-        throw_no_kernel(traits_, options_.integrator);
+  with_random_source([&](const auto& source) {
+    using Source = std::remove_cvref_t<decltype(source)>;
+    const SceneStorage<SceneMemory::global> in_global{scene_};
+    if constexpr (std::is_same_v<Source, SamplerSource>) {
+      if (kernel_ == MegakernelKind::vote) return launch_voting(source, batch);
+      if (kernel_ == MegakernelKind::sort) {
+        return traits_.has_masks ? launch_sorting<true>(source, batch)
+                                 : launch_sorting<false>(source, batch);
       }
-    });
-  };
-  const bool scans_spheres =
-      traits_.accel == Accel::brute && traits_.geometry == Geometry::spheres_and_quads;
-  if (scans_spheres) {
-    with_scene_storage(launch_with);
-  } else {
-    launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});
-  }
+      launch_megakernel(in_global, 0, source, batch);
+    } else {
+      if constexpr (std::is_same_v<Source, PhiloxSource>) {
+        if (traits_.accel == Accel::brute) {
+          return with_scene_storage([&](const auto& storage, std::size_t shared_bytes) {
+            launch_megakernel(storage, shared_bytes, source, batch);
+          });
+        }
+      }
+      launch_megakernel(in_global, 0, source, batch);
+    }
+  });
 }
 
 std::unique_ptr<Renderer> make_megakernel_cuda(const Options& options, const SceneData& scene,

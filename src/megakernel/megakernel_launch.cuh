@@ -26,10 +26,11 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   const dim3 block(options_.block.x, options_.block.y);
   const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
   // Only where brute force scans the spheres do they lie elsewhere than in global memory.
-  using Kinds = std::conditional_t<memory == SceneMemory::global,
-                                   KindsWith<Source, TriangleSceneKinds>, BruteSphereKinds>;
+  using Kinds =
+      std::conditional_t<memory == SceneMemory::global, CudaKindsWith<Source>, BruteSphereKinds>;
   dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
-    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+    constexpr bool may_reduce = may_reduce_on_cuda<decltype(traits), Source, memory>;
+    dispatch_branching<decltype(traits), may_reduce>(options_.branching, [&](auto branching) {
       constexpr auto kernel =
           megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
       launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,

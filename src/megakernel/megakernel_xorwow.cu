@@ -6,11 +6,5 @@ namespace pt {
 template void MegakernelCuda::launch_megakernel(const SceneStorage<SceneMemory::global>&,
                                                 std::size_t, const XorwowSource<CurandState>&,
                                                 const SampleBuffer&);
-template void MegakernelCuda::launch_megakernel(const SceneStorage<SceneMemory::shared>&,
-                                                std::size_t, const XorwowSource<CurandState>&,
-                                                const SampleBuffer&);
-template void MegakernelCuda::launch_megakernel(const SceneStorage<SceneMemory::constant>&,
-                                                std::size_t, const XorwowSource<CurandState>&,
-                                                const SampleBuffer&);
 
 }  // namespace pt

@@ -129,6 +129,7 @@ class CpuExecutor {
   }
 
   // They would take minutes to compile and gain nothing where threads do not run in warps.
+  template <class>
   static constexpr bool kinds_have_kernels = false;
   static constexpr bool streams_shading = false;
 

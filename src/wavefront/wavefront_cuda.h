@@ -23,7 +23,9 @@ class WavefrontCuda : public CudaRenderer {
   void compact(const CompactionRequest& request);
   void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
-  static constexpr bool kinds_have_kernels = true;
+  /// Where the experiment looks at them: one kernel, or one for each material.
+  template <class Traits>
+  static constexpr bool kinds_have_kernels = Traits::geometry == Geometry::triangles;
   static constexpr bool streams_shading = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);

@@ -41,7 +41,8 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
 template <class Kinds, class Source>
 void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool starts_paths) {
   dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
-    dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+    constexpr bool may_reduce = may_reduce_on_cuda<decltype(traits), Source>;
+    dispatch_branching<decltype(traits), may_reduce>(options_.branching, [&](auto branching) {
       run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
                                                              starts_paths);
     });

@@ -80,8 +80,8 @@ void expect_no_shadows(AccelKind kind, std::initializer_list<double> aspects) {
   }
 }
 
-// The bound of a hit (docs/tracing.md) and that of a sampled point leave no room for a blocked ray,
-// however thin the lamp.
+// The bound of a hit (docs/design/tracing.md) and that of a sampled point leave no room for a
+// blocked ray, however thin the lamp.
 TEST(ThinLamps, DoNotShadowThemselves) {
   expect_no_shadows<Accel::bvh2>(AccelKind::bvh2, {1, 1e3, 1e5});
   expect_no_shadows<Accel::cwbvh>(AccelKind::cwbvh, {1, 1e3});

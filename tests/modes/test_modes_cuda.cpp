@@ -35,7 +35,6 @@ const std::vector<ImageKind> image_kinds = [] {
     add("brute", {{"accel", "brute"}});
     add("bvh2", {{"accel", "bvh2"}});
     add("brute_xorwow", {{"accel", "brute"}, {"rng", "xorwow"}, {"seed", "1099511627779"}});
-    add("bvh2_xorwow", {{"accel", "bvh2"}, {"rng", "xorwow"}});
     add("depth_1", {{"max-depth", "1"}});
     add("depth_3", {{"max-depth", "3"}});
     add("tiny", {{"width", tiny_width}, {"height", tiny_height}, {"max-depth", "5"}});
@@ -46,9 +45,19 @@ const std::vector<ImageKind> image_kinds = [] {
 const std::vector<Choice> shared_choices{{"scene-memory", {"auto", "global", "shared", "constant"}},
                                          {"branching", {"divergent", "reduced"}}};
 
-std::vector<Choice> with_shared(std::vector<Choice> choices) {
+/// With the paper's toggles, each of them alone, where brute force scans: CUDA has no others.
+std::vector<Settings> with_toggles(std::vector<Choice> choices, int combinations,
+                                   std::uint64_t seed, const Options& options) {
   choices.insert(choices.end(), shared_choices.begin(), shared_choices.end());
-  return choices;
+  std::vector<Settings> all = variations(choices, combinations, seed);
+  for (Settings& settings : all) {
+    std::string& branching = settings[settings.size() - 1].second;
+    std::string& memory = settings[settings.size() - 2].second;
+    const bool is_xorwow = options.rng == RngKind::xorwow;
+    if (is_xorwow || options.accel == AccelKind::bvh2) branching = "divergent";
+    if (is_xorwow || branching == "reduced") memory = "auto";
+  }
+  return all;
 }
 
 class GpuModesOf : public CudaTest, public testing::WithParamInterface<ImageKind> {
@@ -61,30 +70,31 @@ INSTANTIATE_TEST_SUITE_P(Cuda, GpuModesOf, testing::ValuesIn(image_kinds),
 
 TEST_P(GpuModesOf, MegakernelDoesNotDependOnHow) {
   const Options usual = options("megakernel");
-  const std::vector<Choice> choices = with_shared(
-      {{"block", {"16x16", "4x4", "8x8", "32x32", "5x3", "1024x1", "1x1024", "64x1", "1x1"}},
-       {"work", {"persistent", "pixel", "sample"}}});
-  expect_all_same(usual, variations(choices, 12, 3), usual);
+  const std::vector<Choice> choices = {
+      {"block", {"16x16", "4x4", "8x8", "32x32", "5x3", "1024x1", "1x1024", "64x1", "1x1"}},
+      {"work", {"persistent", "pixel", "sample"}}};
+  expect_all_same(usual, with_toggles(choices, 12, 3, usual), usual);
 }
 
 TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
-  std::vector<Choice> choices = with_shared(
-      {{"compaction", {"atomic", "cub", "scan", "none", "sort"}},
-       {"schedule", {"graph", "host"}},
-       {"regenerate", {"on", "off"}},
-       {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
-       {"finish-paths", {"0", "1", "700", "131072"}},
-       {"stage-block",
-        {"256", "1", "2", "16", "33", "1024",
-         "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
-         "accumulate=224"}},
-       {"layout", {"soa", "sectors", "aos"}},
-       {"stages", {"split", "auto"}}});
+  std::vector<Choice> choices = {
+      {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
+      {"schedule", {"graph", "host"}},
+      {"regenerate", {"on", "off"}},
+      {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
+      {"finish-paths", {"0", "1", "700", "131072"}},
+      {"stage-block",
+       {"256", "1", "2", "16", "33", "1024",
+        "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
+        "accumulate=224"}},
+      {"layout", {"soa", "sectors", "aos"}},
+      {"stages", {"split", "auto"}}};
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
   }
-  expect_all_same(options("wavefront"), variations(choices, 24, 4), options("megakernel"));
+  const Options usual = options("wavefront");
+  expect_all_same(usual, with_toggles(choices, 24, 4, usual), options("megakernel"));
 }
 
 TEST_P(GpuModesOf, FusedStagesEqualMegakernel) {
@@ -102,6 +112,7 @@ TEST_P(GpuModesOf, FusedStagesEqualMegakernel) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
   }
+  if (options("wavefront").rng == RngKind::xorwow) choices.pop_back();
   expect_all_same(with(options("wavefront"), {{"stages", "fused"}}), variations(choices, 24, 6),
                   options("megakernel"));
 }
@@ -348,6 +359,22 @@ TEST_F(CudaRefusal, BlocksOfTooManyThreads) {
     Options options = cuda_options("megakernel");
     options.block = block;
     expect_refused(options, {"--block", "1,024|1024"});
+  }
+}
+
+TEST_F(CudaRefusal, TogglesTogether) {
+  const struct {
+    Settings settings;
+    std::vector<std::string> says;
+  } cases[] = {
+      {{{"rng", "xorwow"}, {"branching", "reduced"}}, {"--rng xorwow", "--branching reduced"}},
+      {{{"rng", "xorwow"}, {"scene-memory", "shared"}}, {"--rng xorwow", "--scene-memory shared"}},
+      {{{"branching", "reduced"}, {"scene-memory", "constant"}},
+       {"--branching reduced", "--scene-memory constant"}},
+      {{{"branching", "reduced"}, {"accel", "bvh2"}}, {"--branching reduced", "--accel bvh2"}},
+  };
+  for (const char* mode : {"megakernel", "wavefront"}) {
+    for (const auto& c : cases) expect_refused(cuda_options(mode, c.settings), c.says);
   }
 }
 

@@ -150,7 +150,7 @@ TEST_P(PathPoolOf, EveryRecordIsAligned) {
   }
 }
 
-// As the table in docs/architecture.md has it.
+// As the table in docs/design/wavefront.md has it.
 TEST(PathPool, SizesInBytes) {
   const auto bytes = [](Parts parts, PoolLayout layout) {
     parts.layout = layout;

@@ -56,7 +56,7 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(choice("integrator", &Options::integrator),
            "path: path tracing, each path on its own; mlt: Metropolis light\n"
            "transport, paths that are mutations of each other\n"
-           "(docs/metropolis.md)")
+           "(docs/design/metropolis.md)")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
            "Most rays of a path, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
@@ -350,11 +350,12 @@ void add_toggles(std::vector<OptionEntry>& list) {
       .only(parallel, cuda, "constant")
       .add(choice("branching", &Options::branching),
            "reduced: a miss is shaded as a surface that reflects\n"
-           "nothing, so that hits and misses share one branch")
+           "nothing, so that hits and misses share one branch; on CUDA\n"
+           "by brute force and with neither xorwow nor other memory")
       .only(parallel, any_device, "reduced")
       .add(choice("rng", &Options::rng),
            "philox: stateless. xorwow: a state kept per path, set up by\n"
-           "render_init as in the paper");
+           "render_init as in the paper; on CUDA by brute force alone");
 }
 
 void add_measurement(std::vector<OptionEntry>& list) {

@@ -7,7 +7,7 @@
 // half ulps), and those where it leaves at no less than t (1 - 21 half ulps): a tolerance of 42 and
 // a few makes the test conservative (Ize 2013, 'Robust BVH Ray Traversal', JCGT 2:2, did so for
 // rounding alone), and all boxes around a triangle that is hit are visited, in every tree.
-// docs/tracing.md has the proof.
+// docs/design/tracing.md has the proof.
 //
 // A direction's zero has an infinite inverse: a ray beside the slab gets infinities of the right
 // sign, and one that runs in the plane itself NaN, which the minima and maxima ignore.

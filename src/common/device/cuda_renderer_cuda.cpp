@@ -27,6 +27,27 @@ namespace {
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of unknown speed
 
+bool is_toggled(const Options& o) {
+  return o.rng != RngKind::philox || o.branching != Branching::divergent;
+}
+
+/// The paper's toggles each have kernels alone, for scenes that brute force scans: no experiment
+/// combines them, and together they would be as many kernels as all others.
+void check_toggles(const Options& o, const SceneTraits& traits, SceneMemory memory) {
+  if (!is_toggled(o)) return;
+  const std::string toggle = o.rng != RngKind::philox ? "--rng " + to_string(o.rng)
+                                                      : "--branching " + to_string(o.branching);
+  const auto refuse = [&](const std::string& other, const char* expected) {
+    throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
+  };
+  if (traits.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
+  if (o.rng != RngKind::philox && o.branching != Branching::divergent) {
+    refuse("--branching reduced", "divergent");
+  }
+  if (memory != SceneMemory::global)
+    refuse("--scene-memory " + to_string(memory), "global or auto");
+}
+
 /// Two chains for each thread that the device holds at once, about 2^19 on an H200. More take more
 /// mutations a second, but each walks a shorter way from its start: half as many and twice as many
 /// have a larger error at equal time (results/).
@@ -85,11 +106,13 @@ void CudaRenderer::upload(const SceneData& scene) {
   scene_memory_ = options_.scene_memory;
   if (scene_memory_ == SceneMemory::automatic) {
     const bool are_few = scene.spheres.size() <= constant_spheres_best;
-    scene_memory_ =
-        are_few && traits_.geometry == Geometry::spheres_and_quads && traits_.accel == Accel::brute
-            ? SceneMemory::constant
-            : SceneMemory::global;
+    scene_memory_ = are_few && !is_toggled(options_) &&
+                            traits_.geometry == Geometry::spheres_and_quads &&
+                            traits_.accel == Accel::brute
+                        ? SceneMemory::constant
+                        : SceneMemory::global;
   }
+  check_toggles(options_, traits_, scene_memory_);
   if (scene_memory_ == SceneMemory::constant && !fits_constant) {
     throw Error(
         fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "

@@ -1,5 +1,5 @@
 // The paths before the Markov chains, each with its target: where chains begin
-// (docs/metropolis.md).
+// (docs/design/metropolis.md).
 #pragma once
 
 #include "common/sampling/chains.h"

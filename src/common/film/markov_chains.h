@@ -1,5 +1,5 @@
 // Markov chains over paths and the image that they add up to, in a device's memory
-// (docs/metropolis.md). When a chain's path has been traced the chain takes a step.
+// (docs/design/metropolis.md). When a chain's path has been traced the chain takes a step.
 #pragma once
 
 #include "common/film/bootstrap.h"

@@ -43,7 +43,7 @@ PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
 /// How good a hit is. Where intersect_triangle finds one at t > 0, there is a point P of the
 /// triangle such that along every axis
 ///   |origin + t direction - P| <= hit_error_distance |P - origin| + hit_margin.
-/// docs/tracing.md has the proof; coordinates are within 1e12. Boxes that are wider than the
+/// docs/design/tracing.md has the proof; coordinates are within 1e12. Boxes that are wider than the
 /// triangle by the margin, and box tests that allow for the first term, therefore never hide a hit:
 /// so all acceleration structures find the same.
 inline constexpr float hit_error_distance = 18.0f * half_ulp;

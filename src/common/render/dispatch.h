@@ -68,10 +68,24 @@ void dispatch_traits(TypeList<T...>, SceneTraits traits, IntegratorKind integrat
   if (!(called(T{}) || ...)) throw_no_kernel(traits, integrator);
 }
 
+/// Of these, the kinds for which CUDA has kernels with this source: the paper's generator is for
+/// scenes that brute force scans (check_toggles).
+template <class Source>
+using CudaKindsWith = std::conditional_t<std::is_same_v<Source, PhiloxSource>, SphereSceneKinds,
+                                         std::conditional_t<std::is_same_v<Source, SamplerSource>,
+                                                            TriangleSceneKinds, BruteSphereKinds>>;
+
+/// Whether CUDA has kernels of reduced branching for such scenes, by this source and memory: each
+/// of the paper's toggles is looked at alone (check_toggles).
+template <class Traits, class Source, SceneMemory memory = SceneMemory::global>
+inline constexpr bool may_reduce_on_cuda =
+    Traits::accel == Accel::brute&& std::is_same_v<Source, PhiloxSource>&& memory ==
+    SceneMemory::global;
+
 /// function(Constant<branching>). Branches are reduced in the paper's scenes only.
-template <class Traits, class Function>
+template <class Traits, bool may_reduce = true, class Function>
 void dispatch_branching(Branching branching, Function&& function) {
-  if constexpr (Traits::geometry == Geometry::spheres_and_quads) {
+  if constexpr (may_reduce && Traits::geometry == Geometry::spheres_and_quads) {
     if (branching == Branching::reduced) return function(Constant<Branching::reduced>{});
   }
   function(Constant<Branching::divergent>{});

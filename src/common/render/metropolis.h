@@ -1,5 +1,5 @@
 // Metropolis light transport as a loop over batches: bootstrap, chains, the image. It knows no mode
-// and no device: the paths are traced as all others are (docs/metropolis.md).
+// and no device: the paths are traced as all others are (docs/design/metropolis.md).
 #pragma once
 
 #include "common/film/film_data.h"

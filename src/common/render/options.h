@@ -96,7 +96,7 @@ struct Options {
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
-  // Of IntegratorKind::mlt (docs/metropolis.md)
+  // Of IntegratorKind::mlt (docs/design/metropolis.md)
   std::uint64_t chains = 0;              ///< Markov chains, 0: automatic
   float large_step_probability = 0.05f;  ///< in (0, 1]
   float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]

@@ -20,7 +20,7 @@ struct StageTime {
 /// Why a render has the samples that it has.
 enum class RunEnd { samples, time_limit, target_error, interrupted };
 
-/// What the Markov chains of --integrator mlt did (docs/metropolis.md).
+/// What the Markov chains of --integrator mlt did (docs/design/metropolis.md).
 struct MetropolisStats {
   std::uint64_t chains = 0;
   std::uint64_t mutations = 0;  ///< of all chains

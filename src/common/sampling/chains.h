@@ -1,5 +1,5 @@
-// The random numbers of a path that a Markov chain proposes (docs/metropolis.md): those of the
-// chain's state, mutated, as far as that path asked for them, and fresh ones beyond.
+// The random numbers of a path that a Markov chain proposes (docs/design/metropolis.md): those of
+// the chain's state, mutated, as far as that path asked for them, and fresh ones beyond.
 #pragma once
 
 #include "common/sampling/mutation.h"

@@ -47,8 +47,8 @@ class Lister {
   }
 
  private:
-  /// On a GPU a tree's descents can take as long as all other shading (results/README.md), which
-  /// few lamps are not worth.
+  /// On a GPU a tree's descents can take as long as all other shading
+  /// (results/log/2026-11-material-cost.md), which few lamps are not worth.
   bool wants_tree() const {
     constexpr std::size_t few_lamps = 16;
     return selection_ == LightSelection::tree ||

@@ -19,8 +19,8 @@ namespace pt {
 namespace {
 
 /// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
-/// blocks; for threads that follow rays alone binary ones are faster (results/ and docs/cpu.md have
-/// the measurements).
+/// blocks; for threads that follow rays alone binary ones are faster (results/README.md and
+/// results/log/ have the measurements).
 Accel automatic_structure(const SceneData& scene, const Options& options) {
   if (is_limited(scene.camera)) return Accel::bvh2;  // its rays go alone
   if (!is_on_cuda(options)) {

@@ -61,7 +61,7 @@ BuiltGroup build_split(const MeshTriangles& triangles, const TreeOptions& option
 }
 
 // When the automatic builder tries spatial splits and takes them, measured on some fifteen scenes
-// (docs/tracing.md).
+// (docs/design/tracing.md).
 constexpr double split_share = 1.5;        // overlap_share() of a tree worth the try
 constexpr double large_split_share = 2.0;  // the same from large_count triangles on
 constexpr std::uint32_t large_count = 1u << 21;

@@ -1,5 +1,6 @@
 // One lane's way through a wide tree over instances and the wide trees in them, a step, a leaf or
-// an instance at a time: the same hits as traverse_cwbvh (see 'Instances' in docs/tracing.md).
+// an instance at a time: the same hits as traverse_cwbvh (see 'Instances' in
+// docs/design/tracing.md).
 #pragma once
 
 #include <type_traits>
