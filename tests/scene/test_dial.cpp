@@ -190,10 +190,10 @@ TEST(Dial, TheLampHangsInTheRoomAndShinesDown) {
 // Whatever BSDFs there are: the scene is a benchmark.
 TEST(Dial, HasItsOwnListOfKinds) {
   constexpr MaterialKind kinds[] = {
-      kind_of<Diffuse>,         kind_of<Conductor>,  kind_of<Plastic>,
-      kind_of<RoughPlastic>,    kind_of<Principled>, kind_of<Phong>,
-      kind_of<Ward>,            kind_of<OrenNayar>,  kind_of<Metal>,
-      kind_of<PrincipledThin>,  kind_of<ThinDielectric>, kind_of<Dielectric>,
+      kind_of<Diffuse>,        kind_of<Conductor>,      kind_of<Plastic>,
+      kind_of<RoughPlastic>,   kind_of<Principled>,     kind_of<Phong>,
+      kind_of<Ward>,           kind_of<OrenNayar>,      kind_of<Metal>,
+      kind_of<PrincipledThin>, kind_of<ThinDielectric>, kind_of<Dielectric>,
       kind_of<RoughDielectric>};
   ASSERT_EQ(std::size(kinds), dial_kinds);
   for (std::uint32_t i = 0; i < 40; ++i) {
