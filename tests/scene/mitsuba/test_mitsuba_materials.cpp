@@ -21,11 +21,6 @@ Color reflectance(const std::string& element, const std::string& version = "3.0.
   return material_with("<bsdf type=\"diffuse\">" + element + "</bsdf>", version).color(0);
 }
 
-Color radiance(const std::string& element, const std::string& version = "3.0.0") {
-  return material_with("<emitter type=\"area\">" + element + "</emitter>", version)
-      .emission.radiance;
-}
-
 TEST(MitsubaColor, rgbInAllForms) {
   const auto rgb = [](const std::string& value) {
     return reflectance("<rgb name=\"reflectance\" value=\"" + value + "\"/>");
