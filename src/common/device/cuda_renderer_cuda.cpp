@@ -18,6 +18,7 @@
 #include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_arrays.h"
 #include "common/scene/scene_facts.h"
+#include "common/scene/scene_options.h"
 #include "common/transport/mask.h"
 
 namespace pt {
@@ -26,10 +27,6 @@ namespace {
 // One batch takes a tenth of a second at most, and 2 GiB for its samples.
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of unknown speed
-
-bool is_toggled(const Options& o) {
-  return o.rng != RngKind::philox || o.branching != Branching::divergent;
-}
 
 /// The paper's toggles each have kernels alone, for scenes that brute force scans: no experiment
 /// combines them, and together they would be as many kernels as all others.

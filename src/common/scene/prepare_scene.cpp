@@ -20,9 +20,7 @@ namespace {
 // paper's toggles have kernels on CUDA for brute force alone.
 bool is_small(const SceneData& scene, const Options& options) {
   constexpr std::size_t primitives_max = 96;
-  const bool is_toggled =
-      options.rng != RngKind::philox || options.branching != Branching::divergent;
-  if (is_on_cuda(options) && is_toggled) return true;
+  if (is_on_cuda(options) && is_toggled(options)) return true;
   const std::size_t half_spheres_max = options.mode == Mode::wavefront ? 384 : 224;
   return scene.primitive_count() <= primitives_max ||
          (is_on_cuda(options) && scene.quads.empty() && scene.spheres.size() <= half_spheres_max);

@@ -30,6 +30,12 @@ inline bool is_on_cuda(const Options& options) {
   return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
 }
 
+/// Whether one of the paper's toggles is on that have kernels of their own; on CUDA these are for
+/// scenes that brute force scans.
+inline bool is_toggled(const Options& options) {
+  return options.rng != RngKind::philox || options.branching != Branching::divergent;
+}
+
 /// Whether a megakernel whose blocks sort suits the options if nobody asks for it: it has blocks of
 /// its own (megakernel/trace_paths_sorting.cuh).
 inline bool may_sort(const Options& options) {

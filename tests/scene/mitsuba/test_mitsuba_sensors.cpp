@@ -6,8 +6,7 @@
 #include "common/light/environment.h"
 #include "common/scene/prepare_camera.h"
 #include "common/scene/prepare_scene.h"
-#include "mitsuba_scene.h"
-#include "mode_cases.h"
+#include "mitsuba_modes.h"
 #include "render_serial.h"
 
 namespace pt {
@@ -249,31 +248,7 @@ TEST(MitsubaSensor, ModesAreEqual) {
       lit_wall(hide),
       sensor("perspective", number("principal_point_offset_x", 0.1)) + room,
   };
-  const TempFolder folder;
-  for (const std::string& view : views) {
-    SCOPED_TRACE(view);
-    write_text(folder.file("scene.xml"), "<scene version='3.0.0'>" + view + "</scene>");
-    const Settings settings = {{"scene", folder.file("scene.xml")},
-                               {"width", "24"},
-                               {"height", "20"},
-                               {"spp", "3"},
-                               {"device", "cpu"},
-                               {"max-depth", "4"}};
-    const auto image = [&](Settings more) {
-      more.insert(more.begin(), settings.begin(), settings.end());
-      return render_options(with(Options(), more)).image;
-    };
-    const Image serial = image({{"mode", "serial"}});
-    for (const Settings& more :
-         std::vector<Settings>{{{"mode", "megakernel"}},
-                               {{"mode", "wavefront"}},
-                               {{"mode", "wavefront"}, {"accel", "cwbvh"}},
-                               {{"mode", "wavefront"}, {"accel", "brute"}}}) {
-      const Image other = image(more);
-      SCOPED_TRACE(more[0].second + std::to_string(more.size()));
-      ASSERT_EQ(std::memcmp(serial.pixel(0, 0), other.pixel(0, 0), 24 * 20 * 3 * sizeof(float)), 0);
-    }
-  }
+  for (const std::string& view : views) expect_modes_are_equal(view);
 }
 
 // --- Defaults and axes

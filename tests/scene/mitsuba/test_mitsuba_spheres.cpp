@@ -5,8 +5,7 @@
 
 #include "common/scene/prepare_scene.h"
 #include "common/transport/first_hit.h"
-#include "mitsuba_scene.h"
-#include "mode_cases.h"
+#include "mitsuba_modes.h"
 
 namespace pt {
 namespace {
@@ -156,27 +155,7 @@ TEST(MitsubaSphere, ModesAreEqual) {
   xml +=
       "<shape type='sphere'><float name='radius' value='0.4'/><point name='center' x='2' y='2' "
       "z='2'/><emitter type='area'><rgb name='radiance' value='9 8 7'/></emitter></shape>";
-  const TempFolder folder;
-  write_text(folder.file("scene.xml"), "<scene version='3.0.0'>" + xml + "</scene>");
-  const auto image = [&](Settings more) {
-    const Settings settings = {{"scene", folder.file("scene.xml")},
-                               {"width", "24"},
-                               {"height", "20"},
-                               {"spp", "3"},
-                               {"device", "cpu"},
-                               {"max-depth", "4"}};
-    more.insert(more.begin(), settings.begin(), settings.end());
-    return render_options(with(Options(), more)).image;
-  };
-  const Image serial = image({{"mode", "serial"}});
-  for (const Settings& more : std::vector<Settings>{{{"mode", "megakernel"}},
-                                                    {{"mode", "wavefront"}},
-                                                    {{"mode", "wavefront"}, {"accel", "cwbvh"}},
-                                                    {{"mode", "wavefront"}, {"accel", "brute"}}}) {
-    const Image other = image(more);
-    ASSERT_EQ(std::memcmp(serial.pixel(0, 0), other.pixel(0, 0), 24 * 20 * 3 * sizeof(float)), 0)
-        << more[0].second << more.size();
-  }
+  expect_modes_are_equal(xml);
 }
 
 }  // namespace
