@@ -535,6 +535,15 @@ class Interruption(CommandLine):
                 self.end(process, signal.SIGINT)
                 self.assertIn(f"{mode}.ppm", self.files())
 
+    def test_nor_is_the_turn_of_markov_chains(self):
+        for mode in MODES:
+            for after_s in (0.5, 4):  # before the first paths of the bootstrap are there, and later
+                with self.subTest(mode=mode, after_s=after_s):
+                    process = self.start("--mode", mode, "--scene", "boxes", "--integrator", "mlt",
+                                         "--width", "200", "--height", "100", "--spp", "20000",
+                                         "--output", f"{mode}.ppm")
+                    self.end(process, signal.SIGINT, after_s=after_s)
+
     def test_nor_is_a_sample_of_a_large_image(self):
         for mode in MODES:
             with self.subTest(mode=mode):

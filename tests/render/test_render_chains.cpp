@@ -26,12 +26,15 @@ class ClockedDevice : public ChainDevice {
   std::uint32_t steps = 0;
 
   void begin_chains(const ChainWindow&) override {}
-  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override {
+  bool trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                       const std::function<bool()>& cancel) override {
     now_s += 0.125, run.kernel_ms += 125;
+    if (cancel && cancel()) return false;
     EXPECT_EQ(first, targets_.size());
     for (std::uint32_t i = first; i < first + count; ++i)
       targets_.push_back(i < dark ? 0.0f : 2.0f);
     traced.push_back(count);
+    return true;
   }
   void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun&) override {
     splatted.push_back(count);
@@ -168,6 +171,43 @@ TEST(RenderChains, AnInterruptionEndsTheBootstrap) {
   EXPECT_EQ(device.steps, 1u);
   EXPECT_EQ(outcome.run.ended_by, RunEnd::interrupted);
   EXPECT_EQ(progress, (std::vector<std::uint64_t>{1000, 2000, 3000, 3100}));
+}
+
+TEST(RenderChains, ABatchOfTheBootstrapIsAbandoned) {
+  ClockedDevice device;
+  RenderHooks hooks;
+  hooks.stop = hooks.cancel = [&] { return device.now_s > 0.3; };
+  const Outcome some = render_on(device, plan_of(1 << 20, false), 1 << 20, 0, hooks);
+  EXPECT_EQ(device.traced.size(), 2u) << "the third was abandoned";
+  EXPECT_EQ(device.places.paths, 2000u);
+  EXPECT_EQ(device.steps, 1u);
+  EXPECT_EQ(some.run.ended_by, RunEnd::interrupted);
+  EXPECT_EQ(some.run.samples_done, 6) << "100 mutations, 16 pixels";
+  ClockedDevice at_once;
+  hooks.stop = hooks.cancel = [] { return true; };
+  const Outcome none = render_on(at_once, plan_of(1 << 20, false), 1 << 20, 0, hooks);
+  EXPECT_EQ(at_once.steps, 0u);
+  EXPECT_EQ(none.run.ended_by, RunEnd::interrupted);
+  EXPECT_EQ(none.run.samples_done, 0);
+  EXPECT_EQ(none.film.pixels.size(), std::size_t{side * side});
+}
+
+TEST(RenderChains, ATurnIsNoLongerThanThePaceAllows) {
+  ClockedDevice device;
+  RenderHooks hooks;
+  std::vector<std::uint64_t> progress;
+  hooks.progress = [&](std::uint64_t done, std::uint64_t) { progress.push_back(done); };
+  hooks.stops.clock = [&] { return device.now_s; };
+  ChainPlan plan = plan_of(1000, false);
+  plan.turn = 1000;
+  BatchPace pace(1);
+  Film film;
+  film.window = {0, 0, side, side};
+  render_chains(device, plan, Options{}, 1000, hooks, film, &pace);
+  // A step, and then of half a second: eight of a sixteenth.
+  ASSERT_GE(progress.size(), 4u);
+  EXPECT_EQ((std::vector<std::uint64_t>(progress.begin(), progress.begin() + 4)),
+            (std::vector<std::uint64_t>{1100, 1900, 2700, 3500}));
 }
 
 // Nothing is expected of batches without light, and they need not be added; but they count.

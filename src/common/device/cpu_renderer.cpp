@@ -129,14 +129,20 @@ void CpuRenderer::time_in_arena(RenderRun& run, Function&& function) {
   run.kernel_ms += elapsed.count();
 }
 
+/// False: it was abandoned.
+bool CpuRenderer::trace_whole(const SampleBuffer& batch, const std::function<bool()>& cancel) {
+  cancel_ = &cancel;
+  trace_batch(batch);
+  const bool is_whole = !is_cancelled();
+  cancel_ = nullptr;
+  return is_whole;
+}
+
 bool CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
                                const std::function<bool()>& cancel) {
   bool is_whole = true;
   time_in_arena(run, [&] {
-    cancel_ = &cancel;
-    trace_batch(batch);
-    is_whole = !is_cancelled();
-    cancel_ = nullptr;
+    is_whole = trace_whole(batch, cancel);
     if (!is_whole) return;
     if (plan_.feature_planes() > 0) {
       timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
@@ -237,17 +243,21 @@ void CpuRenderer::for_each_path(std::uint32_t count, Function&& function) {
   });
 }
 
-void CpuRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) {
+bool CpuRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                                  const std::function<bool()>& cancel) {
   const SampleBuffer batch = chain_batch(count);
+  bool is_whole = true;
   time_in_arena(run, [&] {
     for_each_path(count,
                   [&](std::uint32_t i) { chain_arrays_.proposals[i] = bootstrap_path(first + i); });
-    trace_batch(batch);
+    is_whole = trace_whole(batch, cancel);
+    if (!is_whole) return;
     for_each_path(count, [&](std::uint32_t i) {
       chain_arrays_.bootstrap.targets[first + i] = target_of(batch.samples[i]);
     });
     count_paths(batch);
   });
+  return is_whole;
 }
 
 void CpuRenderer::count_paths(const SampleBuffer& batch) {

@@ -85,8 +85,10 @@ class CpuRenderer : public FilmRenderer {
   void read_film(Film& film) override;
   template <class Function>
   void time_in_arena(RenderRun& run, Function&& function);
+  bool trace_whole(const SampleBuffer& batch, const std::function<bool()>& cancel);
   void begin_chains(const ChainWindow& window) override;
-  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override;
+  bool trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                       const std::function<bool()>& cancel) override;
   void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) override;
   std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) override;
   void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) override;

@@ -143,7 +143,8 @@ class CudaRenderer : public FilmRenderer {
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
   void begin_chains(const ChainWindow& window) override;
-  void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) override;
+  bool trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                       const std::function<bool()>& cancel) override;
   void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) override;
   std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) override;
   void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) override;

@@ -339,7 +339,8 @@ void CudaRenderer::launch_each(const char* name, void (*kernel)(Parameters...), 
   launch(name, kernel, (count + block - 1) / block, block, 0, arguments...);
 }
 
-void CudaRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) {
+bool CudaRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                                   const std::function<bool()>&) {
   const SampleBuffer batch = chain_batch(count);
   const ProfilerRange range(fmt::format("{} bootstrap paths", count));
   prepare_batch(batch);
@@ -351,6 +352,7 @@ void CudaRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, Ren
     launch_each("keep_targets", keep_targets, count, chain_arrays_.bootstrap.targets + first, batch,
                 tally_, clock_);
   });
+  return true;
 }
 
 void CudaRenderer::splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) {
@@ -466,7 +468,7 @@ void CudaRenderer::load_kernels() {
   RenderRun run;
   if (has_chains()) {
     begin_chains({0, 0, 1, 1});
-    trace_bootstrap(0, 1, run);
+    trace_bootstrap(0, 1, run, {});
     sum_targets(1, run);
     splat_bootstrap(1, {}, run);
     start_chains({0, 0, {0.0}, {}}, {}, run);

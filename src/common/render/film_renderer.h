@@ -28,8 +28,8 @@ class FilmRenderer : public Renderer, protected ChainDevice {
       batch_paths_ = chain_plan_.batch_paths();
     } else {
       batch_paths_ = plan_batches(options_, memory);
-      pace_ = BatchPace(memory.first_paths);
     }
+    pace_ = BatchPace(memory.first_paths);
     samples_ = make(batch_paths_);
   }
 

@@ -67,13 +67,13 @@ class BootstrapRun {
     step_.weights = weights;
   }
 
-  /// Until `ends()` once the least is there.
+  /// Until `ends()` once the least is there, or until it is cancelled.
   template <class Ends>
-  void trace(Ends&& ends, RenderRun& run) {
+  void trace(Ends&& ends, const std::function<bool()>& cancel, RenderRun& run) {
     while (paths_ < plan_.bootstrap && (paths_ == 0 || !ends())) {
       const auto count =
           static_cast<std::uint32_t>(std::min(plan_.bootstrap_batch, plan_.bootstrap - paths_));
-      device_.trace_bootstrap(static_cast<std::uint32_t>(paths_), count, run);
+      if (!device_.trace_bootstrap(static_cast<std::uint32_t>(paths_), count, run, cancel)) break;
       paths_ += count;
       if (!is_lit()) expect_brightness(run);
       if (is_lit()) device_.splat_bootstrap(count, step_, run);
@@ -235,7 +235,7 @@ ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t pa
 }
 
 RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Options& options,
-                        int samples, const RenderHooks& hooks, Film& film) {
+                        int samples, const RenderHooks& hooks, Film& film, BatchPace* pace) {
   const Window& w = film.window;
   const std::uint64_t pixels = w.pixel_count();
   const auto chains = static_cast<std::uint32_t>(plan.chains);
@@ -264,7 +264,12 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
         }
         return (plan.bootstrap_is_timed && elapsed >= bootstrap_s) || (hooks.stop && hooks.stop());
       },
-      run);
+      hooks.cancel, run);
+  if (bootstrap.paths() == 0) {
+    fill_film([](std::size_t) { return 0.0; }, 0, film);
+    run.ended_by = RunEnd::interrupted;
+    return run;
+  }
 
   Chains names;
   names.seed = options.seed;
@@ -304,8 +309,9 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
       hooks.progress(bootstrap.paths() + mutated, bootstrap.paths() + wanted);
     };
   }
-  const BatchRun batches = for_each_batch(static_cast<int>(std::min(iterations, most)),
-                                          std::min(plan.turn, segment), plan.chains, rest, mutate);
+  const BatchRun batches =
+      for_each_batch(static_cast<int>(std::min(iterations, most)), std::min(plan.turn, segment),
+                     plan.chains, rest, mutate, {}, pace);
   const double mutated_ms = run.kernel_ms - before_ms;
   take();
 

@@ -66,8 +66,10 @@ class ChainDevice {
 
   /// Before the first batch of a render: over which pixels the chains walk. Sums are zero.
   virtual void begin_chains(const ChainWindow& window) = 0;
-  /// Traces the bootstrap paths [first, first + count) and keeps their targets.
-  virtual void trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run) = 0;
+  /// Traces the bootstrap paths [first, first + count) and keeps their targets. False: `cancel`, a
+  /// hook, abandoned them, and none of them counts.
+  virtual bool trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                               const std::function<bool()>& cancel) = 0;
   /// Adds those that were traced last to the sums.
   virtual void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) = 0;
   /// The first `paths` targets, summed by groups.
@@ -86,8 +88,11 @@ class ChainDevice {
 
 /// Renders `samples` mutations per pixel of the film's window, or more, so that all chains are of
 /// the same length. Fills in the film's pixels and counts, but for those of the bootstrap's paths,
-/// which the device counts as it does all others.
+/// which the device counts as it does all others. An interruption ends the bootstrap, and the
+/// chains take a step from what was found; where nothing was, the film is black and has no samples.
+/// `pace` limits turns.
 RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Options& options,
-                        int samples, const RenderHooks& hooks, Film& film);
+                        int samples, const RenderHooks& hooks, Film& film,
+                        BatchPace* pace = nullptr);
 
 }  // namespace pt
