@@ -4,7 +4,7 @@
 Philox is a function of pixel, sample and dimension. XORWOW, as cuRAND has it and the paper uses it,
 keeps a state for each path, which the stage render_init sets up. Sobol points come from the kernels
 for all scenes, which need more than those for spheres and quads: so Philox is measured in both
-(--mis balance takes them; it matters in the Cornell box alone, and hardly). `relmse` is the error
+(--kernel-set general). `relmse` is the error
 against a reference that Sobol points render for --reference-seconds; `efficiency` is Philox's error
 times its time, divided by the row's: above 1 the row needs less time for an error.
 """
@@ -18,8 +18,8 @@ from sentences import against, in_groups, show, time_of
 MODES = ["megakernel", "wavefront"]
 PHILOX, XORWOW = "Philox", "XORWOW"
 GENERAL, SOBOL = "Philox, kernels for all scenes", "Sobol, kernels for all scenes"
-GENERATORS = {PHILOX: "", XORWOW: "--rng xorwow", GENERAL: "--mis balance",
-              SOBOL: "--mis balance --sampler sobol"}
+GENERATORS = {PHILOX: "", XORWOW: "--rng xorwow", GENERAL: "--kernel-set general",
+              SOBOL: "--sampler sobol"}
 BASES = {XORWOW: PHILOX, SOBOL: GENERAL}  # what each is compared with
 SCENES = {"spheres": "--scene spheres --width 600 --height 300 --max-depth 50",
           "cornell": "--scene cornell --width 512 --height 512 --max-depth 8"}

@@ -20,7 +20,7 @@ SHAPES = ["geometry", *SAMPLING]
 SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
 HOST = ["options", "error"]
 BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
-SCENE = ["loaders", "builtin", "scene", "image", *BUILDERS]
+SCENE = ["loaders", "builtin", "scene", "image", "plan", *BUILDERS]
 PHYSICS = ["transport", "scene", *SCENE_PARTS]
 COMMON = ["rays", "device", "build_cuda", "cuda_memory", "render", "film", "trace_cuda", "transport", *SCENE]
 SCHEDULES = ["serial", "megakernel", "wavefront", "metropolis"]
@@ -44,15 +44,17 @@ LAYERS = [
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
                "common/host_memory.*", "common/build_info.h"], []),
     # Around the physics: renderers and batches; what becomes of the samples.
-    ("render", ["common/render/*"], ["film", "image", *PHYSICS, *HOST]),
+    ("render", ["common/render/*"], ["film", "image", "plan", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
     # Scenes in files and in code make scene data; the scene itself is data and a view of it.
     ("loaders", ["common/scene/load_*", "common/scene/gltf/*", "common/scene/mitsuba/*",
                  "common/scene/files/*"], ["builtin", "scene", "image", *SCENE_PARTS, *HOST]),
-    ("builtin", ["common/scene/builtin/*"], ["scene", *BUILDERS]),
-    ("scene", ["common/scene/*"], [*BUILDERS, "image"]),
+    ("builtin", ["common/scene/builtin/*"], ["scene", "plan", *BUILDERS]),
+    ("scene", ["common/scene/*"], [*BUILDERS, "image", "plan"]),
+    # What options leave open is decided here, from facts of the scene and the device.
+    ("plan", ["common/plan/*"], BUILDERS),
     ("image", ["common/image/*"], HOST),
     ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     # Acceleration structures: what rays pass through, how it is built, and warps that persist.

@@ -50,7 +50,9 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
 
 SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
   SceneData scene = load_scene(options, device, warn);
-  prepare_scene(scene, options);
+  const bool is_on_gpu =
+      device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+  prepare_scene(scene, options, is_on_gpu ? device.properties : cpu_properties(options.threads));
   return scene;
 }
 

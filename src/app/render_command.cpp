@@ -19,6 +19,7 @@
 #include "common/image/atomic_file.h"
 #include "common/image/image_io.h"
 #include "common/image/measure_exposure.h"
+#include "common/plan/execution_plan.h"
 #include "common/render/option_names.h"
 #include "common/scene/scene_facts.h"
 
@@ -146,6 +147,12 @@ int render_command(const RenderCommand& command) {
     std::fflush(stdout);
   }
   const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
+
+  if (options.explain) {
+    renderer->describe(report);
+    fmt::print("{}", plan_text(report.plan));
+    return 0;
+  }
 
   note_signals();
   Progress progress(stderr, progress_style(stderr, options.quiet));

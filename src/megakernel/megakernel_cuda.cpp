@@ -1,44 +1,18 @@
 #include "megakernel/megakernel_cuda.h"
 
-#include <fmt/format.h>
-
-#include "common/error.h"
-#include "common/scene/scene_options.h"
 #include "megakernel/megakernel.h"
 
 namespace pt {
 
 MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, int device)
-    : CudaRenderer(options, scene, device), kernel_(choose_kernel()) {
-  const std::int64_t threads = std::int64_t{options.block.x} * options.block.y;
-  if (threads > properties_.maxThreadsPerBlock) {
-    throw Error(fmt::format("--block {}x{}: {} threads; a block has at most {}", options.block.x,
-                            options.block.y, threads, properties_.maxThreadsPerBlock));
-  }
-  if (kernel_ == MegakernelKind::vote && !can_vote()) {
-    throw Error(
-        fmt::format("--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 "
-                    "to 256 threads, a multiple of 32; {}x{} has {}",
-                    options.block.x, options.block.y, threads));
-  }
-  if (kernel_ == MegakernelKind::sort && !can_sort()) {
-    throw Error(
-        "--kernel sort: expected --accel cwbvh, --work persistent and a device whose blocks may "
-        "have 73 KiB of shared memory");
-  }
+    : CudaRenderer(options, scene, device) {
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
-  if (kernel_ != MegakernelKind::sort) return;
+  if (execution_.megakernel != MegakernelKind::sort) return;
   if (traits_.has_masks) {
     allocate_slots<true>();
   } else {
     allocate_slots<false>();
   }
-}
-
-MegakernelKind MegakernelCuda::choose_kernel() const {
-  if (options_.kernel != MegakernelKind::automatic) return options_.kernel;
-  if (can_sort() && may_sort(options_)) return MegakernelKind::sort;
-  return can_vote() ? MegakernelKind::vote : MegakernelKind::loop;
 }
 
 void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
@@ -47,8 +21,8 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     using Source = std::remove_cvref_t<decltype(source)>;
     const SceneStorage<SceneMemory::global> in_global{scene_};
     if constexpr (std::is_same_v<Source, SamplerSource>) {
-      if (kernel_ == MegakernelKind::vote) return launch_voting(source, batch);
-      if (kernel_ == MegakernelKind::sort) {
+      if (execution_.megakernel == MegakernelKind::vote) return launch_voting(source, batch);
+      if (execution_.megakernel == MegakernelKind::sort) {
         return traits_.has_masks ? launch_sorting<true>(source, batch)
                                  : launch_sorting<false>(source, batch);
       }

@@ -27,13 +27,7 @@ class MegakernelCuda : public CudaRenderer {
   template <class Kernel>
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
-  /// How this scene is rendered with these options: never automatic.
-  MegakernelKind choose_kernel() const;
-  /// Whether there is a kernel that votes, or sorts, for this scene and these options.
-  bool can_vote() const;
-  bool can_sort() const;
-  /// How many paths a block that sorts has for each thread: what its shared memory has room for;
-  /// 0 where that is too few.
+  /// How many paths a block that sorts has for each thread: what its shared memory has room for.
   int sorting_slots() const;
   void launch_voting(const SamplerSource& source, const SampleBuffer& batch);
   template <bool has_masks>
@@ -45,7 +39,6 @@ class MegakernelCuda : public CudaRenderer {
 
   std::uint32_t* next_path_ = nullptr;
   PathSlot* slots_ = nullptr;  ///< only where blocks sort
-  const MegakernelKind kernel_;
 };
 
 }  // namespace pt

@@ -7,17 +7,10 @@ int MegakernelCuda::sorting_slots() const {
   using Memory = BlockMemory<SortingTraits<false>>;
   static_assert(Memory::bytes(1) == BlockMemory<SortingTraits<true>>::bytes(1));
   constexpr int least = 4;
+  static_assert(Memory::bytes(least) <= sorting_bytes_min);
   int slots = SortingTuning::slots_most;
-  while (slots >= least && Memory::bytes(slots) > properties_.sharedMemPerBlockOptin) --slots;
-  return slots >= least ? slots : 0;
-}
-
-bool MegakernelCuda::can_sort() const {
-  using Masked = Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>;
-  const bool is_plain = traits_ == SortingTraits<false>::value();
-  const bool is_masked =
-      !scene_.camera.is_limited && traits_ == Masked::value() && scene_.has_only_triangles();
-  return (is_plain || is_masked) && options_.work == Work::persistent && sorting_slots() > 0;
+  while (slots > least && Memory::bytes(slots) > properties_.sharedMemPerBlockOptin) --slots;
+  return slots;
 }
 
 template void MegakernelCuda::allocate_slots<false>();

@@ -1,5 +1,4 @@
 // Wide trees of triangles alone, traced by warps that vote (trace_paths_voting.cuh).
-#include "common/scene/scene_options.h"
 #include "megakernel/megakernel_cuda.h"
 #include "megakernel/megakernel_kernel.cuh"
 #include "megakernel/trace_paths_voting.cuh"
@@ -38,10 +37,6 @@ __global__ void __launch_bounds__(voting_threads_max, blocks_least)
 }
 
 }  // namespace
-
-bool MegakernelCuda::can_vote() const {
-  return traits_ == VotingTraits::value() && may_vote(options_);
-}
 
 void MegakernelCuda::launch_voting(const SamplerSource& source, const SampleBuffer& batch) {
   const int threads = options_.block.x * options_.block.y;

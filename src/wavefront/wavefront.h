@@ -135,17 +135,6 @@ struct WaveBuffers {
   }
 };
 
-/// Whether one kernel traces and shades. It saves the bytes of the hits and of the queues between
-/// them; where rays are dear or BSDFs many its threads would wait for each other.
-inline bool fuses_stages(const Options& options, const SceneTraits& traits) {
-  const bool is_possible = options.branching == Branching::divergent &&
-                           options.shade == Shade::automatic &&
-                           !compaction_info(options.compaction).orders;
-  const bool pays = traits.accel == Accel::brute && traits.geometry == Geometry::spheres_and_quads;
-  return options.stages == Stages::fused ||
-         (options.stages == Stages::automatic && is_possible && pays);
-}
-
 // What follows is written for an Executor, the device's way to do it:
 //   compact(request)         a pass over the tags, where the strategy makes one
 //   order_surfaces(order)    see surface_order.h

@@ -13,7 +13,6 @@
 #include "common/host_memory.h"
 #include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
-#include "wavefront/path_costs.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/shade_block_cpu.h"
@@ -168,18 +167,14 @@ class WavefrontCpu : public CpuRenderer {
                                       static_cast<std::uint64_t>(options.spp);
     const auto threads = static_cast<std::uint64_t>(this->threads());
     pool_size_ = options.pool_size > 0 ? options.pool_size
-                                       : std::min(threads * auto_slots_per_thread, image_paths);
-    // By default where rays are traced alone: what fused stages save, blocks of rays save more of.
-    const bool fused = fuses_stages(options, traits_) &&
-                       (options.stages == Stages::fused || brute_block() == nullptr);
-    stages_ = to_string(fused ? Stages::fused : Stages::split);
+                                       : std::min(execution_.pool_paths_max, image_paths);
+    const bool fused = execution_.fused;
     WaveBuffers common;
     common.compaction = compaction_info(options.compaction);
     common.fused = fused;
-    finish_paths_ = finish_paths_of(options, scene);
     common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
-    common.shades_by_kind = options.shade == Shade::material && !fused;
-    common.orders_surfaces = (common.compaction.orders && !fused) || common.shades_by_kind;
+    common.shades_by_kind = execution_.shades_by_kind;
+    common.orders_surfaces = execution_.orders_surfaces;
     common.kinds = kinds_of(scene);
     common.only_triangles = scene_.has_only_triangles();
     common.all_slots = static_cast<std::uint32_t>(pool_size_);
@@ -239,7 +234,8 @@ class WavefrontCpu : public CpuRenderer {
     const StageContext<Source> context{
         buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
         this->limits_, this->chains()};
-    const std::uint64_t finish_paths = of_chains ? 0 : std::uint64_t{finish_paths_} / parts_.size();
+    const std::uint64_t finish_paths =
+        of_chains ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
     CpuExecutor execute(scene_, options_, part, runs, of_chains,
                         static_cast<std::uint32_t>(finish_paths));
     while (execute.more()) {

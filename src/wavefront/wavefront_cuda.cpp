@@ -7,18 +7,10 @@
 
 #include "common/device/profiler_range.cuh"
 #include "common/error.h"
-#include "common/render/option_names.h"
 #include "common/scene/prepare_materials.h"
-#include "wavefront/path_costs.h"
 
 namespace pt {
 namespace {
-
-// Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
-// the L2 cache. Found by measurement on an H200 (results/), as is the rule for appended queues,
-// which keep the order of the pixels only as long as no slot is used twice: the whole batch at
-// once.
-constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 20;
 
 // A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
 // ray find empty queues.
@@ -30,7 +22,6 @@ constexpr double mib = 1024.0 * 1024.0;
 
 WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
     : CudaRenderer(options, scene, device) {
-  schedule_ = options.schedule == Schedule::host ? "host" : "graph";
   allocate_pool(scene);
   check_cuda(cudaMallocHost(reinterpret_cast<void**>(&host_counters_), sizeof *host_counters_),
              "cudaMallocHost");
@@ -46,16 +37,10 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
   buffers_.only_triangles = scene_.has_only_triangles();
-  buffers_.fused = fuses_stages(options_, traits_);
-  finish_paths_ = finish_paths_of(options_, scene);
+  buffers_.fused = execution_.fused;
   buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
-  stages_ = to_string(buffers_.fused ? Stages::fused : Stages::split);
-  buffers_.shades_by_kind = options_.shade == Shade::material && !buffers_.fused;
-  const bool order_pays = traits_.lighting == Lighting::full && buffers_.compaction.has_queues &&
-                          order_pays_for(buffers_.kinds);
-  buffers_.orders_surfaces =
-      !buffers_.fused && (buffers_.compaction.orders || buffers_.shades_by_kind ||
-                          (options_.shade == Shade::automatic && order_pays));
+  buffers_.shades_by_kind = execution_.shades_by_kind;
+  buffers_.orders_surfaces = execution_.orders_surfaces;
   parts_ = {traits_.has_lights() && !buffers_.fused,
             traits_.geometry == Geometry::mixed,
             !appends,
@@ -66,8 +51,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
       PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const std::uint64_t free = CudaMemory::free_bytes();
   if (options_.pool_size == 0) {
-    const std::uint64_t wanted =
-        appends ? batch_paths() : std::min(pool_size_for_passes, batch_paths());
+    const std::uint64_t most = execution_.pool_paths_max;
+    const std::uint64_t wanted = most == 0 ? batch_paths() : std::min(most, batch_paths());
     pool_size_ = std::min(wanted, free / 2 / bytes_per_slot);
   } else {
     pool_size_ = options_.pool_size;
@@ -163,7 +148,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
-  if (schedule_ != "graph" || is_counting()) return;
+  if (!execution_.uses_graph || is_counting()) return;
   if (graph_exec_ != nullptr && batch == graph_batch_ && chains() == graph_chains_) return;
   destroy_graph();
   build_graph(batch);
@@ -238,7 +223,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
         read_counters();
     } while (host_counters_->intersect > 0);
   }
-  if (finish_paths_ > 0 && chains() == nullptr) enqueue_finish(batch);
+  if (execution_.finish_paths > 0 && chains() == nullptr) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 
@@ -258,7 +243,7 @@ void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
   layout.appends = buffers_.compaction.appends;
   layout.queues_free = buffers_.queue(free_slot) != nullptr;
   layout.all_lights = traits_.lighting == Lighting::full;
-  layout.persistent = traits_.accel == Accel::cwbvh && traces_queues_here() && layout.appends;
+  layout.persistent = traces_queues_here();
   layout.shades_by_kind = buffers_.shades_by_kind;
   for (LaunchCounters& launch : launches) {
     if (launch.wave < 0) continue;

@@ -33,11 +33,7 @@ class WavefrontCuda : public CudaRenderer {
   /// or masks are of the same kinds as some without.
   template <class Traits>
   static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
-  bool traces_queues_here() const {
-    return options_.persistent && !scene_.camera.is_limited && scene_.primitives.count() == 0 &&
-           scene_.triangles.triangle_count > 0 &&
-           (scene_.triangles.instance_count == 0 || !traits_.has_masks);
-  }
+  bool traces_queues_here() const { return execution_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
 

@@ -74,6 +74,7 @@ const std::map<std::string, std::string>& other_values() {
       {"builder", "sbvh"},
       {"work", "sample"},
       {"block", "32x4"},
+      {"kernel-set", "general"},
       {"kernel", "vote"},
       {"compaction", "cub"},
       {"pool-size", "1048576"},
@@ -91,6 +92,7 @@ const std::map<std::string, std::string>& other_values() {
       {"counters", "on"},
       {"stats", "run.json"},
       {"csv", "runs.csv"},
+      {"explain", "on"},
       {"quiet", "on"}};
   return values;
 }

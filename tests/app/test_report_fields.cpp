@@ -37,6 +37,7 @@ RenderRun last_run() {
 RenderReport unequal_report() {
   RenderReport report;
   report.device_name = "Device", report.device_kind = "kind", report.driver = "driver 5";
+  report.plan = {{"accel", "cwbvh", "a reason"}, {"kernel", "loop", "another"}};
   report.accel = "cwbvh", report.schedule = "graph", report.stages = "fused";
   report.pool_size = 1111, report.finish_paths = 77, report.primitives = 51;
   report.scene = {101,
@@ -70,6 +71,8 @@ constexpr const char* expected_json = R"({
   "device": {"name": "Device", "kind": "kind", "driver": "driver 5"},
   "used": {"accel": "cwbvh", "schedule": "graph", "stages": "fused", "pool_size": 1111,
            "finish_paths": 77, "primitives": 51, "exposure": 2.25},
+  "plan": [{"option": "accel", "value": "cwbvh", "reason": "a reason"},
+           {"option": "kernel", "value": "loop", "reason": "another"}],
   "scene": {"triangles": 101, "meshes": 102, "instances": 103, "spheres": 104, "quads": 105,
             "materials": 106, "textures": 107, "lights": 108,
             "memory_bytes": {"meshes": 201, "textures": 202}, "builder": "sbvh",

@@ -247,6 +247,10 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) { return block_text(o.block); }),
            "megakernel on CUDA: threads of a block, at most 1,024")
       .only(megakernel, cuda)
+      .add(choice("kernel-set", &Options::kernel_set),
+           "lean: for the paper's spheres, quads and materials alone, with\n"
+           "the default ways to sample; general: for every scene; auto:\n"
+           "lean where it can")
       .add(choice("kernel", &Options::kernel),
            "megakernel on CUDA: a loop in which each turn traces a ray of\n"
            "every lane to its end; warps that vote on what to do next:\n"
@@ -377,6 +381,11 @@ void add_measurement(std::vector<OptionEntry>& list) {
       .add(text("csv", "FILE", &Options::csv_file),
            "Appends the same as one row, below a header if the file is\n"
            "new; a file with other columns is refused")
+      .add(custom(
+               "explain", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.explain = true; },
+               [](const Options& o) { return o.explain ? "on" : "off"; }),
+           "Prints how the render would be executed, and why, instead\nof rendering")
       .add(
           custom(
               "quiet", OptionForm::flag, "", [](Options& o, const std::string&) { o.quiet = true; },

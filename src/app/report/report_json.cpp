@@ -39,6 +39,13 @@ Json options_json(const Options& options) {
   return json;
 }
 
+Json plan_json(const std::vector<Decision>& decisions) {
+  Json json = Json::array();
+  for (const Decision& d : decisions)
+    json.push_back({{"option", d.option}, {"value", d.value}, {"reason", d.reason}});
+  return json;
+}
+
 Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
 }
@@ -207,6 +214,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
                   {"finish_paths", report.finish_paths},
                   {"primitives", report.primitives},
                   {"exposure", report.exposure ? Json(*report.exposure) : Json(nullptr)}};
+  json["plan"] = plan_json(report.plan);
   json["scene"] = scene_json(report.scene);
   json["complete"] = is_complete(options, report);
   json["samples_done"] = summary.samples_done;

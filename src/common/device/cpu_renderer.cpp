@@ -59,19 +59,16 @@ Scene seeded_view(const SceneData& scene, const Options& options) {
   return view;
 }
 
-/// The scene's, and what this processor makes of its wide tree; masks have no such kernels.
-SceneTraits cpu_traits(SceneTraits traits) {
-  if (traits.accel == Accel::cwbvh && !traits.has_masks && has_avx2()) {
-    traits.accel = Accel::cwbvh_avx2;
-  }
+SceneTraits traits_by(SceneTraits traits, const ExecutionPlan& plan) {
+  traits.accel = plan.traversal;
   return traits;
 }
 
 }  // namespace
 
 CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
-    : FilmRenderer(options, scene),
-      traits_(cpu_traits(scene.traits)),
+    : FilmRenderer(options, scene, cpu_properties(cpu_threads(threads))),
+      traits_(traits_by(scene.traits, execution_)),
       scene_(seeded_view(scene, options)),
       threads_(cpu_threads(threads)),
       arena_(threads_),
@@ -347,9 +344,8 @@ void CpuRenderer::describe(RenderReport& report) const {
   report.device_kind = "cpu";
   report.device_name = fmt::format("CPU, {} thread{}", threads_, threads_ == 1 ? "" : "s");
   report.accel = accel_name(traits_.accel);
-  report.stages = stages_;
+  describe_plan(report);
   report.pool_size = pool_size_;
-  report.finish_paths = finish_paths_;
   report.primitives = primitive_count_;
   report.setup_ms = setup_ms_;
   report.counts = summarize(tally_);

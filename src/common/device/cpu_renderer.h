@@ -71,9 +71,7 @@ class CpuRenderer : public FilmRenderer {
   const Scene scene_;
   StageTimer timer_;
   std::uint64_t waves_ = 0;
-  std::string stages_;
   std::uint64_t pool_size_ = 0;
-  std::uint32_t finish_paths_ = 0;
 
  private:
   void allocate_chains();

@@ -75,10 +75,10 @@ class CudaRenderer : public FilmRenderer {
   /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres.
   template <class Function>
   void with_scene_storage(Function&& function) const {
-    if (scene_memory_ == SceneMemory::shared) {
+    if (execution_.scene_memory == SceneMemory::shared) {
       function(SceneStorage<SceneMemory::shared>{scene_},
                half_spheres_.size() * sizeof(HalfSpheres));
-    } else if (scene_memory_ == SceneMemory::constant) {
+    } else if (execution_.scene_memory == SceneMemory::constant) {
       SceneStorage<SceneMemory::constant> storage{scene_, {}};
       std::copy(half_spheres_.begin(), half_spheres_.end(), storage.spheres);
       function(storage, std::size_t{0});
@@ -96,13 +96,11 @@ class CudaRenderer : public FilmRenderer {
   cudaStream_t stream() const { return stream_; }
   StageClock* clock() const { return clock_; }
 
+  const cudaDeviceProp properties_;
   const SceneTraits traits_;
   Scene scene_;  ///< a view of device memory
   CudaMemory memory_;
-  cudaDeviceProp properties_{};
   std::uint64_t pool_size_ = 0;
-  std::uint32_t finish_paths_ = 0;
-  std::string schedule_, stages_;
 
  private:
   void upload(const SceneData& scene);
@@ -169,7 +167,6 @@ class CudaRenderer : public FilmRenderer {
   std::uint64_t primitive_count_;
   TreeFacts tree_facts_;  ///< of a tree built on the device
   std::vector<HalfSpheres> half_spheres_;
-  SceneMemory scene_memory_ = SceneMemory::global;  ///< never automatic
   cudaStream_t stream_ = nullptr;
   cudaEvent_t start_ = nullptr, stop_ = nullptr;
   FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements

@@ -10,6 +10,7 @@
 #include "common/device/feature_kernels.cuh"
 #include "common/device/film_kernels.cuh"
 #include "common/device/profiler_range.cuh"
+#include "common/device/read_properties.cuh"
 #include "common/error.h"
 #include "common/film/develop.h"
 #include "common/render/lane_histograms.h"
@@ -18,7 +19,6 @@
 #include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_arrays.h"
 #include "common/scene/scene_facts.h"
-#include "common/scene/scene_options.h"
 #include "common/transport/mask.h"
 
 namespace pt {
@@ -28,23 +28,6 @@ namespace {
 constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 27;
 constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of unknown speed
 
-/// The paper's toggles each have kernels alone, for scenes that brute force scans: no experiment
-/// combines them, and together they would be as many kernels as all others.
-void check_toggles(const Options& o, const SceneTraits& traits, SceneMemory memory) {
-  if (!is_toggled(o)) return;
-  const std::string toggle = o.rng != RngKind::philox ? "--rng " + to_string(o.rng)
-                                                      : "--branching " + to_string(o.branching);
-  const auto refuse = [&](const std::string& other, const char* expected) {
-    throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
-  };
-  if (traits.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
-  if (o.rng != RngKind::philox && o.branching != Branching::divergent) {
-    refuse("--branching reduced", "divergent");
-  }
-  if (memory != SceneMemory::global)
-    refuse("--scene-memory " + to_string(memory), "global or auto");
-}
-
 /// Two chains for each thread that the device holds at once, about 2^19 on an H200. More take more
 /// mutations a second, but each walks a shorter way from its start: half as many and twice as many
 /// have a larger error at equal time (results/).
@@ -52,6 +35,13 @@ ChainDefaults chain_defaults(const cudaDeviceProp& device) {
   return {2 * static_cast<std::uint64_t>(device.multiProcessorCount) *
               static_cast<std::uint64_t>(device.maxThreadsPerMultiProcessor),
           std::uint64_t{1} << 20, std::uint64_t{1} << 30, std::uint64_t{1} << 23};
+}
+
+/// Of this device. Throws Error where it is not there.
+cudaDeviceProp read_properties(int device) {
+  cudaDeviceProp properties{};
+  check_cuda(cudaGetDeviceProperties(&properties, device), "cudaGetDeviceProperties");
+  return properties;
 }
 
 class Stopwatch {
@@ -68,14 +58,14 @@ class Stopwatch {
 }  // namespace
 
 CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
-    : FilmRenderer(options, scene),
+    : FilmRenderer(options, scene, plan_properties(read_properties(device))),
+      properties_(read_properties(device)),
       traits_(scene.traits),
       device_(device),
       primitive_count_(scene.primitive_count()),
       half_spheres_(scene.half_spheres) {
   const Stopwatch watch;
   check_cuda(cudaSetDevice(device), "cudaSetDevice");
-  check_cuda(cudaGetDeviceProperties(&properties_, device), "cudaGetDeviceProperties");
   int driver = 0, runtime = 0;
   check_cuda(cudaDriverGetVersion(&driver), "cudaDriverGetVersion");
   check_cuda(cudaRuntimeGetVersion(&runtime), "cudaRuntimeGetVersion");
@@ -98,32 +88,6 @@ CudaRenderer::~CudaRenderer() {
 }
 
 void CudaRenderer::upload(const SceneData& scene) {
-  const std::size_t sphere_bytes = scene.half_spheres.size() * sizeof(HalfSpheres);
-  const bool fits_constant = scene.spheres.size() <= constant_spheres_max;
-  scene_memory_ = options_.scene_memory;
-  if (scene_memory_ == SceneMemory::automatic) {
-    const bool are_few = scene.spheres.size() <= constant_spheres_best;
-    scene_memory_ = are_few && !is_toggled(options_) &&
-                            traits_.geometry == Geometry::spheres_and_quads &&
-                            traits_.accel == Accel::brute
-                        ? SceneMemory::constant
-                        : SceneMemory::global;
-  }
-  check_toggles(options_, traits_, scene_memory_);
-  if (scene_memory_ == SceneMemory::constant && !fits_constant) {
-    throw Error(
-        fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
-                    "parameters hold at most {}",
-                    scene.spheres.size(), constant_spheres_max));
-  }
-  constexpr std::size_t own_shared_bytes = 2048;  // what a kernel needs besides, at most
-  if (scene_memory_ == SceneMemory::shared &&
-      sphere_bytes + own_shared_bytes > properties_.sharedMemPerBlockOptin) {
-    throw Error(
-        fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
-                    "of this device has at most {}",
-                    scene.spheres.size(), sphere_bytes, properties_.sharedMemPerBlockOptin));
-  }
   scene_ = host_view(scene, options_.width, options_.height);
   scene_.mask_seed = mask_seed(options_.seed);
   if constexpr (counts_lanes) {
@@ -565,10 +529,8 @@ void CudaRenderer::describe(RenderReport& report) const {
   report.device_name = properties_.name;
   report.driver = driver_;
   report.accel = accel_name(traits_.accel);
-  report.schedule = schedule_;
-  report.stages = stages_;
+  describe_plan(report);
   report.pool_size = pool_size_;
-  report.finish_paths = finish_paths_;
   report.primitives = primitive_count_;
   if (tree_facts_.nodes > 0) report.scene.tree = tree_facts_;
   report.setup_ms = setup_ms_;

@@ -18,7 +18,8 @@ Devices find_devices() {
   Devices devices;
   devices.list.push_back({{DeviceChoice::Kind::cpu, 0},
                           "CPU",
-                          fmt::format("{} thread{}", threads, threads == 1 ? "" : "s")});
+                          fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"),
+                          cpu_properties(threads)});
 #ifdef PTEXP_CUDA
   devices.about_gpus = append_cuda_devices(devices.list);
 #else

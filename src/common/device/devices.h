@@ -5,14 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "common/plan/render_properties.h"
 #include "common/render/options.h"
 
 namespace pt {
 
 struct DeviceInfo {
-  DeviceChoice choice;  ///< what to pass as --device: never automatic
-  std::string name;     ///< e.g. "NVIDIA H200"
-  std::string detail;   ///< e.g. "132 multiprocessors, 139.8 GiB, compute capability 9.0"
+  DeviceChoice choice;          ///< what to pass as --device: never automatic
+  std::string name;             ///< e.g. "NVIDIA H200"
+  std::string detail;           ///< e.g. "132 multiprocessors, 139.8 GiB, compute capability 9.0"
+  DeviceProperties properties;  ///< what a plan depends on
 };
 
 /// The CPU first, then every usable CUDA device. Never throws: a broken driver means no GPU.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "common/device/devices.h"
+#include "common/device/read_properties.cuh"
 
 namespace pt {
 
@@ -20,7 +21,8 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
          p.name,
          fmt::format("{} multiprocessors, {:.1f} GiB, compute capability {}.{}",
                      p.multiProcessorCount, static_cast<double>(p.totalGlobalMem) / (1 << 30),
-                     p.major, p.minor)});
+                     p.major, p.minor),
+         plan_properties(p)});
   }
   return fmt::format("this machine has {}", count);
 }

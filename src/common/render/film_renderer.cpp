@@ -27,8 +27,10 @@ void check_random(const Options& options, const FilmPlan& plan) {
 
 }  // namespace
 
-FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene)
+FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene,
+                           const DeviceProperties& device)
     : options_(options),
+      execution_(plan_execution(options, scene.properties, device)),
       limits_(path_limits_of(options)),
       plan_(make_plan(options, scene.filter)),
       filter_(scene.filter),
@@ -36,6 +38,16 @@ FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene)
       window_(image_window_) {
   check_metropolis(options, scene.traits, filter_);
   check_random(options, plan_);
+}
+
+void FilmRenderer::describe_plan(RenderReport& report) const {
+  report.plan = execution_.decisions;
+  if (options_.mode != Mode::wavefront) return;
+  report.stages = to_string(execution_.fused ? Stages::fused : Stages::split);
+  report.finish_paths = execution_.finish_paths;
+  if (report.device_kind == "cuda") {
+    report.schedule = to_string(execution_.uses_graph ? Schedule::graph : Schedule::host);
+  }
 }
 
 RenderRun FilmRenderer::render(const RenderHooks& hooks) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/film/film_data.h"
+#include "common/plan/execution_plan.h"
 #include "common/render/batches.h"
 #include "common/render/metropolis.h"
 #include "common/render/path_limits_of.h"
@@ -18,7 +19,7 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   Image image() override;
 
  protected:
-  FilmRenderer(const Options& options, const SceneData& scene);
+  FilmRenderer(const Options& options, const SceneData& scene, const DeviceProperties& device);
 
   /// To be called once, before a render: `make(paths)` makes a sample buffer for the largest batch.
   template <class Make>
@@ -80,7 +81,11 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   /// Fills in the pixels and counts of a film, whose window is that of the last render.
   virtual void read_film(Film& film) = 0;
 
+  /// Fills in what the plan decided.
+  void describe_plan(RenderReport& report) const;
+
   const Options options_;
+  const ExecutionPlan execution_;
   const PathLimits limits_;
   const FilmPlan plan_;       ///< what is summed
   const PixelFilter filter_;  ///< without its table

@@ -16,6 +16,7 @@ namespace pt {
 
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
+enum class KernelSet { automatic, lean, general };
 enum class MegakernelKind { automatic, loop, vote, sort };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
@@ -127,6 +128,7 @@ struct Options {
   int threads = 0;  ///< CPU threads, 0: all
   AccelKind accel = AccelKind::automatic;
   TreeBuilder builder = TreeBuilder::automatic;       ///< of trees over triangles
+  KernelSet kernel_set = KernelSet::automatic;        ///< those of the paper's scenes, or of all
   Work work = Work::persistent;                       ///< megakernel
   MegakernelKind kernel = MegakernelKind::automatic;  ///< megakernel on CUDA
   BlockSize block;                                    ///< megakernel, threads per block
@@ -154,6 +156,7 @@ struct Options {
   bool counters = false;   ///< read the hardware's counters, in renders of their own
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
+  bool explain = false;    ///< say how it would be rendered, and do not
   bool quiet = false;
 };
 

@@ -93,6 +93,15 @@ struct TreeFacts {
   double build_ms = 0;            ///< wall time on the host, kernel time on CUDA
 };
 
+/// A choice that options left open, or made, as --explain tells it.
+struct Decision {
+  std::string option;  ///< that makes the choice where it is given
+  std::string value;
+  std::string reason;
+
+  bool operator==(const Decision&) const = default;
+};
+
 /// What a scene consists of and what its acceleration structure is like.
 struct SceneFacts {
   std::uint64_t triangles = 0;  ///< of the meshes, each counted once
@@ -104,10 +113,11 @@ struct SceneFacts {
 };
 
 struct RenderReport {
-  std::string device_name;  ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
-  std::string device_kind;  ///< "cpu" or "cuda"
-  std::string driver;       ///< CUDA driver and runtime versions; empty on the CPU
-  std::string accel;        ///< the structure used, e.g. "bvh2"
+  std::string device_name;     ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
+  std::string device_kind;     ///< "cpu" or "cuda"
+  std::string driver;          ///< CUDA driver and runtime versions; empty on the CPU
+  std::vector<Decision> plan;  ///< how the render was executed, and why
+  std::string accel;           ///< the structure used, e.g. "bvh2"
   std::string schedule;  ///< of --schedule, as used: "host" or "graph"; empty where there is none
   std::string stages;    ///< of --stages, likewise: "split" or "fused"
   std::uint64_t pool_size = 0;     ///< paths in flight used; 0 in modes without a pool

@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "common/light/area_light.h"
 #include "common/light/triangle_light.h"
+#include "common/plan/execution_plan.h"
 #include "common/scene/light_errors.h"
 
 namespace pt {
@@ -35,7 +36,9 @@ class Lister {
       if (!has_place(light.kind)) add_delta(light);
     }
     if (scene_.sun.one_minus_cos > 0.0f) add_sun();
-    if (wants_tree()) data_.tree = build_light_tree(data_.lights);
+    data_.lamps = lamps_done_;
+    selection_ = choose_light_selection(selection_, lamps_done_);
+    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
     if (data_.tree.pairs.empty()) {
       make_table(0);
       share_with_environment(data_.selection.empty() ? 0 : lamps_done_);
@@ -47,14 +50,6 @@ class Lister {
   }
 
  private:
-  /// On a GPU a tree's descents can take as long as all other shading
-  /// (results/log/2026-11-material-cost.md), which few lamps are not worth.
-  bool wants_tree() const {
-    constexpr std::size_t few_lamps = 16;
-    return selection_ == LightSelection::tree ||
-           (selection_ == LightSelection::automatic && lamps_done_ > few_lamps);
-  }
-
   /// Of lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;

@@ -9,48 +9,48 @@
 #include "common/scene/prepare_primitives.h"
 #include "common/scene/prepare_triangles.h"
 #include "common/scene/scene_arrays.h"
-#include "common/scene/scene_options.h"
+#include "common/scene/scene_properties.h"
 
 namespace pt {
 namespace {
 
-// Whether testing every primitive is faster than walking a tree: results/ has the measurement. CUDA
-// passes over spheres in half precision; a stage that walks a tree waits for the slowest ray of its
-// warp, a megakernel less so, since threads that are done with theirs take the next step. The
-// paper's toggles have kernels on CUDA for brute force alone.
-bool is_small(const SceneData& scene, const Options& options) {
-  constexpr std::size_t primitives_max = 96;
-  if (is_on_cuda(options) && is_toggled(options)) return true;
-  const std::size_t half_spheres_max = options.mode == Mode::wavefront ? 384 : 224;
-  return scene.primitive_count() <= primitives_max ||
-         (is_on_cuda(options) && scene.quads.empty() && scene.spheres.size() <= half_spheres_max);
-}
-
-void prepare_primitives_only(SceneData& scene, const Options& options) {
-  const bool brute = options.accel == AccelKind::brute ||
-                     (options.accel == AccelKind::automatic && is_small(scene, options));
-  prepare_primitives(scene, !brute);
-  scene.traits = {brute ? Accel::brute : Accel::bvh2, Geometry::spheres_and_quads,
+void prepare_primitives_only(SceneData& scene, Accel accel) {
+  prepare_primitives(scene, accel != Accel::brute);
+  scene.traits = {accel, Geometry::spheres_and_quads,
                   scene.lights.empty() ? Lighting::sky : Lighting::emitters};
 }
 
 }  // namespace
 
-void prepare_scene(SceneData& scene, const Options& options) {
+void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
   drop_idle_clips(scene, options.width, options.height);
-  check_scene_options(options, scene);
   prepare_materials(scene, options.multiple_scattering);
   prepare_filter(scene, filter_of(options, scene));
-  if (is_lean(scene, options)) {
-    prepare_primitives_only(scene, options);
+  scene.properties = properties_of(scene);
+  const ExecutionPlan plan = plan_execution(options, scene.properties, device);
+  if (plan.kernel_set == KernelSet::lean) {
+    prepare_primitives_only(scene, plan.accel);
   } else {
-    prepare_triangles(scene, options);
+    prepare_triangles(scene, options, plan.accel);
+    scene.properties.lamps = scene.light_list.lamps;
   }
+  scene.properties.structure = plan.accel;
+  for (const Decision& d : plan.decisions) {
+    if (d.option == "accel") scene.properties.why_structure = d.reason;
+  }
+  scene.properties.scan_bytes = scene.half_spheres.size() * sizeof(HalfSpheres);
+}
+
+void prepare_scene(SceneData& scene, const Options& options) {
+  DeviceProperties device = cpu_properties(options.threads);
+  device.is_cuda = is_on_cuda(options);
+  device.has_ray_blocks = device.has_ray_blocks && !device.is_cuda;
+  prepare_scene(scene, options, device);
 }
 
 Scene host_view(const SceneData& scene, int width, int height) {

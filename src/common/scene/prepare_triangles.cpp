@@ -6,54 +6,15 @@
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
-#include "common/accel/traverse_triangles.h"
 #include "common/error.h"
 #include "common/scene/convert_quads.h"
 #include "common/scene/frame_scene.h"
 #include "common/scene/list_lights.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_primitives.h"
-#include "common/scene/scene_options.h"
 
 namespace pt {
 namespace {
-
-/// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
-/// blocks; for threads that follow rays alone binary ones are faster (results/README.md and
-/// results/log/ have the measurements).
-Accel automatic_structure(const SceneData& scene, const Options& options) {
-  if (is_limited(scene.camera)) return Accel::bvh2;  // its rays go alone
-  if (!is_on_cuda(options)) {
-    const bool masks_in_blocks = options.mode == Mode::wavefront && scene.instances.empty();
-    const bool pays = has_avx2() && (scene.opacities.empty() || masks_in_blocks);
-    return pays ? Accel::cwbvh : Accel::bvh2;
-  }
-  const bool is_plain = scene.instances.empty() && scene.spheres.empty();
-  if (options.mode == Mode::megakernel) {
-    const MegakernelKind kernel = options.kernel == MegakernelKind::automatic
-                                      ? automatic_kernel(scene, options)
-                                      : options.kernel;
-    return kernel != MegakernelKind::loop && is_plain ? Accel::cwbvh : Accel::bvh2;
-  }
-  const bool warps_persist = compaction_info(options.compaction).appends && scene.spheres.empty() &&
-                             (scene.instances.empty() || scene.opacities.empty());
-  return warps_persist ? Accel::cwbvh : Accel::bvh2;
-}
-
-Accel structure_of(const SceneData& scene, const Options& options) {
-  switch (options.accel) {
-    case AccelKind::brute:
-      return Accel::brute;
-    case AccelKind::bvh2:
-      return Accel::bvh2;
-    case AccelKind::embree:
-      return Accel::embree;
-    case AccelKind::cwbvh:
-      return Accel::cwbvh;
-    default:
-      return automatic_structure(scene, options);
-  }
-}
 
 /// By triangle, counted through the meshes; empty where none has attributes.
 std::vector<CornerAttributes> list_corners(const std::vector<Mesh>& meshes) {
@@ -91,24 +52,16 @@ TreeOptions tree_options(Accel accel, TreeBuilder builder) {
   return options;
 }
 
-void prepare_triangles(SceneData& scene, const Options& options) {
+void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
   convert_quads(scene);
   const Bounds bounds = scene_bounds(scene);
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
-  const Accel accel = structure_of(scene, options);
   const bool masked = !scene.opacities.empty();
-  if (masked && accel == Accel::embree) {
-    throw Error(
-        fmt::format("--accel embree: scene '{}' has masks, clip planes or hidden emitters; "
-                    "expected brute, bvh2 or cwbvh",
-                    scene.name));
-  }
   const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
                      accel == Accel::brute || accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked};
   const TreeOptions tree = tree_options(accel, options.builder);
-  check_builder(tree.builder, tree.accel, is_on_cuda(options));
   if (is_device_builder(options.builder)) {
     check_geometry(scene.meshes, scene.instances);
   } else {

@@ -7,9 +7,10 @@
 
 namespace pt {
 
-/// Turns quads into triangles, builds the tree, collects the vertices' attributes, the lights, the
-/// environment, and sets the traits. Throws Error for what cannot be built.
-void prepare_triangles(SceneData& scene, const Options& options);
+/// Turns quads into triangles, builds the structure `accel` over them, collects the vertices'
+/// attributes, the lights, the environment, and sets the traits. Throws Error for what cannot be
+/// built.
+void prepare_triangles(SceneData& scene, const Options& options, Accel accel);
 
 /// What tree is to be built for a structure, on either device. Embree, which builds its own, wants
 /// the triangles alone.

@@ -13,6 +13,7 @@
 #include "common/light/build_light_tree.h"
 #include "common/light/delta_light.h"
 #include "common/math/transform.h"
+#include "common/plan/render_properties.h"
 #include "common/render/options.h"
 #include "common/scene/material_description.h"
 #include "common/scene/scene.h"
@@ -42,6 +43,7 @@ struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
   LightTreeData tree;                               ///< empty unless lights are chosen by it
+  std::size_t lamps = 0;                            ///< that give any light
   std::uint32_t sun = 0;                            ///< its number
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
@@ -67,6 +69,7 @@ struct SceneData {
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
   std::vector<SphereFrame> sphere_frames;                     ///< by sphere; empty: none needs one
   // Made from the above by prepare_scene():
+  SceneProperties properties;
   SceneTraits traits;
   PixelFilter filter;                      ///< without its table
   std::vector<float> filter_quantiles;     ///< empty: a box of one pixel

@@ -4,10 +4,12 @@
 #include "app/options/option_list.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/error.h"
+#include "common/plan/plan_rules.h"
 #include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/prepare_materials.h"
 #include "common/scene/prepare_scene.h"
-#include "common/scene/scene_options.h"
+#include "common/scene/scene_properties.h"
 
 namespace pt {
 namespace {
@@ -57,11 +59,15 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   masked.materials[0].opacity.offset = 0.5f;
   Options voting = with_scene("boxes");
   voting.kernel = MegakernelKind::vote;
-  EXPECT_NO_THROW(check_scene_options(voting, build_scene(voting)));
-  EXPECT_THROW(check_scene_options(voting, masked), Error);
+  const auto check = [](const Options& options, SceneData scene) {
+    prepare_materials(scene, false);
+    check_options_for_scene(options, properties_of(scene));
+  };
+  EXPECT_NO_THROW(check(voting, build_scene(voting)));
+  EXPECT_THROW(check(voting, masked), Error);
   Options sorting = with_scene("boxes");
   sorting.kernel = MegakernelKind::sort;
-  EXPECT_NO_THROW(check_scene_options(sorting, masked));
+  EXPECT_NO_THROW(check(sorting, masked));
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
     EXPECT_EQ(
         refusal(scene, "kernel", "sort"),
@@ -169,7 +175,9 @@ TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
   for (const auto& [shade, lean] : {std::pair{Shade::material, false}, {Shade::uber, true}}) {
     Options options;
     options.shade = shade;
-    EXPECT_EQ(is_lean(build_scene(options), options), lean);
+    SceneData scene = build_scene(options);
+    prepare_materials(scene, false);
+    EXPECT_EQ(why_general(options, properties_of(scene)).empty(), lean);
   }
 }
 
@@ -177,14 +185,14 @@ TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(
       refusal("boxes", "rng", "xorwow"),
       "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, "
-      "--sampler independent, --integrator path and not --shade material; expected such a scene "
-      "instead of 'boxes', "
+      "--sampler independent, --integrator path, not --kernel-set general and not --shade "
+      "material; expected such a scene instead of 'boxes', "
       "or other options");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
             "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
-            "--mis power, --sampler independent, --integrator path and not --shade material; "
-            "expected such a scene "
-            "instead of 'boxes', or other options");
+            "--mis power, --sampler independent, --integrator path, not --kernel-set "
+            "general and not --shade material; expected such a scene instead of 'boxes', or other "
+            "options");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),
               "--scene-memory " + value +
@@ -204,6 +212,19 @@ TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
     EXPECT_EQ(refusal(scene, "multiple-scattering", "off"), "");
   }
   EXPECT_EQ(refusal("dial", "multiple-scattering", "on"), "");
+}
+
+TEST(SceneOptions, LeanKernelsAreRefusedWithAReason) {
+  EXPECT_EQ(refusal("spheres", "kernel-set", "lean"), "");
+  EXPECT_EQ(refusal("spheres", "kernel-set", "general"), "");
+  EXPECT_EQ(refusal("boxes", "kernel-set", "lean"),
+            "--kernel-set lean: not here, the scene has more than the paper's spheres and quads; "
+            "expected auto or general");
+  Options options = with_scene("spheres");
+  options.kernel_set = KernelSet::lean;
+  options.mis = MisHeuristic::balance;
+  SceneData scene = build_scene(options);
+  EXPECT_THROW(prepare_scene(scene, options), Error);
 }
 
 }  // namespace

@@ -1,0 +1,330 @@
+#include "common/plan/execution_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "common/material/material.h"
+#include "common/plan/plan_rules.h"
+#include "common/render/option_names.h"
+
+namespace pt {
+namespace {
+
+// Measured on an H200 (results/README.md and results/log/).
+constexpr std::size_t scan_primitives_max = 96;  // of any kind, on any device
+// CUDA scans spheres in half precision. A stage that walks a tree waits for the slowest ray of its
+// warp; a megakernel less so, since threads that are done with theirs take the next step.
+constexpr std::size_t scan_spheres_wavefront_max = 384, scan_spheres_megakernel_max = 224;
+/// Up to here constant memory is as good as any: the scan's first two chunks are addressed by
+/// constants (traverse_brute.h). Beyond, 250 spheres take 5 % longer than in global memory, 1000
+/// 45 %.
+constexpr std::size_t constant_spheres_best = 64;
+/// On a GPU a tree's descents can take as long as all other shading, which few lamps are not worth.
+constexpr std::size_t few_lamps = 16;
+// Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
+// the L2 cache.
+constexpr std::uint64_t pool_paths_for_passes = std::uint64_t{1} << 20;
+constexpr std::uint64_t pool_paths_per_thread = 1024;  // of a CPU
+
+constexpr const char* asked = "asked for";
+
+/// What has been decided so far, and what the decisions depend on.
+class Planner {
+ public:
+  Planner(const Options& options, const SceneProperties& scene, const DeviceProperties& device)
+      : o_(options), scene_(scene), device_(device) {}
+
+  ExecutionPlan plan() {
+    check_options_for_scene(o_, scene_);
+    choose_kernels();
+    if (is_on_gpu(Mode::megakernel)) choose_megakernel();
+    choose_structure();
+    if (device_.is_cuda && is_lean()) choose_scene_memory();
+    if (o_.mode == Mode::wavefront) choose_waves();
+    if (!is_lean() && scene_.lamps && o_.nee) choose_lights();
+    check_plan(plan_, o_, scene_, device_);
+    return std::move(plan_);
+  }
+
+ private:
+  bool is_lean() const { return plan_.kernel_set == KernelSet::lean; }
+  bool is_on_gpu(Mode mode) const { return device_.is_cuda && o_.mode == mode; }
+
+  void decide(const char* option, std::string value, std::string reason) {
+    plan_.decisions.push_back({option, std::move(value), std::move(reason)});
+  }
+
+  void choose_kernels() {
+    const std::string why = why_general(o_, scene_);
+    plan_.kernel_set = why.empty() ? KernelSet::lean : KernelSet::general;
+    const bool is_given = o_.kernel_set != KernelSet::automatic;
+    decide("kernel-set", to_string(plan_.kernel_set),
+           is_given      ? asked
+           : why.empty() ? "the paper's spheres, quads and materials, sampled as it does"
+                         : why);
+  }
+
+  /// What is built, or will be whatever is chosen.
+  std::optional<Accel> known_structure() const {
+    if (scene_.structure) return scene_.structure;
+    switch (o_.accel) {
+      case AccelKind::brute:
+        return Accel::brute;
+      case AccelKind::bvh2:
+        return Accel::bvh2;
+      case AccelKind::cwbvh:
+        return Accel::cwbvh;
+      case AccelKind::embree:
+        return Accel::embree;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  void choose_megakernel() {
+    MegakernelKind kind = o_.kernel;
+    std::string reason = asked;
+    if (kind == MegakernelKind::automatic) std::tie(kind, reason) = automatic_megakernel();
+    plan_.megakernel = kind;
+    decide("kernel", to_string(kind), reason);
+  }
+
+  std::pair<MegakernelKind, std::string> automatic_megakernel() const {
+    using enum MegakernelKind;
+    if (is_lean()) return {loop, "spheres and quads alone: the paper's loop"};
+    if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
+      return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
+    if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
+    if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
+      return {loop, "the others trace wide trees"};
+    constexpr BlockSize usual;
+    const bool has_usual_blocks = o_.block.x == usual.x && o_.block.y == usual.y;
+    if (has_usual_blocks && device_.block_shared_bytes >= sorting_bytes_min)
+      return {sort, "triangles alone: a wavefront in each block was the fastest"};
+    const int threads = o_.block.x * o_.block.y;
+    const bool may_vote = !scene_.has_masks && threads % 32 == 0 && threads <= voting_threads_max;
+    const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
+    if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
+    return {loop, "blocks or materials suit no other"};
+  }
+
+  void choose_structure() {
+    if (scene_.structure) {
+      plan_.accel = *scene_.structure;
+      decide("accel", accel_name(plan_.accel), scene_.why_structure);
+    } else if (o_.accel != AccelKind::automatic) {
+      plan_.accel = *known_structure();
+      decide("accel", accel_name(plan_.accel), asked);
+    } else {
+      std::string reason;
+      std::tie(plan_.accel, reason) = is_lean() ? automatic_scan() : automatic_tree();
+      decide("accel", accel_name(plan_.accel), reason);
+    }
+    // Masks have no code by vectors.
+    const bool by_vectors = !device_.is_cuda && device_.has_avx2 && !scene_.has_masked_kernels();
+    plan_.traversal = plan_.accel == Accel::cwbvh && by_vectors ? Accel::cwbvh_avx2 : plan_.accel;
+  }
+
+  /// Whether testing every primitive is faster than walking a tree.
+  std::pair<Accel, std::string> automatic_scan() const {
+    if (device_.is_cuda && is_toggled(o_))
+      return {Accel::brute, "--rng and --branching have kernels for it alone on CUDA"};
+    const bool halves = device_.is_cuda && scene_.quads == 0;
+    const std::size_t most = !halves                      ? scan_primitives_max
+                             : o_.mode == Mode::wavefront ? scan_spheres_wavefront_max
+                                                          : scan_spheres_megakernel_max;
+    const std::size_t count = scene_.spheres + scene_.quads;
+    return {count <= most ? Accel::brute : Accel::bvh2,
+            fmt::format("{} primitives: up to {} are scanned faster than a tree is walked", count,
+                        most)};
+  }
+
+  /// Persistent warps and AVX2 make the most of wide trees, with masks where rays are traced in
+  /// blocks; for threads that follow rays alone binary ones are faster.
+  std::pair<Accel, std::string> automatic_tree() const {
+    const char* const alone = "rays are traced one by one, for which binary trees are faster";
+    if (scene_.limits_camera_rays) return {Accel::bvh2, alone};
+    if (is_on_gpu(Mode::megakernel)) {
+      if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
+      return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
+    }
+    if (device_.is_cuda) {
+      if (warps_can_persist()) return {Accel::cwbvh, "persistent warps make the most of it"};
+      return {Accel::bvh2, alone};
+    }
+    const bool masks_in_blocks = o_.mode == Mode::wavefront && scene_.instances == 0;
+    if (device_.has_avx2 && (!scene_.has_masks || masks_in_blocks))
+      return {Accel::cwbvh, "AVX2 tests eight children at once"};
+    return {Accel::bvh2, alone};
+  }
+
+  /// Whether warps could trace the wavefront's queues in a wide tree.
+  bool warps_can_persist() const {
+    return is_on_gpu(Mode::wavefront) && !is_lean() && compaction_info(o_.compaction).appends &&
+           scene_.spheres == 0 && !scene_.limits_camera_rays &&
+           (scene_.instances == 0 || !scene_.has_masks);
+  }
+
+  void choose_scene_memory() {
+    plan_.scene_memory = o_.scene_memory;
+    std::string reason = asked;
+    if (plan_.scene_memory == SceneMemory::automatic) {
+      const bool fits = scene_.spheres <= constant_spheres_best;
+      const bool is_constant = fits && !is_toggled(o_) && plan_.accel == Accel::brute;
+      plan_.scene_memory = is_constant ? SceneMemory::constant : SceneMemory::global;
+      reason = is_constant ? fmt::format("{} spheres, up to {} are scanned fastest there",
+                                         scene_.spheres, constant_spheres_best)
+               : fits      ? "constant memory is for plain scans"
+                           : fmt::format("more than {} spheres", constant_spheres_best);
+    }
+    decide("scene-memory", to_string(plan_.scene_memory), reason);
+  }
+
+  void choose_waves() {
+    choose_stages();
+    if (device_.is_cuda) choose_persistence();
+    choose_surface_order();
+    choose_finish();
+    choose_pool();
+    if (!device_.is_cuda) return;
+    plan_.uses_graph = o_.schedule != Schedule::host;
+    decide("schedule", plan_.uses_graph ? "graph" : "host",
+           o_.schedule != Schedule::automatic ? asked : "no round trip to the host between waves");
+  }
+
+  void choose_stages() {
+    const bool is_possible = o_.branching == Branching::divergent && o_.shade == Shade::automatic &&
+                             !compaction_info(o_.compaction).orders;
+    const bool is_cheap = is_lean() && plan_.accel == Accel::brute;
+    std::string reason = asked;
+    plan_.fused = o_.stages == Stages::fused;
+    if (o_.stages == Stages::automatic) {
+      plan_.fused = is_possible && is_cheap && !device_.has_ray_blocks;
+      reason = plan_.fused    ? "one scan a ray and few BSDFs: saves the hits' bytes"
+               : !is_possible ? "--branching, --shade or --compaction look at stages"
+               : is_cheap     ? "blocks of rays save more"
+                              : "threads of one kernel would wait for each other";
+    }
+    decide("stages", plan_.fused ? "fused" : "split", reason);
+  }
+
+  void choose_persistence() {
+    const bool can = warps_can_persist() && plan_.accel == Accel::cwbvh && !plan_.fused;
+    plan_.persistent_warps = o_.persistent && can;
+    decide("persistent", plan_.persistent_warps ? "on" : "off",
+           plan_.persistent_warps ? "triangles in a wide tree, appended queues"
+           : can                  ? asked
+                                  : "for wide trees of triangles and appended queues alone");
+  }
+
+  void choose_surface_order() {
+    const CompactionInfo& compaction = compaction_info(o_.compaction);
+    plan_.shades_by_kind = o_.shade == Shade::material && !plan_.fused;
+    const bool pays =
+        device_.is_cuda && !is_lean() && compaction.has_queues && order_pays_for(scene_.bsdf_kinds);
+    plan_.orders_surfaces = !plan_.fused && (compaction.orders || plan_.shades_by_kind ||
+                                             (o_.shade == Shade::automatic && pays));
+    if (plan_.fused) return;
+    const int kinds = std::popcount(scene_.bsdf_kinds);
+    const std::string scene = fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s");
+    decide("shade",
+           plan_.shades_by_kind    ? "material"
+           : plan_.orders_surfaces ? "uber, in order of the kinds"
+                                   : "uber",
+           o_.shade != Shade::automatic ? asked
+           : compaction.orders          ? "--compaction " + std::string(compaction.name)
+                                        : scene);
+  }
+
+  /// A wave costs some 0.1 ms however few rays it has; a thread that follows a path waits for the
+  /// slowest of its warp, in each ray and in shading of several kinds. So the more the rays of a
+  /// scene and its kinds of BSDFs differ, the fewer paths are finished that way.
+  void choose_finish() {
+    if (o_.finish_paths) {
+      plan_.finish_paths = *o_.finish_paths;
+      return decide("finish-paths", std::to_string(plan_.finish_paths), asked);
+    }
+    const bool is_dear = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
+    plan_.finish_paths = is_lean() ? 1u << 17 : is_dear ? 1u << 13 : 1u << 15;
+    decide("finish-paths", std::to_string(plan_.finish_paths),
+           is_lean() ? "a path is cheap to follow alone"
+           : is_dear ? "instances or many kinds of BSDFs: paths are dear to follow alone"
+                     : "triangles");
+  }
+
+  void choose_pool() {
+    const bool appends = compaction_info(o_.compaction).appends;
+    plan_.pool_paths_max = o_.pool_size > 0 ? o_.pool_size
+                           : !device_.is_cuda
+                               ? pool_paths_per_thread * static_cast<std::uint64_t>(device_.threads)
+                           : appends ? 0
+                                     : pool_paths_for_passes;
+    decide("pool-size",
+           plan_.pool_paths_max == 0 ? "the whole batch" : std::to_string(plan_.pool_paths_max),
+           o_.pool_size > 0   ? asked
+           : !device_.is_cuda ? "fits the caches of each thread"
+           : appends          ? "no slot is used twice, so neighbours stay neighbouring pixels"
+                              : "a pass over all tags fits the L2 cache");
+  }
+
+  void choose_lights() {
+    const LightSelection selection = choose_light_selection(o_.light_selection, *scene_.lamps);
+    decide("light-selection", to_string(selection),
+           o_.light_selection != LightSelection::automatic
+               ? asked
+               : fmt::format("{} lamps, a tree from {} on", *scene_.lamps, few_lamps + 1));
+  }
+
+  const Options& o_;
+  const SceneProperties& scene_;
+  const DeviceProperties& device_;
+  ExecutionPlan plan_;
+};
+
+}  // namespace
+
+LightSelection choose_light_selection(LightSelection wanted, std::size_t lamps) {
+  if (wanted != LightSelection::automatic) return wanted;
+  return lamps > few_lamps ? LightSelection::tree : LightSelection::power;
+}
+
+bool order_pays_for(std::uint32_t bsdf_kinds) {
+  constexpr int few = 5;
+  constexpr std::uint32_t one = 1, long_ones = one << static_cast<int>(kind_of<Principled>) |
+                                               one << static_cast<int>(kind_of<PrincipledThin>);
+  return std::popcount(bsdf_kinds) > ((bsdf_kinds & long_ones) != 0 ? 1 : few);
+}
+
+std::string why_general(const Options& o, const SceneProperties& scene) {
+  if (!scene.is_primitive_only) return "the scene has more than the paper's spheres and quads";
+  if (o.kernel_set == KernelSet::general) return "--kernel-set general";
+  if (o.sampling != DirectionSampling::bsdf) return "--sampling " + to_string(o.sampling);
+  if (o.mis != MisHeuristic::power) return "--mis " + to_string(o.mis);
+  if (o.sampler != SamplerKind::independent) return "--sampler " + to_string(o.sampler);
+  if (o.shade == Shade::material) return "--shade material";
+  if (o.integrator == IntegratorKind::mlt) return "--integrator mlt";
+  return "";
+}
+
+ExecutionPlan plan_execution(const Options& options, const SceneProperties& scene,
+                             const DeviceProperties& device) {
+  return Planner(options, scene, device).plan();
+}
+
+std::string plan_text(const std::vector<Decision>& decisions) {
+  std::size_t option_width = 0, value_width = 0;
+  for (const Decision& d : decisions) {
+    option_width = std::max(option_width, d.option.size());
+    value_width = std::max(value_width, d.value.size());
+  }
+  std::string text;
+  for (const Decision& d : decisions) {
+    text += fmt::format("--{:<{}}  {:<{}}  {}\n", d.option, option_width, d.value, value_width,
+                        d.reason);
+  }
+  return text;
+}
+
+}  // namespace pt

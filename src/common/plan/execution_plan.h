@@ -1,0 +1,70 @@
+// How a render is executed: every choice that options leave open, made in one place by a pure
+// function of the options, the scene and the device. Renderers obey it, --explain prints it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/plan/render_properties.h"
+#include "common/render/options.h"
+#include "common/render/stats.h"
+
+namespace pt {
+
+struct ExecutionPlan {
+  KernelSet kernel_set = KernelSet::general;  ///< never automatic, like all others here
+  Accel accel = Accel::brute;                 ///< what the scene is built as
+  Accel traversal = Accel::brute;             ///< the code that traces it
+  MegakernelKind megakernel = MegakernelKind::loop;
+  SceneMemory scene_memory = SceneMemory::global;
+  bool fused = false;             ///< wavefront: Stages::fused
+  bool orders_surfaces = false;   ///< wavefront: the queue of surfaces is sorted by kind of BSDF
+  bool shades_by_kind = false;    ///< wavefront: and each kind has a kernel
+  bool persistent_warps = false;  ///< wavefront: they trace its queues
+  std::uint32_t finish_paths = 0;
+  std::uint64_t pool_paths_max = 0;  ///< wavefront: of an automatic pool, 0: no limit
+  bool uses_graph = false;           ///< wavefront on CUDA: the device loops over the waves
+  std::vector<Decision> decisions;   ///< in the order in which they were made
+};
+
+/// Throws Error where the scene or the device cannot have what the options ask for. What
+/// `scene.structure` says is built is not chosen again.
+ExecutionPlan plan_execution(const Options& options, const SceneProperties& scene,
+                             const DeviceProperties& device);
+
+/// How lights are chosen where there are so many lamps.
+LightSelection choose_light_selection(LightSelection wanted, std::size_t lamps);
+
+/// Whether the surfaces of scenes with these kinds of BSDFs (SceneProperties) are shaded faster in
+/// order: where warps would meet many, or one that is much longer than the others. Kernels for each
+/// kind give no more (results/log/2026-11-material-cost.md).
+bool order_pays_for(std::uint32_t bsdf_kinds);
+
+/// Whether trees are built and rays traced by a CUDA device.
+inline bool is_on_cuda(const Options& options) {
+  return options.device.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+}
+
+/// Whether one of the paper's toggles is on that have kernels of their own; on CUDA these are for
+/// scenes that brute force scans.
+inline bool is_toggled(const Options& options) {
+  return options.rng != RngKind::philox || options.branching != Branching::divergent;
+}
+
+/// Why the lean kernels of the paper's scenes cannot render it as the options say; empty: they can.
+std::string why_general(const Options& options, const SceneProperties& scene);
+
+/// A line for each decision.
+std::string plan_text(const std::vector<Decision>& decisions);
+
+// Limits of kernels that the plan knows, and the kernels assert.
+
+/// More threads in a block would leave too few registers to warps that vote on their phase.
+inline constexpr int voting_threads_max = 256;
+/// Shared memory that a block-local wavefront needs at least.
+inline constexpr std::size_t sorting_bytes_min = 73 * 1024;
+/// A kernel's parameters may take 32,764 bytes (CUDA 12.1 and later, compute capability 7.0); half
+/// of it is enough for the paper's scenes and keeps launches short.
+inline constexpr std::uint32_t constant_spheres_max = 1024;
+
+}  // namespace pt

@@ -1,0 +1,47 @@
+// What a render's plan depends on besides the options: plain facts of the scene and the device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/accel/accel.h"
+
+namespace pt {
+
+struct SceneProperties {
+  std::string name;
+  std::size_t spheres = 0, quads = 0;
+  std::size_t triangles = 0;  ///< of the meshes
+  std::size_t instances = 0;
+  bool is_primitive_only = false;   ///< nothing that the paper's scenes have not
+  bool has_masks = false;           ///< materials that are not opaque everywhere
+  bool limits_camera_rays = false;  ///< clip planes or hidden emitters
+  bool has_rough_conductors = false;
+  std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
+  // Known when the scene has been prepared:
+  std::optional<Accel> structure;    ///< what was built
+  std::string why_structure;         ///< as its plan said
+  std::size_t scan_bytes = 0;        ///< of the spheres that CUDA scans
+  std::optional<std::size_t> lamps;  ///< lights that can be sampled
+
+  bool has_masked_kernels() const { return has_masks || limits_camera_rays; }
+  bool has_only_triangles() const { return spheres == 0 && instances == 0; }
+};
+
+struct DeviceProperties {
+  bool is_cuda = false;
+  // Of a CPU:
+  bool has_avx2 = false;        ///< wide trees are traced by vectors
+  bool has_ray_blocks = false;  ///< brute force scans for blocks of rays
+  int threads = 1;
+  // Of a CUDA device:
+  std::size_t block_shared_bytes = 227 * 1024;  ///< most shared memory of a block
+  int block_threads_max = 1024;
+};
+
+/// This machine's processor.
+DeviceProperties cpu_properties(int threads);
+
+}  // namespace pt

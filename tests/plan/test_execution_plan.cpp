@@ -1,0 +1,407 @@
+// The plan of a render as a table: options, scene and device in, choices out.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "app/options/option_list.h"
+#include "common/error.h"
+#include "common/plan/execution_plan.h"
+#include "common/render/option_names.h"
+#include "common/scene/prepare_materials.h"
+
+namespace pt {
+namespace {
+
+using Choices = std::map<std::string, std::string>;
+
+std::uint32_t bit(MaterialKind kind) { return 1u << static_cast<int>(kind); }
+
+const std::uint32_t five_kinds = bit(kind_of<Diffuse>) | bit(kind_of<Plastic>) |
+                                 bit(kind_of<Phong>) | bit(kind_of<Ward>) | bit(kind_of<Conductor>);
+
+SceneProperties spheres(std::size_t count) {
+  SceneProperties scene;
+  scene.spheres = count, scene.is_primitive_only = true, scene.bsdf_kinds = bit(kind_of<Diffuse>);
+  return scene;
+}
+
+SceneProperties quads(std::size_t count) {
+  SceneProperties scene = spheres(0);
+  scene.quads = count;
+  return scene;
+}
+
+SceneProperties mesh(std::uint32_t kinds = bit(kind_of<Diffuse>)) {
+  SceneProperties scene;
+  scene.triangles = 1000, scene.bsdf_kinds = kinds;
+  return scene;
+}
+
+template <class Change>
+SceneProperties changed(SceneProperties scene, Change&& change) {
+  change(scene);
+  return scene;
+}
+
+SceneProperties masked_mesh() {
+  return changed(mesh(), [](SceneProperties& s) { s.has_masks = true; });
+}
+SceneProperties clipped_mesh() {
+  return changed(mesh(), [](SceneProperties& s) { s.limits_camera_rays = true; });
+}
+SceneProperties forest() {
+  return changed(mesh(), [](SceneProperties& s) { s.instances = 20; });
+}
+SceneProperties mesh_and_sphere() {
+  return changed(mesh(), [](SceneProperties& s) { s.spheres = 1; });
+}
+
+DeviceProperties gpu(std::size_t shared_kib = 227) {
+  DeviceProperties device;
+  device.is_cuda = true, device.block_shared_bytes = shared_kib * 1024;
+  return device;
+}
+
+DeviceProperties cpu(bool has_vectors = true) {
+  DeviceProperties device;
+  device.has_avx2 = device.has_ray_blocks = has_vectors, device.threads = 4;
+  return device;
+}
+
+ExecutionPlan plan_of(const Choices& settings, const SceneProperties& scene,
+                      const DeviceProperties& device) {
+  Options options;
+  for (const auto& [name, value] : settings) find_option(name).set(options, value);
+  return plan_execution(options, scene, device);
+}
+
+struct Row {
+  const char* about;
+  Choices settings;
+  SceneProperties scene;
+  DeviceProperties device;
+  Choices expected;  ///< among others
+};
+
+Choices mega(Choices more = {}) {
+  more.insert({"mode", "megakernel"});
+  return more;
+}
+
+const std::vector<Row>& rows() {
+  static const std::vector<Row> table = {
+      {"the paper's image, waves",
+       {},
+       spheres(51),
+       gpu(),
+       {{"kernel-set", "lean"},
+        {"accel", "brute"},
+        {"scene-memory", "constant"},
+        {"stages", "fused"},
+        {"persistent", "off"},
+        {"finish-paths", "131072"},
+        {"pool-size", "the whole batch"},
+        {"schedule", "graph"}}},
+      {"more than constant memory is best for",
+       {},
+       spheres(65),
+       gpu(),
+       {{"scene-memory", "global"}, {"accel", "brute"}}},
+      {"the last scan of waves",
+       {},
+       spheres(384),
+       gpu(),
+       {{"accel", "brute"}, {"stages", "fused"}}},
+      {"the first tree of waves",
+       {},
+       spheres(385),
+       gpu(),
+       {{"accel", "bvh2"}, {"stages", "split"}}},
+      {"the last scan of the megakernel", mega(), spheres(224), gpu(), {{"accel", "brute"}}},
+      {"the first tree of the megakernel",
+       mega(),
+       spheres(225),
+       gpu(),
+       {{"accel", "bvh2"}, {"kernel", "loop"}}},
+      {"quads have no half precision", {}, quads(97), gpu(), {{"accel", "bvh2"}}},
+      {"the last scan of quads", {}, quads(96), gpu(), {{"accel", "brute"}}},
+      {"a toggle scans on CUDA",
+       mega({{"rng", "xorwow"}}),
+       spheres(1025),
+       gpu(),
+       {{"accel", "brute"}, {"scene-memory", "global"}}},
+      {"and chooses as ever on the CPU",
+       mega({{"rng", "xorwow"}}),
+       spheres(1025),
+       cpu(),
+       {{"accel", "bvh2"}}},
+      {"the paper's image on a CPU by blocks of rays",
+       {},
+       spheres(51),
+       cpu(),
+       {{"kernel-set", "lean"}, {"accel", "brute"}, {"stages", "split"}, {"pool-size", "4096"}}},
+      {"and by rays alone", {}, spheres(51), cpu(false), {{"stages", "fused"}}},
+      {"the last scan of a CPU", {}, spheres(96), cpu(), {{"accel", "brute"}}},
+      {"the first tree of a CPU", {}, spheres(97), cpu(), {{"accel", "bvh2"}}},
+      {"general kernels, asked for",
+       {{"kernel-set", "general"}},
+       spheres(51),
+       gpu(),
+       {{"kernel-set", "general"}, {"accel", "bvh2"}, {"persistent", "off"}, {"stages", "split"}}},
+      {"general kernels by a heuristic",
+       {{"mis", "balance"}},
+       spheres(51),
+       gpu(),
+       {{"kernel-set", "general"}}},
+      {"general kernels by a sampler",
+       {{"sampler", "sobol"}},
+       quads(9),
+       gpu(),
+       {{"kernel-set", "general"}, {"accel", "cwbvh"}, {"persistent", "on"}}},
+      {"triangles in waves",
+       {},
+       mesh(),
+       gpu(),
+       {{"kernel-set", "general"},
+        {"accel", "cwbvh"},
+        {"persistent", "on"},
+        {"stages", "split"},
+        {"shade", "uber"},
+        {"finish-paths", "32768"}}},
+      {"five kinds of BSDFs",
+       {},
+       mesh(five_kinds),
+       gpu(),
+       {{"shade", "uber"}, {"finish-paths", "32768"}}},
+      {"six",
+       {},
+       mesh(five_kinds | bit(kind_of<Metal>)),
+       gpu(),
+       {{"shade", "uber, in order of the kinds"}, {"finish-paths", "8192"}}},
+      {"a long one alone", {}, mesh(bit(kind_of<Principled>)), gpu(), {{"shade", "uber"}}},
+      {"and another",
+       {},
+       mesh(bit(kind_of<Principled>) | bit(kind_of<Diffuse>)),
+       gpu(),
+       {{"shade", "uber, in order of the kinds"}}},
+      {"six kinds on the CPU",
+       {},
+       mesh(five_kinds | bit(kind_of<Metal>)),
+       cpu(),
+       {{"shade", "uber"}}},
+      {"order, asked for",
+       {{"compaction", "sort"}},
+       mesh(),
+       cpu(),
+       {{"shade", "uber, in order of the kinds"}}},
+      {"by material", {{"shade", "material"}}, mesh(), gpu(), {{"shade", "material"}}},
+      {"passes over tags",
+       {{"compaction", "cub"}},
+       mesh(),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}, {"pool-size", "1048576"}}},
+      {"threads, asked for",
+       {{"persistent", "off"}},
+       mesh(),
+       gpu(),
+       {{"accel", "cwbvh"}, {"persistent", "off"}}},
+      {"masks in waves", {}, masked_mesh(), gpu(), {{"accel", "cwbvh"}, {"persistent", "on"}}},
+      {"instances in waves",
+       {},
+       forest(),
+       gpu(),
+       {{"accel", "cwbvh"}, {"persistent", "on"}, {"finish-paths", "8192"}}},
+      {"masked instances",
+       {},
+       changed(forest(), [](auto& s) { s.has_masks = true; }),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"a sphere among triangles",
+       {},
+       mesh_and_sphere(),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"clip planes", {}, clipped_mesh(), gpu(), {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"clip planes on a CPU", {}, clipped_mesh(), cpu(), {{"accel", "bvh2"}}},
+      {"triangles in a megakernel",
+       mega(),
+       mesh(five_kinds),
+       gpu(),
+       {{"kernel", "sort"}, {"accel", "cwbvh"}}},
+      {"masks in a megakernel",
+       mega(),
+       masked_mesh(),
+       gpu(),
+       {{"kernel", "sort"}, {"accel", "cwbvh"}}},
+      {"blocks of another size",
+       mega({{"block", "32x4"}}),
+       mesh(),
+       gpu(),
+       {{"kernel", "vote"}, {"accel", "cwbvh"}}},
+      {"and several kinds",
+       mega({{"block", "32x4"}}),
+       mesh(five_kinds),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"no whole warps",
+       mega({{"block", "5x3"}}),
+       mesh(),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"little shared memory", mega(), mesh(), gpu(64), {{"kernel", "vote"}, {"accel", "cwbvh"}}},
+      {"and masks", mega(), masked_mesh(), gpu(64), {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"a thread for each pixel",
+       mega({{"work", "pixel"}}),
+       mesh(),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"a binary tree, asked for", mega({{"accel", "bvh2"}}), mesh(), gpu(), {{"kernel", "loop"}}},
+      {"instances in a megakernel",
+       mega(),
+       forest(),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"votes, asked for",
+       mega({{"kernel", "vote"}}),
+       mesh(five_kinds),
+       gpu(),
+       {{"kernel", "vote"}, {"accel", "cwbvh"}}},
+      {"triangles on a CPU", {}, mesh(), cpu(), {{"accel", "cwbvh"}}},
+      {"without vectors", {}, mesh(), cpu(false), {{"accel", "bvh2"}}},
+      {"masks by the wavefront of a CPU", {}, masked_mesh(), cpu(), {{"accel", "cwbvh"}}},
+      {"masks by the megakernel of a CPU", mega(), masked_mesh(), cpu(), {{"accel", "bvh2"}}},
+      {"masked instances on a CPU",
+       {},
+       changed(forest(), [](auto& s) { s.has_masks = true; }),
+       cpu(),
+       {{"accel", "bvh2"}}},
+      {"the host's waves", {{"schedule", "host"}}, mesh(), gpu(), {{"schedule", "host"}}},
+      {"few lamps",
+       {},
+       changed(mesh(), [](auto& s) { s.lamps = 16; }),
+       gpu(),
+       {{"light-selection", "power"}}},
+      {"many lamps",
+       {},
+       changed(mesh(), [](auto& s) { s.lamps = 17; }),
+       gpu(),
+       {{"light-selection", "tree"}}},
+      {"what was built",
+       {},
+       changed(mesh(), [](auto& s) { s.structure = Accel::bvh2; }),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+  };
+  return table;
+}
+
+TEST(ExecutionPlan, IsATable) {
+  for (const Row& row : rows()) {
+    SCOPED_TRACE(row.about);
+    const ExecutionPlan plan = plan_of(row.settings, row.scene, row.device);
+    Choices found;
+    for (const Decision& d : plan.decisions) {
+      EXPECT_TRUE(found.emplace(d.option, d.value).second) << d.option << " is decided twice";
+      const bool is_built = d.option == "accel" && row.scene.structure;
+      EXPECT_TRUE(is_built || !d.reason.empty()) << d.option;
+      EXPECT_NO_THROW(find_option(d.option));
+    }
+    for (const auto& [option, value] : row.expected) EXPECT_EQ(found[option], value) << option;
+  }
+}
+
+// What is printed is what is done.
+TEST(ExecutionPlan, SaysWhatItIs) {
+  for (const Row& row : rows()) {
+    SCOPED_TRACE(row.about);
+    const ExecutionPlan plan = plan_of(row.settings, row.scene, row.device);
+    Choices found;
+    for (const Decision& d : plan.decisions) found[d.option] = d.value;
+    const auto expect = [&](const char* option, const std::string& value) {
+      if (!found.contains(option)) return;
+      EXPECT_EQ(found[option], value) << option;
+    };
+    expect("accel", accel_name(plan.accel));
+    expect("kernel-set", to_string(plan.kernel_set));
+    expect("kernel", to_string(plan.megakernel));
+    expect("scene-memory", to_string(plan.scene_memory));
+    expect("stages", plan.fused ? "fused" : "split");
+    expect("persistent", plan.persistent_warps ? "on" : "off");
+    expect("finish-paths", std::to_string(plan.finish_paths));
+    expect("schedule", plan.uses_graph ? "graph" : "host");
+    expect("shade", plan.shades_by_kind    ? "material"
+                    : plan.orders_surfaces ? "uber, in order of the kinds"
+                                           : "uber");
+  }
+}
+
+TEST(ExecutionPlan, OfTheCpuTracesByVectorsWhereItHasThem) {
+  EXPECT_EQ(plan_of({}, mesh(), cpu()).traversal, Accel::cwbvh_avx2);
+  EXPECT_EQ(plan_of({}, masked_mesh(), cpu()).traversal, Accel::cwbvh);
+  EXPECT_EQ(plan_of({}, mesh(), cpu(false)).traversal, Accel::bvh2);
+  EXPECT_EQ(plan_of({}, mesh(), gpu()).traversal, Accel::cwbvh);
+}
+
+TEST(ExecutionPlan, GivenValuesHold) {
+  EXPECT_EQ(plan_of({{"finish-paths", "0"}}, spheres(51), gpu()).finish_paths, 0u);
+  EXPECT_EQ(plan_of({{"finish-paths", "1000"}}, forest(), gpu()).finish_paths, 1000u);
+  EXPECT_EQ(plan_of({{"pool-size", "77"}}, mesh(), cpu()).pool_paths_max, 77u);
+  EXPECT_EQ(plan_of({}, mesh(), cpu()).pool_paths_max, 4096u);
+  EXPECT_EQ(plan_of({}, mesh(), gpu()).pool_paths_max, 0u);
+}
+
+void expect_refused(const Choices& settings, const SceneProperties& scene,
+                    const DeviceProperties& device, const std::string& message) {
+  try {
+    plan_of(settings, scene, device);
+    ADD_FAILURE() << "not refused; expected: " << message;
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).substr(0, message.size()), message);
+  }
+}
+
+TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
+  expect_refused(mega({{"block", "64x32"}}), mesh(), gpu(),
+                 "--block 64x32: 2048 threads; a block has at most 1024");
+  expect_refused(mega({{"kernel", "sort"}}), mesh(), gpu(64),
+                 "--kernel sort: expected --accel cwbvh, --work persistent and a device whose "
+                 "blocks may have 73 KiB");
+  expect_refused(mega({{"kernel", "vote"}, {"block", "32x16"}}), mesh(), gpu(),
+                 "--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 to "
+                 "256 threads");
+  expect_refused({{"scene-memory", "constant"}}, spheres(1025), gpu(),
+                 "--scene-memory constant: the scene has 1025 spheres; a kernel's parameters hold "
+                 "at most 1024");
+  const SceneProperties many = changed(spheres(8000), [](auto& s) { s.scan_bytes = 64000; });
+  expect_refused({{"scene-memory", "shared"}}, many, gpu(48),
+                 "--scene-memory shared: the scene's 8000 spheres take 64000 bytes");
+  EXPECT_EQ(plan_of({{"scene-memory", "shared"}}, many, gpu()).scene_memory, SceneMemory::shared);
+}
+
+TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
+  expect_refused(mega({{"rng", "xorwow"}, {"accel", "bvh2"}}), spheres(51), gpu(),
+                 "--rng xorwow: on CUDA not with --accel bvh2; expected brute or auto");
+  expect_refused({{"branching", "reduced"}, {"scene-memory", "constant"}}, spheres(51), gpu(),
+                 "--branching reduced: on CUDA not with --scene-memory constant; expected global "
+                 "or auto");
+  expect_refused({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
+                 "--rng xorwow: on CUDA not with --branching reduced; expected divergent");
+  EXPECT_NO_THROW(plan_of({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), cpu()));
+}
+
+TEST(ExecutionPlan, EmbreeHasNoMasks) {
+  for (const SceneProperties& scene : {masked_mesh(), clipped_mesh()}) {
+    expect_refused({{"accel", "embree"}}, scene, cpu(),
+                   "--accel embree: scene '' has masks, clip planes or hidden emitters; expected "
+                   "brute, bvh2 or cwbvh");
+  }
+}
+
+TEST(ExecutionPlan, IsPrintedInColumns) {
+  EXPECT_EQ(plan_text({{"accel", "brute", "few"}, {"scene-memory", "global", "asked for"}}),
+            "--accel         brute   few\n"
+            "--scene-memory  global  asked for\n");
+}
+
+}  // namespace
+}  // namespace pt
