@@ -110,6 +110,17 @@ class Mutant:
         return f"(PT_MUTANT({self.number}u) ? ({self.after}) : ({before}))"
 
 
+def is_balanced(text):
+    """Whether each bracket of code has its partner; those in literals do not count."""
+    pairs, open_ = {")": "(", "]": "[", "}": "{"}, []
+    for character in re.sub(r"\"(\\.|[^\"\\])*\"|'(\\.|[^'\\])'", "", text):
+        if character in pairs.values():
+            open_.append(character)
+        elif character in pairs and (not open_ or open_.pop() != pairs[character]):
+            return False
+    return not open_
+
+
 def read_entry(source, lines):
     head = re.fullmatch(r"\[([\w-]+)\] (\S+)", lines[0])
     if not head or len(lines) < 4:
@@ -124,6 +135,9 @@ def read_entry(source, lines):
         setattr(mutant, key, value.strip())
     if not mutant.before:
         mutant.fail("no 'before'")
+    for text in (mutant.before, mutant.after):
+        if not is_balanced(text):
+            mutant.fail(f"'{text}': expected whole expressions or statements, with both brackets")
     return mutant
 
 
@@ -157,6 +171,10 @@ def place_of(mutant, text):
         if len(found) != 1:
             mutant.fail(f"'{what}' is there {len(found)} times, expected once")
         begin, end = begin + found[0][0], begin + found[0][1]
+    is_statement = mutant.before.rstrip().endswith((";", "}"))
+    ahead = re.sub(r"//[^\n]*", "", text[:begin]).rstrip()
+    if is_statement and not re.search(r"([;{}):]|\belse|^)$", ahead):
+        mutant.fail(f"'{mutant.before}': expected a whole statement, or an expression without ';'")
     return begin, end
 
 

@@ -56,6 +56,8 @@ class MutantsList(unittest.TestCase):
         self.refuse(entry.replace("a.h", "b.h"), "a + b", "no such file")
         self.refuse(entry + "\n" + entry, "a + b", "taken")
         self.refuse(entry + "\n[two] a.h\na bug\nbefore: b + c\nafter: c\n", "a + b + c", "overlaps")
+        self.refuse(entry.replace("a + b", "f(a"), "f(a)", "with both brackets")
+        self.refuse(entry.replace("a + b", "b;"), "return a && b;", "a whole statement")
         self.refuse("[one] a.h\na bug\nbefor: a\nafter: b\n", "a", "'befor: a'")
         self.refuse("one a.h\na bug\nbefore: a\nafter: b\n", "a", "expected")
 
