@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Scene memory: where should the spheres lie as they grow in number: global, constant, shared?
 
-Every sphere is tested (--accel brute) or a tree is asked (bvh2), whose nodes are in global memory
-always. What does not fit into constant or shared memory is refused. A CPU has one memory only: there the
+Every sphere is tested (--accel brute) or a tree is asked (bvh2), whose nodes and spheres are in global
+memory always. What does not fit into constant or shared memory is refused. A CPU has one memory only: there the
 rows of the others are refused.
 """
 import sys
@@ -29,7 +29,8 @@ def configurations(arguments, _device):
         f"--mode {mode} --accel {accel} --spheres {count} --scene-memory {memory} {image}",
         {"panel": f"{mode}, {accel}", "series": memory, "x": count, "occupancy": ""},
         same_image=f"{count} spheres, {accel}")
-            for mode, accel, counts in SERIES for count in counts for memory in MEMORIES]
+            for mode, accel, counts in SERIES for count in counts
+            for memory in (MEMORIES if accel == "brute" else MEMORIES[:1])]
 
 
 def finish(rows, _arguments):

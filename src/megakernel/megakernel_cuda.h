@@ -1,4 +1,4 @@
-// The megakernel's renderer. The loop has 39 variants (scene, branching, random numbers, scene
+// The megakernel's renderer. The loop has 15 variants (scene, branching, random numbers, scene
 // memory), so launching is split into files that compile side by side; the kernels that vote and
 // sort are one each.
 #pragma once

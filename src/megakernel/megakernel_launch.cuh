@@ -26,8 +26,8 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
   const dim3 block(options_.block.x, options_.block.y);
   const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
   // Only where brute force scans the spheres do they lie elsewhere than in global memory.
-  using Kinds =
-      std::conditional_t<memory == SceneMemory::global, CudaKindsWith<Source>, BruteSphereKinds>;
+  using Kinds = std::conditional_t<memory == SceneMemory::global,
+                                   CudaKindsWith<Source, LoopTriangleKinds>, KindsInMemory<memory>>;
   dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
     constexpr bool may_reduce = may_reduce_on_cuda<decltype(traits), Source, memory>;
     dispatch_branching<decltype(traits), may_reduce>(options_.branching, [&](auto branching) {

@@ -26,7 +26,7 @@ struct StageOutcomes {
 
 /// How a stage reads the spheres; where they may lie decides how many kernels it has.
 enum class SphereAccess {
-  once,  ///< a hit's sphere at most: from global memory
+  once,  ///< from global memory
   scan,  ///< all of them for every ray: where --scene-memory says
 };
 
@@ -194,7 +194,7 @@ struct PathRays {
 
 template <class Traits>
 struct IntersectRays : PathRays {
-  static constexpr SphereAccess spheres = sphere_access<Traits>;
+  static constexpr SphereAccess spheres = SphereAccess::once;
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -302,7 +302,7 @@ struct ShadowRays {
 
 template <class Traits>
 struct TraceShadowRays : ShadowRays {
-  static constexpr SphereAccess spheres = sphere_access<Traits>;
+  static constexpr SphereAccess spheres = SphereAccess::once;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t number, key = 0;

@@ -140,8 +140,9 @@ struct WaveBuffers {
 //   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
-//   kinds_have_kernels<Traits>  whether it has a kernel for each kind of BSDF in such scenes; else
-//                            the one for all shades their ranges
+//   kinds_have_kernels<Traits, Bsdf>  whether it has a kernel for this kind in such scenes; else
+//   the
+//                            one for all shades its range
 //   streams_shading          whether it is short of registers (PoolSink)
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
@@ -199,7 +200,7 @@ void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext
     shade_surfaces_by<Kind, Branching::divergent>(execute, context, range);
   };
   for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    using Kind = std::conditional_t<Executor::template kinds_have_kernels<Shading>,
+    using Kind = std::conditional_t<(Executor::template kinds_have_kernels<Shading, Bsdf>),
                                     OneKind<Shading, Bsdf>, Shading>;
     shade(std::type_identity<Kind>{}, kind_of<Bsdf>);
   });

@@ -128,7 +128,7 @@ class CpuExecutor {
   }
 
   // They would take minutes to compile and gain nothing where threads do not run in warps.
-  template <class>
+  template <class, class>
   static constexpr bool kinds_have_kernels = false;
   static constexpr bool streams_shading = false;
 

@@ -127,7 +127,7 @@ template <class Function>
 void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
-    function(CudaKindsWith<Source>{}, context_of(batch, source));
+    function(CudaKindsWith<Source, TriangleSceneKinds>{}, context_of(batch, source));
   });
 }
 

@@ -17,18 +17,34 @@ std::string kernel_name(const Stage& stage) {
   return name;
 }
 
+/// Stages of which a thread traces a ray alone walk binary trees, and wide ones over triangles;
+/// persistent warps walk the others (check_plan). With lights no shared memory holds the spheres.
+template <class Stage, SceneMemory>
+inline constexpr bool has_kernel = true;
+template <class T, SceneMemory memory>
+inline constexpr bool has_kernel<IntersectRays<T>, memory> =
+    T::accel != Accel::cwbvh || T::geometry == Geometry::triangles;
+template <class T, SceneMemory memory>
+inline constexpr bool has_kernel<TraceShadowRays<T>, memory> = has_kernel<IntersectRays<T>, memory>;
+template <class T, class Source>
+inline constexpr bool has_kernel<FollowPaths<T, Source>, SceneMemory::shared> = !T::has_lights;
+
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   const int block = options_.stage_block[static_cast<int>(id_of(stage))];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
-    constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
-    const std::uint32_t blocks =
-        (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
-    const std::uint32_t resident =
-        resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
-    launch(kernel_name(stage).c_str(), kernel, blocks < resident ? blocks : resident, block,
-           shared_bytes, storage, stage, queues, clock());
+    if constexpr (has_kernel<Stage, Storage::memory>) {
+      constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
+      const std::uint32_t blocks =
+          (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
+      const std::uint32_t resident =
+          resident_blocks(reinterpret_cast<const void*>(kernel), block, shared_bytes);
+      launch(kernel_name(stage).c_str(), kernel, blocks < resident ? blocks : resident, block,
+             shared_bytes, storage, stage, queues, clock());
+    } else {
+      throw_no_kernel(traits_, options_.integrator);
+    }
   };
   if constexpr (Stage::spheres == SphereAccess::once) {
     launch_with(SceneStorage<SceneMemory::global>{scene_}, std::size_t{0});

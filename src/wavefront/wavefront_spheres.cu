@@ -7,8 +7,8 @@ using PhiloxContext = StageContext<PhiloxSource>;
 using XorwowContext = StageContext<XorwowSource<CurandState>>;
 
 template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const PhiloxContext&, bool);
-template void WavefrontCuda::enqueue_wave_of<BruteSphereKinds>(const XorwowContext&, bool);
+template void WavefrontCuda::enqueue_wave_of<BruteSkyKinds>(const XorwowContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(const PhiloxContext&);
-template void WavefrontCuda::enqueue_finish_of<BruteSphereKinds>(const XorwowContext&);
+template void WavefrontCuda::enqueue_finish_of<BruteSkyKinds>(const XorwowContext&);
 
 }  // namespace pt

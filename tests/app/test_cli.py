@@ -285,6 +285,21 @@ class Statistics(CommandLine):
         for word in ["schema", "wavefront", "Philox|philox", "rays", "median", "generate"]:
             self.assertRegex(text, word)
 
+    def test_the_plan_is_explained_and_recorded(self):
+        before = self.files()
+        for mode, options in (("serial", {"accel"}), ("megakernel", {"accel"}),
+                              ("wavefront", {"accel", "stages", "finish-paths", "pool-size"})):
+            text = self.render_ok("--mode", mode, "--scene", "boxes", "--explain").stdout
+            said = dict(re.findall(r"(?m)^--(\S+) +(\S.*?)  +\S", text))
+            self.assertLessEqual(options | {"kernel-set"}, set(said), text)
+            self.assertEqual(said["kernel-set"], "general", text)
+            self.assertEqual(self.files(), before)
+            self.render_ok("--mode", mode, "--scene", "boxes", "--stats", f"{mode}.json")
+            run = json.loads((self.folder / f"{mode}.json").read_text(encoding="utf-8"))
+            self.assertEqual({d["option"]: d["value"] for d in run["plan"]}, said)
+            self.assertEqual(run["used"]["accel"], said["accel"])
+            before = self.files()
+
     def test_samples_that_are_asked_for_limit_a_stop(self):
         for stop in ("--target-error 0.5", "--time-limit 20"):
             self.render_ok("--stats", "run.json", "--spp", "6", *stop.split())

@@ -93,6 +93,9 @@ TEST_F(CudaDivergence, EveryRayCountsOnce) {
       Settings settings = more;
       settings.emplace_back("accel", accel);
       SCOPED_TRACE(scene + " " + accel + " " + mode + " " + (more.empty() ? "" : more[0].second));
+      Settings all = settings;
+      all.emplace_back("scene", scene);
+      if (!has_plan(cuda_options(mode, all))) continue;
       const Counted found = render(scene, mode, settings);
       expect_every_ray_once(found);
       EXPECT_EQ(found.at("turn").lanes > 0, mode == "megakernel");

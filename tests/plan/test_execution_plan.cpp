@@ -205,6 +205,16 @@ const std::vector<Row>& rows() {
        mesh(),
        gpu(),
        {{"accel", "cwbvh"}, {"persistent", "off"}}},
+      {"instances without persistent warps",
+       {{"persistent", "off"}},
+       forest(),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"rays of their own find spheres in global memory",
+       {{"stages", "split"}},
+       spheres(51),
+       gpu(),
+       {{"accel", "brute"}, {"scene-memory", "global"}}},
       {"masks in waves", {}, masked_mesh(), gpu(), {{"accel", "cwbvh"}, {"persistent", "on"}}},
       {"instances in waves",
        {},
@@ -387,6 +397,42 @@ TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
   expect_refused({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
                  "--rng xorwow: on CUDA not with --branching reduced; expected divergent");
   EXPECT_NO_THROW(plan_of({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), cpu()));
+}
+
+SceneProperties lit(SceneProperties scene) {
+  scene.has_lamps = true;
+  return scene;
+}
+
+TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
+  expect_refused({{"accel", "brute"}}, mesh(), gpu(),
+                 "--accel brute: on CUDA by lean kernels alone (--kernel-set)");
+  expect_refused(mega({{"accel", "cwbvh"}}), forest(), gpu(),
+                 "--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA");
+  expect_refused({{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
+                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
+  expect_refused({{"accel", "cwbvh"}}, mesh_and_sphere(), gpu(),
+                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
+  EXPECT_TRUE(plan_of({{"accel", "cwbvh"}, {"stages", "fused"}}, forest(), gpu()).fused);
+  EXPECT_EQ(plan_of(mega({{"accel", "cwbvh"}}), masked_mesh(), gpu()).megakernel,
+            MegakernelKind::sort);
+  for (const char* accel : {"brute", "cwbvh"})
+    EXPECT_NO_THROW(plan_of({{"accel", accel}}, forest(), cpu())) << accel;
+}
+
+TEST(ExecutionPlan, SpheresLieInGlobalMemoryForMostKernels) {
+  expect_refused({{"scene-memory", "constant"}, {"stages", "split"}}, spheres(51), gpu(),
+                 "--scene-memory constant: for kernels that scan the spheres and shade");
+  expect_refused(mega({{"scene-memory", "shared"}, {"accel", "bvh2"}}), spheres(51), gpu(),
+                 "--scene-memory shared: for kernels that scan the spheres and shade");
+  expect_refused(mega({{"scene-memory", "shared"}}), lit(spheres(51)), gpu(),
+                 "--scene-memory shared: has kernels for spheres under the sky alone");
+  EXPECT_EQ(plan_of(mega(), lit(spheres(51)), gpu()).scene_memory, SceneMemory::constant);
+  EXPECT_EQ(plan_of(mega({{"rng", "xorwow"}}), spheres(51), gpu()).scene_memory,
+            SceneMemory::global);
+  expect_refused(mega({{"rng", "xorwow"}}), lit(quads(9)), gpu(),
+                 "--rng xorwow: on CUDA not with surfaces that shine, as scene '' has; expected "
+                 "none");
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {

@@ -12,6 +12,10 @@
 #include "app/make_renderer.h"
 #include "app/options/option_list.h"
 #include "common/error.h"
+#include "common/plan/execution_plan.h"
+#include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/prepare_materials.h"
+#include "common/scene/scene_properties.h"
 #include "statistics.h"
 
 namespace pt {
@@ -42,6 +46,27 @@ inline Options cuda_options(const std::string& mode, const Settings& settings = 
   Options options = with(Options(), settings);
   apply(options, {{"device", "cuda"}, {"mode", mode}});
   return options;
+}
+
+/// Whether a plan accepts the options: what it refuses has tests of its own (tests/plan).
+inline bool has_plan(const Options& options, SceneData scene) {
+  const DeviceInfo device = choose_device(options.device);
+  try {
+    prepare_materials(scene, options.multiple_scattering);
+    plan_execution(options, properties_of(scene), device.properties);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
+inline bool has_plan(const Options& options) { return has_plan(options, build_scene(options)); }
+
+/// Of variations of the options, those that a plan accepts.
+inline std::vector<Settings> planned(const Options& options, std::vector<Settings> variations) {
+  std::erase_if(variations, [&](const Settings& more) { return !has_plan(with(options, more)); });
+  EXPECT_FALSE(variations.empty());
+  return variations;
 }
 
 struct Rendered {

@@ -111,7 +111,7 @@ struct Executor {
   std::uint32_t path_count, finish_paths, half_ring;
   bool more = true;
 
-  template <class>
+  template <class, class>
   static constexpr bool kinds_have_kernels = false;
   static constexpr bool streams_shading = false;
   template <class>

@@ -17,7 +17,7 @@ using SphereScene = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::
 template <bool persistent>
 class Notes {
  public:
-  template <class>
+  template <class, class>
   static constexpr bool kinds_have_kernels = true;
   static constexpr bool streams_shading = persistent;
   template <class Traits>

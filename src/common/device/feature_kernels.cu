@@ -18,15 +18,23 @@ __global__ void find_features(const __grid_constant__ Scene scene,
 }  // namespace
 
 FeatureKernel feature_kernel(const SceneTraits& traits) {
-  // Features know no light: scenes of spheres and quads need no kernel for each kind of lighting.
+  // Features know no light, and are found once: few kernels serve all scenes.
   const bool has_textures = traits.geometry != Geometry::spheres_and_quads;
   SceneTraits needed = traits;
-  if (!has_textures) needed.lighting = Lighting::sky;
-  using SphereKinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-                               Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>>;
+  if (has_textures) {
+    needed.geometry = Geometry::mixed;
+  } else {
+    needed.lighting = Lighting::sky;
+  }
+  using Kinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
   FeatureKernel kernel = nullptr;
-  dispatch_traits(decltype(concatenate(SphereKinds{}, TriangleSceneKinds{})){}, needed,
-                  IntegratorKind::path, [&](auto kind) { kernel = find_features<decltype(kind)>; });
+  dispatch_traits(Kinds{}, needed, IntegratorKind::path,
+                  [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
 }
 

@@ -41,6 +41,7 @@ class Planner {
     choose_kernels();
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
     choose_structure();
+    if (o_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_lean()) choose_scene_memory();
     if (o_.mode == Mode::wavefront) choose_waves();
     if (!is_lean() && scene_.lamps && o_.nee) choose_lights();
@@ -151,7 +152,7 @@ class Planner {
       return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
     }
     if (device_.is_cuda) {
-      if (warps_can_persist()) return {Accel::cwbvh, "persistent warps make the most of it"};
+      if (takes_wide_tree()) return {Accel::cwbvh, "persistent warps make the most of it"};
       return {Accel::bvh2, alone};
     }
     const bool masks_in_blocks = o_.mode == Mode::wavefront && scene_.instances == 0;
@@ -160,7 +161,13 @@ class Planner {
     return {Accel::bvh2, alone};
   }
 
-  /// Whether warps could trace the wavefront's queues in a wide tree.
+  /// Whether warps could trace the wavefront's queues in a wide tree. Where they do not, threads
+  /// walk it over triangles alone.
+  bool takes_wide_tree() const {
+    const bool is_plain = scene_.has_only_triangles() && !scene_.has_masks;
+    return warps_can_persist() && (o_.persistent || is_plain);
+  }
+
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_lean() && compaction_info(o_.compaction).appends &&
            scene_.spheres == 0 && !scene_.limits_camera_rays &&
@@ -172,7 +179,8 @@ class Planner {
     std::string reason = asked;
     if (plan_.scene_memory == SceneMemory::automatic) {
       const bool fits = scene_.spheres <= constant_spheres_best;
-      const bool is_constant = fits && !is_toggled(o_) && plan_.accel == Accel::brute;
+      const bool is_scan = plan_.accel == Accel::brute && scans_in_one_kernel();
+      const bool is_constant = fits && !is_toggled(o_) && is_scan;
       plan_.scene_memory = is_constant ? SceneMemory::constant : SceneMemory::global;
       reason = is_constant ? fmt::format("{} spheres, up to {} are scanned fastest there",
                                          scene_.spheres, constant_spheres_best)
@@ -182,8 +190,10 @@ class Planner {
     decide("scene-memory", to_string(plan_.scene_memory), reason);
   }
 
+  /// Rays that are traced by stages of their own find the spheres in global memory.
+  bool scans_in_one_kernel() const { return o_.mode == Mode::megakernel || plan_.fused; }
+
   void choose_waves() {
-    choose_stages();
     if (device_.is_cuda) choose_persistence();
     choose_surface_order();
     choose_finish();

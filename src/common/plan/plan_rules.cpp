@@ -95,9 +95,10 @@ constexpr SceneRule rules[] = {
      has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
 };
 
-/// On CUDA the paper's toggles each have kernels alone, for scenes that brute force scans: no
-/// experiment combines them, and together they would be as many kernels as all others.
-void check_toggles(const ExecutionPlan& plan, const Options& o) {
+/// On CUDA the paper's toggles each have kernels alone, and for its scene, spheres that are scanned
+/// under the sky: no experiment combines them, and together they would be as many kernels as all
+/// others.
+void check_toggles(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene) {
   if (!is_toggled(o)) return;
   const std::string toggle = o.rng != RngKind::philox ? "--rng " + to_string(o.rng)
                                                       : "--branching " + to_string(o.branching);
@@ -105,14 +106,27 @@ void check_toggles(const ExecutionPlan& plan, const Options& o) {
     throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
   };
   if (plan.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
+  if (scene.has_lamps) refuse("surfaces that shine, as scene '" + scene.name + "' has", "none");
   if (o.rng != RngKind::philox && o.branching != Branching::divergent)
     refuse("--branching reduced", "divergent");
   if (plan.scene_memory != SceneMemory::global)
     refuse("--scene-memory " + to_string(plan.scene_memory), "global or auto");
 }
 
-void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
+void check_scene_memory(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene,
                         const DeviceProperties& device) {
+  if (plan.scene_memory == SceneMemory::global) return;
+  const std::string memory = to_string(plan.scene_memory);
+  if (plan.accel != Accel::brute || (o.mode == Mode::wavefront && !plan.fused))
+    throw Error(
+        fmt::format("--scene-memory {}: for kernels that scan the spheres and shade; expected "
+                    "--accel brute, and --stages fused in waves, or global memory",
+                    memory));
+  if (plan.scene_memory == SceneMemory::shared && scene.has_lamps)
+    throw Error(
+        fmt::format("--scene-memory shared: has kernels for spheres under the sky alone; scene "
+                    "'{}' has surfaces that shine, expected constant or global",
+                    scene.name));
   if (plan.scene_memory == SceneMemory::constant && scene.spheres > constant_spheres_max)
     throw Error(
         fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
@@ -125,6 +139,27 @@ void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
         fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
                     "of this device has at most {}",
                     scene.spheres, scene.scan_bytes, device.block_shared_bytes));
+}
+
+/// What has no kernel because it would win nowhere.
+void check_structure(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene) {
+  if (plan.kernel_set != KernelSet::general) return;
+  if (plan.accel == Accel::brute)
+    throw Error(
+        "--accel brute: on CUDA by lean kernels alone (--kernel-set); expected bvh2 or "
+        "cwbvh");
+  const bool is_plain = scene.has_only_triangles() && !scene.has_masked_kernels();
+  if (plan.accel != Accel::cwbvh || is_plain) return;
+  if (o.mode == Mode::megakernel && plan.megakernel == MegakernelKind::loop)
+    throw Error(
+        fmt::format("--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA; "
+                    "scene '{}' has more, expected bvh2 or auto",
+                    scene.name));
+  if (o.mode == Mode::wavefront && !plan.persistent_warps && !plan.fused)
+    throw Error(
+        fmt::format("--accel cwbvh: threads trace triangles alone in it on CUDA; scene '{}' has "
+                    "more, expected bvh2 or auto, or persistent warps",
+                    scene.name));
 }
 
 void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceProperties& device) {
@@ -173,8 +208,9 @@ void check_plan(const ExecutionPlan& plan, const Options& options, const ScenePr
                                                       : AccelKind::brute;
   check_builder(options.builder, kind, device.is_cuda);
   if (!device.is_cuda) return;
-  check_toggles(plan, options);
-  check_scene_memory(plan, scene, device);
+  check_toggles(plan, options, scene);
+  check_structure(plan, options, scene);
+  check_scene_memory(plan, options, scene, device);
   if (options.mode == Mode::megakernel) check_megakernel(plan, options, device);
 }
 

@@ -17,6 +17,7 @@ struct SceneProperties {
   std::size_t instances = 0;
   bool is_primitive_only = false;   ///< nothing that the paper's scenes have not
   bool has_masks = false;           ///< materials that are not opaque everywhere
+  bool has_lamps = false;           ///< surfaces that shine
   bool limits_camera_rays = false;  ///< clip planes or hidden emitters
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has

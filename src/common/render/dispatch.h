@@ -22,22 +22,25 @@ constexpr IntegratorKind traced_by(IntegratorKind integrator) {
 
 // The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
 // whatever a file can hold shares the rest.
-using BruteSphereKinds =
-    TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-             Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>>;
+using BruteSkyKinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>>;
+using BruteSphereKinds = decltype(concatenate(
+    BruteSkyKinds{},
+    TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>>{}));
 using SphereSceneKinds = decltype(concatenate(
     BruteSphereKinds{},
     TypeList<Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
              Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>{}));
-using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
-                                    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
-                                    Traits<Accel::brute, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
+/// Those that a megakernel's loop traces on CUDA.
+using LoopTriangleKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
+                                   Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
+                                   Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                                   Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>>;
+using TriangleSceneKinds = decltype(concatenate(
+    LoopTriangleKinds{}, TypeList<Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+                                  Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>{}));
 using CpuTriangleSceneKinds = decltype(concatenate(
     TriangleSceneKinds{}, TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
+                                   Traits<Accel::brute, Geometry::mixed, Lighting::full>,
                                    Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,
                                    Traits<Accel::embree, Geometry::mixed, Lighting::full>,
                                    Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
@@ -68,19 +71,23 @@ void dispatch_traits(TypeList<T...>, SceneTraits traits, IntegratorKind integrat
   if (!(called(T{}) || ...)) throw_no_kernel(traits, integrator);
 }
 
-/// Of these, the kinds for which CUDA has kernels with this source: the paper's generator is for
-/// scenes that brute force scans (check_toggles).
-template <class Source>
-using CudaKindsWith = std::conditional_t<std::is_same_v<Source, PhiloxSource>, SphereSceneKinds,
-                                         std::conditional_t<std::is_same_v<Source, SamplerSource>,
-                                                            TriangleSceneKinds, BruteSphereKinds>>;
+/// The same on CUDA, where each of the paper's toggles has kernels alone, and only for its scene:
+/// spheres that are scanned, under the sky (check_toggles).
+template <class Source, class OtherKinds>
+using CudaKindsWith = std::conditional_t<std::is_same_v<Source, PhiloxSource> ||
+                                             std::is_same_v<Source, SamplerSource>,
+                                         KindsWith<Source, OtherKinds>, BruteSkyKinds>;
 
-/// Whether CUDA has kernels of reduced branching for such scenes, by this source and memory: each
-/// of the paper's toggles is looked at alone (check_toggles).
+/// Of scenes whose spheres lie in such memory.
+template <SceneMemory memory>
+using KindsInMemory =
+    std::conditional_t<memory == SceneMemory::shared, BruteSkyKinds, BruteSphereKinds>;
+
+/// Whether CUDA has kernels of reduced branching for such scenes, by this source and memory.
 template <class Traits, class Source, SceneMemory memory = SceneMemory::global>
 inline constexpr bool may_reduce_on_cuda =
-    Traits::accel == Accel::brute&& std::is_same_v<Source, PhiloxSource>&& memory ==
-    SceneMemory::global;
+    Traits::accel == Accel::brute&& Traits::lighting ==
+    Lighting::sky&& std::is_same_v<Source, PhiloxSource>&& memory == SceneMemory::global;
 
 /// function(Constant<branching>). Branches are reduced in the paper's scenes only.
 template <class Traits, bool may_reduce = true, class Function>
