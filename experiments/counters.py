@@ -22,7 +22,7 @@ SCENES = ["cornell", "dial:8:0:closed", "dial:8:1:closed", "statue:1M"]
 VARIANTS = {
     "megakernel": "--mode megakernel",
     "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
     "by material": "--mode wavefront --shade material",
     "cub": "--mode wavefront --shade uber --compaction cub",
     "no queues": "--mode wavefront --shade uber --compaction none",

@@ -26,7 +26,7 @@ VARIANTS = {
     "voting megakernel": "--mode megakernel --accel cwbvh --kernel vote",
     "sorting megakernel": "--mode megakernel --accel cwbvh --kernel sort",
     "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
     "by material": "--mode wavefront --shade material",
     "wide tree": "--mode wavefront --accel cwbvh",
 }

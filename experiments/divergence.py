@@ -21,7 +21,7 @@ BUILT_IN = ["dial:16:0:closed", "statue:1M"]
 VARIANTS = {
     "megakernel": "--mode megakernel",
     "uber": "--mode wavefront --compaction atomic --shade uber",
-    "uber, sorted": "--mode wavefront --compaction sort --shade uber",
+    "uber, sorted": "--mode wavefront --order-surfaces on --shade uber",
     "by material": "--mode wavefront --compaction atomic --shade material",
     "uber, tags": "--mode wavefront --compaction none --shade uber",
 }

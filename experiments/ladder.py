@@ -21,7 +21,7 @@ CUDA, TRIANGLES, SPHERES = "a GPU", "triangles", "spheres"
 STEPS = [
     ("SoA instead of AoS", "--layout soa", ()),
     ("compaction", "--compaction atomic", ()),
-    ("material order", "--compaction sort", ()),
+    ("material order", "--order-surfaces on", ()),
     ("whole rays in sectors", "--layout sectors", ()),
     ("regeneration", "--regenerate on", ()),
     ("CUDA graph", "--schedule graph", (CUDA,)),

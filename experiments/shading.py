@@ -18,7 +18,7 @@ PROMISES = {"modern-hall/scene.xml": 430, "grey-white-room/scene.xml": 300}
 WAYS = {
     "megakernel": "--mode megakernel",
     "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --compaction sort",
+    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
     "by material": "--mode wavefront --shade material",
 }
 # --shade material takes kernels for all lights, which draw other numbers than the lean ones that a

@@ -75,6 +75,7 @@ const std::map<std::string, std::string>& other_values() {
       {"work", "sample"},
       {"block", "32x4"},
       {"kernel-set", "general"},
+      {"order-surfaces", "on"},
       {"kernel", "vote"},
       {"compaction", "cub"},
       {"pool-size", "1048576"},
@@ -207,6 +208,14 @@ TEST(CommandLine, StageBlocksForAllOrByName) {
   for (const StageInfo& stage : stage_table) {
     EXPECT_EQ(both[static_cast<std::size_t>(stage.id)], stage.id == StageId::shadow ? 64 : 32);
   }
+}
+
+// A name of the release before.
+TEST(CommandLine, CompactionSortIsAtomicWithSurfacesInOrder) {
+  const Options o = parse_options("--compaction sort");
+  EXPECT_EQ(o.compaction, Compaction::atomic);
+  EXPECT_EQ(o.order_surfaces, SurfaceOrdering::on);
+  EXPECT_EQ(parse_options("--compaction cub").order_surfaces, SurfaceOrdering::automatic);
 }
 
 TEST(CommandLine, OtherCommands) {
@@ -442,7 +451,7 @@ TEST(Refused, Contradictions) {
       {"--stats a --csv ./a", "--csv ./a: is the file of --stats too"},
       {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
       {"--shade material --compaction none",
-       "--shade material: takes ranges of an ordered queue; --compaction none has no queues"},
+       "--shade material: sorts a queue; --compaction none has no queues"},
   });
 }
 
@@ -493,7 +502,10 @@ TEST(Refused, WhatFusedOrSplitStagesDoNotKnow) {
       {"--stages fused --shade uber",
        "--shade uber: has no effect with --stages fused; it applies to split"},
       {"--stages fused --persistent off", "--persistent off: has no effect with --stages fused"},
-      {"--stages fused --compaction sort", "--compaction sort: has no effect with --stages fused"},
+      {"--stages fused --order-surfaces on",
+       "--order-surfaces on: has no effect with --stages fused"},
+      {"--order-surfaces on --compaction none", "--order-surfaces on: sorts a queue"},
+      {"--order-surfaces off --shade material", "--order-surfaces off: not with --shade material"},
       {"--stages fused --branching reduced", "--branching reduced: has no effect with --stages"},
       {"--wave-rays 2", "--wave-rays 2: has no effect with --stages auto; it applies to fused"},
       {"--stages split --wave-rays 1", "--wave-rays 1: has no effect with --stages split"},

@@ -63,7 +63,7 @@ TEST(CompactCommandLine, RefusesWhatItCannotDo) {
   refuse({"--queues", "3"}, "--queues 3");
   refuse({"--run", "0"}, "--run 0");
   refuse({"--strategy", "cub,fast"}, "--strategy fast: expected one of cub, scan");
-  refuse({"--strategy", "sort"}, "--strategy sort: orders surfaces");
+  refuse({"--strategy", "sort"}, "--strategy sort: expected one of cub, scan");
   refuse({"--cache", "hot"}, "--cache hot");
   refuse({"--repeat", "0"}, "--repeat 0");
   refuse({"--items", "1", "--items", "0"}, "--items 0");  // the last holds

@@ -158,7 +158,7 @@ TEST_F(CudaDivergence, AnOrderByMaterialFillsWarps) {
     return found.at("bsdf").mean_lanes();
   };
   const double mixed = mean_lanes({{"shade", "uber"}});
-  const double sorted = mean_lanes({{"shade", "uber"}, {"compaction", "sort"}});
+  const double sorted = mean_lanes({{"shade", "uber"}, {"order-surfaces", "on"}});
   const double parted = mean_lanes({{"shade", "material"}});
   EXPECT_LT(mixed, 12.0) << "16 materials at random, of at most 13 kinds";
   EXPECT_GT(sorted, 2 * mixed);

@@ -79,13 +79,16 @@ TEST_F(CudaVotingMaterials, EqualTheLoop) {
 // By default a scene of several kinds is shaded by kind.
 TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
-  for (const char* shade : {"uber", "material", "auto"}) {
-    for (const char* compaction : {"atomic", "cub", "scan", "sort"}) {
+  for (const auto& [shade, order] :
+       {std::pair{"uber", "auto"}, {"uber", "on"}, {"material", "auto"}, {"auto", "auto"}}) {
+    for (const char* compaction : {"atomic", "cub", "scan"}) {
       for (const char* pool : {"1000", "auto"}) {
-        SCOPED_TRACE(testing::Message() << shade << ", " << compaction << ", " << pool);
+        SCOPED_TRACE(testing::Message()
+                     << shade << ", " << order << ", " << compaction << ", " << pool);
         expect_same(render({{"device", "cuda"},
                             {"mode", "wavefront"},
                             {"shade", shade},
+                            {"order-surfaces", order},
                             {"compaction", compaction},
                             {"pool-size", pool},
                             {"finish-paths", "0"}}),

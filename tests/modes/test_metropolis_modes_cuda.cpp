@@ -54,7 +54,8 @@ TEST_P(GpuMetropolis, OneImageInBothModes) {
                          expected);
     }
   }
-  const std::vector<Choice> choices{{"compaction", {"atomic", "cub", "none", "sort"}},
+  const std::vector<Choice> choices{{"compaction", {"atomic", "cub", "none"}},
+                                    {"order-surfaces", {"auto", "on"}},
                                     {"schedule", {"graph", "host"}},
                                     {"pool-size", {"auto", "700", "20000", "1M"}},
                                     {"finish-paths", {"131072", "0", "300"}},

@@ -169,12 +169,13 @@ TEST_P(ModesOf, MegakernelEqualsSerial) {
 
 TEST_P(ModesOf, WavefrontEqualsSerial) {
   std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
-                              {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
+                              {"compaction", {"atomic", "cub", "scan", "none"}},
                               {"pool-size", {"auto", "1000", "4096", "6525", "6526"}},
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},
                               {"layout", {"soa", "sectors", "aos"}},
                               {"stages", {"split", "auto"}},
+                              {"order-surfaces", {"auto", "on"}},
                               {"branching", {"divergent", "reduced"}}};
   // Also about the 32 slots of a block, for one thread and for two.
   if (is_tiny()) choices[2].values = {"7", "1", "31", "32", "33", "64", "65", "455", "auto"};
@@ -220,7 +221,7 @@ TEST(Stages, AreFusedWhereRaysAreCheap) {
     // What fused stages do not know.
     EXPECT_EQ(of({{"branching", "reduced"}}), "split");
     EXPECT_EQ(of({{"shade", "uber"}}), "split");
-    EXPECT_EQ(of({{"compaction", "sort"}}), "split");
+    EXPECT_EQ(of({{"order-surfaces", "on"}}), "split");
   }
   EXPECT_EQ(stages({{"accel", "bvh2"}}), "split");
   EXPECT_EQ(stages({{"scene", "boxes"}}), "split");

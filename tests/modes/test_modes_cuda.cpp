@@ -79,7 +79,7 @@ TEST_P(GpuModesOf, MegakernelDoesNotDependOnHow) {
 
 TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
   std::vector<Choice> choices = {
-      {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
+      {"compaction", {"atomic", "cub", "scan", "none"}},
       {"schedule", {"graph", "host"}},
       {"regenerate", {"on", "off"}},
       {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
@@ -89,6 +89,7 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
         "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
         "accumulate=224"}},
       {"layout", {"soa", "sectors", "aos"}},
+      {"order-surfaces", {"auto", "on"}},
       {"stages", {"split", "auto"}}};
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
@@ -187,9 +188,10 @@ INSTANTIATE_TEST_SUITE_P(Cuda, GpuTrianglesOf, testing::ValuesIn(triangle_kinds)
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
-  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none", "sort"}},
+  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none"}},
                                        {"schedule", {"graph", "host"}},
                                        {"regenerate", {"on", "off"}},
+                                       {"order-surfaces", {"auto", "on", "off"}},
                                        {"persistent", {"on", "off"}},
                                        {"pool-size", {"auto", "1000", "4097", "1M"}},
                                        {"finish-paths", {"0", "700", "131072"}},

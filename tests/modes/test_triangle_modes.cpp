@@ -26,12 +26,11 @@ TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
   expect_all_same(options({{"mode", "megakernel"}}),
                   variations({{"accel", {"cwbvh", "bvh2"}}, {"threads", {"2", "1"}}}, 0, 1),
                   serial);
-  const std::vector<Choice> choices{{"accel", {"cwbvh", "bvh2"}},
-                                    {"compaction", {"atomic", "cub", "scan", "none", "sort"}},
-                                    {"pool-size", {"333", "33", "auto", "3600"}},
-                                    {"regenerate", {"on", "off"}},
-                                    {"layout", {"soa", "sectors", "aos"}},
-                                    {"finish-paths", {"0", "100"}}};
+  const std::vector<Choice> choices{
+      {"accel", {"cwbvh", "bvh2"}},       {"compaction", {"atomic", "cub", "scan", "none"}},
+      {"order-surfaces", {"auto", "on"}}, {"pool-size", {"333", "33", "auto", "3600"}},
+      {"regenerate", {"on", "off"}},      {"layout", {"soa", "sectors", "aos"}},
+      {"finish-paths", {"0", "100"}}};
   expect_all_same(options({{"mode", "wavefront"}}), variations(choices, 2, 3), serial);
   const std::vector<Choice> fused{
       {"accel", {"bvh2", "cwbvh"}},           {"compaction", {"atomic", "cub", "scan", "none"}},

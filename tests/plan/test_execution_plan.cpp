@@ -177,23 +177,23 @@ const std::vector<Row>& rows() {
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
        gpu(),
-       {{"shade", "uber, in order of the kinds"}, {"finish-paths", "8192"}}},
-      {"a long one alone", {}, mesh(bit(kind_of<Principled>)), gpu(), {{"shade", "uber"}}},
+       {{"shade", "uber"}, {"order-surfaces", "on"}, {"finish-paths", "8192"}}},
+      {"a long one alone", {}, mesh(bit(kind_of<Principled>)), gpu(), {{"order-surfaces", "off"}}},
       {"and another",
        {},
        mesh(bit(kind_of<Principled>) | bit(kind_of<Diffuse>)),
        gpu(),
-       {{"shade", "uber, in order of the kinds"}}},
+       {{"shade", "uber"}, {"order-surfaces", "on"}}},
       {"six kinds on the CPU",
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
        cpu(),
-       {{"shade", "uber"}}},
+       {{"order-surfaces", "off"}}},
       {"order, asked for",
-       {{"compaction", "sort"}},
+       {{"order-surfaces", "on"}},
        mesh(),
        cpu(),
-       {{"shade", "uber, in order of the kinds"}}},
+       {{"shade", "uber"}, {"order-surfaces", "on"}}},
       {"by material", {{"shade", "material"}}, mesh(), gpu(), {{"shade", "material"}}},
       {"passes over tags",
        {{"compaction", "cub"}},
@@ -339,9 +339,8 @@ TEST(ExecutionPlan, SaysWhatItIs) {
     expect("persistent", plan.persistent_warps ? "on" : "off");
     expect("finish-paths", std::to_string(plan.finish_paths));
     expect("schedule", plan.uses_graph ? "graph" : "host");
-    expect("shade", plan.shades_by_kind    ? "material"
-                    : plan.orders_surfaces ? "uber, in order of the kinds"
-                                           : "uber");
+    expect("shade", plan.shades_by_kind ? "material" : "uber");
+    expect("order-surfaces", plan.orders_surfaces ? "on" : "off");
   }
 }
 
@@ -373,6 +372,9 @@ void expect_refused(const Choices& settings, const SceneProperties& scene,
 TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   expect_refused(mega({{"block", "64x32"}}), mesh(), gpu(),
                  "--block 64x32: 2048 threads; a block has at most 1024");
+  Options huge;
+  huge.mode = Mode::megakernel, huge.block = {32768, 65536};  // 2^31 threads
+  EXPECT_THROW(plan_execution(huge, mesh(), gpu()), Error);
   expect_refused(mega({{"kernel", "sort"}}), mesh(), gpu(64),
                  "--kernel sort: expected --accel cwbvh, --work persistent and a device whose "
                  "blocks may have 73 KiB");
@@ -383,9 +385,10 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
                  "--scene-memory constant: the scene has 1025 spheres; a kernel's parameters hold "
                  "at most 1024");
   const SceneProperties many = changed(spheres(8000), [](auto& s) { s.scan_bytes = 64000; });
-  expect_refused({{"scene-memory", "shared"}}, many, gpu(48),
+  const Choices shared = {{"scene-memory", "shared"}, {"accel", "brute"}};
+  expect_refused(shared, many, gpu(48),
                  "--scene-memory shared: the scene's 8000 spheres take 64000 bytes");
-  EXPECT_EQ(plan_of({{"scene-memory", "shared"}}, many, gpu()).scene_memory, SceneMemory::shared);
+  EXPECT_EQ(plan_of(shared, many, gpu()).scene_memory, SceneMemory::shared);
 }
 
 TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
@@ -410,6 +413,8 @@ TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
   expect_refused(mega({{"accel", "cwbvh"}}), forest(), gpu(),
                  "--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA");
   expect_refused({{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
+                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
+  expect_refused({{"accel", "cwbvh"}}, clipped_mesh(), gpu(),
                  "--accel cwbvh: threads trace triangles alone in it on CUDA");
   expect_refused({{"accel", "cwbvh"}}, mesh_and_sphere(), gpu(),
                  "--accel cwbvh: threads trace triangles alone in it on CUDA");

@@ -68,11 +68,12 @@ constexpr std::uint32_t few_slots = 3;
 
 template <class Traits, Branching branching, bool persistent>
 Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = true,
-                           bool here = true, bool fused = false, bool starts_paths = true) {
+                           bool here = true, bool fused = false, bool starts_paths = true,
+                           bool orders = false) {
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
-  buffers.compaction = strategy, buffers.orders_surfaces = strategy.orders;
+  buffers.compaction = strategy, buffers.orders_surfaces = orders;
   buffers.counters = &counters;
   buffers.slot_count = &slot_count;
   buffers.reuses_slots = reuses_slots;
@@ -101,12 +102,12 @@ struct OrderedWave {
   std::uint8_t kinds[1] = {};
   Notes<false> notes;
 
-  void run(Compaction strategy, std::uint32_t scene_kinds, bool by_kind) {
+  void run(bool orders, std::uint32_t scene_kinds, bool by_kind) {
     WaveBuffers buffers;
-    buffers.compaction = compaction_info(strategy);
+    buffers.compaction = compaction_info(Compaction::atomic);
     buffers.counters = &counters, buffers.slot_count = &slot_count;
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
-    buffers.orders_surfaces = by_kind || buffers.compaction.orders;
+    buffers.orders_surfaces = orders;
     buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
     buffers.ordered = ordered, buffers.kind_of_place = kinds;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
@@ -118,13 +119,16 @@ TEST(WaveOrder, AThreadPerRayTracesAndSendsOn) {
   using enum StageId;
   for (const CompactionInfo& strategy : compaction_table) {
     SCOPED_TRACE(strategy.name);
-    const auto notes = notes_of<TriangleScene, Branching::divergent, false>(strategy);
-    Ids expected{compact,    begin_wave,    generate, intersect, compact,
-                 shade_miss, shade_surface, compact,  shadow,    finish};
-    if (strategy.orders) expected.insert(expected.begin() + 6, order_surfaces);
-    EXPECT_EQ(notes.ran, expected);
-    EXPECT_EQ(notes.wanted, (Ids{generate, intersect, shade_miss, shade_surface, shadow}));
-    EXPECT_TRUE(notes.traced.empty());
+    for (const bool orders : {false, true}) {
+      const auto notes = notes_of<TriangleScene, Branching::divergent, false>(strategy, true, true,
+                                                                              false, true, orders);
+      Ids expected{compact,    begin_wave,    generate, intersect, compact,
+                   shade_miss, shade_surface, compact,  shadow,    finish};
+      if (orders) expected.insert(expected.begin() + 6, order_surfaces);
+      EXPECT_EQ(notes.ran, expected);
+      EXPECT_EQ(notes.wanted, (Ids{generate, intersect, shade_miss, shade_surface, shadow}));
+      EXPECT_TRUE(notes.traced.empty());
+    }
   }
 }
 
@@ -139,7 +143,6 @@ TEST(WaveOrder, PersistentWarpsTraceAndSortHitsSendsOn) {
     if (!strategy.appends) continue;
     Ids expected{compact,    begin_wave,    generate, intersect, sort_hits, compact,
                  shade_miss, shade_surface, compact,  shadow,    finish};
-    if (strategy.orders) expected.insert(expected.begin() + 7, order_surfaces);
     EXPECT_EQ(notes.ran, expected);
   }
 }
@@ -235,8 +238,7 @@ TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
 TEST(WaveOrder, EachKindOfTheSceneIsShadedOverItsRangeOfTheOrderedQueue) {
   const auto bit = [](MaterialKind kind) { return 1u << static_cast<int>(kind); };
   OrderedWave wave;
-  wave.run(Compaction::atomic, bit(kind_of<Conductor>) | bit(kind_of<Diffuse>) | bit(several_kinds),
-           true);
+  wave.run(true, bit(kind_of<Conductor>) | bit(kind_of<Diffuse>) | bit(several_kinds), true);
   const Notes<false>& notes = wave.notes;
   EXPECT_EQ(notes.order.slots, wave.queue);
   EXPECT_EQ(notes.order.count, &wave.counters.waiting[queue_index(StageId::shade_surface)]);
@@ -256,12 +258,12 @@ TEST(WaveOrder, EachKindOfTheSceneIsShadedOverItsRangeOfTheOrderedQueue) {
 
 TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
   OrderedWave sorted, as_they_come;
-  sorted.run(Compaction::sort, 3, false);
+  sorted.run(true, 3, false);
   ASSERT_EQ(sorted.notes.shaded.size(), 1u);
   EXPECT_EQ(sorted.notes.shaded[0].second.slots, sorted.ordered);
   EXPECT_EQ(sorted.notes.shaded[0].second.count, sorted.notes.order.count);
   EXPECT_EQ(sorted.notes.shaded[0].second.first, nullptr);
-  as_they_come.run(Compaction::atomic, 3, false);
+  as_they_come.run(false, 3, false);
   ASSERT_EQ(as_they_come.notes.shaded.size(), 1u);
   EXPECT_EQ(as_they_come.notes.shaded[0].second.slots, as_they_come.queue);
   EXPECT_EQ(std::ranges::count(as_they_come.notes.ran, StageId::order_surfaces), 0);

@@ -127,10 +127,24 @@ void check_stages(const Options& options, const GivenOptions& given) {
   for (const char* name : {"shade", "persistent"}) {
     if (given.contains(name)) refuse_with_stages(options, name, Stages::split);
   }
-  if (compaction_info(options.compaction).orders)
-    refuse_with_stages(options, "compaction", Stages::split);
+  if (options.order_surfaces == SurfaceOrdering::on)
+    refuse_with_stages(options, "order-surfaces", Stages::split);
   if (options.branching == Branching::reduced)
     refuse_with_stages(options, "branching", Stages::split);
+}
+
+/// Only a queue can be sorted, and kernels for each kind of BSDF need it so.
+void check_surface_order(const Options& options) {
+  const bool by_kind = options.shade == Shade::material;
+  if (!compaction_info(options.compaction).has_queues &&
+      (by_kind || options.order_surfaces == SurfaceOrdering::on))
+    throw Error(fmt::format("--{}: sorts a queue; --compaction {} has no queues, expected another",
+                            by_kind ? "shade material" : "order-surfaces on",
+                            to_string(options.compaction)));
+  if (by_kind && options.order_surfaces == SurfaceOrdering::off)
+    throw Error(
+        "--order-surfaces off: not with --shade material, which takes ranges of a sorted "
+        "queue; expected on or auto");
 }
 
 /// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.
@@ -203,11 +217,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_camera(options.camera);
   check_voting(options, given);
   check_inert(options, given);
-  if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
-    throw Error(
-        fmt::format("--shade material: takes ranges of an ordered queue; --compaction {} has no "
-                    "queues, expected another one",
-                    to_string(options.compaction)));
+  check_surface_order(options);
   if (given.contains("spheres") && options.scene != "spheres")
     throw Error(fmt::format("--spheres {}: has no effect on the scene '{}', only on 'spheres'",
                             options.spheres, options.scene));

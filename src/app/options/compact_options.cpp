@@ -23,10 +23,7 @@ float parse_density(const std::string& text) {
 }
 
 Compaction parse_strategy(const std::string& text) {
-  const auto strategy = parse_name<Compaction>("strategy", text);
-  if (compaction_info(strategy).orders)
-    refuse_value("strategy", text, "orders surfaces, which only a scene has; it appends as atomic");
-  return strategy;
+  return parse_name<Compaction>("strategy", text);
 }
 
 bool parse_cold(const std::string& text) {

@@ -131,6 +131,16 @@ void add_image(std::vector<OptionEntry>& list) {
            "samples, bounces, rays");
 }
 
+/// Also takes `sort`, a name, for one release more, of `atomic` with --order-surfaces on.
+OptionEntry compaction_entry() {
+  OptionEntry entry = choice("compaction", &Options::compaction);
+  entry.set = [set = entry.set](Options& o, const std::string& value) {
+    set(o, value == "sort" ? "atomic" : value);
+    if (value == "sort") o.order_surfaces = SurfaceOrdering::on;
+  };
+  return entry;
+}
+
 OptionEntry size_or_auto(const std::string& name, std::uint64_t Options::*field,
                          const std::string& what, std::uint64_t most) {
   return custom(
@@ -259,12 +269,11 @@ void add_execution(std::vector<OptionEntry>& list) {
            "of triangles alone sort, with another --block vote if there\n"
            "is one kind of BSDF; loop elsewhere")
       .only(megakernel, cuda)
-      .add(choice("compaction", &Options::compaction),
+      .add(compaction_entry(),
            "wavefront: how the paths that wait for a stage are gathered:\n"
            "cub: a selection in order; scan: the same by a kernel of\n"
            "ours; atomic: appended in any order; none: not at all, every\n"
-           "stage visits the whole pool; sort: as atomic, and surfaces\n"
-           "are ordered by their kind of BSDF")
+           "stage visits the whole pool")
       .only(wavefront, any_device)
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",
@@ -281,10 +290,14 @@ void add_execution(std::vector<OptionEntry>& list) {
            "records of a ray side by side (sectors), or all (aos)")
       .only(wavefront, any_device)
       .add(choice("shade", &Options::shade),
-           "wavefront: surfaces are shaded by one kernel for all, or kind\n"
-           "of BSDF by kind over ranges of an ordered queue, on CUDA by\n"
-           "a kernel for each; auto: by one, on CUDA in order of the\n"
-           "kinds if these are many or long")
+           "wavefront: surfaces are shaded by one kernel for all kinds of\n"
+           "BSDFs (uber), or over ranges of a sorted queue kind by kind,\n"
+           "on CUDA by a kernel for each (material); auto: by one")
+      .only(wavefront, any_device)
+      .add(choice("order-surfaces", &Options::order_surfaces),
+           "wavefront: the queue of surfaces is sorted by the kind of BSDF;\n"
+           "auto: with --shade material, and on CUDA with --shade auto if\n"
+           "the kinds are many or long")
       .only(wavefront, any_device)
       .add(choice("stages", &Options::stages),
            "wavefront: tracing and shading are stages of their own, or\n"

@@ -100,11 +100,9 @@ class Planner {
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
-    constexpr BlockSize usual;
-    const bool has_usual_blocks = o_.block.x == usual.x && o_.block.y == usual.y;
-    if (has_usual_blocks && device_.block_shared_bytes >= sorting_bytes_min)
+    if (o_.block == BlockSize{} && device_.block_shared_bytes >= sorting_bytes_min)
       return {sort, "triangles alone: a wavefront in each block was the fastest"};
-    const int threads = o_.block.x * o_.block.y;
+    const std::int64_t threads = o_.block.threads();
     const bool may_vote = !scene_.has_masks && threads % 32 == 0 && threads <= voting_threads_max;
     const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
     if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
@@ -206,14 +204,14 @@ class Planner {
 
   void choose_stages() {
     const bool is_possible = o_.branching == Branching::divergent && o_.shade == Shade::automatic &&
-                             !compaction_info(o_.compaction).orders;
+                             o_.order_surfaces != SurfaceOrdering::on;
     const bool is_cheap = is_lean() && plan_.accel == Accel::brute;
     std::string reason = asked;
     plan_.fused = o_.stages == Stages::fused;
     if (o_.stages == Stages::automatic) {
       plan_.fused = is_possible && is_cheap && !device_.has_ray_blocks;
       reason = plan_.fused    ? "one scan a ray and few BSDFs: saves the hits' bytes"
-               : !is_possible ? "--branching, --shade or --compaction look at stages"
+               : !is_possible ? "--branching, --shade or --order-surfaces look at stages"
                : is_cheap     ? "blocks of rays save more"
                               : "threads of one kernel would wait for each other";
     }
@@ -230,22 +228,22 @@ class Planner {
   }
 
   void choose_surface_order() {
-    const CompactionInfo& compaction = compaction_info(o_.compaction);
     plan_.shades_by_kind = o_.shade == Shade::material && !plan_.fused;
-    const bool pays =
-        device_.is_cuda && !is_lean() && compaction.has_queues && order_pays_for(scene_.bsdf_kinds);
-    plan_.orders_surfaces = !plan_.fused && (compaction.orders || plan_.shades_by_kind ||
-                                             (o_.shade == Shade::automatic && pays));
     if (plan_.fused) return;
+    decide("shade", plan_.shades_by_kind ? "material" : "uber",
+           o_.shade != Shade::automatic ? asked : "kernels for each kind give no more");
+    const bool has_queues = compaction_info(o_.compaction).has_queues;
+    const bool pays = device_.is_cuda && !is_lean() && order_pays_for(scene_.bsdf_kinds);
+    const bool is_free = o_.order_surfaces == SurfaceOrdering::automatic;
+    const bool wanted =
+        is_free ? o_.shade == Shade::automatic && pays : o_.order_surfaces == SurfaceOrdering::on;
+    plan_.orders_surfaces = plan_.shades_by_kind || (has_queues && wanted);
     const int kinds = std::popcount(scene_.bsdf_kinds);
-    const std::string scene = fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s");
-    decide("shade",
-           plan_.shades_by_kind    ? "material"
-           : plan_.orders_surfaces ? "uber, in order of the kinds"
-                                   : "uber",
-           o_.shade != Shade::automatic ? asked
-           : compaction.orders          ? "--compaction " + std::string(compaction.name)
-                                        : scene);
+    decide("order-surfaces", plan_.orders_surfaces ? "on" : "off",
+           !is_free               ? asked
+           : plan_.shades_by_kind ? "--shade material"
+           : !has_queues          ? "there is no queue"
+                         : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
   }
 
   /// A wave costs some 0.1 ms however few rays it has; a thread that follows a path waits for the

@@ -163,7 +163,7 @@ void check_structure(const ExecutionPlan& plan, const Options& o, const ScenePro
 }
 
 void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceProperties& device) {
-  const int threads = o.block.x * o.block.y;
+  const std::int64_t threads = o.block.threads();
   if (threads > device.block_threads_max)
     throw Error(fmt::format("--block {}x{}: {} threads; a block has at most {}", o.block.x,
                             o.block.y, threads, device.block_threads_max));

@@ -14,15 +14,14 @@ enum class TagPass {
 };
 
 //   name, whether stages append to queues (else they write tags), whether there are queues, its
-//   pass, whether the queue of surfaces is ordered by the kind of BSDF
-#define PT_COMPACTIONS(STRATEGY)             \
-  STRATEGY(cub, false, true, gather, false)  \
-  STRATEGY(scan, false, true, scan, false)   \
-  STRATEGY(atomic, true, true, none, false)  \
-  STRATEGY(none, false, false, count, false) \
-  STRATEGY(sort, true, true, none, true)
+//   pass
+#define PT_COMPACTIONS(STRATEGY)     \
+  STRATEGY(cub, false, true, gather) \
+  STRATEGY(scan, false, true, scan)  \
+  STRATEGY(atomic, true, true, none) \
+  STRATEGY(none, false, false, count)
 
-#define PT_COMPACTION_ENUMERATOR(name, appends, has_queues, pass, orders) name,
+#define PT_COMPACTION_ENUMERATOR(name, appends, has_queues, pass) name,
 enum class Compaction { PT_COMPACTIONS(PT_COMPACTION_ENUMERATOR) };
 #undef PT_COMPACTION_ENUMERATOR
 
@@ -32,11 +31,10 @@ struct CompactionInfo {
   bool appends;
   bool has_queues;
   TagPass pass;
-  bool orders;
 };
 
-#define PT_COMPACTION_ROW(name, appends, has_queues, pass, orders) \
-  {Compaction::name, #name, appends, has_queues, TagPass::pass, orders},
+#define PT_COMPACTION_ROW(name, appends, has_queues, pass) \
+  {Compaction::name, #name, appends, has_queues, TagPass::pass},
 inline constexpr CompactionInfo compaction_table[] = {PT_COMPACTIONS(PT_COMPACTION_ROW)};
 #undef PT_COMPACTION_ROW
 #undef PT_COMPACTIONS

@@ -58,6 +58,11 @@ template <>
 inline constexpr auto enum_names<Shade> = std::to_array<EnumName<Shade>>(
     {{Shade::automatic, "auto"}, {Shade::uber, "uber"}, {Shade::material, "material"}});
 template <>
+inline constexpr auto enum_names<SurfaceOrdering> =
+    std::to_array<EnumName<SurfaceOrdering>>({{SurfaceOrdering::automatic, "auto"},
+                                              {SurfaceOrdering::on, "on"},
+                                              {SurfaceOrdering::off, "off"}});
+template <>
 inline constexpr auto enum_names<Stages> = std::to_array<EnumName<Stages>>(
     {{Stages::automatic, "auto"}, {Stages::split, "split"}, {Stages::fused, "fused"}});
 template <>

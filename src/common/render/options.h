@@ -21,6 +21,7 @@ enum class MegakernelKind { automatic, loop, vote, sort };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
 enum class Shade { automatic, uber, material };
+enum class SurfaceOrdering { automatic, on, off };
 enum class Stages { automatic, split, fused };
 enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path, mlt };
@@ -49,6 +50,9 @@ struct DeviceChoice {
 struct BlockSize {
   int x = 16;
   int y = 16;
+
+  std::int64_t threads() const { return std::int64_t{x} * y; }
+  bool operator==(const BlockSize&) const = default;
 };
 
 /// How bright a PNG or PPM is.
@@ -136,8 +140,9 @@ struct Options {
   std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
   PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state
   bool regenerate = true;
-  bool persistent = true;             ///< warps trace queues where they can (CUDA)
-  Shade shade = Shade::automatic;     ///< wavefront: who shades surfaces
+  bool persistent = true;          ///< warps trace queues where they can (CUDA)
+  Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
+  SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
   int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
   /// So many paths left are followed to their ends at once, 0: none; absent: automatic.
