@@ -32,10 +32,11 @@ STEPS = [
 ]
 # Above all of them, for spheres. Fused stages sort no hits, and their kernel is for all materials.
 SHADE = "--shade uber "
-FUSED = [("fused stages", "--stages fused --wave-rays 1 --compaction atomic"),
+FUSED = [("fused stages", "--stages fused --wave-rays 1 --order-surfaces off"),
          ("two rays a wave", "--wave-rays 2")]
 PLAIN = (f"--mode wavefront --stages split --compaction none {SHADE}--regenerate off "
-         "--finish-paths 0 --schedule host --pool-size 1M")
+         "--finish-paths 0 --schedule host --pool-size 1M "
+         "--order-surfaces off")
 QUICK = "--pool-size 256"
 
 

@@ -71,7 +71,7 @@ class Ladder(unittest.TestCase):
         self.assertEqual(len(by_scene), 3)
         names = ("--stages", "--layout", "--compaction", "--shade", "--regenerate",
                  "--finish-paths", "--schedule", "--pool-size", "--accel", "--persistent",
-                 "--wave-rays")
+                 "--wave-rays", "--order-surfaces")
         for scene, rungs in by_scene.items():
             self.assertEqual(len(rungs), 12 if scene == "spheres" else 13)
             rungs = [rung for rung in rungs if option(rung, "--mode") == "wavefront"]
@@ -79,7 +79,7 @@ class Ladder(unittest.TestCase):
                 changed = {name for name in names if option(above, name) != option(below, name)
                            and not (name == "--persistent" and option(below, name) is None)}
                 if "--stages" in changed:  # and what only split stages have
-                    changed -= {"--compaction", "--shade", "--wave-rays"}
+                    changed -= {"--shade", "--wave-rays", "--order-surfaces"}
                 self.assertEqual(len(changed), 1, f"{above.name}: {changed}")
             # Persistent warps, the default, trace wide trees alone: each comes by itself.
             self.assertEqual([(option(rung, "--accel"), option(rung, "--persistent"))
