@@ -17,6 +17,9 @@ struct Room {
   SceneData (*make)();
 };
 
+bool has_queues(Compaction strategy) { return compaction_info(strategy).has_queues; }
+bool writes_tags(Compaction strategy) { return !compaction_info(strategy).appends; }
+
 void PrintTo(const Room& room, std::ostream* out) { *out << room.name; }
 
 Rendered render_small(SceneData scene, const Settings& settings) {
@@ -43,11 +46,11 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
   EXPECT_EQ(expected.counts.nonfinite_samples, 0u);
-  for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
-    for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
-      for (const auto& [finish, layout] :
-           {std::pair{"0", "aos"}, {"0", "soa"}, {"131072", "sectors"}}) {
-        if (std::string(accel) == "brute" && std::string(GetParam().name).starts_with("masked")) {
+  for (const std::string& accel : structures(AccelKind::bvh2)) {
+    for (const std::string& compaction : fusing_compactions()) {
+      for (const std::string& layout : names_of(PoolLayout::aos)) {
+        const char* const finish = layout == "sectors" ? "131072" : "0";
+        if (accel == "brute" && std::string(GetParam().name).starts_with("masked")) {
           continue;  // brute force has no masks on CUDA
         }
         SCOPED_TRACE(testing::Message()
@@ -84,8 +87,8 @@ TEST_F(CudaVotingMaterials, EqualTheLoop) {
 // By default a scene of several kinds is shaded by kind.
 TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
-  for (const char* shade : {"uber", "material", "auto"}) {
-    for (const char* compaction : {"atomic", "cub", "scan", "sort"}) {
+  for (const std::string& shade : names_of(Shade::uber)) {
+    for (const std::string& compaction : names_where(Compaction::atomic, has_queues)) {
       for (const char* pool : {"1000", "auto"}) {
         SCOPED_TRACE(testing::Message() << shade << ", " << compaction << ", " << pool);
         expect_same(render({{"device", "cuda"},
@@ -134,8 +137,8 @@ TEST_F(CudaInstancedScenes, PersistentWarpsTraceThemWithoutSpheres) {
   expect_equal(scene, {{"accel", "cwbvh"}, {"finish-paths", "0"}}, false);
   scene.spheres.clear(), scene.sphere_material.clear();
   for (const char* pool : {"100", "3001", "auto"}) {
-    for (const char* layout : {"soa", "aos", "sectors"}) {
-      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+    for (const std::string& layout : names_of(PoolLayout::soa)) {
+      for (const std::string& builder : names_of(TreeBuilder::sah, {TreeBuilder::automatic})) {
         SCOPED_TRACE(testing::Message() << pool << ", " << layout << ", " << builder);
         expect_equal(scene,
                      {{"accel", "cwbvh"},
@@ -153,8 +156,8 @@ using CudaMasks = CudaPersistent;
 
 TEST_F(CudaMasks, PersistentWarpsAskThem) {
   for (const char* pool : {"100", "3001", "auto"}) {
-    for (const char* schedule : {"host", "graph"}) {
-      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+    for (const std::string& schedule : names_of(Schedule::host, {Schedule::automatic})) {
+      for (const std::string& builder : names_of(TreeBuilder::sah, {TreeBuilder::automatic})) {
         SCOPED_TRACE(testing::Message() << pool << ", " << schedule << ", " << builder);
         expect_equal(masked_room(),
                      {{"pool-size", pool},
@@ -176,7 +179,7 @@ TEST_F(CudaMasks, AThreadPerRayAsksThemAmongSpheresAndInstances) {
   for (std::size_t i = 0; i < 20; ++i) instanced.meshes[i].group = 1;
   instanced.instances = {{1, rotate({0, 1, 0}, 30)}, {1, translate({1, 0, 0})}};
   expect_equal(instanced, wide, false);
-  for (const char* compaction : {"cub", "none"}) {
+  for (const std::string& compaction : names_where(Compaction::cub, writes_tags)) {
     expect_equal(masked_room(), {{"accel", "cwbvh"}, {"compaction", compaction}}, false);
   }
 }
