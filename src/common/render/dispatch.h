@@ -29,13 +29,15 @@ using SphereSceneKinds = decltype(concatenate(
     BruteSphereKinds{},
     TypeList<Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
              Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>{}));
-using TriangleSceneKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
-                                    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
-                                    Traits<Accel::brute, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-                                    Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-                                    Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
+template <Geometry geometry, bool has_masks, class... TreeAccel>
+TypeList<Traits<TreeAccel::value, geometry, Lighting::full, has_masks>...> kinds_with_trees(
+    TypeList<TreeAccel...>);
+template <Geometry geometry, bool has_masks = false>
+using KindsWithTrees = decltype(kinds_with_trees<geometry, has_masks>(TreeAccels{}));
+using TriangleSceneKinds = decltype(concatenate(
+    concatenate(KindsWithTrees<Geometry::triangles>{},
+                TypeList<Traits<Accel::brute, Geometry::mixed, Lighting::full>>{}),
+    concatenate(KindsWithTrees<Geometry::mixed>{}, KindsWithTrees<Geometry::mixed, true>{})));
 using CpuTriangleSceneKinds = decltype(concatenate(
     TriangleSceneKinds{}, TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
                                    Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,

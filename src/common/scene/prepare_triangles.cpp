@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/accel/build/build_nodes.h"
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/accel/traverse_triangles.h"
@@ -41,18 +42,8 @@ Accel automatic_structure(const SceneData& scene, const Options& options) {
 }
 
 Accel structure_of(const SceneData& scene, const Options& options) {
-  switch (options.accel) {
-    case AccelKind::brute:
-      return Accel::brute;
-    case AccelKind::bvh2:
-      return Accel::bvh2;
-    case AccelKind::embree:
-      return Accel::embree;
-    case AccelKind::cwbvh:
-      return Accel::cwbvh;
-    default:
-      return automatic_structure(scene, options);
-  }
+  return options.accel == AccelKind::automatic ? automatic_structure(scene, options)
+                                               : accel_of(options.accel);
 }
 
 /// By triangle, counted through the meshes; empty where none has attributes.
@@ -84,9 +75,7 @@ std::vector<Affine> instance_transforms(const SceneData& scene) {
 
 TreeOptions tree_options(Accel accel, TreeBuilder builder) {
   TreeOptions options;
-  options.accel = accel == Accel::bvh2    ? AccelKind::bvh2
-                  : accel == Accel::cwbvh ? AccelKind::cwbvh
-                                          : AccelKind::brute;
+  options.accel = has_nodes(accel_kind_of(accel)) ? accel_kind_of(accel) : AccelKind::brute;
   options.builder = builder;
   return options;
 }
