@@ -40,7 +40,7 @@ LAYERS = [
     ("options", ["common/render/options.h", "common/render/option_names.h",
                  "common/render/stage_info.h", "common/render/compaction_info.h",
                  "common/render/stats.h", "common/render/hardware_counters.*"], ["choices"]),
-    ("choices", ["common/sampling/choices.h"], ["platform"]),
+    ("choices", ["common/sampling/choices.h", "common/accel/accel.h"], ["platform"]),
     ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
                "common/host_memory.*", "common/build_info.h"], []),
     # Around the physics: renderers and batches; what becomes of the samples.

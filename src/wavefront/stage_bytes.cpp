@@ -106,6 +106,23 @@ class Predictor {
   const WaveLayout& layout_;
 };
 
+/// The kernels besides shade_surface, by the names of the statistics.
+struct PredictedKernel {
+  std::string_view name;
+  PredictedBytes (Predictor::*bytes)() const;
+};
+constexpr PredictedKernel predicted_kernels[] = {
+    {stage_info(StageId::generate).name, &Predictor::generate},
+    {stage_info(StageId::intersect).name, &Predictor::intersect},
+    {stage_info(StageId::sort_hits).name, &Predictor::sort_hits},
+    {stage_info(StageId::shade_miss).name, &Predictor::shade_miss},
+    {stage_info(StageId::shadow).name, &Predictor::shadow},
+    {stage_info(StageId::bounce).name, &Predictor::bounce},
+    {stage_info(StageId::finish).name, &Predictor::finish},
+    {"order_tiles", &Predictor::order_tiles},
+    {"count_surfaces", &Predictor::count_surfaces},
+    {"place_surfaces", &Predictor::place_surfaces}};
+
 /// Surfaces that the kernel shades: those of its kind, or what is left.
 double surfaces_of(std::string_view kind, const WaveFlow& flow, const WaveLayout& layout) {
   if (!layout.shades_by_kind) return flow.surfaces;
@@ -138,17 +155,12 @@ PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
   const Predictor predict(flow, layout);
   const std::string stage = kernel.substr(0, kernel.find('/'));
   const std::string kind = stage.size() < kernel.size() ? kernel.substr(stage.size() + 1) : "";
-  if (stage == "generate") return predict.generate();
-  if (stage == "intersect") return predict.intersect();
-  if (stage == "sort_hits") return predict.sort_hits();
-  if (stage == "shade_miss") return predict.shade_miss();
-  if (stage == "shade_surface") return predict.shade_surface(surfaces_of(kind, flow, layout));
-  if (stage == "shadow") return predict.shadow();
-  if (stage == "bounce") return predict.bounce();
-  if (stage == "finish") return predict.finish();
-  if (stage == "order_tiles") return predict.order_tiles();
-  if (stage == "count_surfaces") return predict.count_surfaces();
-  if (stage == "place_surfaces") return predict.place_surfaces();
+  if (stage == stage_info(StageId::shade_surface).name) {
+    return predict.shade_surface(surfaces_of(kind, flow, layout));
+  }
+  for (const PredictedKernel& one : predicted_kernels) {
+    if (one.name == stage) return (predict.*one.bytes)();
+  }
   return {};
 }
 

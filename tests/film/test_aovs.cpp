@@ -15,9 +15,7 @@
 namespace pt {
 namespace {
 
-const char* const all_aovs =
-    "albedo,shading_normal,normal,depth,position,uv,primitive,instance,material,variance,samples,"
-    "bounces,rays";
+const std::string all_aovs = aov_names(",");
 
 class AovPlanes : public testing::TestWithParam<Settings> {
  protected:
@@ -49,7 +47,7 @@ TEST_P(AovPlanes, AreTheSameInAllModesAndDoNotChangeTheImage) {
   Options without = options({{"mode", "serial"}});
   without.aovs = 0;
   expect_same(render_options(without), expected);
-  for (const char* mode : {"megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::megakernel, {Mode::serial})) {
     const Rendered found = render_options(options({{"mode", mode}}));
     expect_same(found, expected);
     EXPECT_EQ(differing_values(found.image, expected.image), 0u) << mode;

@@ -17,7 +17,7 @@ Options crop_options(const Settings& more) {
 }
 
 TEST(Crop, HasThePixelsOfTheImage) {
-  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::serial)) {
     for (const char* filter : {"box", "lanczos"}) {
       SCOPED_TRACE(std::string(mode) + ' ' + filter);
       const Options options = crop_options({{"mode", mode}, {"filter", filter}});

@@ -24,10 +24,10 @@ INSTANTIATE_TEST_SUITE_P(Images, FilmWindows,
 TEST_P(FilmWindows, MakeTheWholeInAllModes) {
   const Options serial = options({{"mode", "serial"}});
   expect_parts_make_the_whole(serial, serial);
-  for (const char* work : {"pixel", "sample", "persistent"}) {
+  for (const std::string& work : names_of(Work::persistent)) {
     expect_parts_make_the_whole(options({{"mode", "megakernel"}, {"work", work}}), serial);
   }
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
     expect_parts_make_the_whole(
         options({{"mode", "wavefront"}, {"compaction", compaction}, {"pool-size", "100"}}), serial);
   }

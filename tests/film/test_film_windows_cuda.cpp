@@ -19,14 +19,14 @@ INSTANTIATE_TEST_SUITE_P(Cuda, FilmWindowsOf,
 
 TEST_P(FilmWindowsOf, MakeTheWholeInBothModes) {
   const Options reference = options("megakernel");
-  for (const char* work : {"pixel", "sample", "persistent"}) {
+  for (const std::string& work : names_of(Work::persistent)) {
     for (const char* block : {"16x16", "5x3"}) {
       expect_parts_make_the_whole(options("megakernel", {{"work", work}, {"block", block}}),
                                   reference);
     }
   }
-  for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
-    for (const char* schedule : {"graph", "host"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
+    for (const std::string& schedule : names_of(Schedule::graph, {Schedule::automatic})) {
       for (const char* pool : {"auto", "300"}) {
         expect_parts_make_the_whole(
             options("wavefront",

@@ -170,7 +170,7 @@ void expect_seen(const Found& found, int x, int y) {
   EXPECT_NEAR(found.depth, glm::length(p - Vec3(0, 0, eye_z)), 2e-5);
 }
 
-Image picture_of(SceneData scene, const char* accel) {
+Image picture_of(SceneData scene, const std::string& accel) {
   const Options options = with(image_options(width, height, 1, 1),
                                {{"filter", "box"},
                                 {"accel", accel},
@@ -183,7 +183,7 @@ Image picture_of(SceneData scene, const char* accel) {
 }
 
 TEST(FirstHit, EveryLayerOfSceneMadeByHand) {
-  for (const char* accel : {"brute", "bvh2", "cwbvh"}) {
+  for (const std::string& accel : structures(AccelKind::brute)) {
     const Image image = picture_of(row_of_things(), accel);
     std::map<std::uint32_t, int> seen;
     int holes = 0;

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "common/light/delta_light.h"
-#include "common/light/triangle_light.h"
+#include "common/light/lights.h"
+#include "common/transport/sample_light.h"
 #include "statistics.h"
 
 namespace pt {
@@ -142,6 +142,10 @@ TEST(TriangleLight, IsDarkFromBehindFromItsPlaneAndWithoutArea) {
       << "the point itself";
 }
 
+IncidentLight sample_delta_light(const DeltaLight& light, const Vec3& from) {
+  return sample_other_light(make_light(light, 1), from, 0.5f, 0.5f).incident;
+}
+
 DeltaLight spot(SpotFalloff falloff, double inner_degrees, double outer_degrees) {
   DeltaLight light;
   light.kind = LightKind::spot;
@@ -156,12 +160,12 @@ TEST(DeltaLight, APointFollowsTheInverseSquare) {
   DeltaLight light;
   light.position = {1, 2, 3};
   light.intensity = {8, 4, 2};
-  const DeltaLightSample s = sample_delta_light(light, {1, 2, 1});
+  const IncidentLight s = sample_delta_light(light, {1, 2, 1});
   EXPECT_EQ(s.wi, Vec3(0, 0, 1));
   EXPECT_NEAR(s.end.z, 2, 1e-5) << "short of it by rounding errors, for it may lie on a surface";
   EXPECT_LT(s.end.z, 2 - 1e-6f);
-  EXPECT_EQ(s.irradiance, Color(2, 1, 0.5f));
-  EXPECT_EQ(sample_delta_light(light, light.position).irradiance, Color(0.0f));
+  EXPECT_EQ(s.radiance, Color(2, 1, 0.5f));
+  EXPECT_EQ(sample_delta_light(light, light.position).radiance, Color(0.0f));
 }
 
 TEST(DeltaLight, ADirectionalOneIsTheSameEverywhere) {
@@ -170,10 +174,10 @@ TEST(DeltaLight, ADirectionalOneIsTheSameEverywhere) {
   light.direction = {0.6f, -0.8f, 0};
   light.intensity = {3, 2, 1};
   for (const Vec3& from : {Vec3(0.0f), Vec3(1e6f, -5, 2)}) {
-    const DeltaLightSample s = sample_delta_light(light, from);
+    const IncidentLight s = sample_delta_light(light, from);
     EXPECT_EQ(s.wi, Vec3(-0.6f, 0.8f, 0));
     EXPECT_EQ(s.end, beyond_scene * s.wi);
-    EXPECT_EQ(s.irradiance, light.intensity);
+    EXPECT_EQ(s.radiance, light.intensity);
   }
 }
 
@@ -186,9 +190,9 @@ TEST(DeltaLight, ASpotWithLinearAngleIsMitsubas) {
       {25, 0.111111223698}, {28, 0.04444456845522}, {29.5, 0.0111111989245}, {31, 0}};
   for (const auto& [degrees, irradiance] : golden) {
     const double a = degrees * pi_double / 180;
-    const DeltaLightSample s =
+    const IncidentLight s =
         sample_delta_light(light, Vec3(Vec3d(3 * std::sin(a), 0, -3 * std::cos(a))));
-    EXPECT_NEAR(s.irradiance.x, irradiance, 2e-6) << degrees;
+    EXPECT_NEAR(s.radiance.x, irradiance, 2e-6) << degrees;
     EXPECT_NEAR(glm::length(s.end), 3, 2e-5);
   }
 }
@@ -224,7 +228,7 @@ TEST(DeltaLight, PowerIsTheIntegralOfTheIntensity) {
     MeanEstimate estimate;
     for (int i = 0; i < 200'000; ++i) {
       const Vec3 from(7.0 * random.direction());
-      estimate.add(sample_delta_light(light, from).irradiance.x * 4 * pi_double * 49);
+      estimate.add(sample_delta_light(light, from).radiance.x * 4 * pi_double * 49);
     }
     EXPECT_NEAR(estimate.mean(), delta_light_power(light, 1).x,
                 5 * estimate.sigma() + 1e-5 * estimate.mean());

@@ -25,7 +25,7 @@ TEST_P(MaterialModes, EqualSerial) {
   const Rendered serial = render({{"mode", "serial"}});
   EXPECT_EQ(serial.counts.nonfinite_samples, 0u);
   expect_same(render({{"mode", "megakernel"}}), serial);
-  for (const char* accel : {"bvh2", "cwbvh", "brute"}) {
+  for (const std::string& accel : structures(AccelKind::bvh2)) {
     expect_same(render({{"mode", "wavefront"}, {"accel", accel}, {"finish-paths", "0"}}), serial);
   }
   for (const Settings& ordered :

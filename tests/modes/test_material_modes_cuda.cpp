@@ -17,6 +17,9 @@ struct Room {
   SceneData (*make)();
 };
 
+bool has_queues(Compaction strategy) { return compaction_info(strategy).has_queues; }
+bool writes_tags(Compaction strategy) { return !compaction_info(strategy).appends; }
+
 void PrintTo(const Room& room, std::ostream* out) { *out << room.name; }
 
 Rendered render_small(SceneData scene, const Settings& settings) {
@@ -43,10 +46,10 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(GpuRoomsOf, WavefrontEqualsMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
   EXPECT_EQ(expected.counts.nonfinite_samples, 0u);
-  for (const char* accel : {"bvh2", "cwbvh"}) {
-    for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
-      for (const auto& [finish, layout] :
-           {std::pair{"0", "aos"}, {"0", "soa"}, {"131072", "sectors"}}) {
+  for (const std::string& accel : structures(AccelKind::bvh2, {AccelKind::brute})) {
+    for (const std::string& compaction : names_of(Compaction::atomic)) {
+      for (const std::string& layout : names_of(PoolLayout::aos)) {
+        const char* const finish = layout == "sectors" ? "131072" : "0";
         SCOPED_TRACE(testing::Message()
                      << accel << ", " << compaction << ", " << finish << ", " << layout);
         const Settings settings{{"device", "cuda"},       {"mode", "wavefront"},
@@ -81,7 +84,7 @@ TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
   for (const auto& [shade, order] :
        {std::pair{"uber", "auto"}, {"uber", "on"}, {"material", "auto"}, {"auto", "auto"}}) {
-    for (const char* compaction : {"atomic", "cub", "scan"}) {
+    for (const std::string& compaction : names_where(Compaction::atomic, has_queues)) {
       for (const char* pool : {"1000", "auto"}) {
         SCOPED_TRACE(testing::Message()
                      << shade << ", " << order << ", " << compaction << ", " << pool);
@@ -132,8 +135,8 @@ TEST_F(CudaInstancedScenes, PersistentWarpsTraceThemWithoutSpheres) {
   expect_equal(scene, {{"finish-paths", "0"}}, false);
   scene.spheres.clear(), scene.sphere_material.clear();
   for (const char* pool : {"100", "3001", "auto"}) {
-    for (const char* layout : {"soa", "aos", "sectors"}) {
-      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+    for (const std::string& layout : names_of(PoolLayout::soa)) {
+      for (const std::string& builder : names_of(TreeBuilder::sah, {TreeBuilder::automatic})) {
         SCOPED_TRACE(testing::Message() << pool << ", " << layout << ", " << builder);
         expect_equal(scene,
                      {{"accel", "cwbvh"},
@@ -151,8 +154,8 @@ using CudaMasks = CudaPersistent;
 
 TEST_F(CudaMasks, PersistentWarpsAskThem) {
   for (const char* pool : {"100", "3001", "auto"}) {
-    for (const char* schedule : {"host", "graph"}) {
-      for (const char* builder : {"sah", "sbvh", "hploc"}) {
+    for (const std::string& schedule : names_of(Schedule::host, {Schedule::automatic})) {
+      for (const std::string& builder : names_of(TreeBuilder::sah, {TreeBuilder::automatic})) {
         SCOPED_TRACE(testing::Message() << pool << ", " << schedule << ", " << builder);
         expect_equal(masked_room(),
                      {{"pool-size", pool},
@@ -174,7 +177,7 @@ TEST_F(CudaMasks, AThreadPerRayAsksThemAmongSpheresAndInstances) {
   for (std::size_t i = 0; i < 20; ++i) instanced.meshes[i].group = 1;
   instanced.instances = {{1, rotate({0, 1, 0}, 30)}, {1, translate({1, 0, 0})}};
   expect_equal(instanced, tiny, false);
-  for (const char* compaction : {"cub", "none"}) {
+  for (const std::string& compaction : names_where(Compaction::cub, writes_tags)) {
     expect_equal(masked_room(), {{"compaction", compaction}}, false);
   }
 }

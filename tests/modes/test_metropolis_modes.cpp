@@ -53,11 +53,11 @@ TEST_P(MetropolisModes, EqualSerial) {
   EXPECT_LT(stats.large_acceptance, 0.95);
   EXPECT_NEAR(stats.large_share, 0.3, 0.03);
   expect_same_chains(render_mlt(also({{"mode", "serial"}})), serial);
-  for (const char* work : {"persistent", "pixel", "sample"}) {
+  for (const std::string& work : names_of(Work::persistent)) {
     expect_same_chains(render_mlt(also({{"mode", "megakernel"}, {"work", work}, {"threads", "3"}})),
                        serial);
   }
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
     for (const char* pool : {"auto", "333"}) {
       for (const char* stages : {"split", "fused"}) {
         SCOPED_TRACE(testing::Message() << compaction << " " << pool << " " << stages);

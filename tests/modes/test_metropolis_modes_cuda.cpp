@@ -47,21 +47,21 @@ TEST_P(GpuMetropolis, OneImageInBothModes) {
   EXPECT_GT(stats.large_acceptance, 0.05);
   EXPECT_LT(stats.large_acceptance, 0.95);
   EXPECT_NEAR(stats.large_share, 0.3, 0.02);
-  for (const char* work : {"persistent", "pixel", "sample"}) {
+  for (const std::string& work : names_of(Work::persistent)) {
     for (const char* block : {"16x16", "32x4", "5x3"}) {
       SCOPED_TRACE(testing::Message() << work << " " << block);
       expect_same_chains(render_mlt("megakernel", also({{"work", work}, {"block", block}})),
                          expected);
     }
   }
-  const std::vector<Choice> choices{{"compaction", {"atomic", "cub", "none"}},
+  const std::vector<Choice> choices{{"compaction", names_of(Compaction::atomic)},
                                     {"order-surfaces", {"auto", "on"}},
-                                    {"schedule", {"graph", "host"}},
+                                    {"schedule", names_of(Schedule::graph, {Schedule::automatic})},
                                     {"pool-size", {"auto", "700", "20000", "1M"}},
                                     {"finish-paths", {"131072", "0", "300"}},
                                     {"stages", {"split", "fused"}},
                                     {"stage-block", {"256", "33", "128,shade_surface=64"}},
-                                    {"layout", {"sectors", "soa", "aos"}}};
+                                    {"layout", names_of(PoolLayout::sectors)}};
   for (const Settings& settings : variations(choices, 8, 5)) {
     const Options options = with(cuda_options("wavefront", few_chains), also(settings));
     SCOPED_TRACE(command_of(options));

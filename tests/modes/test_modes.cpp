@@ -162,21 +162,21 @@ TEST_P(ModesOf, SerialIsALoopOverPixelsAndSamples) {
 
 TEST_P(ModesOf, MegakernelEqualsSerial) {
   const std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
-                                    {"work", {"persistent", "pixel", "sample"}},
-                                    {"branching", {"divergent", "reduced"}}};
+                                    {"work", names_of(Work::persistent)},
+                                    {"branching", names_of(Branching::divergent)}};
   expect_all_same(options("megakernel"), variations(choices, 5, 1), options("serial"));
 }
 
 TEST_P(ModesOf, WavefrontEqualsSerial) {
   std::vector<Choice> choices{{"threads", {"2", "1", "3", "7"}},
-                              {"compaction", {"atomic", "cub", "scan", "none"}},
+                              {"compaction", names_of(Compaction::atomic)},
                               {"pool-size", {"auto", "1000", "4096", "6525", "6526"}},
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},
-                              {"layout", {"soa", "sectors", "aos"}},
-                              {"stages", {"split", "auto"}},
+                              {"layout", names_of(PoolLayout::soa)},
+                              {"stages", names_of(Stages::split, {Stages::fused})},
                               {"order-surfaces", {"auto", "on"}},
-                              {"branching", {"divergent", "reduced"}}};
+                              {"branching", names_of(Branching::divergent)}};
   // Also about the 32 slots of a block, for one thread and for two.
   if (is_tiny()) choices[2].values = {"7", "1", "31", "32", "33", "64", "65", "455", "auto"};
   expect_all_same(options("wavefront"), variations(choices, 8, 2), options("serial"));
@@ -184,11 +184,11 @@ TEST_P(ModesOf, WavefrontEqualsSerial) {
 
 TEST_P(ModesOf, FusedStagesEqualSerial) {
   std::vector<Choice> choices{{"threads", {"2", "1", "7"}},
-                              {"compaction", {"atomic", "cub", "scan", "none"}},
+                              {"compaction", names_of(Compaction::atomic)},
                               {"pool-size", {"1000", "auto", "4096", "6525", "6526"}},
                               {"regenerate", {"on", "off"}},
                               {"finish-paths", {"0", "1", "700", "131072"}},
-                              {"layout", {"soa", "sectors", "aos"}},
+                              {"layout", names_of(PoolLayout::soa)},
                               {"wave-rays", {"1", "2", "3", "50"}}};
   if (is_tiny()) choices[2].values = {"7", "1", "64", "455", "auto"};
   expect_all_same(with(options("wavefront"), {{"stages", "fused"}}), variations(choices, 8, 6),
@@ -255,7 +255,7 @@ TEST_F(Batches, DoNotChangeTheImage) {
     expect_pixel(expected.image, x, y, plain_pixel(scene, serial, x, y), 10);
   }
   expect_same(render_options(batch_options("megakernel", "10")), expected);
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
     SCOPED_TRACE(compaction);
     Options wavefront = with(batch_options("wavefront", "10"), {{"compaction", compaction}});
     expect_same(render_options(wavefront), expected);
@@ -280,7 +280,7 @@ TEST_F(Batches, DoNotChangeTheImageOfXorwow) {
 // Samples of a scene with lamps gather light in the buffer, which is not that of the last batch.
 TEST_F(Batches, ASecondRenderIsAsTheFirst) {
   for (const char* scene : {"cornell", "boxes"}) {
-    for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+    for (const std::string& mode : names_of(Mode::serial)) {
       SCOPED_TRACE(testing::Message() << scene << ", " << mode);
       const Options options = with(Options(), {{"device", "cpu"},
                                                {"mode", mode},
@@ -317,7 +317,7 @@ TEST_F(Batches, AnInterruptionLeavesTheImageOfTheSamplesTaken) {
     if (is_new) entry->second = render_options(with(serial, {{"spp", std::to_string(samples)}}));
     return entry->second;
   };
-  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::serial)) {
     const Options options = batch_options(mode);
     const DeviceInfo device = choose_device(options.device);
     const SceneData scene = make_scene_for(options, device);
@@ -346,7 +346,7 @@ TEST_F(Batches, AnAbandonedBatchLeavesTheSamplesBeforeIt) {
   const Options serial = batch_options("serial");
   const Rendered one = render_options(with(serial, {{"spp", "1"}}));
   const Rendered all = render_options(serial);
-  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::serial)) {
     SCOPED_TRACE(mode);
     const Options options = batch_options(mode);
     const DeviceInfo device = choose_device(options.device);

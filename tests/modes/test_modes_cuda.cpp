@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 
+#include "common/accel/build/check_builder.h"
 #include "common/device/create_world.h"
 #include "common/error.h"
 #include "common/image/compare.h"
@@ -44,8 +45,8 @@ const std::vector<ImageKind> image_kinds = [] {
   return kinds;
 }();
 
-const std::vector<Choice> shared_choices{{"scene-memory", {"auto", "global", "shared", "constant"}},
-                                         {"branching", {"divergent", "reduced"}}};
+const std::vector<Choice> shared_choices{{"scene-memory", names_of(SceneMemory::automatic)},
+                                         {"branching", names_of(Branching::divergent)}};
 
 /// With the paper's toggles, each of them alone, where brute force scans: CUDA has no others.
 std::vector<Settings> with_toggles(std::vector<Choice> choices, int combinations,
@@ -73,14 +74,14 @@ TEST_P(GpuModesOf, MegakernelDoesNotDependOnHow) {
   const Options usual = options("megakernel");
   const std::vector<Choice> choices = {
       {"block", {"16x16", "4x4", "8x8", "32x32", "5x3", "1024x1", "1x1024", "64x1", "1x1"}},
-      {"work", {"persistent", "pixel", "sample"}}};
+      {"work", names_of(Work::persistent)}};
   expect_all_same(usual, with_toggles(choices, 12, 3, usual), usual);
 }
 
 TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
   std::vector<Choice> choices = {
-      {"compaction", {"atomic", "cub", "scan", "none"}},
-      {"schedule", {"graph", "host"}},
+      {"compaction", names_of(Compaction::atomic)},
+      {"schedule", names_of(Schedule::graph, {Schedule::automatic})},
       {"regenerate", {"on", "off"}},
       {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
       {"finish-paths", {"0", "1", "700", "131072"}},
@@ -88,9 +89,9 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
        {"256", "1", "2", "16", "33", "1024",
         "generate=32,intersect=64,shade_miss=96,shade_surface=128,shadow=160,finish=192,"
         "accumulate=224"}},
-      {"layout", {"soa", "sectors", "aos"}},
+      {"layout", names_of(PoolLayout::soa)},
       {"order-surfaces", {"auto", "on"}},
-      {"stages", {"split", "auto"}}};
+      {"stages", names_of(Stages::split, {Stages::fused})}};
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
@@ -101,15 +102,15 @@ TEST_P(GpuModesOf, WavefrontEqualsMegakernel) {
 
 TEST_P(GpuModesOf, FusedStagesEqualMegakernel) {
   std::vector<Choice> choices = {
-      {"compaction", {"atomic", "cub", "scan", "none"}},
-      {"schedule", {"graph", "host"}},
+      {"compaction", names_of(Compaction::atomic)},
+      {"schedule", names_of(Schedule::graph, {Schedule::automatic})},
       {"regenerate", {"on", "off"}},
       {"pool-size", {"auto", "1000", "4097", "13734", "13735", "13736", "1M"}},
       {"finish-paths", {"0", "1", "700", "131072"}},
       {"stage-block", {"256", "1", "33", "1024", "generate=32,bounce=96,finish=192"}},
-      {"layout", {"sectors", "soa", "aos"}},
+      {"layout", names_of(PoolLayout::sectors)},
       {"wave-rays", {"1", "2", "3", "50"}},
-      {"scene-memory", {"auto", "global", "shared", "constant"}}};
+      {"scene-memory", names_of(SceneMemory::automatic)}};
   if (is_tiny()) {
     choices[3].values = {"7", "1", "64", "455", "auto"};
     choices[5].values = {"256", "16", "33", "1024"};
@@ -122,15 +123,16 @@ TEST_P(GpuModesOf, FusedStagesEqualMegakernel) {
 const std::vector<ImageKind> triangle_kinds = [] {
   std::vector<ImageKind> kinds;
   for (const std::string scene : {"boxes", "statue:3K", "terrain:3K", "instances:20"}) {
-    for (const std::string accel : {"bvh2", "cwbvh"}) {
+    for (const std::string& accel : structures(AccelKind::bvh2, {AccelKind::brute})) {
       const std::string name = scene.substr(0, scene.find(':'));
       Settings settings{{"scene", scene}, {"width", width},   {"height", height},
                         {"spp", spp},     {"max-depth", "6"}, {"accel", accel}};
       kinds.push_back({name + "_" + accel, settings});
-      settings.push_back({"builder", "hploc"});
-      kinds.push_back({name + "_" + accel + "_hploc", settings});
-      settings.back().second = "lbvh";
-      kinds.push_back({name + "_" + accel + "_lbvh", settings});
+      settings.emplace_back("builder", "");
+      for (const std::string& builder : names_where(TreeBuilder::hploc, is_device_builder)) {
+        settings.back().second = builder;
+        kinds.push_back({name + "_" + accel + "_" + builder, settings});
+      }
     }
   }
   kinds.push_back({"roulette",
@@ -142,20 +144,18 @@ const std::vector<ImageKind> triangle_kinds = [] {
                     {"rr", "3"}}});
   const Settings boxes{{"scene", "boxes"}, {"width", width},   {"height", height},
                        {"spp", spp},       {"accel", "cwbvh"}, {"max-depth", "6"}};
-  const std::vector<std::pair<std::string, std::string>> ways{{"light-selection", "uniform"},
-                                                              {"light-selection", "power"},
-                                                              {"mis", "balance"},
-                                                              {"mis", "none"},
-                                                              {"sampling", "cosine"},
-                                                              {"sampling", "uniform"},
-                                                              {"sampler", "stratified"},
-                                                              {"sampler", "sobol"},
-                                                              {"filter", "mitchell"}};
-  for (const auto& [option, value] : ways) {
-    std::string name = option + "_" + value;
-    std::ranges::replace(name, '-', '_');
-    kinds.push_back({name, boxes});
-    kinds.back().settings.emplace_back(option, value);
+  const std::vector<Choice> ways{{"light-selection", names_besides(LightSelection::automatic)},
+                                 {"mis", names_besides(MisHeuristic::power)},
+                                 {"sampling", names_besides(DirectionSampling::bsdf)},
+                                 {"sampler", names_besides(SamplerKind::independent)},
+                                 {"filter", names_besides(FilterKind::box)}};
+  for (const Choice& way : ways) {
+    for (const std::string& value : way.values) {
+      std::string name = way.option + "_" + value;
+      std::ranges::replace(name, '-', '_');
+      kinds.push_back({name, boxes});
+      kinds.back().settings.emplace_back(way.option, value);
+    }
   }
   kinds.push_back({"forest",
                    {{"scene", "instances:3K"},
@@ -188,26 +188,28 @@ INSTANTIATE_TEST_SUITE_P(Cuda, GpuTrianglesOf, testing::ValuesIn(triangle_kinds)
                          [](const auto& kind) { return kind.param.name; });
 
 TEST_P(GpuTrianglesOf, WavefrontEqualsMegakernel) {
-  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none"}},
-                                       {"schedule", {"graph", "host"}},
-                                       {"regenerate", {"on", "off"}},
-                                       {"order-surfaces", {"auto", "on", "off"}},
-                                       {"persistent", {"on", "off"}},
-                                       {"pool-size", {"auto", "1000", "4097", "1M"}},
-                                       {"finish-paths", {"0", "700", "131072"}},
-                                       {"stage-block", {"256", "33", "512"}},
-                                       {"layout", {"soa", "sectors", "aos"}}};
+  const std::vector<Choice> choices = {
+      {"compaction", names_of(Compaction::atomic)},
+      {"schedule", names_of(Schedule::graph, {Schedule::automatic})},
+      {"regenerate", {"on", "off"}},
+      {"order-surfaces", {"auto", "on", "off"}},
+      {"persistent", {"on", "off"}},
+      {"pool-size", {"auto", "1000", "4097", "1M"}},
+      {"finish-paths", {"0", "700", "131072"}},
+      {"stage-block", {"256", "33", "512"}},
+      {"layout", names_of(PoolLayout::soa)}};
   const Options usual = options("wavefront");
   expect_all_same(usual, planned(usual, variations(choices, 6, 5)), reference());
 }
 
 TEST_P(GpuTrianglesOf, FusedStagesEqualMegakernel) {
-  const std::vector<Choice> choices = {{"compaction", {"atomic", "cub", "scan", "none"}},
-                                       {"schedule", {"graph", "host"}},
-                                       {"pool-size", {"auto", "1000", "4097"}},
-                                       {"wave-rays", {"1", "2"}},
-                                       {"finish-paths", {"0", "700"}},
-                                       {"layout", {"sectors", "soa", "aos"}}};
+  const std::vector<Choice> choices = {
+      {"compaction", names_of(Compaction::atomic)},
+      {"schedule", names_of(Schedule::graph, {Schedule::automatic})},
+      {"pool-size", {"auto", "1000", "4097"}},
+      {"wave-rays", {"1", "2"}},
+      {"finish-paths", {"0", "700"}},
+      {"layout", names_of(PoolLayout::sectors)}};
   const Options fused = with(options("wavefront"), {{"stages", "fused"}});
   expect_all_same(fused, planned(fused, variations(choices, 4, 7)), reference());
 }
@@ -378,13 +380,13 @@ TEST_F(CudaRefusal, TogglesTogether) {
        {"--branching reduced", "--scene-memory constant"}},
       {{{"branching", "reduced"}, {"accel", "bvh2"}}, {"--branching reduced", "--accel bvh2"}},
   };
-  for (const char* mode : {"megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::megakernel, {Mode::serial})) {
     for (const auto& c : cases) expect_refused(cuda_options(mode, c.settings), c.says);
   }
 }
 
 TEST_F(CudaRefusal, SpheresThatDoNotFit) {
-  for (const char* mode : {"megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::megakernel, {Mode::serial})) {
     Options options = cuda_options(mode, {{"spheres", "5000"}, {"accel", "brute"}});
     options.scene_memory = SceneMemory::constant;
     expect_refused(options, {"--scene-memory constant", "5001|5,001", "1024|1,024"});
@@ -419,7 +421,7 @@ TEST_F(CudaModes, ManySpheresInSharedMemory) {
                           {"spp", spp}};
   const Options global = cuda_options("megakernel", settings);
   const Rendered expected = render_options(with(global, {{"scene-memory", "global"}}));
-  for (const char* mode : {"megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::megakernel, {Mode::serial})) {
     for (const char* memory : {"shared", "auto"}) {
       SCOPED_TRACE(std::string(mode) + ", " + memory);
       expect_same(render_options(with(cuda_options(mode, settings), {{"scene-memory", memory}})),
@@ -446,8 +448,8 @@ TEST_F(CudaModes, PersistentWarpsTakeEveryPath) {
 TEST_F(CudaModes, RenderingAgainGivesTheSame) {
   const Settings image{{"scene", "cornell"}, {"width", width}, {"height", height}, {"spp", spp}};
   std::vector<Options> all{cuda_options("megakernel", image)};
-  for (const char* compaction : {"atomic", "cub", "scan", "none"}) {
-    for (const char* schedule : {"graph", "host"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
+    for (const std::string& schedule : names_of(Schedule::graph, {Schedule::automatic})) {
       for (const char* pool : {"auto", "1000"}) {
         all.push_back(
             with(cuda_options("wavefront", image),

@@ -1,5 +1,7 @@
 // However lights, directions and numbers are chosen, all modes give one image, bit for bit; and the
 // choice changes an image's noise alone.
+#include <algorithm>
+
 #include "common/scene/prepare_scene.h"
 #include "lit_room.h"
 #include "mode_cases.h"
@@ -20,7 +22,7 @@ Settings joined(Settings settings, const Settings& more) {
 }
 
 struct Choices {
-  const char* name;
+  std::string name;
   Settings settings;
   int noisy = 3;  ///< tiles that cannot tell, as where the ball of glass gathers the sun
 };
@@ -35,23 +37,33 @@ class SamplingModesOf : public testing::TestWithParam<Choices> {
         GetParam().settings);
   }
 };
-INSTANTIATE_TEST_SUITE_P(
-    Of, SamplingModesOf,
-    testing::Values(Choices{"lights_uniform", {{"light-selection", "uniform"}}},
-                    Choices{"lights_by_power", {{"light-selection", "power"}}},
-                    Choices{"lights_by_tree", {{"light-selection", "tree"}}},
-                    Choices{"balance", {{"mis", "balance"}}}, Choices{"no_mis", {{"mis", "none"}}},
-                    Choices{"cosine", {{"sampling", "cosine"}}},
-                    Choices{"uniform", {{"sampling", "uniform"}, {"mis", "balance"}}},
-                    Choices{"stratified", {{"sampler", "stratified"}}},
-                    Choices{"sobol", {{"sampler", "sobol"}}}),
-    [](const auto& choices) { return choices.param.name; });
+/// Whatever the options' tables have, but what is usual.
+std::vector<Choices> all_choices() {
+  std::vector<Choices> all;
+  const auto add = [&](const std::string& option, const std::vector<std::string>& values) {
+    for (const std::string& value : values) {
+      std::string name = option + "_" + value;
+      std::ranges::replace(name, '-', '_');
+      all.push_back({name, {{option, value}}});
+    }
+  };
+  add("light-selection", names_besides(LightSelection::automatic));
+  add("mis", names_besides(MisHeuristic::power));
+  add("sampling", names_besides(DirectionSampling::bsdf));
+  add("sampler", names_besides(SamplerKind::independent));
+  for (Choices& choices : all) {
+    if (choices.name == "sampling_uniform") choices.settings.emplace_back("mis", "balance");
+  }
+  return all;
+}
+INSTANTIATE_TEST_SUITE_P(Of, SamplingModesOf, testing::ValuesIn(all_choices()),
+                         [](const auto& choices) { return choices.param.name; });
 
 TEST_P(SamplingModesOf, EqualSerial) {
   const Settings few = settings({{"spp", "3"}});
   const Rendered serial = render_room(joined(few, {{"mode", "serial"}}));
   expect_same(render_room(joined(few, {{"mode", "megakernel"}})), serial);
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
     for (const char* finish : {"0", "100"}) {
       SCOPED_TRACE(testing::Message() << compaction << ", finish-paths " << finish);
       expect_same(render_room(joined(few, {{"mode", "wavefront"},
@@ -95,7 +107,7 @@ TEST(SamplingModes, ManyLampsByTreeEqualSerial) {
   const Rendered serial = render({{"mode", "serial"}});
   expect_same(render({{"mode", "megakernel"}}), serial);
   for (const char* stages : {"split", "fused"}) {
-    for (const char* layout : {"soa", "sectors", "aos"}) {
+    for (const std::string& layout : names_of(PoolLayout::soa)) {
       for (const char* finish : {"0", "100"}) {
         SCOPED_TRACE(testing::Message() << stages << ' ' << layout << " finish " << finish);
         expect_same(render({{"mode", "wavefront"},

@@ -24,19 +24,25 @@ INSTANTIATE_TEST_SUITE_P(Scenes, TriangleModesOf,
 TEST_P(TriangleModesOf, MegakernelAndWavefrontEqualSerial) {
   const Options serial = options({{"mode", "serial"}});
   expect_all_same(options({{"mode", "megakernel"}}),
-                  variations({{"accel", {"cwbvh", "bvh2"}}, {"threads", {"2", "1"}}}, 0, 1),
+                  variations({{"accel", structures(AccelKind::cwbvh, {AccelKind::brute})},
+                              {"threads", {"2", "1"}}},
+                             0, 1),
                   serial);
-  const std::vector<Choice> choices{
-      {"accel", {"cwbvh", "bvh2"}},       {"compaction", {"atomic", "cub", "scan", "none"}},
-      {"order-surfaces", {"auto", "on"}}, {"pool-size", {"333", "33", "auto", "3600"}},
-      {"regenerate", {"on", "off"}},      {"layout", {"soa", "sectors", "aos"}},
-      {"finish-paths", {"0", "100"}}};
+  const std::vector<Choice> choices{{"accel", structures(AccelKind::cwbvh, {AccelKind::brute})},
+                                    {"compaction", names_of(Compaction::atomic)},
+                                    {"order-surfaces", {"auto", "on"}},
+                                    {"pool-size", {"333", "33", "auto", "3600"}},
+                                    {"regenerate", {"on", "off"}},
+                                    {"layout", names_of(PoolLayout::soa)},
+                                    {"finish-paths", {"0", "100"}}};
   expect_all_same(options({{"mode", "wavefront"}}), variations(choices, 2, 3), serial);
-  const std::vector<Choice> fused{
-      {"accel", {"bvh2", "cwbvh"}},           {"compaction", {"atomic", "cub", "scan", "none"}},
-      {"pool-size", {"333", "auto", "3600"}}, {"regenerate", {"on", "off"}},
-      {"layout", {"soa", "sectors", "aos"}},  {"wave-rays", {"1", "2"}},
-      {"finish-paths", {"0", "100"}}};
+  const std::vector<Choice> fused{{"accel", structures(AccelKind::bvh2, {AccelKind::brute})},
+                                  {"compaction", names_of(Compaction::atomic)},
+                                  {"pool-size", {"333", "auto", "3600"}},
+                                  {"regenerate", {"on", "off"}},
+                                  {"layout", names_of(PoolLayout::soa)},
+                                  {"wave-rays", {"1", "2"}},
+                                  {"finish-paths", {"0", "100"}}};
   expect_all_same(options({{"mode", "wavefront"}, {"stages", "fused"}}), variations(fused, 2, 4),
                   serial);
 }

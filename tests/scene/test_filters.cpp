@@ -56,7 +56,7 @@ double integral(const Case& filter, const Function& g) {
   return sum;
 }
 
-SceneData scene_with(const char* filter) {
+SceneData scene_with(const std::string& filter) {
   SceneData scene;
   prepare_filter(scene, *with(Options(), {{"filter", filter}}).filter);
   scene.filter.quantiles = scene.filter_quantiles.data();
@@ -140,11 +140,10 @@ TEST(Filters, AreRefusedWithBadParameters) {
             std::string::npos);
 }
 
-class FilteredImages : public testing::TestWithParam<const char*> {};
-INSTANTIATE_TEST_SUITE_P(Kinds, FilteredImages,
-                         testing::Values("tent", "gaussian", "mitchell", "lanczos"));
+class FilteredImages : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Kinds, FilteredImages, testing::ValuesIn(names_besides(FilterKind::box)));
 
-Options small(const char* filter) {
+Options small(const std::string& filter) {
   return with(Options(), {{"device", "cpu"},
                           {"scene", "cornell"},
                           {"width", "17"},
@@ -157,7 +156,7 @@ Options small(const char* filter) {
 
 TEST_P(FilteredImages, AreTheSameInAllModesAndOfParts) {
   const Options serial = with(small(GetParam()), {{"mode", "serial"}});
-  for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+  for (const std::string& mode : names_of(Mode::serial)) {
     expect_parts_make_the_whole(with(serial, {{"mode", mode}}), serial);
   }
 }

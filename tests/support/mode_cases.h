@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
@@ -11,8 +13,10 @@
 
 #include "app/make_renderer.h"
 #include "app/options/option_list.h"
+#include "app/options/option_values.h"
 #include "common/error.h"
 #include "common/plan/execution_plan.h"
+#include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare_materials.h"
 #include "common/scene/scene_properties.h"
@@ -149,6 +153,42 @@ struct Choice {
   std::string option;
   std::vector<std::string> values;
 };
+
+/// The names of all values for which takes(value), the usual one first: whatever an option's table
+/// has is tested unasked.
+template <NamedEnum E, class Takes>
+std::vector<std::string> names_where(E usual, const Takes& takes) {
+  std::vector<std::string> names{to_string(usual)};
+  for (const EnumName<E>& entry : enum_names<E>) {
+    if (entry.value != usual && takes(entry.value)) names.emplace_back(entry.name);
+  }
+  return names;
+}
+
+/// Likewise, of all values but some.
+template <NamedEnum E>
+std::vector<std::string> names_of(E usual, std::initializer_list<E> without = {}) {
+  return names_where(usual, [&](E value) {
+    return std::find(without.begin(), without.end(), value) == without.end();
+  });
+}
+
+/// Of all values but one, which is usual.
+template <NamedEnum E>
+std::vector<std::string> names_besides(E usual) {
+  std::vector<std::string> names = names_of(usual);
+  names.erase(names.begin());
+  return names;
+}
+
+/// Structures of ours, all of which give the same hits; Embree rounds in its own way.
+inline std::vector<std::string> structures(AccelKind usual,
+                                           std::initializer_list<AccelKind> without = {}) {
+  return names_where(usual, [&](AccelKind accel) {
+    return accel != AccelKind::automatic && accel != AccelKind::embree &&
+           std::find(without.begin(), without.end(), accel) == without.end();
+  });
+}
 
 /// Each choice varied alone, then `combinations` random ones of all.
 inline std::vector<Settings> variations(const std::vector<Choice>& choices, int combinations,

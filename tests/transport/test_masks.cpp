@@ -166,13 +166,13 @@ Rendered render_rich(const std::string& mode, const Settings& settings) {
 TEST(Masks, AllStructuresAndModesAgreeBitForBit) {
   const Rendered expected = render_rich("serial", {{"accel", "brute"}});
   expect_plausible(expected, image_options(40, 30, 3, 6));
-  for (const char* accel : {"brute", "bvh2", "cwbvh"}) {
-    for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+  for (const std::string& accel : structures(AccelKind::brute)) {
+    for (const std::string& mode : names_of(Mode::serial)) {
       SCOPED_TRACE(std::string(mode) + " " + accel);
       expect_same(render_rich(mode, {{"accel", accel}}), expected);
     }
   }
-  for (const char* compaction : {"atomic", "cub", "none"}) {
+  for (const std::string& compaction : names_of(Compaction::atomic)) {
     SCOPED_TRACE(compaction);
     expect_same(
         render_rich("wavefront",

@@ -70,7 +70,7 @@ SceneData quads_as_triangles(const char* name) {
 }
 
 TEST(TriangleScenes, FurnaceIsOneEverywhere) {
-  for (const char* accel : {"brute", "bvh2", "cwbvh"}) {
+  for (const std::string& accel : structures(AccelKind::brute)) {
     Options options = image_options(24, 16, 4, 400);
     find_option("accel").set(options, accel);
     const Image image = render_scene(quads_as_triangles("furnace"), options);

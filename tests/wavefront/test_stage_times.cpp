@@ -9,7 +9,7 @@ namespace {
 
 TEST(StageTimes, AddUpToTheRender) {
   for (const char* threads : {"1", "2"}) {
-    for (const char* mode : {"serial", "megakernel", "wavefront"}) {
+    for (const std::string& mode : names_of(Mode::serial)) {
       const Rendered found = render_options(with(Options(), {{"device", "cpu"},
                                                              {"scene", "cornell"},
                                                              {"width", "128"},

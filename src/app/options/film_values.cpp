@@ -7,27 +7,10 @@
 
 #include "app/options/option_values.h"
 #include "common/film/aov.h"
+#include "common/scene/filters.h"
 #include "common/scene/prepare_filter.h"
 
 namespace pt {
-namespace {
-
-/// Which parameters a filter has, and in what range.
-struct FilterParameters {
-  FilterKind kind;
-  int count;
-  float lowest, highest;
-  const char* expected;
-};
-constexpr FilterParameters filter_parameters[] = {
-    {FilterKind::box, 1, 0.01f, 32.0f, "box:RADIUS, 0.01 to 32 pixels"},
-    {FilterKind::tent, 1, 0.01f, 32.0f, "tent:RADIUS, 0.01 to 32 pixels"},
-    {FilterKind::gaussian, 1, 0.01f, 8.0f, "gaussian:DEVIATION, 0.01 to 8 pixels"},
-    {FilterKind::mitchell, 2, -3.0f, 3.0f, "mitchell:B:C, -3 to 3 each"},
-    {FilterKind::lanczos, 1, 1.0f, 8.0f, "lanczos:LOBES, a whole number from 1 to 8"}};
-
-}  // namespace
-
 CropWindow parse_crop(const std::string& name, const std::string& text) {
   const std::vector<std::string> parts = split(text, ',');
   std::array<int, 4> values{};
@@ -51,16 +34,17 @@ std::string crop_text(const std::optional<CropWindow>& crop) {
 FilterChoice parse_filter(const std::string& name, const std::string& text) {
   const std::vector<std::string> parts = split(text, ':');
   FilterChoice filter = default_filter(parse_name<FilterKind>(name, parts[0]));
-  const FilterParameters& allowed = filter_parameters[static_cast<int>(filter.kind)];
+  const FilterInfo& allowed = filter_info(filter.kind);
   float* const values[] = {&filter.a, &filter.b};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const char* end = parts[i].data() + parts[i].size();
     float value = NAN;
     const auto [stop, error] = std::from_chars(parts[i].data(), end, value);
-    const bool whole = filter.kind != FilterKind::lanczos || value == std::floor(value);
-    if (static_cast<int>(i) > allowed.count || error != std::errc() || stop != end ||
+    const bool whole = !allowed.is_whole || value == std::floor(value);
+    if (static_cast<int>(i) > allowed.parameter_count || error != std::errc() || stop != end ||
         !(value >= allowed.lowest && value <= allowed.highest) || !whole) {
-      refuse_value(name, text, std::string("expected ") + allowed.expected);
+      refuse_value(name, text,
+                   fmt::format("expected {}{}, {}", parts[0], allowed.parameters, allowed.range));
     }
     *values[i - 1] = value;
   }
@@ -71,8 +55,17 @@ std::string filter_text(const std::optional<FilterChoice>& filter) {
   if (!filter) return "";
   const std::string kind = to_string(filter->kind);
   if (*filter == default_filter(filter->kind)) return kind;
-  const bool has_two = filter->kind == FilterKind::mitchell;
+  const bool has_two = filter_info(filter->kind).parameter_count == 2;
   return fmt::format("{}:{}{}", kind, filter->a, has_two ? fmt::format(":{}", filter->b) : "");
+}
+
+std::string filter_forms(const char* separator) {
+  std::string text;
+  for (const FilterInfo& info : filter_table) {
+    text += fmt::format("{}{}[{}]", text.empty() ? "" : separator, to_string(info.kind),
+                        info.parameters);
+  }
+  return text;
 }
 
 std::uint32_t parse_aovs(const std::string& name, const std::string& text) {

@@ -22,6 +22,20 @@ constexpr Mode parallel[] = {Mode::megakernel, Mode::wavefront};
 constexpr Mode megakernel[] = {Mode::megakernel}, wavefront[] = {Mode::wavefront};
 constexpr Kind cpu[] = {Kind::cpu}, cuda[] = {Kind::cuda}, any_device[] = {Kind::cpu, Kind::cuda};
 
+/// Breaks a text that a table has made into lines of the help.
+std::string in_lines(const std::string& text) {
+  constexpr std::size_t columns = 60;
+  std::string lines, line;
+  for (const std::string& word : split(text, ' ')) {
+    if (!line.empty() && line.size() + 1 + word.size() > columns) {
+      lines += line + '\n';
+      line.clear();
+    }
+    line.append(line.empty() ? "" : " ").append(word);
+  }
+  return lines + line;
+}
+
 /// Collects the entries of one heading of the help.
 class Group {
  public:
@@ -118,17 +132,15 @@ void add_image(std::vector<OptionEntry>& list) {
                "filter", OptionForm::text, "KIND[:A[:B]]",
                [](Options& o, const std::string& s) { o.filter = parse_filter("filter", s); },
                [](const Options& o) { return filter_text(o.filter); }),
-           "Reconstruction filter: box[:RADIUS], tent[:RADIUS],\n"
-           "gaussian[:DEVIATION], mitchell[:B:C] or lanczos[:LOBES].\n"
-           "By default the scene file's, else a box of one pixel")
+           in_lines("Reconstruction filter: " + filter_forms(", ") +
+                    ". By default the scene file's, else a box of one pixel"))
       .add(custom(
                "aov", OptionForm::text, "NAME,...",
                [](Options& o, const std::string& s) { o.aovs = parse_aovs("aov", s); },
                [](const Options& o) { return aovs_text(o.aovs); }),
-           "Layers of the .exr besides the image, of what camera rays\n"
-           "meet: albedo, shading_normal, normal, depth, position, uv,\n"
-           "primitive, instance, material; and of the samples: variance,\n"
-           "samples, bounces, rays");
+           in_lines("Layers of the .exr besides the image, of what camera rays meet and of the "
+                    "samples: " +
+                    aov_names(", ")));
 }
 
 /// Also takes `sort`, a name, for one release more, of `atomic` with --order-surfaces on.

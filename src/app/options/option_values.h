@@ -65,6 +65,7 @@ std::string crop_text(const std::optional<CropWindow>& crop);
 /// "KIND", "KIND:A" or "KIND:A:B"; what is left out is the filter's default.
 FilterChoice parse_filter(const std::string& name, const std::string& text);
 std::string filter_text(const std::optional<FilterChoice>& filter);
+std::string filter_forms(const char* separator);  ///< all of them: "box[:RADIUS]"
 
 /// "albedo,depth": bits of Options::aovs.
 std::uint32_t parse_aovs(const std::string& name, const std::string& text);

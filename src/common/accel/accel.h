@@ -1,16 +1,46 @@
 // The list of acceleration structures.
 #pragma once
 
+#include "common/type_list.h"
+
 namespace pt {
+
+// By their names on the command line. traverse_triangles.h traverses them; tree_nodes.h and
+// build/build_nodes.h have the nodes of those that are built of a binary tree.
+#define PT_ACCELS(ACCEL) \
+  ACCEL(brute)           \
+  ACCEL(bvh2)            \
+  ACCEL(cwbvh)           \
+  ACCEL(embree)
+
+#define PT_ACCEL_ENUMERATOR(name) name,
+/// What --accel says.
+enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) };
 
 /// The structure in which a ray looks for its hit. Embree's is for the CPU, and cwbvh_avx2, the
 /// wide tree by a processor's AVX2, for one that has it.
-enum class Accel { brute, bvh2, cwbvh, embree, cwbvh_avx2 };
+enum class Accel { PT_ACCELS(PT_ACCEL_ENUMERATOR) cwbvh_avx2 };
+#undef PT_ACCEL_ENUMERATOR
 
+/// The trees over triangles for which all devices have kernels, in scenes of each kind.
+using TreeAccels = TypeList<Constant<Accel::bvh2>, Constant<Accel::cwbvh>>;
+
+/// Not of AccelKind::automatic.
+constexpr Accel accel_of(AccelKind kind) {
+  return static_cast<Accel>(static_cast<int>(kind) - static_cast<int>(AccelKind::brute));
+}
+constexpr AccelKind accel_kind_of(Accel accel) {
+  if (accel == Accel::cwbvh_avx2) return AccelKind::cwbvh;
+  return static_cast<AccelKind>(static_cast<int>(accel) + static_cast<int>(AccelKind::brute));
+}
+static_assert(accel_of(AccelKind::embree) == Accel::embree);
+
+#define PT_ACCEL_NAME(name) #name,
 /// As the command line has it.
 inline const char* accel_name(Accel accel) {
-  constexpr const char* names[] = {"brute", "bvh2", "cwbvh", "embree", "cwbvh"};
+  constexpr const char* names[] = {PT_ACCELS(PT_ACCEL_NAME) "cwbvh"};
   return names[static_cast<int>(accel)];
 }
+#undef PT_ACCEL_NAME
 
 }  // namespace pt

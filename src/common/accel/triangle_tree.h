@@ -2,8 +2,7 @@
 // in scenes with instances, a tree of trees.
 #pragma once
 
-#include "common/accel/bvh2.h"
-#include "common/accel/cwbvh.h"
+#include "common/accel/tree_nodes.h"
 #include "common/geometry/triangle.h"
 #include "common/math/transform.h"
 
@@ -25,9 +24,7 @@ struct alignas(16) InstanceRecord {
 /// absolute. With instances, `root` is the root of a tree whose leaves hold instances instead of
 /// triangles (places in `instances`), those of wide trees one each; without, the root of the one
 /// tree of triangles.
-struct TriangleTree {
-  const Bvh2Node* bvh2 = nullptr;
-  const CwbvhNode* cwbvh = nullptr;
+struct TriangleTree : TreeNodes<NodesPointer> {
   const Triangle* triangles = nullptr;  ///< [slot]
   const InstanceRecord* instances = nullptr;
   std::uint32_t triangle_count = 0;  ///< slots

@@ -6,12 +6,11 @@
 #include <cmath>
 #include <span>
 
-#include "common/light/area_light.h"
+#include "common/light/lights.h"
 
 namespace pt {
 namespace {
 
-constexpr float half_turn = pi, quarter_turn = 0.5f * pi;
 constexpr int bin_count = 12;
 
 float angle_between(const Vec3& a, const Vec3& b) {
@@ -173,52 +172,7 @@ class Builder {
   LightTreeData& data_;
 };
 
-/// The cone around the picture's corners.
-void bound_projector(const Light& light, LightBounds& bounds) {
-  const float right2 = glm::dot(light.c, light.c), aspect = bits_to_float(light.triangle);
-  bounds.axis = light.b;
-  bounds.cone = std::atan(std::sqrt((1.0f + 1.0f / (aspect * aspect)) / right2));
-  bounds.emission = 1e-3f;
-}
-
-/// Of what a spot light gives, its falloff beyond the inner angle is bounded by a cosine that is
-/// positive up to the outer one.
-void bound_spot(const DeltaLight& spot, LightBounds& bounds) {
-  const float inner = std::acos(std::clamp(spot.cos_inner, -1.0f, 1.0f));
-  const float outer = std::acos(std::clamp(spot.cos_outer, -1.0f, 1.0f));
-  bounds.axis = spot.direction;
-  bounds.cone = std::max(inner, outer - quarter_turn);
-  bounds.emission = std::max(outer - bounds.cone, 1e-3f);
-}
-
 }  // namespace
-
-std::optional<LightBounds> bounds_of(const Light& light) {
-  if (!has_place(light.kind)) return std::nullopt;
-  LightBounds bounds;
-  bounds.emission = quarter_turn;
-  bounds.box.grow(light.a);
-  if (is_triangle(light.kind)) {
-    bounds.box.grow(light.a + light.b);
-    bounds.box.grow(light.a + light.c);
-    const Vec3 normal = glm::cross(light.b, light.c);
-    if (!(glm::length(normal) > 0.0f)) return std::nullopt;
-    bounds.axis = glm::normalize(normal);
-    bounds.intensity = light.weight;
-  } else if (light.kind == LightKind::sphere) {
-    const Vec3 radius(std::sqrt(light.c.x));
-    bounds.box.grow(light.a - radius), bounds.box.grow(light.a + radius);
-    bounds.cone = half_turn;
-    bounds.intensity = 0.25f * light.weight;
-  } else {
-    bounds.cone = half_turn;
-    bounds.intensity = luminance(light.radiance);
-    if (light.kind == LightKind::spot) bound_spot(light.delta(), bounds);
-    if (light.kind == LightKind::projector) bound_projector(light, bounds);
-  }
-  if (!(bounds.intensity > 0.0f)) return std::nullopt;
-  return bounds;
-}
 
 LightTreeData build_light_tree(const std::vector<Light>& lights) {
   LightTreeData data;

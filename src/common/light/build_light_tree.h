@@ -2,26 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "common/geometry/bounds.h"
-#include "common/light/light.h"
+#include "common/light/light_bounds.h"
 #include "common/light/light_tree.h"
 
 namespace pt {
-
-/// What is known of some lights together: where they are, where they shine, how much.
-struct LightBounds {
-  Bounds box;
-  Vec3 axis{0, 0, 1};      ///< of the cone of normals
-  float cone = 0.0f;       ///< its half angle, in radians
-  float emission = 0.0f;   ///< light goes where the angle to a normal is below this one
-  float intensity = 0.0f;  ///< see LightNode
-};
-
-/// None for a light without place (directional) and for one that gives nothing.
-std::optional<LightBounds> bounds_of(const Light& light);
 
 /// The memory behind a LightTree.
 struct LightTreeData {

@@ -1,6 +1,7 @@
 // Lights without extent: no ray ever meets them, so they are sampled only, with weight 1.
 #pragma once
 
+#include "common/light/light_kind.h"
 #include "common/light/light_sample.h"
 #include "common/texture/texture.h"
 
@@ -12,26 +13,6 @@ enum class SpotFalloff : std::uint32_t {
   linear_angle,   ///< Mitsuba's: linear in the angle
   square_cosine,  ///< glTF's KHR_lights_punctual: square of linear in the cosine
 };
-
-/// Every kind of light but the environment; the delta lights come last, the sun before them. A
-/// turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors, and
-/// mirroring would turn the side that shines away.
-enum class LightKind : std::uint8_t {
-  triangle,
-  turned_triangle,
-  sphere,
-  sun,
-  point,
-  spot,
-  projector,
-  directional
-};
-
-PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::turned_triangle; }
-PT_HD bool has_place(LightKind kind) {
-  return kind != LightKind::sun && kind != LightKind::directional;
-}
-PT_HD bool is_delta(LightKind kind) { return kind >= LightKind::point; }
 
 struct DeltaLight {
   LightKind kind = LightKind::point;
@@ -48,55 +29,25 @@ struct DeltaLight {
                                        ///< axis; spot: multiplies the intensity
 };
 
-/// Between 0 and 1: the share of its intensity that a spot light sends at an angle to its axis.
-PT_HD float spot_share(const DeltaLight& light, float cosine) {
-  if (cosine >= light.cos_inner) return 1.0f;
-  if (cosine <= light.cos_outer) return 0.0f;
-  if (light.falloff == SpotFalloff::linear_angle) {
-    const float outer = acosf(light.cos_outer);
-    return (outer - acosf(cosine)) / (outer - acosf(light.cos_inner));
-  }
-  const float t = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
-  return light.falloff == SpotFalloff::smooth ? t * t * (3.0f - 2.0f * t) : t * t;
-}
-
-struct DeltaLightSample {
-  Vec3 wi = Vec3(0.0f);            ///< unit vector to the light
-  Vec3 end = Vec3(0.0f);           ///< of a shadow ray, relative to its origin
-  Color irradiance = Color(0.0f);  ///< across wi: what is reflected is this times f times |cos|
-};
-
-/// There is nothing to choose. Black at the light's own position.
-PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
-  if (light.kind == LightKind::directional) {
-    return {-light.direction, -beyond_scene * light.direction, light.intensity};
-  }
-  const Vec3 to_light = light.position - from;
+/// Of `intensity` times share(wi) at a place. There is nothing to choose. Black at the place
+/// itself.
+template <class Share>
+PT_HD PlainLight sample_place(const Vec3& position, const Color& intensity, const Vec3& from,
+                              const Share& share) {
+  PlainLight result;
+  IncidentLight& incident = result.incident;
+  incident.pdf = 1.0f, incident.is_delta = true;
+  const Vec3 to_light = position - from;
   const float distance2 = dot(to_light, to_light);
-  if (distance2 == 0.0f) return {};
+  if (distance2 == 0.0f) return result;
   const float inverse_distance = inverse_sqrt(distance2);
   const Vec3 wi = inverse_distance * to_light;
-  const float share =
-      light.kind == LightKind::spot ? spot_share(light, -dot(light.direction, wi)) : 1.0f;
   // A light on a surface shines in front of it: its position has been rounded.
-  const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
-  return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
-}
-
-/// W of the whole light for choosing among lights; of a directional one over a disk of
-/// `scene_radius`. A spot's is pbrt's estimate: the cone of the mean of both angles'
-/// cosines.
-PT_HD Color delta_light_power(const DeltaLight& light, float scene_radius) {
-  switch (light.kind) {
-    case LightKind::point:
-      return 4.0f * pi * light.intensity;
-    case LightKind::projector:
-      return 4.0f / (dot(light.right, light.right) * fabsf(light.aspect)) * light.intensity;
-    case LightKind::spot:
-      return 2.0f * pi * (1.0f - 0.5f * (light.cos_inner + light.cos_outer)) * light.intensity;
-    default:
-      return pi * scene_radius * scene_radius * light.intensity;
-  }
+  const float error = 4.0f * half_ulp * max_abs(position) * inverse_distance + light_rounding;
+  incident.wi = wi;
+  incident.end = fmaxf(1.0f - error, 0.5f) * to_light;
+  incident.radiance = intensity * (share(wi) / distance2);
+  return result;
 }
 
 }  // namespace pt

@@ -20,6 +20,21 @@ struct LightSample {
   Vec3 end = Vec3(0.0f);  ///< of a shadow ray, relative to its origin
 };
 
+/// What a light sends to a point, if nothing lies between.
+struct IncidentLight {
+  Vec3 wi = Vec3(0.0f);
+  Vec3 end = Vec3(0.0f);         ///< of a shadow ray, relative to its origin
+  Color radiance = Color(0.0f);  ///< of a delta light: radiance times density
+  float pdf = 0.0f;              ///< per solid angle, of light and direction; 0: nothing arrives
+  bool is_delta = false;         ///< no BSDF sample could have found it
+};
+
+/// Where a light was sampled, without its texture; `uv`: where in that.
+struct PlainLight {
+  IncidentLight incident;
+  Vec2 uv = Vec2(0.0f);
+};
+
 /// How far the sampled point and the surface that a ray meets may be apart across the surface.
 struct LightError {
   float absolute = 0.0f;  ///< of the light's own size and place

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/area_light.h"
+#include "common/light/light_bounds.h"
 #include "common/light/spherical_triangle.h"
 
 namespace pt {
@@ -97,5 +98,28 @@ PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, con
   const Vec3 end = add_scaled(to_light, error.bound(distance) * inverse_length, sampler.normal);
   return {{wi, sampler.pdf(wi, distance), end}, point};
 }
+
+/// sample_triangle_light (transport/sample_light.h) samples it.
+struct TriangleLight {
+  static constexpr LightKind kind = LightKind::triangle;
+  static constexpr bool has_place = true;
+
+  static LightBounds bounds(const Light& light) {
+    LightBounds bounds;
+    for (const Vec3& corner : {light.a, light.a + light.b, light.a + light.c}) {
+      bounds.box.grow(corner);
+    }
+    const Vec3 n = glm::cross(light.b, light.c);
+    if (!(glm::length(n) > 0.0f)) return bounds;
+    bounds.axis = glm::normalize(n);
+    bounds.emission = quarter_turn;
+    bounds.intensity = light.weight;
+    return bounds;
+  }
+};
+
+struct TurnedTriangleLight : TriangleLight {
+  static constexpr LightKind kind = LightKind::turned_triangle;
+};
 
 }  // namespace pt

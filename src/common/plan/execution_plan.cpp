@@ -70,18 +70,8 @@ class Planner {
   /// What is built, or will be whatever is chosen.
   std::optional<Accel> known_structure() const {
     if (scene_.structure) return scene_.structure;
-    switch (o_.accel) {
-      case AccelKind::brute:
-        return Accel::brute;
-      case AccelKind::bvh2:
-        return Accel::bvh2;
-      case AccelKind::cwbvh:
-        return Accel::cwbvh;
-      case AccelKind::embree:
-        return Accel::embree;
-      default:
-        return std::nullopt;
-    }
+    if (o_.accel == AccelKind::automatic) return std::nullopt;
+    return accel_of(o_.accel);
   }
 
   void choose_megakernel() {

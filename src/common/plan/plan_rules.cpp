@@ -203,10 +203,7 @@ void check_plan(const ExecutionPlan& plan, const Options& options, const ScenePr
         fmt::format("--accel embree: scene '{}' has masks, clip planes or hidden emitters; "
                     "expected brute, bvh2 or cwbvh",
                     scene.name));
-  const AccelKind kind = plan.accel == Accel::bvh2    ? AccelKind::bvh2
-                         : plan.accel == Accel::cwbvh ? AccelKind::cwbvh
-                                                      : AccelKind::brute;
-  check_builder(options.builder, kind, device.is_cuda);
+  check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);
   if (!device.is_cuda) return;
   check_toggles(plan, options, scene);
   check_structure(plan, options, scene);

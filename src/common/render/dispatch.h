@@ -30,14 +30,19 @@ using SphereSceneKinds = decltype(concatenate(
     BruteSphereKinds{},
     TypeList<Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
              Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>{}));
-/// Those that a megakernel's loop traces on CUDA.
-using LoopTriangleKinds = TypeList<Traits<Accel::bvh2, Geometry::triangles, Lighting::full>,
-                                   Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>,
-                                   Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                   Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>>;
+template <Geometry geometry, bool has_masks, class... TreeAccel>
+TypeList<Traits<TreeAccel::value, geometry, Lighting::full, has_masks>...> kinds_with_trees(
+    TypeList<TreeAccel...>);
+template <Geometry geometry, bool has_masks = false>
+using KindsWithTrees = decltype(kinds_with_trees<geometry, has_masks>(TreeAccels{}));
 using TriangleSceneKinds = decltype(concatenate(
-    LoopTriangleKinds{}, TypeList<Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-                                  Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>{}));
+    KindsWithTrees<Geometry::triangles>{},
+    concatenate(KindsWithTrees<Geometry::mixed>{}, KindsWithTrees<Geometry::mixed, true>{})));
+/// Those that a megakernel's loop traces on CUDA.
+using LoopTriangleKinds =
+    decltype(concatenate(KindsWithTrees<Geometry::triangles>{},
+                         TypeList<Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                                  Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>>{}));
 using CpuTriangleSceneKinds = decltype(concatenate(
     TriangleSceneKinds{}, TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
                                    Traits<Accel::brute, Geometry::mixed, Lighting::full>,

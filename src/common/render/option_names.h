@@ -92,13 +92,11 @@ inline constexpr auto enum_names<MisHeuristic> =
     std::to_array<EnumName<MisHeuristic>>({{MisHeuristic::none, "none"},
                                            {MisHeuristic::balance, "balance"},
                                            {MisHeuristic::power, "power"}});
+#define PT_ACCEL_NAME(name) {AccelKind::name, #name},
 template <>
 inline constexpr auto enum_names<AccelKind> =
-    std::to_array<EnumName<AccelKind>>({{AccelKind::automatic, "auto"},
-                                        {AccelKind::brute, "brute"},
-                                        {AccelKind::bvh2, "bvh2"},
-                                        {AccelKind::cwbvh, "cwbvh"},
-                                        {AccelKind::embree, "embree"}});
+    std::to_array<EnumName<AccelKind>>({{AccelKind::automatic, "auto"}, PT_ACCELS(PT_ACCEL_NAME)});
+#undef PT_ACCEL_NAME
 template <>
 inline constexpr auto enum_names<TreeBuilder> =
     std::to_array<EnumName<TreeBuilder>>({{TreeBuilder::automatic, "auto"},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "common/accel/accel.h"
 #include "common/render/compaction_info.h"
 #include "common/render/stage_info.h"
 #include "common/sampling/choices.h"
@@ -27,7 +28,6 @@ enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path, mlt };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
-enum class AccelKind { automatic, brute, bvh2, cwbvh, embree };
 enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
 enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };

@@ -6,8 +6,7 @@
 #include <numeric>
 
 #include "common/error.h"
-#include "common/light/area_light.h"
-#include "common/light/triangle_light.h"
+#include "common/light/lights.h"
 #include "common/plan/execution_plan.h"
 #include "common/scene/light_errors.h"
 
@@ -175,24 +174,7 @@ class Lister {
   }
 
   void add_delta(const DeltaLight& delta) {
-    Light light{};
-    light.a = delta.position;
-    light.b = delta.direction;
-    light.c = {delta.cos_inner, delta.cos_outer,
-               bits_to_float(static_cast<std::uint32_t>(delta.falloff))};
-    light.radiance = delta.intensity;
-    light.triangle = light.emission_texture = no_texture;
-    light.kind = delta.kind;
-    if (delta.kind == LightKind::projector) {
-      light.c = delta.right;
-      light.triangle = float_to_bits(delta.aspect);
-      light.emission_texture = delta.texture;
-    } else if (delta.kind == LightKind::spot && delta.texture != no_texture) {
-      light.triangle = pack_roll(delta);
-      light.emission_texture = delta.texture;
-    }
-    light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
-    data_.lights.push_back(light);
+    data_.lights.push_back(make_light(delta, radius_));
     finish_lamp(data_.lights.size() - 1);
   }
 

@@ -4,29 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/error.h"
 #include "common/render/option_names.h"
+#include "common/scene/filters.h"
 
 namespace pt {
 namespace {
 
 constexpr int steps = 1 << 16;  // of the integration over one side
-
-double sinc(double x) {
-  const double angle = std::numbers::pi * x;
-  return std::abs(angle) < 1e-6 ? 1.0 - angle * angle / 6.0 : std::sin(angle) / angle;
-}
-
-double mitchell(double x, double b, double c) {
-  if (x < 1) {
-    return ((12 - 9 * b - 6 * c) * x * x * x + (-18 + 12 * b + 6 * c) * x * x + (6 - 2 * b)) / 6;
-  }
-  return ((-b - 6 * c) * x * x * x + (6 * b + 30 * c) * x * x + (-12 * b - 48 * c) * x +
-          (8 * b + 24 * c)) /
-         6;
-}
 
 /// One side of a filter, integrated step by step.
 struct Integral {
@@ -68,45 +54,15 @@ std::vector<float> quantiles_of(const std::vector<double>& absolute, double radi
 
 }  // namespace
 
-double filter_radius(const FilterChoice& filter) {
-  switch (filter.kind) {
-    case FilterKind::gaussian:
-      return 4.0 * filter.a;
-    case FilterKind::mitchell:
-      return 2.0;
-    default:
-      return filter.a;
-  }
-}
+double filter_radius(const FilterChoice& filter) { return filter_info(filter.kind).radius(filter); }
 
 double filter_value(const FilterChoice& filter, double x) {
   x = std::abs(x);
-  if (x > filter_radius(filter)) return 0;
-  switch (filter.kind) {
-    case FilterKind::tent:
-      return 1.0 - x / filter.a;
-    case FilterKind::gaussian:
-      return std::exp(-0.5 * x * x / (double{filter.a} * filter.a)) - std::exp(-8.0);
-    case FilterKind::mitchell:
-      return mitchell(x, filter.a, filter.b);
-    case FilterKind::lanczos:
-      return sinc(x) * sinc(x / filter.a);
-    default:
-      return 1.0;
-  }
+  return x > filter_radius(filter) ? 0 : filter_info(filter.kind).value(filter, x);
 }
 
 FilterChoice default_filter(FilterKind kind) {
-  switch (kind) {
-    case FilterKind::tent:
-      return {kind, 1.0f, 0.0f};
-    case FilterKind::mitchell:
-      return {kind, 1.0f / 3.0f, 1.0f / 3.0f};
-    case FilterKind::lanczos:
-      return {kind, 3.0f, 0.0f};
-    default:
-      return {kind, 0.5f, 0.0f};
-  }
+  return {kind, filter_info(kind).a, filter_info(kind).b};
 }
 
 FilterChoice filter_of(const Options& options, const SceneData& scene) {

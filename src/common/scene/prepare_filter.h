@@ -5,13 +5,7 @@
 
 namespace pt {
 
-/// f(x), x in pixels from the centre, not normalised. 0 beyond filter_radius.
-///   box       1
-///   tent      1 - |x| / radius
-///   gaussian  exp(-x^2 / (2 sigma^2)), cut off at 4 sigma and lowered so that it is 0 there
-///   mitchell  the cubic with B and C of Mitchell and Netravali, Reconstruction Filters in Computer
-///             Graphics, 1988
-///   lanczos   sinc(x) sinc(x / lobes)
+/// f(x), x in pixels from the centre, not normalised (filters.h). 0 beyond filter_radius.
 double filter_value(const FilterChoice& filter, double x);
 double filter_radius(const FilterChoice& filter);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/accel/build/build_nodes.h"
 #include "common/accel/build/check_builder.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/error.h"
@@ -45,9 +46,7 @@ std::vector<Affine> instance_transforms(const SceneData& scene) {
 
 TreeOptions tree_options(Accel accel, TreeBuilder builder) {
   TreeOptions options;
-  options.accel = accel == Accel::bvh2    ? AccelKind::bvh2
-                  : accel == Accel::cwbvh ? AccelKind::cwbvh
-                                          : AccelKind::brute;
+  options.accel = has_nodes(accel_kind_of(accel)) ? accel_kind_of(accel) : AccelKind::brute;
   options.builder = builder;
   return options;
 }

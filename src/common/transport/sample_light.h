@@ -1,21 +1,10 @@
 // One light is asked what it sends to a point, and how likely it was to be asked.
 #pragma once
 
-#include "common/light/area_light.h"
-#include "common/light/delta_light.h"
-#include "common/light/triangle_light.h"
+#include "common/light/lights.h"
 #include "common/transport/surface.h"
 
 namespace pt {
-
-/// What a light sends to a point, if nothing lies between.
-struct IncidentLight {
-  Vec3 wi = Vec3(0.0f);
-  Vec3 end = Vec3(0.0f);         ///< of a shadow ray, relative to its origin
-  Color radiance = Color(0.0f);  ///< of a delta light: radiance times density
-  float pdf = 0.0f;              ///< per solid angle, of light and direction; 0: nothing arrives
-  bool is_delta = false;         ///< no BSDF sample could have found it
-};
 
 /// A primitive that emits, chosen uniformly (Lighting::emitters).
 PT_HD IncidentLight sample_emitter(const Scene& scene, const Vec3& from, const Vec4& u) {
@@ -33,12 +22,6 @@ PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
          static_cast<float>(scene.light_count);
 }
 
-/// Where a light was sampled, without its texture; `uv`: where in that.
-struct PlainLight {
-  IncidentLight incident;
-  Vec2 uv = Vec2(0.0f);
-};
-
 PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, const Vec3& from,
                                        float u0, float u1) {
   const TriangleLightSample s =
@@ -55,24 +38,8 @@ PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, c
 /// Any light but triangles and the environment. Not inlined, and by value: scenes have few of them,
 /// and their code is long.
 PT_NOINLINE inline PlainLight sample_other_light(Light light, Vec3 from, float u0, float u1) {
-  if (light.kind == LightKind::sphere) {
-    const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);
-    return {{s.wi, s.end, light.radiance, s.pdf}};
-  }
-  if (light.kind == LightKind::sun) {
-    const LightSample s = sample_sun(light.b, light.c.x, u0, u1);
-    return {{s.wi, s.end, light.radiance, s.pdf}};
-  }
-  DeltaLightSample s = sample_delta_light(light.delta(), from);
-  Vec2 uv(0.0f);
-  if (light.kind == LightKind::projector) {
-    const Projection projection = project(light, -s.wi);
-    uv = projection.uv;
-    s.irradiance *= projection.factor;
-  } else if (light.emission_texture != no_texture) {
-    uv = spot_uv(light, -s.wi);
-  }
-  return {{s.wi, s.end, s.irradiance, 1.0f, true}, uv};
+  return visit_light(OtherLights{}, light.kind,
+                     [&](auto type) { return decltype(type)::type::sample(light, from, u0, u1); });
 }
 
 /// Any light but the environment.

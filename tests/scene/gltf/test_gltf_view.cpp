@@ -1,4 +1,5 @@
 // The glTF loader: lights and cameras.
+#include "common/light/spot_light.h"
 #include "gltf_files.h"
 
 namespace pt {

@@ -8,12 +8,11 @@
 #include <set>
 
 #include "common/accel/build/append_nodes.h"
+#include "common/accel/build/build_nodes.h"
 #include "common/accel/build/build_sah.h"
 #include "common/accel/build/build_sbvh.h"
 #include "common/accel/build/check_builder.h"
-#include "common/accel/build/collapse_cwbvh.h"
 #include "common/accel/build/instance_tree.h"
-#include "common/accel/build/merge_leaves.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/overlap_share.h"
 #include "common/accel/build/reinsert_nodes.h"
@@ -25,29 +24,13 @@ namespace {
 /// A group's tree by itself: its root and its slots come first.
 struct BuiltGroup {
   Bounds bounds;
-  std::vector<Bvh2Node> bvh2;  ///< one of the two, or none where every triangle is tested
-  std::vector<CwbvhNode> cwbvh;
-  std::vector<std::uint32_t> order;  ///< slot -> the group's triangle
-  std::string builder;               ///< by name; empty: no tree
-
-  double sah_cost(const TreeOptions& options) const {
-    return bvh2.empty() ? measure_tree(std::span(cwbvh), 0).sah_cost(options.cwbvh_costs.triangle)
-                        : measure_tree(std::span(bvh2), 0).sah_cost(options.bvh2_costs.triangle);
-  }
+  BuiltNodes nodes;     ///< `order`: slot -> the group's triangle
+  std::string builder;  ///< by name; empty: no tree
 };
 
 BuiltGroup finish_tree(BinaryTree&& binary, const char* builder, const TreeOptions& options) {
-  BuiltGroup built;
-  built.bounds = binary.bounds;
-  built.builder = builder;
-  if (options.accel == AccelKind::bvh2) {
-    Bvh2 tree = merge_leaves(std::move(binary), options.bvh2_costs);
-    built.bvh2 = std::move(tree.nodes), built.order = std::move(tree.order);
-  } else {
-    Cwbvh tree = collapse_cwbvh(binary, options.cwbvh_costs);
-    built.cwbvh = std::move(tree.nodes), built.order = std::move(tree.order);
-  }
-  return built;
+  const Bounds bounds = binary.bounds;
+  return {bounds, build_nodes(std::move(binary), options.accel, options.costs()), builder};
 }
 
 BinaryTree build_whole(const MeshTriangles& triangles) {
@@ -78,7 +61,8 @@ BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& opt
   BuiltGroup whole = finish_tree(std::move(binary), builder, options);
   if (!tries) return whole;
   BuiltGroup split = build_split(triangles, options);
-  const bool pays = split.sah_cost(options) <= split_gain * whole.sah_cost(options);
+  const bool pays =
+      sah_cost(split.nodes, options.costs()) <= split_gain * sah_cost(whole.nodes, options.costs());
   return pays ? split : whole;
 }
 
@@ -90,9 +74,10 @@ BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options
 
 BuiltGroup list_triangles(const MeshTriangles& triangles) {
   BuiltGroup list;
-  list.order.resize(triangles.count());
-  std::iota(list.order.begin(), list.order.end(), 0u);
-  for (const std::uint32_t i : list.order) list.bounds.grow(triangles.bounds(i));
+  std::vector<std::uint32_t>& order = list.nodes.order;
+  order.resize(triangles.count());
+  std::iota(order.begin(), order.end(), 0u);
+  for (const std::uint32_t i : order) list.bounds.grow(triangles.bounds(i));
   return list;
 }
 
@@ -100,25 +85,22 @@ BuiltGroup list_triangles(const MeshTriangles& triangles) {
 /// it.
 std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles, std::uint32_t number,
                       const TreeOptions& options) {
-  BuiltGroup built = options.accel == AccelKind::bvh2 || options.accel == AccelKind::cwbvh
-                         ? build_tree(triangles, options)
-                         : list_triangles(triangles);
+  BuiltGroup built =
+      has_nodes(options.accel) ? build_tree(triangles, options) : list_triangles(triangles);
+  const std::vector<std::uint32_t>& order = built.nodes.order;
   GroupTree group;
   group.group = number;
   group.bounds = built.bounds;
   group.first_slot = static_cast<std::uint32_t>(tree.triangles.size());
-  group.slot_count = static_cast<std::uint32_t>(built.order.size());
-  group.node_count = static_cast<std::uint32_t>(built.bvh2.size() + built.cwbvh.size());
-  if (!built.bvh2.empty()) {
-    group.root = append_nodes(tree.bvh2, std::move(built.bvh2), group.first_slot);
-  }
-  if (!built.cwbvh.empty()) {
-    group.root = append_nodes(tree.cwbvh, std::move(built.cwbvh), group.first_slot);
-  }
+  group.slot_count = static_cast<std::uint32_t>(order.size());
+  group.node_count = built.nodes.node_count();
+  tree.for_each_nodes(built.nodes, [&](auto& all, auto& nodes) {
+    if (!nodes.empty()) group.root = append_nodes(all, std::move(nodes), group.first_slot);
+  });
   group.first_node = group.root;
-  tree.triangles.resize(tree.triangles.size() + built.order.size());
+  tree.triangles.resize(tree.triangles.size() + order.size());
   tbb::parallel_for(0u, group.slot_count, [&](std::uint32_t i) {
-    tree.triangles[group.first_slot + i] = triangles[built.order[i]];
+    tree.triangles[group.first_slot + i] = triangles[order[i]];
   });
   tree.groups.push_back(group);
   return built.builder;

@@ -18,6 +18,8 @@ struct TreeOptions {
   SbvhOptions sbvh;
   TreeCosts bvh2_costs = default_bvh2_costs;
   TreeCosts cwbvh_costs = default_cwbvh_costs;
+
+  const TreeCosts& costs() const { return accel == AccelKind::bvh2 ? bvh2_costs : cwbvh_costs; }
 };
 
 /// Throws Error for vertices that are not finite, indices that name no vertex, and instances of

@@ -5,9 +5,8 @@
 #include <algorithm>
 
 #include "common/accel/build/append_nodes.h"
+#include "common/accel/build/build_nodes.h"
 #include "common/accel/build/build_sah.h"
-#include "common/accel/build/collapse_cwbvh.h"
-#include "common/accel/build/merge_leaves.h"
 #include "common/error.h"
 
 namespace pt {
@@ -80,13 +79,6 @@ std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
   return records;
 }
 
-/// Nodes that are numbered from 0 get the numbers from `first` on.
-template <class Node>
-std::vector<Node> numbered_from(std::uint32_t first, std::vector<Node>&& nodes) {
-  for (Node& node : nodes) move_references(node, first, 0);
-  return std::move(nodes);
-}
-
 }  // namespace
 
 void check_instances(std::span<const Instance> instances) {
@@ -117,36 +109,32 @@ InstanceTree build_instance_tree(std::span<const GroupTree> groups,
                                  std::uint32_t first_node) {
   std::vector<InstanceRecord> records = place_instances(groups, instances);
   InstanceTree tree;
-  const bool wide = accel == AccelKind::cwbvh;
-  if (records.empty() || (!wide && accel != AccelKind::bvh2)) {
+  if (records.empty() || !has_nodes(accel)) {
     tree.instances = std::move(records);
     return tree;
   }
   BinaryTree binary = build_sah(static_cast<std::uint32_t>(records.size()),
                                 [&](std::uint32_t i) { return records[i].bounds; });
-  std::vector<std::uint32_t> order;
-  if (wide) {
-    Cwbvh top = collapse_cwbvh(binary, instance_costs);
-    tree.cwbvh = numbered_from(first_node, std::move(top.nodes));
-    order = std::move(top.order);
-  } else {
-    Bvh2 top = merge_leaves(std::move(binary), instance_costs);
-    tree.bvh2 = numbered_from(first_node, std::move(top.nodes));
-    order = std::move(top.order);
-  }
-  for (const std::uint32_t i : order) tree.instances.push_back(records[i]);
+  BuiltNodes built = build_nodes(std::move(binary), accel, instance_costs);
+  tree.for_each_nodes(built, [&](auto& to, auto& nodes) {
+    to = std::move(nodes);
+    for (auto& node : to) move_references(node, first_node, 0);
+  });
+  for (const std::uint32_t i : built.order) tree.instances.push_back(records[i]);
   return tree;
 }
 
 void add_instance_tree(TriangleTreeData& tree, std::span<const Instance> instances,
                        AccelKind accel) {
-  const bool wide = accel == AccelKind::cwbvh;
-  tree.first_top_node = static_cast<std::uint32_t>(wide ? tree.cwbvh.size() : tree.bvh2.size());
+  tree.first_top_node = 0;
+  tree.for_each_nodes(
+      [&](const auto& nodes) { tree.first_top_node += static_cast<std::uint32_t>(nodes.size()); });
   InstanceTree top = build_instance_tree(tree.groups, instances, accel, tree.first_top_node);
-  tree.cwbvh.insert(tree.cwbvh.end(), top.cwbvh.begin(), top.cwbvh.end());
-  tree.bvh2.insert(tree.bvh2.end(), top.bvh2.begin(), top.bvh2.end());
+  tree.for_each_nodes(top, [&](auto& all, const auto& nodes) {
+    all.insert(all.end(), nodes.begin(), nodes.end());
+    if (!nodes.empty()) tree.root = tree.first_top_node;
+  });
   tree.instances = std::move(top.instances);
-  if (!top.cwbvh.empty() || !top.bvh2.empty()) tree.root = tree.first_top_node;
 }
 
 }  // namespace pt

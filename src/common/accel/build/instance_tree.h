@@ -17,10 +17,8 @@ void check_instances(std::span<const Instance> instances);
 std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances);
 
 /// The upper level by itself.
-struct InstanceTree {
-  std::vector<Bvh2Node> bvh2;  ///< one of the two, or none; the root comes first
-  std::vector<CwbvhNode> cwbvh;
-  std::vector<InstanceRecord> instances;  ///< in the order of the leaves
+struct InstanceTree : TreeNodes<NodesVector> {  ///< the root comes first
+  std::vector<InstanceRecord> instances;        ///< in the order of the leaves
 };
 
 /// Over the instances of `groups`, which ascend, and group 0 itself if it is among them. Its nodes

@@ -10,6 +10,9 @@
 
 namespace pt {
 
+template <class Node>
+using NodesVector = std::vector<Node>;
+
 /// Where a group's tree lies in the arrays. Without instances there is one, of group 0.
 struct GroupTree {
   std::uint32_t group = 0;
@@ -20,9 +23,7 @@ struct GroupTree {
 };
 
 /// The arrays behind a TriangleTree. Without triangles all are empty, and every ray misses.
-struct TriangleTreeData {
-  std::vector<Bvh2Node> bvh2;  ///< one of the two, or none where every triangle is tested
-  std::vector<CwbvhNode> cwbvh;
+struct TriangleTreeData : TreeNodes<NodesVector> {
   std::vector<Triangle> triangles;  ///< by slot
   /// In the order of the top tree's leaves. The number of one is its place among the scene's; the
   /// meshes of group 0, if there are any, get the number that comes after the last.
@@ -38,8 +39,9 @@ struct TriangleTreeData {
   /// them.
   template <class Function>
   void for_each_array(TriangleTree& tree, Function&& function) const {
-    function(tree.bvh2, bvh2, "acceleration structure");
-    function(tree.cwbvh, cwbvh, "acceleration structure");
+    for_each_nodes(tree, [&](const auto& nodes, auto& pointer) {
+      function(pointer, nodes, "acceleration structure");
+    });
     function(tree.triangles, triangles, "triangles");
     function(tree.instances, instances, "instances");
   }

@@ -23,26 +23,36 @@ Roughness read_roughness(Context& context, const Object& bsdf);
 /// Diffuse on the side of the normal only.
 Surface diffuse_of(const ColorTexture& reflectance);
 
-Surface read_diffuse(Context& context, const Object& bsdf);
-Surface read_rough_diffuse(Context& context, const Object& bsdf);
-Surface read_plastic(Context& context, const Object& bsdf);
-Surface read_rough_plastic(Context& context, const Object& bsdf);
-Surface read_phong(Context& context, const Object& bsdf);
-Surface read_ward(Context& context, const Object& bsdf);
-Surface read_dielectric(Context& context, const Object& bsdf);
-Surface read_rough_dielectric(Context& context, const Object& bsdf);
-Surface read_thin_dielectric(Context& context, const Object& bsdf);
-Surface read_conductor(Context& context, const Object& bsdf);
-Surface read_rough_conductor(Context& context, const Object& bsdf);
-Surface read_principled(Context& context, const Object& bsdf);
-Surface read_principled_thin(Context& context, const Object& bsdf);
-Surface read_two_sided(Context& context, const Object& bsdf);
-Surface read_mask(Context& context, const Object& bsdf);
-Surface read_normal_map(Context& context, const Object& bsdf);
-Surface read_bump_map(Context& context, const Object& bsdf);
-Surface read_blend(Context& context, const Object& bsdf);
-Surface read_mixture(Context& context, const Object& bsdf);
-Surface read_wrapper(Context& context, const Object& bsdf);
-Surface read_null(Context& context, const Object& bsdf);
+// The types of bsdfs and who reads them.
+#define PT_MITSUBA_SURFACES(READER)                \
+  READER("diffuse", read_diffuse)                  \
+  READER("lambertian", read_diffuse)               \
+  READER("roughdiffuse", read_rough_diffuse)       \
+  READER("plastic", read_plastic)                  \
+  READER("roughplastic", read_rough_plastic)       \
+  READER("phong", read_phong)                      \
+  READER("ward", read_ward)                        \
+  READER("dielectric", read_dielectric)            \
+  READER("roughdielectric", read_rough_dielectric) \
+  READER("thindielectric", read_thin_dielectric)   \
+  READER("conductor", read_conductor)              \
+  READER("roughconductor", read_rough_conductor)   \
+  READER("principled", read_principled)            \
+  READER("principledthin", read_principled_thin)   \
+  READER("twosided", read_two_sided)               \
+  READER("mask", read_mask)                        \
+  READER("opacity", read_mask)                     \
+  READER("bumpmap", read_bump_map)                 \
+  READER("bump", read_bump_map)                    \
+  READER("normalmap", read_normal_map)             \
+  READER("coating", read_wrapper)                  \
+  READER("roughcoating", read_wrapper)             \
+  READER("blendbsdf", read_blend)                  \
+  READER("mixturebsdf", read_mixture)              \
+  READER("null", read_null)
+
+#define PT_MITSUBA_SURFACE(name, read) Surface read(Context& context, const Object& bsdf);
+PT_MITSUBA_SURFACES(PT_MITSUBA_SURFACE)
+#undef PT_MITSUBA_SURFACE
 
 }  // namespace pt::mitsuba

@@ -12,33 +12,9 @@ namespace {
 using Reader = Surface (*)(Context&, const Object&);
 
 const std::map<std::string_view, Reader>& readers() {
-  static const std::map<std::string_view, Reader> table = {
-      {"diffuse", read_diffuse},
-      {"lambertian", read_diffuse},
-      {"roughdiffuse", read_rough_diffuse},
-      {"plastic", read_plastic},
-      {"roughplastic", read_rough_plastic},
-      {"phong", read_phong},
-      {"ward", read_ward},
-      {"dielectric", read_dielectric},
-      {"roughdielectric", read_rough_dielectric},
-      {"thindielectric", read_thin_dielectric},
-      {"conductor", read_conductor},
-      {"roughconductor", read_rough_conductor},
-      {"principled", read_principled},
-      {"principledthin", read_principled_thin},
-      {"twosided", read_two_sided},
-      {"mask", read_mask},
-      {"opacity", read_mask},
-      {"bumpmap", read_bump_map},
-      {"bump", read_bump_map},
-      {"normalmap", read_normal_map},
-      {"coating", read_wrapper},
-      {"roughcoating", read_wrapper},
-      {"blendbsdf", read_blend},
-      {"mixturebsdf", read_mixture},
-      {"null", read_null},
-  };
+#define PT_MITSUBA_SURFACE(name, read) {name, read},
+  static const std::map<std::string_view, Reader> table = {PT_MITSUBA_SURFACES(PT_MITSUBA_SURFACE)};
+#undef PT_MITSUBA_SURFACE
   return table;
 }
 

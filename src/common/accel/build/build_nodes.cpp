@@ -1,0 +1,36 @@
+#include "common/accel/build/build_nodes.h"
+
+#include "common/accel/build/collapse_cwbvh.h"
+#include "common/accel/build/merge_leaves.h"
+
+namespace pt {
+
+std::uint32_t BuiltNodes::node_count() const {
+  std::size_t count = 0;
+  for_each_nodes([&](const auto& nodes) { count += nodes.size(); });
+  return static_cast<std::uint32_t>(count);
+}
+
+bool has_nodes(AccelKind accel) { return accel == AccelKind::bvh2 || accel == AccelKind::cwbvh; }
+
+BuiltNodes build_nodes(BinaryTree&& binary, AccelKind accel, const TreeCosts& costs) {
+  BuiltNodes built;
+  if (accel == AccelKind::bvh2) {
+    Bvh2 tree = merge_leaves(std::move(binary), costs);
+    built.bvh2 = std::move(tree.nodes), built.order = std::move(tree.order);
+  } else {
+    Cwbvh tree = collapse_cwbvh(binary, costs);
+    built.cwbvh = std::move(tree.nodes), built.order = std::move(tree.order);
+  }
+  return built;
+}
+
+double sah_cost(const TreeNodes<NodesVector>& nodes, const TreeCosts& costs) {
+  double cost = 0;
+  nodes.for_each_nodes([&](const auto& tree) {
+    if (!tree.empty()) cost = measure_tree(std::span(tree), 0).sah_cost(costs.triangle);
+  });
+  return cost;
+}
+
+}  // namespace pt
