@@ -8,10 +8,10 @@ of 4x4 leaves half of its warp empty. Needs a GPU.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from kernels import tracing_kernel
-from sentences import against, best_of, idle_share, in_groups, show
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.kernels import tracing_kernel
+from lib.sentences import against, best_of, idle_share, in_groups, show
 
 IMAGES = [(600, 300, 50), (2400, 1200, 50)]
 EDGES = [4, 8, 16, 32, 64]

@@ -6,10 +6,10 @@ mode, and the table to compare two devices by: `scripts/report results/a results
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from scene_files import add_scene_files, scene_files, short_name
-from sentences import against, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.scene_files import add_scene_files, scene_files, short_name
+from lib.sentences import against, in_groups
 
 MODES = ["megakernel", "wavefront"]
 # scene, width, height, samples, depth: the paper's images, then scenes of quads and triangles

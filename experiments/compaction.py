@@ -12,10 +12,10 @@ from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
-import harness
-from harness import Experiment, HarnessError, Plot
-from journal import Journal
-from program import failure_of, version_of
+from lib import harness
+from lib.harness import Experiment, HarnessError, Plot
+from lib.journal import Journal
+from lib.program import failure_of, version_of
 
 ITEMS = ["64K", "1M", "4M", "16M", "64M"]
 CPU_ITEMS = ["64K", "1M", "4M", "16M"]

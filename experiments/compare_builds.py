@@ -13,10 +13,10 @@ import sys
 from dataclasses import replace
 from statistics import median
 
-import harness
-from harness import Configuration, Experiment
-from image_check import with_options
-from intervals import bootstrap, in_rounds
+from lib import harness
+from lib.harness import Configuration, Experiment
+from lib.image_check import with_options
+from lib.intervals import bootstrap, in_rounds
 
 BUILDS = ["A", "B"]
 SLOWER = 1.02  # an interval wholly above it is a loss

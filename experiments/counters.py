@@ -13,10 +13,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import harness
-import program as ptexp
-from harness import Configuration, Experiment, HarnessError
-from provenance import scene_hash
+from lib import harness
+from lib import program as ptexp
+from lib.harness import Configuration, Experiment, HarnessError
+from lib.provenance import scene_hash
 
 SCENES = ["cornell", "dial:8:0:closed", "dial:8:1:closed", "statue:1M"]
 VARIANTS = {

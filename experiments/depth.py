@@ -6,9 +6,9 @@ room, where all of them go on. `alive` is the share of the paths that trace ray 
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from sentences import against, in_groups, show, time_of
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.sentences import against, in_groups, show, time_of
 
 DEPTHS, QUICK_DEPTHS = [1, 2, 4, 8, 16, 50], [1, 4]
 MODES = ["megakernel", "wavefront"]

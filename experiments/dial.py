@@ -13,9 +13,9 @@ First, images of all variants are compared: they must be equal bit for bit.
 import math
 import sys
 
-import harness
-from harness import Configuration, Experiment, HarnessError, Plot
-from image_check import with_options
+from lib import harness
+from lib.harness import Configuration, Experiment, HarnessError, Plot
+from lib.image_check import with_options
 
 FIGURES = ["open", "closed"]
 MATERIALS = [1, 2, 4, 8, 16, 32]

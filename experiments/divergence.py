@@ -13,9 +13,9 @@ import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
-import harness
-from harness import Configuration, Experiment, HarnessError, Plot
-from scene_files import add_scene_files, scene_files, short_name
+from lib import harness
+from lib.harness import Configuration, Experiment, HarnessError, Plot
+from lib.scene_files import add_scene_files, scene_files, short_name
 
 BUILT_IN = ["dial:16:0:closed", "statue:1M"]
 VARIANTS = {

@@ -10,10 +10,10 @@ import shlex
 import shutil
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from lamp_scene import write_lamp_scene
-from sentences import against, growth, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.lamp_scene import write_lamp_scene
+from lib.sentences import against, growth, in_groups
 
 TREES = {"megakernel": "--accel bvh2", "wavefront": "--accel cwbvh"}
 SPP = [1, 8, 64, 512]

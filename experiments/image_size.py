@@ -8,9 +8,9 @@ program: `image_ms_mean_of_3` is that of the first repeats of three rounds, a pr
 import sys
 from statistics import mean
 
-import harness
-from harness import Configuration, Experiment, Plot
-from intervals import in_rounds
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.intervals import in_rounds
 
 SIZES = [(600, 300), (1200, 600), (2400, 1200)]
 SPP = 100

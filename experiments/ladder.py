@@ -9,12 +9,12 @@ binary tree up to there.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from image_check import with_options
-from images import images_of
-from scene_files import add_scene_files
-from sentences import against, in_groups, time_of
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.image_check import with_options
+from lib.images import images_of
+from lib.scene_files import add_scene_files
+from lib.sentences import against, in_groups, time_of
 
 CUDA, TRIANGLES, SPHERES = "a GPU", "triangles", "spheres"
 # (rung, what changes against the one before, what it needs)

@@ -25,13 +25,13 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from statistics import median
 
-import harness
-from errors import MEASURES, REFERENCE_SEED, errors
-from harness import Configuration, Experiment, Plot
-from image_check import with_options
-from intervals import bootstrap, median_interval
-from scene_files import add_scene_files, scene_files, short_name
-from sentences import in_groups, interval, listed, show, with_interval
+from lib import harness
+from lib.errors import MEASURES, REFERENCE_SEED, errors
+from lib.harness import Configuration, Experiment, Plot
+from lib.image_check import with_options
+from lib.intervals import bootstrap, median_interval
+from lib.scene_files import add_scene_files, scene_files, short_name
+from lib.sentences import in_groups, interval, listed, show, with_interval
 
 DEPTHS = {"ajar": 12, "caustic": 10, "cornell": 8}
 FILE_DEPTH = 8

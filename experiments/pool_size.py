@@ -6,11 +6,11 @@ the default; there nothing is to be regenerated.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from images import images_of
-from scene_files import add_scene_files
-from sentences import against, best_of, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.images import images_of
+from lib.scene_files import add_scene_files
+from lib.sentences import against, best_of, in_groups
 
 SIZES = {"64K": 1 << 16, "256K": 1 << 18, "1M": 1 << 20, "4M": 1 << 22, "8M": 1 << 23}
 QUICK_SIZES = {"64": 64, "256": 256}

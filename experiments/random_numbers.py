@@ -10,10 +10,10 @@ times its time, divided by the row's: above 1 the row needs less time for an err
 """
 import sys
 
-import harness
-from errors import KeptImages
-from harness import Configuration, Experiment, Plot
-from sentences import against, in_groups, show, time_of
+from lib import harness
+from lib.errors import KeptImages
+from lib.harness import Configuration, Experiment, Plot
+from lib.sentences import against, in_groups, show, time_of
 
 MODES = ["megakernel", "wavefront"]
 PHILOX, XORWOW = "Philox", "XORWOW"

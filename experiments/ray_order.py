@@ -10,11 +10,11 @@ import sys
 from functools import partial
 from pathlib import Path
 
-import harness
-from harness import Experiment, Plot
+from lib import harness
+from lib.harness import Experiment, Plot
 from ray_sets import TERRAIN_CAMERA, name_of
-from sentences import change, in_groups, interval, show
-from traced_sets import RaySet, add_arguments, run, trace_command
+from lib.sentences import change, in_groups, interval, show
+from lib.traced_sets import RaySet, add_arguments, run, trace_command
 
 AS_MADE = "as made"
 ORDERS = {AS_MADE: "", "shuffled": "shuffled", "by origin": "origin",

@@ -8,9 +8,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
-import harness
-from harness import Experiment
-from traced_sets import RaySet, add_arguments, run, trace_command
+from lib import harness
+from lib.harness import Experiment
+from lib.traced_sets import RaySet, add_arguments, run, trace_command
 
 # What a built-in scene is looked at from; files have cameras of their own.
 TERRAIN_CAMERA = "--look-from -490,175,490 --look-at 0,10,0 --vfov 38"

@@ -12,10 +12,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import harness
-from errors import KeptImages
-from harness import Configuration, Experiment, Plot, Refused
-from scene_files import short_name
+from lib import harness
+from lib.errors import KeptImages
+from lib.harness import Configuration, Experiment, Plot, Refused
+from lib.scene_files import short_name
 
 BUILT_IN = ["cornell"]
 SHARED = harness.ROOT.parent / "shared" / "scenes"

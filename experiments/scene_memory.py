@@ -7,10 +7,10 @@ rows of the others are refused.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from kernels import tracing_kernel
-from sentences import against, best_of, in_groups, listed
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.kernels import tracing_kernel
+from lib.sentences import against, best_of, in_groups, listed
 
 MEMORIES = ["global", "constant", "shared"]
 # (mode, structure, numbers of spheres); ptexp's kernels take 1,024 as a constant, and a block of an

@@ -6,11 +6,11 @@ be named as further arguments of --scenes.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from promises import judge_best
-from scene_files import add_scene_files, scene_files, short_name
-from sentences import against, fastest, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.promises import judge_best
+from lib.scene_files import add_scene_files, scene_files, short_name
+from lib.sentences import against, fastest, in_groups
 
 # scene, size, samples, and the promise in 10^6 samples/s that the better mode keeps
 BUILT_IN = [("cornell", 1024, 64, 1000), ("statue:1M", 1024, 32, 600), ("boxes", 1024, 32, None),

@@ -6,11 +6,11 @@ further arguments of --scenes.
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from promises import judge_best
-from scene_files import add_scene_files, scene_files, short_name
-from sentences import against, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.promises import judge_best
+from lib.scene_files import add_scene_files, scene_files, short_name
+from lib.sentences import against, in_groups
 
 # scene, samples, and the promise in 10^6 samples/s that the best way keeps on an H200
 BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed", 16, None)]

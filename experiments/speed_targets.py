@@ -6,8 +6,8 @@ linearly with pixels x samples and that the wavefront's waves do not grow with s
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
 
 MODES = ["megakernel", "wavefront"]
 

@@ -7,10 +7,10 @@ has the sizes of the pool and regeneration.)
 """
 import sys
 
-import harness
-from harness import Configuration, Experiment, Plot
-from image_check import with_options
-from sentences import against, in_groups
+from lib import harness
+from lib.harness import Configuration, Experiment, Plot
+from lib.image_check import with_options
+from lib.sentences import against, in_groups
 
 BOTH = [("scene-memory", ["global", "shared", "constant"]), ("branching", ["reduced"]),
         ("rng", ["xorwow"])]

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Writes src/common/light/sunsky_data.cpp.
+"""Writes src/common/light/sky/sunsky_data.cpp.
 
 The sky is the RGB data set of Hosek and Wilkie (2012, 'An Analytic Model for Full Spectral Sky-Dome
 Radiance'), which the Python package `mitsuba` brings along with its licence. The sun's irradiance
 is measured: the radiance that the package's `sunsky` plugin shows in the sun's middle, times the
 sun's solid angle.
 
-Usage: scripts/bake_sunsky.py > src/common/light/sunsky_data.cpp; clang-format-14 -i that file
+Usage: scripts/bake_sunsky.py > src/common/light/sky/sunsky_data.cpp; clang-format-14 -i that file
 """
 import struct
 import textwrap
@@ -73,7 +73,7 @@ def main():
           "this\n// notice:\n//")
     for line in licence:
         print(wrap("// " + line, "// ").rstrip() or "//")
-    print('#include "common/light/sunsky_data.h"\n\nnamespace pt {\n')
+    print('#include "common/light/sky/sunsky_data.h"\n\nnamespace pt {\n')
     print("// clang-format off")
     print(array("sky_shapes", "10 * 2 * 6 * 3 * 9", fields["sky_params_rgb"]))
     print(array("sky_radiances", "10 * 2 * 6 * 3", fields["sky_rad_rgb"] / CIE_Y))

@@ -20,10 +20,10 @@ SHAPES = ["geometry", *SAMPLING]
 SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
 HOST = ["options", "error"]
 BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
-SCENE = ["loaders", "builtin", "scene", "image", "plan", *BUILDERS]
-PHYSICS = ["transport", "scene", *SCENE_PARTS]
-COMMON = ["rays", "device", "build_cuda", "cuda_memory", "render", "film", "trace_cuda", "transport", *SCENE]
-SCHEDULES = ["serial", "megakernel", "wavefront", "metropolis"]
+SCENE = ["loaders", "builtin", "prepare", "scene", "plan", "image", *BUILDERS]
+PHYSICS = ["transport", "prepare", "scene", *SCENE_PARTS]
+COMMON = ["rays", "device", "build_cuda", "cuda", "render", "film", "trace_cuda", "transport", *SCENE]
+SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
     # The program: commands, the command line, reports.
@@ -31,45 +31,41 @@ LAYERS = [
     # Schedules. None includes another one.
     *[(name, [name + "/*"], COMMON) for name in SCHEDULES],
     # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
-    ("rays", ["common/rays/*"], ["build_cuda", "cuda_memory", "render", "trace_cuda", "transport", *SCENE]),
+    ("rays", ["common/rays/*"], ["build_cuda", "cuda", "render", "trace_cuda", "transport", *SCENE]),
     # What runs a schedule on a device.
-    ("cuda_memory", ["common/device/cuda_check.cuh", "common/device/cuda_event.cuh",
-                     "common/device/cuda_memory*"], HOST),
-    ("device", ["common/device/*"], ["build_cuda", "cuda_memory", "render", "film", "transport", *SCENE]),
-    # Plain data that the user chooses and that is measured; errors and build facts.
-    ("options", ["common/render/options.h", "common/render/option_names.h",
-                 "common/render/stage_info.h", "common/render/compaction_info.h",
-                 "common/render/stats.h", "common/render/hardware_counters.*"], ["choices"]),
-    ("choices", ["common/sampling/choices.h", "common/accel/accel.h"], ["platform"]),
-    ("error", ["common/error.h", "common/error_context.h", "common/memory_error.h",
-               "common/host_memory.*", "common/build_info.h"], []),
+    ("device", ["common/device/*"], ["build_cuda", "cuda", "render", "film", "transport", *SCENE]),
     # Around the physics: renderers and batches; what becomes of the samples.
     ("render", ["common/render/*"], ["film", "image", "plan", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
-    # Scenes in files and in code make scene data; the scene itself is data and a view of it.
-    ("loaders", ["common/scene/load_*", "common/scene/gltf/*", "common/scene/mitsuba/*",
-                 "common/scene/files/*"], ["builtin", "scene", "image", *SCENE_PARTS, *HOST]),
-    ("builtin", ["common/scene/builtin/*"], ["scene", "plan", *BUILDERS]),
-    ("scene", ["common/scene/*"], [*BUILDERS, "image", "plan"]),
+    # Scenes in files and in code make scene data, which is prepared for tracing as the plan says.
+    ("loaders", ["common/scene/load/*"], ["builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
+    ("builtin", ["common/scene/builtin/*"], ["prepare", "scene", *BUILDERS]),
+    ("prepare", ["common/scene/prepare/*"], ["scene", "plan", "image", *BUILDERS]),
+    ("scene", ["common/scene/data/*"], ["plan", "image", *BUILDERS]),
     # What options leave open is decided here, from facts of the scene and the device.
     ("plan", ["common/plan/*"], BUILDERS),
     ("image", ["common/image/*"], HOST),
     ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     # Acceleration structures: what rays pass through, how it is built, and warps that persist.
-    ("build_cuda", ["common/accel/build_cuda/*"], ["cuda_memory", "build", *SCENE_PARTS, *HOST]),
+    ("build_cuda", ["common/accel/build_cuda/*"], ["cuda", "build", *SCENE_PARTS, *HOST]),
     ("trace_cuda", ["common/accel/trace_cuda/*"], ["accel", *SHAPES]),
     ("embree", ["common/accel/embree/*"], ["build", "accel", *SHAPES, *HOST]),
     ("build", ["common/accel/build/*"], ["accel", *SHAPES, *HOST]),
+    ("choices", ["common/options/choices.h", "common/accel/accel.h"], ["platform"]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], [*MATHS, "error"]),
     ("math", ["common/math/*"], PLAIN),
-    ("platform", ["common/half_float.h", "common/lane_counter.h", "common/platform.h",
-                  "common/platform_cpu.h", "common/type_list.h"], []),
+    # Calls of CUDA and its memory.
+    ("cuda", ["common/cuda/*"], HOST),
+    # Plain data that the user chooses and that is measured.
+    ("options", ["common/options/*"], ["choices"]),
+    ("error", ["common/error/*"], []),
+    ("platform", ["common/platform/*"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
 MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]
@@ -82,7 +78,7 @@ CUDA_HEADER = re.compile(
 CUB_HEADER = re.compile(r"(cub|thrust)/")
 CUDA_FILES = ["*.cu", "*.cuh", "*_cuda.*"]
 CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_cuda/*.cu"]
-PLATFORM = "common/platform.h"
+PLATFORM = "common/platform/platform.h"
 PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GLM needs them
 
 # Who may be compiled differently with and without CUDA.

@@ -105,7 +105,7 @@ def main():
     print("""// Made by scripts/fit_microfacet_loss.py: the numbers of microfacet_loss.h.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -11,9 +11,9 @@
 #include "app/options/command_line.h"
 #include "app/render_command.h"
 #include "app/standard_output.h"
-#include "common/build_info.h"
 #include "common/device/devices.h"
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
+#include "common/platform/build_info.h"
 #include "common/scene/builtin/builtin_scenes.h"
 
 namespace pt {

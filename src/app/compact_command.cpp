@@ -11,7 +11,7 @@
 #include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
 #include "common/device/devices.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

@@ -5,11 +5,11 @@
 #include <numeric>
 #include <vector>
 
-#include "common/error.h"
+#include "common/error/error.h"
+#include "common/image/codecs/image_io.h"
 #include "common/image/compare.h"
 #include "common/image/difference_image.h"
-#include "common/image/flip.h"
-#include "common/image/image_io.h"
+#include "common/image/flip/flip.h"
 
 namespace pt {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/load_scene.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "megakernel/megakernel.h"
 #include "serial/serial.h"
 #include "wavefront/wavefront.h"

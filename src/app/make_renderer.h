@@ -7,7 +7,7 @@
 
 #include "common/device/devices.h"
 #include "common/render/renderer.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

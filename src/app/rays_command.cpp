@@ -3,12 +3,12 @@
 #include "app/options/option_values.h"
 #include "app/trace_command.h"
 #include "app/trace_scene.h"
-#include "common/error.h"
-#include "common/host_memory.h"
+#include "common/error/error.h"
+#include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
-#include "common/scene/frame_scene.h"
-#include "common/scene/prepare_camera.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/data/frame_scene.h"
+#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {

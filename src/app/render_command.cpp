@@ -15,13 +15,13 @@
 #include "app/report/report.h"
 #include "app/standard_output.h"
 #include "common/device/devices.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/atomic_file.h"
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "common/image/measure_exposure.h"
+#include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
-#include "common/render/option_names.h"
-#include "common/scene/scene_facts.h"
+#include "common/scene/data/scene_facts.h"
 
 namespace pt {
 namespace {

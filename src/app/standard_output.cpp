@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 

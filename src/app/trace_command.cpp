@@ -10,7 +10,7 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/check_builder.h"
 #include "common/device/devices.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/atomic_file.h"
 #include "common/rays/compare_hits.h"
 

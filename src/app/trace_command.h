@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "app/options/subcommand_option.h"
+#include "common/options/options.h"
 #include "common/rays/generate_rays.h"
 #include "common/rays/trace_rays.h"
-#include "common/render/options.h"
 
 namespace pt {
 

@@ -4,9 +4,9 @@
 
 #include "app/make_renderer.h"
 #include "common/device/devices.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/rays/ray_file.h"
-#include "common/scene/convert_quads.h"
+#include "common/scene/prepare/convert_quads.h"
 
 namespace pt {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

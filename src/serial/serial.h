@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "common/render/renderer.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -1,5 +1,5 @@
 // Compaction: every stage finds the slots that wait for it in a queue. The ways to fill the queues
-// (common/render/compaction_info.h lists them):
+// (common/options/compaction_info.h lists them):
 //
 //   cub     stages write tags; a pass over all tags gathers each queue, in ascending order of slots
 //           (CUB's DeviceSelect or, for two, DevicePartition on CUDA; a parallel scan on the CPU)
@@ -12,7 +12,7 @@
 // count is right; nothing else is written.
 #pragma once
 
-#include "common/render/compaction_info.h"
+#include "common/options/compaction_info.h"
 #include "wavefront/path_pool.h"
 
 namespace pt {

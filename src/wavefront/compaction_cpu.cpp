@@ -6,7 +6,7 @@
 #include <array>
 #include <set>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "wavefront/compaction.h"
 
 namespace pt {

@@ -5,9 +5,9 @@
 #include <cub/device/device_partition.cuh>
 #include <cub/device/device_select.cuh>
 
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 #include "common/device/stage_stamp.cuh"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/scan_tags.cuh"
 

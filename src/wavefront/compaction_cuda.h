@@ -3,7 +3,7 @@
 
 #include <cuda_runtime_api.h>
 
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "common/device/stage_clock.h"
 #include "wavefront/compaction.h"
 #include "wavefront/tile_state.h"

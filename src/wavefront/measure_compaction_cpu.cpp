@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "common/device/cpu_renderer.h"
-#include "common/host_memory.h"
+#include "common/error/host_memory.h"
 #include "wavefront/measure_compaction.h"
 #include "wavefront/run_stage_cpu.h"
 

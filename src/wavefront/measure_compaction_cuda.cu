@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "common/device/cuda_event.cuh"
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_event.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "wavefront/compaction_cuda.h"
 #include "wavefront/measure_compaction.h"
 #include "wavefront/stage_kernel.cuh"

@@ -9,8 +9,8 @@
 #include <cstddef>
 
 #include "common/film/film.h"
-#include "common/render/options.h"
-#include "common/render/stage_info.h"
+#include "common/options/options.h"
+#include "common/options/stage_info.h"
 #include "common/transport/path_records.h"
 
 namespace pt {

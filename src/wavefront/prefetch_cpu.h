@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/sampling/alias_table.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {

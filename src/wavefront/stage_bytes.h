@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/film/film.h"
-#include "common/render/hardware_counters.h"
+#include "common/options/hardware_counters.h"
 #include "wavefront/path_pool.h"
 #include "wavefront/wave_counters.h"
 

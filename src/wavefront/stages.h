@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/film/markov_chains.h"
-#include "common/render/options.h"
+#include "common/options/options.h"
 #include "common/transport/follow_path.h"
 #include "wavefront/path_pool.h"
 #include "wavefront/wave_counters.h"

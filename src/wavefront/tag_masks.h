@@ -1,8 +1,8 @@
 // Many tags compared at once: a bit for each of 32 neighbouring slots.
 #pragma once
 
-#include "common/platform.h"
-#include "common/render/stage_info.h"
+#include "common/options/stage_info.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/material/material.h"
-#include "common/render/stage_info.h"
+#include "common/options/stage_info.h"
 
 namespace pt {
 

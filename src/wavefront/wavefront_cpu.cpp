@@ -8,11 +8,11 @@
 #include <atomic>
 #include <numeric>
 
-#include "common/accel/traverse_brute_block.h"
+#include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/device/cpu_renderer.h"
-#include "common/host_memory.h"
-#include "common/render/option_names.h"
-#include "common/scene/prepare_materials.h"
+#include "common/error/host_memory.h"
+#include "common/options/option_names.h"
+#include "common/scene/prepare/prepare_materials.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/shade_block_cpu.h"

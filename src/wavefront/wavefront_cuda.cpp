@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "common/device/profiler_range.cuh"
-#include "common/error.h"
-#include "common/scene/prepare_materials.h"
+#include "common/error/error.h"
+#include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {

@@ -2,7 +2,7 @@
 // number.
 #include <gtest/gtest.h>
 
-#include "common/accel/build/binary_tree.h"
+#include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
 #include "primitive_scenes.h"

@@ -1,8 +1,8 @@
 // What lanes test at once is what the plain loops find one ray after the other, bit for bit.
 #include <gtest/gtest.h>
 
+#include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/accel/traverse_brute.h"
-#include "common/accel/traverse_brute_block.h"
 #include "nasty_rays.h"
 #include "primitive_scenes.h"
 #include "tree_kinds.h"

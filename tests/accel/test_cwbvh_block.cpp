@@ -1,7 +1,7 @@
 // Rays that take turns on their ways through the wide tree find what each finds alone, bit for bit.
 #include <gtest/gtest.h>
 
-#include "common/accel/traverse_cwbvh_block.h"
+#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "nasty_rays.h"
 #include "tree_kinds.h"

@@ -7,7 +7,7 @@
 #include "emulated_gpu.h"
 #include "common/accel/trace_cuda/cwbvh_step.cuh"
 // clang-format on
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
 #include "hard_hits.h"
 #include "tree_kinds.h"
 

@@ -8,7 +8,7 @@
 
 #include "app/options/command_line.h"
 #include "app/options/option_list.h"
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
 #include "temp_folder.h"
 
 namespace pt {

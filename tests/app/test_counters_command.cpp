@@ -5,7 +5,7 @@
 
 #include "app/options/command_line.h"
 #include "app/render_command.h"
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "temp_folder.h"
 
 namespace pt {

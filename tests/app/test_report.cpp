@@ -9,8 +9,8 @@
 #include "app/report/csv_file.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
-#include "common/build_info.h"
-#include "common/lane_counter.h"
+#include "common/platform/build_info.h"
+#include "common/platform/lane_counter.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -3,7 +3,7 @@
 
 #include "app/options/command_line.h"
 #include "app/trace_command.h"
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
 #include "common/scene/builtin/generate_terrain.h"
 #include "temp_folder.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "common/host_memory.h"
+#include "common/error/host_memory.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -6,9 +6,9 @@
 
 #include <functional>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/film/aov.h"
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "film_cases.h"
 #include "temp_folder.h"
 

@@ -1,6 +1,6 @@
 // A crop window has the pixels of the whole image, bit for bit, and no others.
 #include "app/options/check_options.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "film_cases.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // A film of some pixels or of some samples is a part of the image's, bit for bit.
 #include <functional>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/render/batches.h"
 #include "film_cases.h"
 

@@ -1,7 +1,7 @@
 // What a film says of its samples: by hand, sample by sample, and after it was continued.
 #include "common/film/pixel_statistics.h"
 #include "common/sampling/random.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "film_cases.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // What a loader must not get wrong, whatever the file says.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 #include "fuzz.h"
 
 namespace pt {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/geometry/mesh.h"
 
 namespace pt {

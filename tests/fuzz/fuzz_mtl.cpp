@@ -1,5 +1,5 @@
-#include "common/error_context.h"
-#include "common/scene/files/obj_material.h"
+#include "common/error/error_context.h"
+#include "common/scene/load/files/meshes/obj_material.h"
 #include "fuzz.h"
 
 // Instead of the library's own object code, so that the fuzzer sees into it.

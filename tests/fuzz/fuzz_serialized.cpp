@@ -1,4 +1,4 @@
-#include "common/scene/files/mesh_files.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "app/compare_command.h"
+#include "common/image/codecs/image_io.h"
 #include "common/image/compare.h"
-#include "common/image/image_io.h"
 #include "temp_folder.h"
 
 namespace pt {

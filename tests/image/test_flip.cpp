@@ -6,9 +6,9 @@
 #include <functional>
 #include <numeric>
 
+#include "common/image/codecs/image_io.h"
 #include "common/image/difference_image.h"
-#include "common/image/flip.h"
-#include "common/image/image_io.h"
+#include "common/image/flip/flip.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // Damaged files of every format: an Error or a valid image, never a crash.
 #include <gtest/gtest.h>
 
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "temp_folder.h"
 
 namespace pt {

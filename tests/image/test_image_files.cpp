@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "common/image/image_io.h"
-#include "common/scene/files/texture_store.h"
+#include "common/image/codecs/image_io.h"
+#include "common/scene/load/files/images/texture_store.h"
 #include "common/texture/sample_texture.h"
 #include "mesh_bytes.h"
 #include "temp_folder.h"

@@ -9,8 +9,8 @@
 
 #include <cmath>
 
-#include "common/image/image_io.h"
-#include "common/image/png_session.h"
+#include "common/image/codecs/image_io.h"
+#include "common/image/codecs/png_session.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "temp_folder.h"
 
 namespace pt {

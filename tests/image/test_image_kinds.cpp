@@ -4,7 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include "common/scene/files/image_files.h"
+#include "common/scene/load/files/images/image_files.h"
 #include "mesh_bytes.h"
 #include "temp_folder.h"
 

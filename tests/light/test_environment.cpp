@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "common/light/environment.h"
+#include "common/light/sky/environment.h"
 #include "statistics.h"
 #include "temp_folder.h"
 

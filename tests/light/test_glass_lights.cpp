@@ -1,5 +1,5 @@
 // Radiance inside of glass is eta^2 times that outside: lamps, cameras and skies on either side.
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/path_limits.h"
 #include "render_serial.h"
 #include "statistics.h"

@@ -3,7 +3,7 @@
 // compared with a sum over directions that knows neither.
 #include <functional>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "direct_light.h"
 #include "render_serial.h"
 

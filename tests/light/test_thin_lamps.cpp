@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/accel/embree/embree_tree.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/shade_surface.h"
 #include "statistics.h"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "bsdf_integral.h"
-#include "common/scene/mitsuba/conductors.h"
-#include "common/scene/prepare_materials.h"
+#include "common/scene/load/mitsuba/surfaces/conductors.h"
+#include "common/scene/prepare/prepare_materials.h"
 #include "microsurface_walk.h"
 
 namespace pt {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "bsdf_cases.h"
-#include "common/error.h"
-#include "common/scene/prepare_materials.h"
+#include "common/error/error.h"
+#include "common/scene/prepare/prepare_materials.h"
 #include "common/transport/resolve_material.h"
 #include "nested_scenes.h"
 #include "render_serial.h"

@@ -1,8 +1,8 @@
 // Plastics against Mitsuba 3.9.1 (scalar_rgb): its values of eval() and pdf().
 #include <gtest/gtest.h>
 
-#include "common/scene/plastic_material.h"
-#include "common/scene/rough_boundary.h"
+#include "common/scene/data/plastic_material.h"
+#include "common/scene/data/rough_boundary.h"
 #include "statistics.h"
 
 namespace pt {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 #include "common/sampling/philox.h"
 
 namespace pt {

@@ -1,5 +1,5 @@
 // Every BSDF, with and without masks: all modes of the CPU give one image, bit for bit.
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "masked_room.h"
 #include "material_room.h"
 #include "mode_cases.h"

@@ -1,7 +1,7 @@
 // Every BSDF, with and without masks, and lights of all kinds: on a GPU both modes give one image,
 // bit for bit, and one that is close to the CPU's.
 #include "common/image/compare.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
 #include "lit_room.h"
 #include "masked_room.h"

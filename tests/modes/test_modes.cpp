@@ -7,12 +7,12 @@
 #include <atomic>
 #include <map>
 
-#include "common/accel/traverse_brute_block.h"
+#include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/render/batches.h"
 #include "common/render/dispatch.h"
 #include "common/render/path_limits_of.h"
 #include "common/sampling/random.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/shade_miss.h"
 #include "common/transport/shade_surface.h"

@@ -9,7 +9,7 @@
 
 #include "common/accel/build/check_builder.h"
 #include "common/device/create_world.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/compare.h"
 #include "cuda_test.h"
 #include "mode_cases.h"

@@ -5,7 +5,7 @@
 #include "common/film/develop.h"
 #include "common/render/batches.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/path_limits.h"
 #include "render_serial.h"

@@ -2,7 +2,7 @@
 // choice changes an image's noise alone.
 #include <algorithm>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "lit_room.h"
 #include "mode_cases.h"
 

@@ -4,7 +4,7 @@
 
 #include "common/render/path_limits_of.h"
 #include "common/render/random_source.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
 #include "emulated_gpu.h"  // before device code
 #include "masked_room.h"

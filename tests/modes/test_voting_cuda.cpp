@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "common/error.h"
-#include "common/scene/prepare_scene.h"
+#include "common/error/error.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
 #include "masked_room.h"
 #include "mode_cases.h"

@@ -4,10 +4,10 @@
 #include <map>
 
 #include "app/options/option_list.h"
-#include "common/error.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
-#include "common/render/option_names.h"
-#include "common/scene/prepare_materials.h"
+#include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {

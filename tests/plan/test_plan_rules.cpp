@@ -3,13 +3,13 @@
 
 #include "app/options/option_list.h"
 #include "common/accel/traverse_triangles.h"
-#include "common/error.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 #include "common/plan/plan_rules.h"
-#include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare_materials.h"
-#include "common/scene/prepare_scene.h"
-#include "common/scene/scene_properties.h"
+#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/scene_properties.h"
 
 namespace pt {
 namespace {

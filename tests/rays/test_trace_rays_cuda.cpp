@@ -1,6 +1,6 @@
 // Every way of tracing on the GPU finds what the CPU finds, however the rays lie.
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
 #include "common/scene/builtin/generate_terrain.h"

@@ -1,7 +1,7 @@
 // From run-time choices to kernels: every kind of scene has its own, and one without has an error.
 #include <gtest/gtest.h>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/render/dispatch.h"
 #include "mode_cases.h"
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "common/render/hardware_counters.h"
+#include "common/options/hardware_counters.h"
 
 namespace pt {
 namespace {

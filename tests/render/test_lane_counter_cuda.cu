@@ -1,5 +1,5 @@
 // Lanes that are at a point together, known beforehand: in a kernel that says which are.
-#include "common/lane_counter.h"
+#include "common/platform/lane_counter.h"
 #include "cuda_test.h"
 
 namespace pt {

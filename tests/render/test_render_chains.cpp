@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/render/metropolis.h"
 
 namespace pt {

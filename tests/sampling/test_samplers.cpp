@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
 #include "common/sampling/sampler_source.h"
 #include "statistics.h"
 

@@ -1,9 +1,9 @@
 // The camera against the textbook's formulas in double precision, and the check of its parameters.
 #include <gtest/gtest.h>
 
-#include "common/error.h"
-#include "common/scene/prepare_camera.h"
-#include "common/scene/prepare_scene.h"
+#include "common/error/error.h"
+#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "statistics.h"
 #include "temp_folder.h"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <functional>
 
-#include "common/error.h"
-#include "common/scene/prepare_filter.h"
-#include "common/scene/prepare_scene.h"
+#include "common/error/error.h"
+#include "common/scene/prepare/prepare_filter.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "film_cases.h"
 
 namespace pt {

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "small_scenes.h"
 #include "temp_folder.h"
 

@@ -19,21 +19,24 @@ SOUND = {
     "wavefront/wavefront.h": '#include "common/transport/shade.h"\n',
     "wavefront/compaction_cuda.cu": '#include <cub/cub.cuh>\n'
                                     '#include "common/device/launch.cuh"\n',
-    "common/platform.h": "#ifdef __CUDACC__\n#include <cuda.h>\n#include <cuda_runtime.h>\n#endif\n",
-    "common/error.h": "#include <string>\n",
-    "common/math/vec.h": '#include <glm/glm.hpp>\n#include "common/platform.h"\n',
+    "common/platform/platform.h": "#ifdef __CUDACC__\n#include <cuda.h>\n#include <cuda_runtime.h>\n#endif\n",
+    "common/error/error.h": "#include <string>\n",
+    "common/math/vec.h": '#include <glm/glm.hpp>\n#include "common/platform/platform.h"\n',
     "common/sampling/rng.h": '#include "common/math/vec.h"\n',
     "common/material/bsdf.h": '#include "common/sampling/rng.h"\n',
-    "common/scene/scene.h": '#include "common/material/bsdf.h"\n',
-    "common/transport/shade.h": '#include "common/scene/scene.h"\n',
+    "common/scene/data/scene.h": '#include "common/material/bsdf.h"\n',
+    "common/transport/shade.h": '#include "common/scene/data/scene.h"\n',
     "common/accel/build_cuda/bvh.cu": '#include <cub/cub.cuh>\n'
-                                      '#include "common/device/cuda_check.cuh"\n',
-    "common/device/cuda_check.cuh": "#include <cuda_runtime.h>\n",
+                                      '#include "common/cuda/cuda_check.cuh"\n',
+    "common/cuda/cuda_check.cuh": "#include <cuda_runtime.h>\n",
     "common/device/launch.cuh": "#include <cuda_runtime.h>\n",
     "common/device/devices.cpp": "#if defined(PTEXP_CUDA)\n#endif\n",
-    "common/render/options.h": "#include <array>\n",
-    "common/render/renderer.h": '#include "common/render/options.h"\n',
+    "common/options/options.h": "#include <array>\n",
+    "common/render/renderer.h": '#include "common/options/options.h"\n',
 }
+
+
+FOLDERS = {"scene": "scene/data", "prepare": "scene/prepare", "loaders": "scene/load"}
 
 
 class CheckLayers(unittest.TestCase):
@@ -102,12 +105,14 @@ class CheckLayers(unittest.TestCase):
         for lower, higher in [("math", "sampling"), ("sampling", "geometry"),
                               ("geometry", "material"), ("material", "light"),
                               ("accel", "scene"), ("scene", "transport"), ("light", "scene")]:
-            self.assert_breach(f"common/{lower}/x.h", f'#include "common/{higher}/y.h"\n', 1,
+            below, above = (FOLDERS.get(layer, layer) for layer in (lower, higher))
+            self.assert_breach(f"common/{below}/x.h", f'#include "common/{above}/y.h"\n', 1,
                                f"{lower} does not include {higher}")
 
     def test_physics_includes_no_device(self):
-        for layer in set(check_layers.PHYSICS) - {"platform", "choices"}:  # files of no folder
-            self.assert_breach(f"common/{layer}/x.h", '#include "common/device/devices.h"\n', 1,
+        for layer in set(check_layers.PHYSICS) - {"choices"}:  # files of no folder
+            self.assert_breach(f"common/{FOLDERS.get(layer, layer)}/x.h",
+                               '#include "common/device/devices.h"\n', 1,
                                f"{layer} does not include device")
 
     def test_only_cuda_files_include_cuda(self):
@@ -116,7 +121,7 @@ class CheckLayers(unittest.TestCase):
             self.assert_breach("common/device/x.cpp", f"#include <{header}>\n", 1, "CUDA")
             self.assert_sound({"common/device/x_cuda.cpp": f"#include <{header}>\n"})
         self.assert_breach("wavefront/x.h", '#include "common/device/launch.cuh"\n', 1, ".cuh")
-        self.assert_breach("common/platform.h", "#include <curand_kernel.h>\n", 1, "cuda.h")
+        self.assert_breach("common/platform/platform.h", "#include <curand_kernel.h>\n", 1, "cuda.h")
 
     def test_few_files_include_cub(self):
         self.assert_breach("wavefront/wavefront_cuda.cu", "#include <cub/cub.cuh>\n", 1, "CUB")
@@ -144,7 +149,7 @@ class CheckLayers(unittest.TestCase):
         self.assert_breach("main.cpp", '#include "app/make_renderer.cpp"\n', 1, "compiled by itself")
 
     def test_a_relative_path_does_not_hide_a_layer(self):
-        status, output = self.check({"common/math/x.h": '#include "../scene/scene.h"\n'})
+        status, output = self.check({"common/math/x.h": '#include "../scene/data/scene.h"\n'})
         self.assertEqual(status, 1)
         self.assertIn("math does not include scene", output)
 

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "experiments"))
 import counters  # noqa: E402  pylint: disable=wrong-import-position
-import harness  # noqa: E402  pylint: disable=wrong-import-position
+from lib import harness  # noqa: E402  pylint: disable=wrong-import-position
 
 FIELDS = ["time_ms", "threads_per_instruction", "issue", "occupancy", "l1_hit_rate", "l2_hit_rate",
           "l2_bytes", "l2_read_bytes", "l2_written_bytes", "dram_read_bytes",

@@ -22,11 +22,11 @@ PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp
 TIMEOUT_S = 600  # generous, because the sanitizers share a busy machine
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "experiments"))
-import harness  # noqa: E402
-import pooling  # noqa: E402
-import program  # noqa: E402
-import table  # noqa: E402
-from harness import Configuration, Experiment, Plot  # noqa: E402
+from lib import harness  # noqa: E402
+from lib import pooling  # noqa: E402
+from lib import program  # noqa: E402
+from lib import table  # noqa: E402
+from lib.harness import Configuration, Experiment, Plot  # noqa: E402
 
 SCRIPTS = sorted(path.stem for path in (ROOT / "experiments").glob("*.py")
                  if "harness.main(" in path.read_text(encoding="utf-8"))

@@ -21,21 +21,21 @@ HERE = Path(__file__).resolve().parent
 sys.dont_write_bytecode = True
 EXPERIMENTS = HERE.parents[1] / "experiments"
 sys.path.insert(0, str(EXPERIMENTS))
-import harness  # noqa: E402
-import intervals  # noqa: E402
-import pooling  # noqa: E402
-import provenance  # noqa: E402
-import rounds  # noqa: E402
-from harness import Configuration, Experiment  # noqa: E402
-from image_check import with_options  # noqa: E402
-from program import Process  # noqa: E402
+from lib import harness  # noqa: E402
+from lib import intervals  # noqa: E402
+from lib import pooling  # noqa: E402
+from lib import provenance  # noqa: E402
+from lib import rounds  # noqa: E402
+from lib.harness import Configuration, Experiment  # noqa: E402
+from lib.image_check import with_options  # noqa: E402
+from lib.program import Process  # noqa: E402
 
 # An experiment of its own file, for a harness that is killed.
 SCRIPT = """
 import sys
 sys.path.insert(0, {experiments!r})
-import harness
-from harness import Configuration, Experiment
+from lib import harness
+from lib.harness import Configuration, Experiment
 sys.exit(harness.main(Experiment("fake", "Fake?", lambda *_: [
     Configuration(f"seed {{seed}}", f"--seed {{seed}}", {{"x": seed}}) for seed in (1, 2, 3)],
     None)))
@@ -370,7 +370,7 @@ class Harness(unittest.TestCase):
                  "mrays_per_s": "1"}]
 
     def test_ray_sets_go_on(self):
-        ray_sets, traced_sets = map(importlib.import_module, ("ray_sets", "traced_sets"))
+        ray_sets, traced_sets = map(importlib.import_module, ("ray_sets", "lib.traced_sets"))
         self.traced = []
 
         def run():
@@ -397,7 +397,7 @@ class Harness(unittest.TestCase):
         self.assertIn("plot.py: error: none here; experiments/README.md says", run.stderr)
 
     def test_titles_of_quick_plots_give_no_full_size(self):
-        title_of = importlib.import_module("sentences").plot_title
+        title_of = importlib.import_module("lib.sentences").plot_title
         facts = {"plot": {"title": "Toggles: spheres, 600x300, 50 samples"}, "quick": False}
         self.assertEqual(title_of(facts), "Toggles: spheres, 600x300, 50 samples")
         for path in sorted(EXPERIMENTS.glob("*.py")):
@@ -410,7 +410,7 @@ class Harness(unittest.TestCase):
 
     def test_intervals_are_drawn(self):
         try:
-            plot = importlib.import_module("plot")
+            plot = importlib.import_module("lib.plot")
         except ImportError:
             self.skipTest("matplotlib is not installed")
         row = {"t_median": "3", "t_min": "1", "t_max": "9"}

@@ -25,7 +25,8 @@ def row(middle, spread=0.01, **labels):
 
 
 def experiment(name):
-    return importlib.import_module(name)
+    is_run = (ROOT / "experiments" / f"{name}.py").is_file()
+    return importlib.import_module(name if is_run else f"lib.{name}")
 
 
 def option(configuration, name):

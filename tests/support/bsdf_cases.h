@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/plastic_material.h"
+#include "common/scene/data/plastic_material.h"
 
 namespace pt {
 

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/error.h"
-#include "common/render/compaction_info.h"
+#include "common/error/error.h"
+#include "common/options/compaction_info.h"
 #include "statistics.h"
 #include "wavefront/wavefront.h"
 

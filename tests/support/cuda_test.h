@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 #include "common/device/devices.h"
 
 namespace pt {

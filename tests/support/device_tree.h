@@ -6,7 +6,7 @@
 #include "build_cases.h"
 #include "check_tree.h"
 #include "common/accel/build_cuda/build_device.h"
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "cuda_test.h"
 
 namespace pt {

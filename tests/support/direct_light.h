@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 #include "statistics.h"
 
 namespace pt {

@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 #define __device__
 #define __forceinline__ inline

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "common/accel/build/binary_tree.h"
+#include "common/accel/build/binary/binary_tree.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 

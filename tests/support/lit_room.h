@@ -3,7 +3,7 @@
 // environment and a sun.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 #include "lamp_rooms.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/mitsuba/mitsuba_xml.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -9,7 +9,7 @@
 
 #include "app/make_renderer.h"
 #include "common/film/pixel_statistics.h"
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "common/render/batches.h"
 #include "estimates.h"
 #include "serial/serial.h"

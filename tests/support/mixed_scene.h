@@ -1,7 +1,7 @@
 // A scene of everything that rays can meet.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 #include "instanced_meshes.h"
 
 namespace pt {

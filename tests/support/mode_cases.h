@@ -14,12 +14,12 @@
 #include "app/make_renderer.h"
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
-#include "common/error.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
-#include "common/render/option_names.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare_materials.h"
-#include "common/scene/scene_properties.h"
+#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/scene_properties.h"
 #include "statistics.h"
 
 namespace pt {

@@ -6,9 +6,9 @@
 
 #include <limits>
 
-#include "common/accel/ray_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_brute.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 #include "statistics.h"
 
 namespace pt {

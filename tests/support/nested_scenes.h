@@ -4,8 +4,8 @@
 #include <cstring>
 #include <vector>
 
-#include "common/scene/prepare_scene.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <ostream>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "statistics.h"
 
 namespace pt {

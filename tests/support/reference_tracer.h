@@ -1,7 +1,7 @@
 // A second path tracer, for comparison: double precision, textbook formulas, no light sampling.
 #pragma once
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "statistics.h"
 
 namespace pt {

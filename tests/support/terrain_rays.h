@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/rays/generate_rays.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 

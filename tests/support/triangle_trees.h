@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "common/accel/build/build_bvh2.h"
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/binary/build_bvh2.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/triangle_tree.h"
 
 namespace pt {

@@ -1,8 +1,8 @@
 // Lamps whose emission comes from a texture: how often they are asked, and that it changes nothing.
 #include <cstring>
 
-#include "common/scene/prepare_scene.h"
-#include "common/scene/weigh_textures.h"
+#include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/weigh_textures.h"
 #include "lamp_rooms.h"
 #include "render_serial.h"
 #include "statistics.h"

@@ -1,7 +1,7 @@
 // An instance against its baked copy: the same triangles, placed by a transform or placed already.
 // Both images are made from the same random numbers, so they are equal pixel by pixel but for
 // rounding: no noise hides what is wrong.
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"
 #include "statistics.h"

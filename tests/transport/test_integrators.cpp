@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "megakernel/trace_path.h"
 #include "wavefront/run_stage_cpu.h"
 

@@ -2,7 +2,7 @@
 // modes.
 #include <gtest/gtest.h>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "mixed_scene.h"
 #include "mode_cases.h"
 #include "nested_scenes.h"

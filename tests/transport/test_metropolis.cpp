@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/render/metropolis.h"
 #include "common/sampling/sampler_source.h"
 #include "statistics.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "render_serial.h"
 #include "small_scenes.h"
 #include "statistics.h"

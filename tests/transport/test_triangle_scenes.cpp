@@ -3,11 +3,11 @@
 #include <filesystem>
 
 #include "common/accel/embree/embree_tree.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/compare.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/convert_quads.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/convert_quads.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "mixed_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"

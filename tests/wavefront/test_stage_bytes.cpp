@@ -5,7 +5,7 @@
 #include <set>
 
 #include "app/make_renderer.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/stage_bytes.h"
 

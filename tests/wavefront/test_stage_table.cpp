@@ -7,8 +7,8 @@
 
 #include "app/options/option_list.h"
 #include "app/report/report.h"
-#include "common/error.h"
-#include "common/render/option_names.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 #include "wavefront/stages.h"
 
 namespace pt {

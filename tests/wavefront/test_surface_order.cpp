@@ -5,9 +5,9 @@
 #include <span>
 #include <tuple>
 
-#include "common/scene/prepare_materials.h"
-#include "common/scene/prepare_scene.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
+#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "material_room.h"
 #include "statistics.h"
 #include "wavefront/surface_order.h"

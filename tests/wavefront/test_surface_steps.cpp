@@ -2,7 +2,7 @@
 // that is given its numbers and keeps all until the end.
 #include <gtest/gtest.h>
 
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "material_room.h"
 #include "wavefront/stages.h"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
 #include "common/sampling/random.h"
 #include "wavefront/wavefront.h"
 

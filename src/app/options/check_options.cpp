@@ -9,9 +9,9 @@
 
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
-#include "common/error.h"
-#include "common/image/image_io.h"
-#include "common/render/option_names.h"
+#include "common/error/error.h"
+#include "common/image/codecs/image_io.h"
+#include "common/options/option_names.h"
 
 namespace pt {
 namespace {

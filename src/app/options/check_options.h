@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

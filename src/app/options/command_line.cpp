@@ -12,7 +12,7 @@
 #include "app/options/option_list.h"
 #include "app/options/shell_text.h"
 #include "app/options/subcommand.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

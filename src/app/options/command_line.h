@@ -8,7 +8,7 @@
 #include "app/compact_command.h"
 #include "app/options/check_options.h"
 #include "app/trace_command.h"
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

@@ -7,8 +7,8 @@
 
 #include "app/options/option_values.h"
 #include "common/film/aov.h"
-#include "common/scene/filters.h"
-#include "common/scene/prepare_filter.h"
+#include "common/scene/prepare/filters.h"
+#include "common/scene/prepare/prepare_filter.h"
 
 namespace pt {
 CropWindow parse_crop(const std::string& name, const std::string& text) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

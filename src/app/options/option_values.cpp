@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

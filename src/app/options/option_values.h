@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "common/render/option_names.h"
-#include "common/render/options.h"
+#include "common/options/option_names.h"
+#include "common/options/options.h"
 
 namespace pt {
 

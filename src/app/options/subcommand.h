@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/options/subcommand_option.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/render/hardware_counters.h"
+#include "common/options/hardware_counters.h"
 
 namespace pt {
 

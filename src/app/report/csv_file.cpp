@@ -10,7 +10,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

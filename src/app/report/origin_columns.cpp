@@ -2,7 +2,7 @@
 
 #include <fstream>
 
-#include "common/build_info.h"
+#include "common/platform/build_info.h"
 
 namespace pt {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/render/options.h"
-#include "common/render/stats.h"
+#include "common/options/options.h"
+#include "common/options/stats.h"
 
 namespace pt {
 

@@ -4,8 +4,8 @@
 #include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
-#include "common/build_info.h"
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
+#include "common/platform/build_info.h"
 
 namespace pt {
 namespace {

@@ -6,8 +6,8 @@
 #include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
+#include "common/options/option_names.h"
 #include "common/render/lane_histograms.h"
-#include "common/render/option_names.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/render/stats.h"
+#include "common/options/stats.h"
 
 namespace pt {
 

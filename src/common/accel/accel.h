@@ -1,7 +1,7 @@
 // The list of acceleration structures.
 #pragma once
 
-#include "common/type_list.h"
+#include "common/platform/type_list.h"
 
 namespace pt {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 
 // CUDA 12.6 brought the range profiler.
 #if __has_include(<cupti_range_profiler.h>)

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "common/error.h"
-#include "common/render/hardware_counters.h"
+#include "common/error/error.h"
+#include "common/options/hardware_counters.h"
 
 namespace pt {
 

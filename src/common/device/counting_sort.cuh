@@ -1,7 +1,7 @@
 // What a counting sort is made of where a block's threads have an element each.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -11,9 +11,9 @@
 #include <span>
 
 #include "common/device/huge_pages.h"
+#include "common/error/host_memory.h"
 #include "common/film/develop.h"
-#include "common/host_memory.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
 
 namespace pt {

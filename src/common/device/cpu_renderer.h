@@ -9,7 +9,7 @@
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
 #include "common/render/random_source.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -1,6 +1,6 @@
+#include "common/cuda/cuda_check.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "common/device/create_world.h"
-#include "common/device/cuda_check.cuh"
-#include "common/device/cuda_memory.cuh"
 
 namespace pt {
 namespace {

@@ -12,15 +12,15 @@
 #include <tuple>
 #include <vector>
 
+#include "common/cuda/cuda_check.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "common/device/counter_session_cuda.h"
-#include "common/device/cuda_check.cuh"
-#include "common/device/cuda_memory.cuh"
 #include "common/device/scene_storage.cuh"
 #include "common/device/stage_clock.h"
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
 #include "common/render/random_source.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

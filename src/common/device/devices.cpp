@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/device/cpu_renderer.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

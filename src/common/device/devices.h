@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/options/options.h"
 #include "common/plan/render_properties.h"
-#include "common/render/options.h"
 
 namespace pt {
 

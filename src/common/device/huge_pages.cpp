@@ -1,6 +1,6 @@
 #include "common/device/huge_pages.h"
 
-#include "common/scene/scene_arrays.h"
+#include "common/scene/data/scene_arrays.h"
 
 #ifdef __linux__
 #include <sys/mman.h>

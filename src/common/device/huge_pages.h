@@ -2,7 +2,7 @@
 // reading it.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

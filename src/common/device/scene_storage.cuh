@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "common/plan/execution_plan.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 
 namespace pt {
 

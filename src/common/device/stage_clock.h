@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "common/render/stage_info.h"
+#include "common/options/stage_info.h"
 
 namespace pt {
 

@@ -14,8 +14,8 @@
 #include <array>
 #include <string_view>
 
+#include "common/platform/type_list.h"
 #include "common/transport/first_hit.h"
-#include "common/type_list.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 
 #include "common/film/film_data.h"
 #include "common/image/image.h"
-#include "common/render/stats.h"
+#include "common/options/stats.h"
 
 namespace pt {
 

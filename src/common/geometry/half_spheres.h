@@ -1,7 +1,7 @@
 // Spheres in half precision, for the first pass of brute force on CUDA.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

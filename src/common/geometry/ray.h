@@ -1,8 +1,8 @@
 // Rays and hits.
 #pragma once
 
-#include "common/lane_counter.h"
 #include "common/math/vec.h"
+#include "common/platform/lane_counter.h"
 
 namespace pt {
 

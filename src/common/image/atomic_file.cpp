@@ -12,7 +12,7 @@
 #include <optional>
 #include <system_error>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/temporary_file.h"
 
 namespace pt {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

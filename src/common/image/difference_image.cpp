@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/image/image_io.h"
+#include "common/image/codecs/image_io.h"
 #include "common/image/tone_mapping.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

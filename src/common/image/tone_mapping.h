@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/image/codecs/image_io.h"
 #include "common/image/image.h"
-#include "common/image/image_io.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // The kinds of lights but the environment, by name. lights.h has their types.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

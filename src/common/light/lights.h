@@ -22,7 +22,7 @@
 #include "common/light/spot_light.h"
 #include "common/light/sun_light.h"
 #include "common/light/triangle_light.h"
-#include "common/type_list.h"
+#include "common/platform/type_list.h"
 
 namespace pt {
 

@@ -15,8 +15,8 @@
 #include "common/material/rough_plastic.h"
 #include "common/material/thin_dielectric.h"
 #include "common/material/ward.h"
+#include "common/platform/type_list.h"
 #include "common/texture/texture.h"
-#include "common/type_list.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // Made by scripts/fit_microfacet_loss.py: the numbers of microfacet_loss.h.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -1,6 +1,6 @@
 // Plastic with a rough coat: microfacets that reflect, over a diffuse body (Mitsuba 3's
 // `roughplastic`). What passes the rough boundary is a polynomial, fitted
-// for one roughness (scene/rough_boundary.h).
+// for one roughness (scene/data/rough_boundary.h).
 #pragma once
 
 #include "common/material/microfacet.h"

@@ -1,7 +1,7 @@
 // Division by a number known only at run time, as one multiplication and a shift.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // Sine and cosine of a fraction of a turn, the same polynomial on every device.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // Vectors: GLM under the names of this project.
 #pragma once
 
-#include "common/platform.h"  // before GLM
+#include "common/platform/platform.h"  // before GLM
 
 // Without the other names of the components (r, s, ...), which are members of unions: nvcc 13.0
 // reports an invalid bitcast for some constructors of classes that hold such vectors.

@@ -6,8 +6,8 @@
 #include <bit>
 
 #include "common/material/material.h"
+#include "common/options/option_names.h"
 #include "common/plan/plan_rules.h"
-#include "common/render/option_names.h"
 
 namespace pt {
 namespace {

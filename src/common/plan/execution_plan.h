@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "common/options/options.h"
+#include "common/options/stats.h"
 #include "common/plan/render_properties.h"
-#include "common/render/options.h"
-#include "common/render/stats.h"
 
 namespace pt {
 

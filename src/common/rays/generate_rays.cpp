@@ -5,11 +5,11 @@
 
 #include <limits>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/rays/ray_paths.h"
 #include "common/render/dispatch.h"
-#include "common/scene/frame_scene.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/data/frame_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {

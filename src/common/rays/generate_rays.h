@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/rays/ray_file.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "common/accel/triangle_query.h"
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/image/atomic_file.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 #include "common/accel/ray_record.h"
 #include "common/sampling/philox.h"
 #include "common/sampling/warp.h"
-#include "common/scene/camera.h"
+#include "common/scene/data/camera.h"
 
 namespace pt {
 

@@ -3,8 +3,8 @@
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/traverse_triangles_brute.h"
 #include "common/accel/traverse_triangles_bvh2.h"
-#include "common/device/cuda_check.cuh"
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_check.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "common/rays/ray_queue.cuh"
 #include "common/rays/trace_kernels.cuh"
 

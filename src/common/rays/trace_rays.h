@@ -7,9 +7,9 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/tree_summary.h"
 #include "common/accel/build/triangle_tree_data.h"
+#include "common/options/options.h"
 #include "common/rays/ray_file.h"
 #include "common/rays/trace_variant.h"
-#include "common/render/options.h"
 
 namespace pt {
 

@@ -1,10 +1,10 @@
 #include <cuda_runtime_api.h>
 
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
-#include "common/device/cuda_check.cuh"
-#include "common/device/cuda_event.cuh"
-#include "common/device/cuda_memory.cuh"
-#include "common/error.h"
+#include "common/cuda/cuda_check.cuh"
+#include "common/cuda/cuda_event.cuh"
+#include "common/cuda/cuda_memory.cuh"
+#include "common/error/error.h"
 #include "common/rays/trace_kernels.cuh"
 #include "common/rays/trace_rays.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/memory_error.h"
+#include "common/error/memory_error.h"
 #include "common/render/stop_clock.h"
 
 namespace pt {

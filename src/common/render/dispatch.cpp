@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "common/error.h"
-#include "common/render/option_names.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 
 namespace pt {
 namespace {

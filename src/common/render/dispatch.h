@@ -4,11 +4,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "common/render/options.h"
+#include "common/options/options.h"
+#include "common/platform/type_list.h"
 #include "common/sampling/sampler_source.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/transport/path_integrator.h"
-#include "common/type_list.h"
 
 namespace pt {
 

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/film/develop.h"
 #include "common/film/pixel_statistics.h"
-#include "common/render/option_names.h"
+#include "common/options/option_names.h"
 
 namespace pt {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "common/lane_counter.h"
-#include "common/render/stats.h"
+#include "common/options/stats.h"
+#include "common/platform/lane_counter.h"
 
 namespace pt {
 

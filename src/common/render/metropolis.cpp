@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "common/memory_error.h"
-#include "common/render/option_names.h"
+#include "common/error/memory_error.h"
+#include "common/options/option_names.h"
 #include "common/render/stop_clock.h"
 
 namespace pt {

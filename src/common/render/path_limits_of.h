@@ -1,7 +1,7 @@
 // What the options say of a path's length.
 #pragma once
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 #include "common/transport/path_limits.h"
 
 namespace pt {

@@ -1,9 +1,9 @@
 // Which source of random numbers a render has: by its scene's kernels and --rng.
 #pragma once
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 #include "common/sampling/sampler_source.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 
 namespace pt {
 

@@ -5,11 +5,11 @@
 #include <functional>
 #include <memory>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/film/film_data.h"
 #include "common/image/image.h"
-#include "common/render/options.h"
-#include "common/render/stats.h"
+#include "common/options/options.h"
+#include "common/options/stats.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

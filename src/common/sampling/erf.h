@@ -1,7 +1,7 @@
 // The inverse of the error function.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

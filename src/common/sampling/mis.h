@@ -2,7 +2,7 @@
 // two ways to the same lamp, one sample of each.
 #pragma once
 
-#include "common/sampling/choices.h"
+#include "common/options/choices.h"
 
 namespace pt {
 

@@ -2,7 +2,7 @@
 // Salmon et al. 2011, 'Parallel random numbers: as easy as 1, 2, 3', SC'11.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

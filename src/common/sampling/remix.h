@@ -1,7 +1,7 @@
 // A hash of 32 bits.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -1,8 +1,8 @@
 // Numbers that a sampler places: each sample of a pixel on its own, or all of them together.
 #pragma once
 
+#include "common/options/choices.h"
 #include "common/sampling/chains.h"
-#include "common/sampling/choices.h"
 #include "common/sampling/random.h"
 #include "common/sampling/sobol.h"
 #include "common/sampling/stratified.h"

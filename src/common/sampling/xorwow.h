@@ -2,7 +2,7 @@
 // Marsaglia 2003, 'Xorshift RNGs', JSS 8(14). The CPU's counterpart of curandStateXORWOW_t.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

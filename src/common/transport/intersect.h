@@ -4,7 +4,7 @@
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
 #include "common/accel/traverse_triangles.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/transport/mask.h"
 
 namespace pt {

@@ -2,8 +2,8 @@
 // bit, as intersect.h finds for one ray after the other.
 #pragma once
 
-#include "common/accel/ray_block.h"
-#include "common/scene/scene.h"
+#include "common/accel/trace_cpu/ray_block.h"
+#include "common/scene/data/scene.h"
 
 namespace pt {
 

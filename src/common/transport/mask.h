@@ -8,7 +8,7 @@
 
 #include "common/accel/triangle_query.h"
 #include "common/sampling/random.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {

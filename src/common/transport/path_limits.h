@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/math/vec.h"
-#include "common/sampling/choices.h"
+#include "common/options/choices.h"
 
 namespace pt {
 

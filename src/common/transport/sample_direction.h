@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/material/bsdf.h"
-#include "common/sampling/choices.h"
+#include "common/options/choices.h"
 #include "common/sampling/warp.h"
 
 namespace pt {

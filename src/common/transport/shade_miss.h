@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/sampling/mis.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/transport/path.h"
 
 namespace pt {

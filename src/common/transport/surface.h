@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/triangle_query.h"
-#include "common/scene/scene.h"
+#include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/path.h"
 

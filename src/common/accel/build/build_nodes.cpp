@@ -1,7 +1,7 @@
 #include "common/accel/build/build_nodes.h"
 
-#include "common/accel/build/collapse_cwbvh.h"
-#include "common/accel/build/merge_leaves.h"
+#include "common/accel/build/binary/merge_leaves.h"
+#include "common/accel/build/wide/collapse_cwbvh.h"
 
 namespace pt {
 

@@ -1,9 +1,9 @@
 // From a binary tree to the nodes of a structure.
 #pragma once
 
-#include "common/accel/build/binary_tree.h"
+#include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build/triangle_tree_data.h"
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

@@ -7,15 +7,15 @@
 #include <numeric>
 #include <set>
 
-#include "common/accel/build/append_nodes.h"
+#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_sbvh.h"
+#include "common/accel/build/binary/overlap_share.h"
+#include "common/accel/build/binary/reinsert_nodes.h"
 #include "common/accel/build/build_nodes.h"
-#include "common/accel/build/build_sah.h"
-#include "common/accel/build/build_sbvh.h"
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/overlap_share.h"
-#include "common/accel/build/reinsert_nodes.h"
+#include "common/accel/build/wide/append_nodes.h"
 
 namespace pt {
 

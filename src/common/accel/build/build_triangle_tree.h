@@ -3,12 +3,12 @@
 
 #include <span>
 
-#include "common/accel/build/build_sbvh.h"
-#include "common/accel/build/tree_costs.h"
+#include "common/accel/build/binary/build_sbvh.h"
+#include "common/accel/build/binary/tree_costs.h"
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // Which builder can build which tree where.
 #pragma once
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "common/accel/build/append_nodes.h"
+#include "common/accel/build/binary/build_sah.h"
 #include "common/accel/build/build_nodes.h"
-#include "common/accel/build/build_sah.h"
-#include "common/error.h"
+#include "common/accel/build/wide/append_nodes.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -6,7 +6,7 @@
 
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/instance.h"
-#include "common/render/options.h"
+#include "common/options/options.h"
 
 namespace pt {
 

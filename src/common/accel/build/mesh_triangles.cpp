@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary_tree.h"
-#include "common/error.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -6,11 +6,11 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary_tree.h"
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/error.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary_tree.h"
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
 
 namespace pt {
 

@@ -1,5 +1,5 @@
 // Boxes of the primitives, of their centers and of the scene; the triangles' records.
-#include "common/accel/build/binary_tree.h"
+#include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
 

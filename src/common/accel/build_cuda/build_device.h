@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
-#include "common/accel/build/binary_tree.h"
-#include "common/accel/build/tree_costs.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/binary/tree_costs.h"
 #include "common/accel/build/tree_statistics.h"
 #include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"

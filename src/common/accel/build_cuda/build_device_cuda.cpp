@@ -7,7 +7,7 @@
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/scratch.cuh"
 #include "common/accel/build_cuda/stopwatch.cuh"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 

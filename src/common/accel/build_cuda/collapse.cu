@@ -2,7 +2,7 @@
 // (after Benthin et al. 2024, section on conversion): a queue of nodes that is the array of nodes,
 // too. Thread k makes the nodes k, k + threads, ... as soon as each one's parent has put it into
 // the queue; making a node puts its inner children there. All blocks must be resident.
-#include "common/accel/build/wide_children.h"
+#include "common/accel/build/wide/wide_children.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
 

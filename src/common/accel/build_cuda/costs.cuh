@@ -2,7 +2,7 @@
 // policies is a kernel's template argument.
 #pragma once
 
-#include "common/accel/build/collapse_cost.h"
+#include "common/accel/build/wide/collapse_cost.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
 

@@ -3,7 +3,7 @@
 
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/tree_summary.h"
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_memory.cuh"
 
 namespace pt {
 

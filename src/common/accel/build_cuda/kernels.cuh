@@ -1,7 +1,7 @@
 // The steps of a build on the device, as functions that launch kernels in the default stream.
 #pragma once
 
-#include "common/accel/build/build_tree.h"
+#include "common/accel/build/binary/build_tree.h"
 #include "common/accel/build/morton.h"
 #include "common/accel/build_cuda/build_device.h"
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "common/accel/build/build_tree.h"
-#include "common/device/cuda_check.cuh"
+#include "common/accel/build/binary/build_tree.h"
+#include "common/cuda/cuda_check.cuh"
 
 namespace pt::device_build {
 

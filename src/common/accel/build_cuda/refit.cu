@@ -1,7 +1,7 @@
 // Fits the boxes of finished trees to moved primitives: from the nodes that have leaves only, each
 // thread climbs; at a node with several inner children the last thread to arrive goes on.
-#include "common/accel/build/binary_tree.h"
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
 

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "common/accel/build_cuda/scratch.cuh"
-#include "common/device/cuda_check.cuh"
-#include "common/error.h"
+#include "common/cuda/cuda_check.cuh"
+#include "common/error/error.h"
 
 namespace pt::device_build {
 

@@ -1,6 +1,6 @@
 // Sums over the nodes of a finished tree: the device's share of measure_tree.
-#include "common/accel/build/binary_tree.h"
-#include "common/accel/build/encode_cwbvh.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
 

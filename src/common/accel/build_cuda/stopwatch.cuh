@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 
 namespace pt::device_build {
 

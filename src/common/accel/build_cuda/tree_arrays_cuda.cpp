@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "common/accel/build_cuda/tree_arrays.cuh"
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/accel/build_cuda/build_device.h"
-#include "common/device/cuda_memory.cuh"
+#include "common/cuda/cuda_memory.cuh"
 #include "common/geometry/instance.h"
 
 namespace pt {

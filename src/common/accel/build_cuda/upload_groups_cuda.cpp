@@ -3,7 +3,7 @@
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build_cuda/upload_groups.cuh"
-#include "common/device/cuda_check.cuh"
+#include "common/cuda/cuda_check.cuh"
 
 namespace pt {
 namespace {

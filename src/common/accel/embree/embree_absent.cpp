@@ -1,6 +1,6 @@
 // Built instead of embree_tree.cpp where CMake finds no Embree.
 #include "common/accel/embree/embree_tree.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -7,7 +7,7 @@
 
 #include "common/accel/embree/embree_api.h"
 #include "common/accel/triangle_query.h"
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // What a warp does next whose lanes want different things.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

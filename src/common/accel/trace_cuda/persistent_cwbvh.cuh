@@ -10,7 +10,7 @@
 #include "common/accel/ray_arrays.h"
 #include "common/accel/trace_cuda/choose_turn.cuh"
 #include "common/accel/trace_cuda/slot_order.cuh"
-#include "common/lane_counter.h"
+#include "common/platform/lane_counter.h"
 
 namespace pt {
 

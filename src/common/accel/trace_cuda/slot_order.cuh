@@ -1,7 +1,7 @@
 // Which child of a wide node comes first.
 #pragma once
 
-#include "common/platform.h"
+#include "common/platform/platform.h"
 
 namespace pt {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/scene/builtin/generate_boxes.h"
 #include "common/scene/builtin/generate_dial.h"
 #include "common/scene/builtin/generate_forest.h"
@@ -11,7 +11,7 @@
 #include "common/scene/builtin/hidden_light_scenes.h"
 #include "common/scene/builtin/quad_scenes.h"
 #include "common/scene/builtin/scene_memory.h"
-#include "common/scene/prepare_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {

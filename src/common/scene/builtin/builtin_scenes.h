@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "common/render/options.h"
+#include "common/options/options.h"
 #include "common/scene/builtin/scene_name.h"
 #include "common/scene/builtin/sphere_world.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

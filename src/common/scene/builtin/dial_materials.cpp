@@ -1,7 +1,7 @@
 #include "common/scene/builtin/dial_materials.h"
 
 #include "common/math/sincos.h"
-#include "common/scene/plastic_material.h"
+#include "common/scene/data/plastic_material.h"
 
 namespace pt {
 namespace {

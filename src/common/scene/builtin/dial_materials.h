@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "common/scene/material_description.h"
+#include "common/scene/data/material_description.h"
 
 namespace pt {
 

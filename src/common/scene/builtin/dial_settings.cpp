@@ -6,7 +6,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/scene/builtin/sphere_world.h"
 
 namespace pt {

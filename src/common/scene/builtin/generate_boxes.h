@@ -1,7 +1,7 @@
 // Boxes in a closed room.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

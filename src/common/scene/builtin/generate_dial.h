@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/scene/builtin/dial_settings.h"
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/scene/builtin/noise.h"
 #include "common/scene/builtin/sphere_world.h"
 

@@ -1,7 +1,7 @@
 // A finely carved object on a floor: the scene of the speed targets.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

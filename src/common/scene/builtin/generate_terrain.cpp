@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "common/error.h"
+#include "common/error/error.h"
 #include "common/scene/builtin/noise.h"
 
 namespace pt {

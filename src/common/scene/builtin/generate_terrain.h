@@ -1,7 +1,7 @@
 // A mountain range of any number of triangles.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // Built-in scenes whose light few paths find: what Metropolis light transport is for.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

@@ -1,7 +1,7 @@
 // The built-in scenes that are made of quads and spheres.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

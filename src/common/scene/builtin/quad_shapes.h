@@ -1,7 +1,7 @@
 // Simple shapes of quads, added to a scene.
 #pragma once
 
-#include "common/scene/scene_data.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 

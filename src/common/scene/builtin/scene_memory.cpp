@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/accel/build/check_builder.h"
-#include "common/host_memory.h"
+#include "common/error/host_memory.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "common/error.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/geometry/sphere.h"
 #include "common/sampling/philox.h"
 #include "common/sampling/warp.h"
-#include "common/scene/material_description.h"
+#include "common/scene/data/material_description.h"
 
 namespace pt {
 

@@ -1,0 +1,132 @@
+"""Experiments on rays alone: sets of rays are made by `ptexp rays` and traced by `ptexp trace`."""
+import hashlib
+import json
+import shlex
+import tempfile
+from dataclasses import asdict, dataclass, field
+from functools import partial
+from pathlib import Path
+
+from lib import harness
+from lib.harness import HarnessError
+from lib.journal import Journal
+from lib.program import failure_of, version_of
+from lib.ray_files import reorder
+from lib.session import is_complete
+
+
+@dataclass
+class RaySet:
+    rays: str  # the file
+    make: list  # ptexp's arguments that make it
+    traces: list  # and those that trace it, one way each
+    order: str = ""  # of the rays, as ray_files.py names it; "": as they were made
+    labels: dict = field(default_factory=dict)  # columns of the experiment's own
+
+
+def add_arguments(parser):
+    parser.add_argument("--scenes", nargs="*", default=[], metavar="FILE",
+                        help="meshes (.mesh) and scenes to measure besides the built-in ones")
+    parser.add_argument("--size", type=int, default=2048, metavar="N",
+                        help="rays are those of an image of N x N pixels [%(default)s]")
+
+
+def trace_command(scene, rays, accel, builder, variant, device, arguments):
+    return ["trace", "--quiet", "--mesh", scene, "--rays", rays, "--accel", accel, "--builder",
+            builder, *(["--variant", variant] if variant else []), "--device", device.choice,
+            "--repeat", str(arguments.repeat), "--warmup", str(arguments.warmup),
+            "--csv", str(Path(rays).with_name("rows.csv"))]
+
+
+def without_folder(row, folder):
+    """Not where it was measured."""
+    row["ray_file"] = Path(row["ray_file"]).name
+    row["mesh"] = "/".join(p for p in Path(row["mesh"]).parts[-2:] if p != "..")
+    row["command"] = row["command"].replace(f"{folder}/", "")
+    return row
+
+
+def option(command, name):
+    return command[command.index(name) + 1] if name in command else ""
+
+
+def measure(experiment, program, rays, arguments):
+    """A row for every way to trace one set of rays."""
+    folder, rows = Path(rays.rays).parent, []
+    no_rays = failure_of(program, rays.make, arguments.timeout)
+    if rays.order and not no_rays:
+        reorder(rays.rays, rays.order)
+    for trace in rays.traces:
+        table = Path(folder, "rows.csv")
+        message = no_rays or failure_of(program, trace, arguments.timeout)
+        row = {"experiment": experiment.name, "status": "failed" if message else "measured",
+               "message": message or "", **rays.labels}
+        if message:
+            ways = {name: option(trace, f"--{name}") for name in ("accel", "builder", "variant")}
+            row.update(ways, ray_file=Path(rays.rays).name, mesh=option(trace, "--mesh"))
+        else:
+            row.update(without_folder(harness.read_rows(table)[0], folder))
+            table.unlink()
+        rows.append(row)
+    Path(rays.rays).unlink(missing_ok=True)
+    return rows
+
+
+def key_of(program, device, sets):
+    """Equal for calls whose measurements may stand in one table."""
+    facts = json.dumps([version_of(program), device.name, list(map(asdict, sets))])
+    return hashlib.sha256(facts.encode()).hexdigest()[:16]
+
+
+def table_text(rows):
+    lines = []
+    for row in rows:
+        result = (f"failed: {row['message']}" if row["status"] == "failed" else
+                  f"{float(row['mrays_per_s']):10.1f} Mrays/s")
+        way = f"{row['accel']:6} {row['builder']:6} {row['variant']:10}"
+        lines.append(f"{row['ray_file']:40} {way} {result}")
+    return "\n".join(lines)
+
+
+def run(experiment, arguments, sets_of):
+    """harness.main's runner; `sets_of`: (device, arguments, folder) -> ray sets in that folder."""
+    program = harness.find_program(arguments.ptexp)
+    device = harness.find_device(program, arguments.device)
+    sets = list(sets_of(device, arguments, "."))
+    if arguments.list:
+        print("\n".join(shlex.join([str(program), *command])
+                        for rays in sets for command in [rays.make, *rays.traces]))
+        return 0
+    path = harness.table_path(experiment, device, arguments)
+    key = key_of(program, device, sets)
+    if not arguments.fresh and is_complete(path, key):
+        print(f"measured already by this program and command (--fresh measures again)\n"
+              f"{table_text(harness.read_rows(path))}\n\ntable: {path}")
+        return 0
+    journal = Journal(path.with_suffix(".journal"), key, arguments.fresh, lambda _: True)
+    journal.begin(date=harness.now())
+    facts = {**harness.provenance(experiment, program, device, arguments), "key": key,
+             **({"plot": asdict(experiment.plot)} if experiment.plot else {})}
+
+    def save(rows, complete=False):
+        measured = [row for row in rows if row["status"] == "measured"]
+        if measured:
+            experiment.finish(measured, arguments)
+            harness.write_table(path, rows, {
+                **facts, "complete": complete,
+                "conclusions": experiment.conclude(measured, arguments)})
+        return measured
+    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+        rows = journal.measure_groups(
+            "ray set", ((Path(rays.rays).name, partial(measure, experiment, program, rays, arguments))
+                        for rays in sets_of(device, arguments, folder)), save)
+    failed = [row for row in rows if row["status"] == "failed"]
+    if len(failed) == len(rows):
+        journal.remove()
+        raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
+    measured = save(rows, complete=not failed)
+    print("\n".join([table_text(rows), "", *experiment.conclude(measured, arguments),
+                     f"table: {path}"]))
+    if not failed:
+        journal.remove()
+    return 1 if failed else 0

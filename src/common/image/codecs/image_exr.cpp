@@ -1,0 +1,174 @@
+// EXR through OpenEXR.
+#include <Iex.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "common/error/error.h"
+#include "common/image/codecs/exr_header.h"
+#include "common/image/codecs/exr_memory.h"
+#include "common/image/codecs/image_codec.h"
+
+namespace pt {
+namespace {
+
+constexpr int max_tile_size = 4096;
+
+/// Channels and the places that their values take in a pixel: R, G and B, or Y alone in the first.
+using Names = std::vector<const char*>;
+
+/// The `names` of `pixels`, wherever the data window lies.
+Imf::FrameBuffer frame_buffer(const float* pixels, const Imath::Box2i& window, const Names& names) {
+  const std::size_t stride = 3 * sizeof(float);
+  const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
+  Imf::FrameBuffer buffer;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    buffer.insert(names[c],
+                  Imf::Slice::Make(Imf::FLOAT, pixels + c, window, stride, stride * width));
+  }
+  return buffer;
+}
+
+/// Names to which OpenEXR gives a meaning, so that they are not ours to use.
+bool is_reserved(const std::string& name) {
+  static const Imf::Header standard;
+  const char* const optional[] = {"type", "name", "view", "version", "chunkCount", "tiles"};
+  return standard.find(name) != standard.end() || std::ranges::count(optional, name) > 0;
+}
+
+Imf::Header header_of(const Image& image) {
+  const ImagePlace& place = image.place;
+  if (place.width == 0) return Imf::Header(image.width, image.height);
+  const Imath::V2i corner(place.x, place.y), size(image.width - 1, image.height - 1);
+  return Imf::Header(Imath::Box2i({0, 0}, {place.width - 1, place.height - 1}),
+                     Imath::Box2i(corner, corner + size));
+}
+
+/// A layer's channels are named LAYER.C.
+void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& buffer) {
+  const std::size_t count = layer.channels.size(), stride = 4 * count;  // both types have 4 bytes
+  const bool has_numbers = !layer.numbers.empty();
+  const Imf::PixelType type = has_numbers ? Imf::UINT : Imf::FLOAT;
+  const Imath::Box2i& window = header.dataWindow();
+  const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::string name = layer.name + '.' + layer.channels[c];
+    const void* first = has_numbers ? static_cast<const void*>(layer.numbers.data() + c)
+                                    : static_cast<const void*>(layer.values.data() + c);
+    header.channels().insert(name, Imf::Channel(type));
+    buffer.insert(name, Imf::Slice::Make(type, first, window, stride, stride * width));
+  }
+}
+
+std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
+  Imf::Header header = header_of(image);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  const Names rgb = {"R", "G", "B"};
+  for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+  Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), header.dataWindow(), rgb);
+  for (const ImageLayer& layer : image.layers) add_layer(layer, header, buffer);
+  for (const auto& [key, value] : metadata) {
+    if (is_reserved(key)) throw Error(fmt::format("metadata key '{}' is taken by OpenEXR", key));
+    header.insert(key, Imf::StringAttribute(value));
+  }
+  ExrWriter stream;
+  {
+    Imf::OutputFile file(stream, header, 0);
+    file.setFrameBuffer(buffer);
+    file.writePixels(image.height);
+  }  // writes the table of offsets
+  return std::move(stream.bytes);
+}
+
+std::string all_names(const Imf::ChannelList& channels) {
+  std::string names;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    names += names.empty() ? it.name() : fmt::format(", {}", it.name());
+  }
+  return names;
+}
+
+/// Luminance without the differences that would make it a colour.
+bool is_grey(const Imf::ChannelList& channels) {
+  for (const char* name : {"R", "G", "B", "RY", "BY"}) {
+    if (channels.findChannel(name)) return false;
+  }
+  return channels.findChannel("Y") != nullptr;
+}
+
+/// R, G and B, or Y where there is none of them. Refuses files without or with fewer pixels in one.
+Names channels_to_read(const Imf::ChannelList& channels) {
+  const Names names = is_grey(channels) ? Names{"Y"} : Names{"R", "G", "B"};
+  for (const char* name : names) {
+    const Imf::Channel* channel = channels.findChannel(name);
+    if (!channel) throw Error(fmt::format("no channel {}, only {}", name, all_names(channels)));
+    if (channel->xSampling != 1 || channel->ySampling != 1) {
+      throw Error(fmt::format("channel {} is subsampled", name));
+    }
+  }
+  return names;
+}
+
+/// Decompressed, of all channels.
+int bytes_per_pixel(const Imf::ChannelList& channels) {
+  int bytes = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    bytes += it.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return bytes;
+}
+
+Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
+  check_exr_header(bytes);
+  // For the whole process, hence the same value each time.
+  Imf::Header::setMaxImageSize(max_image_size, max_image_size);
+  Imf::Header::setMaxTileSize(max_tile_size, max_tile_size);
+  ExrReader stream(bytes);
+  Imf::InputFile file(stream, 0);
+  const Imf::Header& header = file.header();
+  const Names names = channels_to_read(header.channels());
+  if (!file.isComplete()) throw Error("truncated: some of its pixels are missing");
+
+  const Imath::Box2i window = header.dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const double decoded_bytes = 1.0 * bytes_per_pixel(header.channels()) * width * height;
+  Image image = allocate_image(width, height, decoded_bytes, bytes.size());
+  file.setFrameBuffer(frame_buffer(image.rgb.data(), window, names));
+  file.readPixels(window.min.y, window.max.y);
+  if (names.size() == 1) {
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+      image.rgb[i + 1] = image.rgb[i + 2] = image.rgb[i];
+    }
+  }
+
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const auto* text = dynamic_cast<const Imf::StringAttribute*>(&it.attribute());
+    if (text && !is_reserved(it.name())) (*metadata)[it.name()] = text->value();
+  }
+  return image;
+}
+
+Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
+  try {
+    return read_exr(bytes, metadata);
+  } catch (const Iex::BaseExc& error) {
+    // OpenEXR begins with 'Cannot read image file "NAME". ', and our stream has no name.
+    const std::string_view message = error.what();
+    const std::size_t name = message.rfind("\"\". ");
+    throw Error(std::string(name == message.npos ? message : message.substr(name + 4)));
+  }
+}
+
+}  // namespace
+
+const ImageCodec exr_codec{".exr", encode_exr, decode_exr};
+
+}  // namespace pt

@@ -1,0 +1,151 @@
+// PNG through libpng.
+#include <algorithm>
+#include <vector>
+
+#include "common/error/error.h"
+#include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/png_session.h"
+#include "common/image/codecs/rgba8.h"
+#include "common/image/tone_mapping.h"
+
+namespace pt {
+namespace {
+
+bool is_ascii(const std::string& text) {
+  return std::ranges::all_of(text, [](unsigned char c) { return c < 0x80; });
+}
+
+/// Points into `metadata`.
+std::vector<png_text> text_chunks(const ImageMetadata& metadata) {
+  std::vector<png_text> chunks;
+  for (const auto& [key, value] : metadata) {
+    png_text chunk{};
+    // tEXt is Latin-1; iTXt is UTF-8.
+    chunk.compression = is_ascii(value) ? PNG_TEXT_COMPRESSION_NONE : PNG_ITXT_COMPRESSION_NONE;
+    chunk.key = const_cast<char*>(key.c_str());
+    chunk.text = const_cast<char*>(value.c_str());
+    chunk.text_length = value.size();
+    chunks.push_back(chunk);
+  }
+  return chunks;
+}
+
+std::string encode_png(const Image& image, const ImageMetadata& metadata,
+                       const ToneMapping& tone_mapping) {
+  const std::string samples = quantize(image, tone_mapping, srgb_curve);
+  const std::vector<png_text> texts = text_chunks(metadata);
+  PngWriter writer;
+  attempt(writer, [&](png_structp png, png_infop info) {
+    png_set_IHDR(png, info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
+    png_write_info(png, info);
+    const auto* row = reinterpret_cast<png_const_bytep>(samples.data());
+    for (int y = 0; y < image.height; ++y, row += 3 * image.width) png_write_row(png, row);
+    png_write_end(png, info);
+  });
+  return std::move(writer.session.output);
+}
+
+/// libpng allocates what the length of a chunk announces: refuses lengths past the file's end.
+void check_chunks(std::string_view bytes) {
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) {
+    throw Error("not a PNG: it does not begin with the PNG signature");
+  }
+  for (std::string_view rest = bytes.substr(8); !rest.empty();) {
+    // A chunk: length, name, as many bytes as the length says, checksum.
+    const std::size_t length =
+        rest.size() < 12 ? 0 : png_get_uint_32(reinterpret_cast<png_const_bytep>(rest.data()));
+    if (rest.size() < 12 || rest.size() - 12 < length) throw Error("truncated or corrupted");
+    if (rest.substr(4, 4) == "IEND") return;
+    rest.remove_prefix(12 + length);
+  }
+}
+
+struct PngHeader {
+  int width = 0, height = 0;
+  double decoded_bytes = 0;  ///< of the pixels, as the file stores them
+};
+
+PngHeader read_header(PngReader& reader) {
+  PngHeader header;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // allocate_image says it better
+    png_read_info(png, info);
+    header.width = static_cast<int>(png_get_image_width(png, info));
+    header.height = static_cast<int>(png_get_image_height(png, info));
+    header.decoded_bytes = static_cast<double>(png_get_rowbytes(png, info)) * header.height;
+  });
+  return header;
+}
+
+/// Fills rows of `row_bytes`, set by libpng for the transformations that were asked for.
+void read_rows(PngReader& reader, int passes, int height, std::size_t row_bytes, void* rows) {
+  attempt(reader, [&](png_structp png, png_infop info) {
+    for (int pass = 0; pass < passes; ++pass) {
+      auto* row = static_cast<png_bytep>(rows);
+      for (int y = 0; y < height; ++y, row += row_bytes) png_read_row(png, row, nullptr);
+    }
+    png_read_end(png, info);
+  });
+}
+
+/// Fills `image`, which has the size of the header.
+void read_pixels(PngReader& reader, Image& image) {
+  int passes = 0, max_value = 0;
+  std::size_t row_bytes = 0;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_expand(png);  // palettes and fewer than 8 bits
+    png_set_strip_alpha(png);
+    png_set_gray_to_rgb(png);
+    passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+    max_value = png_get_bit_depth(png, info) == 16 ? 65535 : 255;
+    row_bytes = png_get_rowbytes(png, info);
+  });
+  std::string samples(row_bytes * image.height, '\0');
+  read_rows(reader, passes, image.height, row_bytes, samples.data());
+  dequantize(samples, max_value, srgb_curve, image);
+}
+
+Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
+  check_chunks(bytes);
+  PngReader reader(bytes);
+  const PngHeader header = read_header(reader);
+  Image image = allocate_image(header.width, header.height, header.decoded_bytes, bytes.size());
+  read_pixels(reader, image);
+
+  png_textp texts = nullptr;
+  const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
+  for (int i = 0; i < count; ++i) {
+    (*metadata)[texts[i].key] = texts[i].text ? texts[i].text : "";
+  }
+  return image;
+}
+
+}  // namespace
+
+Rgba8Image decode_png_rgba8(std::string_view bytes) {
+  check_chunks(bytes);
+  PngReader reader(bytes);
+  const PngHeader header = read_header(reader);
+  check_image_size(header.width, header.height, header.decoded_bytes, bytes.size());
+  int passes = 0;
+  attempt(reader, [&](png_structp png, png_infop info) {
+    png_set_expand(png);  // palettes, transparent colours and fewer than 8 bits
+    png_set_scale_16(png);
+    png_set_gray_to_rgb(png);
+    png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
+    passes = png_set_interlace_handling(png);
+    png_read_update_info(png, info);
+  });
+  Rgba8Image image{header.width, header.height, {}};
+  image.rgba.resize(std::size_t{4} * image.width * image.height);
+  read_rows(reader, passes, image.height, std::size_t{4} * image.width, image.rgba.data());
+  return image;
+}
+
+const ImageCodec png_codec{".png", encode_png, decode_png};
+
+}  // namespace pt

@@ -1,0 +1,113 @@
+// A scene as the kernels see it: a plain view, passed by value. scene_data.h owns the memory.
+#pragma once
+
+#include "common/accel/accel.h"
+#include "common/accel/triangle_tree.h"
+#include "common/geometry/mesh_view.h"
+#include "common/geometry/primitives.h"
+#include "common/geometry/sphere_frame.h"
+#include "common/light/emission.h"
+#include "common/light/light_selector.h"
+#include "common/light/sky/environment.h"
+#include "common/light/sky/sky.h"
+#include "common/light/sky/sun.h"
+#include "common/material/material.h"
+#include "common/material/opacity.h"
+#include "common/sampling/pixel_filter.h"
+#include "common/scene/data/camera.h"
+
+namespace pt {
+
+struct Scene {
+  Camera camera;
+  PixelFilter filter;
+  Sky sky;
+  Sun sun;  ///< Lighting::full
+  Primitives primitives;
+  const Bvh2Node* bvh_nodes = nullptr;
+  const Material* materials = nullptr;
+  const Parameter* parameters = nullptr;             ///< see Material
+  const Emission* emissions = nullptr;               ///< of those that shine
+  const std::uint32_t* material_of = nullptr;        ///< [primitive]
+  const SphereFrame* sphere_frames = nullptr;        ///< [sphere]; null: no sphere needs one
+  const std::uint32_t* primitive_numbers = nullptr;  ///< [primitive], as the scene's maker had it
+  const std::uint32_t* lights = nullptr;             ///< primitives that emit (Lighting::emitters)
+  const std::uint32_t* light_emission = nullptr;     ///< what they do
+  std::uint32_t light_count = 0;
+  // Scenes with triangles, which also number their triangles' slots after their primitives:
+  TriangleTree triangles;
+  const CornerAttributes* corners = nullptr;  ///< [triangle id]; null: no mesh has attributes
+  const Affine* to_world = nullptr;           ///< [InstanceRecord::number]
+  LightSelector light_selector;               ///< Lighting::full
+  LightMap light_map;                         ///< Lighting::full
+  Environment environment;                    ///< Lighting::full
+  const Opacity* opacities = nullptr;         ///< [material], in scenes with masks
+  std::uint32_t mask_seed = 0;                ///< of this render
+  const Texture* textures = nullptr;
+  const std::byte* texels = nullptr;
+  PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA
+
+  bool has_only_triangles() const {
+    return primitives.count() == 0 && triangles.instance_count == 0;
+  }
+  PT_HD Material material(std::uint32_t number) const { return load_wide(&materials[number]); }
+  /// `material` shines.
+  PT_HD Emission emission(const Material& material) const {
+    return load_wide(&emissions[material.emission]);
+  }
+};
+
+/// What rays can meet. `mixed`: triangles, instances of triangles, spheres.
+enum class Geometry { spheres_and_quads, triangles, mixed };
+
+/// What shines. `sky`: rays that leave the scene, alone; `emitters`: spheres and quads as well;
+/// `full`: lights of all kinds and an environment, with textures on all surfaces.
+enum class Lighting { sky, emitters, full };
+
+/// What is known of a scene before its kernels are chosen: each combination is a kernel of its own.
+struct SceneTraits {
+  Accel accel = Accel::brute;
+  Geometry geometry = Geometry::spheres_and_quads;
+  Lighting lighting = Lighting::sky;
+  bool has_masks = false;
+
+  bool operator==(const SceneTraits&) const = default;
+  bool has_lights() const { return lighting != Lighting::sky; }
+};
+
+struct PathIntegrator;  // transport/path_integrator.h
+
+/// The same as a type, and the integrator, for all that is known of a path before its kernels are
+/// chosen. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
+          bool has_masks_value = false, class IntegratorType = PathIntegrator>
+struct Traits {
+  using Integrator = IntegratorType;
+  static constexpr Accel accel = accel_value;
+  static constexpr Geometry geometry = geometry_value;
+  static constexpr Lighting lighting = lighting_value;
+  static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
+  static constexpr bool has_lights = lighting != Lighting::sky;
+  static constexpr bool has_instances = geometry == Geometry::mixed;
+  /// The BSDFs that a kernel shades.
+  using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
+  static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
+};
+
+/// What shading depends on: scenes that differ in their structure or in masks share its kernels.
+template <class T>
+using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
+
+/// The same of scenes that have triangles and nothing else.
+template <class T>
+using TrianglesAlone = std::conditional_t<
+    T::geometry == Geometry::mixed,
+    Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks, typename T::Integrator>, T>;
+
+/// Of surfaces whose materials are all of one kind.
+template <class T, class Bsdf>
+struct OneKind : T {
+  using BsdfList = TypeList<Bsdf>;
+};
+
+}  // namespace pt

@@ -1,0 +1,107 @@
+// A scene in memory, owned: what the built-in scenes and loaders fill in.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/accel/build/triangle_tree_data.h"
+#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
+#include "common/light/delta_light.h"
+#include "common/light/tree/build_light_tree.h"
+#include "common/math/transform.h"
+#include "common/options/options.h"
+#include "common/plan/render_properties.h"
+#include "common/scene/data/material_description.h"
+#include "common/scene/data/scene.h"
+
+namespace pt {
+
+/// Light from infinitely far: a picture of all directions, latitude by longitude.
+struct EnvironmentData {
+  int width = 0, height = 0;  ///< 0: none
+  std::vector<Color> pixels;  ///< radiance, placed as environment.h tells: row 0 is the zenith (+y
+                              ///< before to_world), the middle of a row -z, u grows towards +x
+  Affine to_world;            ///< a rotation
+};
+
+/// What a scene file asks for where the command line does not.
+struct SceneDefaults {
+  std::optional<int> width, height, spp, max_depth, rr_depth;
+  std::optional<CropWindow> crop;
+  std::optional<FilterChoice> filter;
+  /// The file's radiance has no relation to a display's white: photometric units, or a light that
+  /// it does not bring.
+  bool measure_exposure = false;
+};
+
+/// The memory behind a LightSelector and a LightMap.
+struct LightListData {
+  std::vector<Light> lights;
+  std::vector<AliasEntry> selection;
+  LightTreeData tree;                               ///< empty unless lights are chosen by it
+  std::size_t lamps = 0;                            ///< that give any light
+  std::uint32_t sun = 0;                            ///< its number
+  std::uint32_t table_first = 0;                    ///< see LightSelector
+  std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
+  float total_weight = 0.0f;
+  float environment_probability = 0.0f, table_probability = 1.0f;
+};
+
+struct SceneData {
+  std::string name;
+  SceneDefaults defaults;
+  CameraParameters camera;
+  Sky sky;
+  EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
+  Sun sun;                      ///< likewise
+  std::vector<DeltaLight> delta_lights;
+  std::vector<Sphere> spheres;
+  std::vector<Quad> quads;
+  std::vector<Mesh> meshes;         ///< those of group 0 in world space
+  std::vector<Instance> instances;  ///< of the other groups
+  std::vector<MaterialDescription> materials;
+  std::vector<Texture> textures;
+  std::vector<std::byte> texels;                              ///< of all textures
+  std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
+  std::vector<SphereFrame> sphere_frames;                     ///< by sphere; empty: none needs one
+  // Made from the above by prepare_scene():
+  SceneProperties properties;
+  SceneTraits traits;
+  PixelFilter filter;                      ///< without its table
+  std::vector<float> filter_quantiles;     ///< empty: a box of one pixel
+  std::vector<Material> material_records;  ///< by material
+  std::vector<Parameter> parameters;
+  std::vector<Emission> emissions;
+  std::vector<Opacity> opacities;          ///< by material; empty: there are no masks
+  std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
+  std::vector<std::uint32_t> material_of;  ///< by primitive
+  std::vector<std::uint32_t> primitive_numbers;  ///< by primitive: as they were before
+  std::vector<std::uint32_t> lights;             ///< primitives that emit
+  std::vector<std::uint32_t> light_emission;     ///< by light
+  std::vector<Sphere> scan_spheres;              ///< Primitives::scan
+  Vec3 scan_center = Vec3(0.0f);
+  std::vector<HalfSpheres> half_spheres;  ///< Primitives::halves
+  float half_scale = 1.0f;
+  // In scenes with triangles:
+  TriangleTreeData tree;                     ///< empty where --builder leaves it to the device
+  std::shared_ptr<const EmbreeTree> embree;  ///< with Accel::embree, over `tree`
+  std::vector<CornerAttributes> corners;     ///< by triangle; empty where no mesh has attributes
+  std::vector<Affine> to_world;              ///< by instance
+  LightListData light_list;
+  EnvironmentMap environment_map;
+
+  std::size_t primitive_count() const { return spheres.size() + quads.size(); }
+  std::uint64_t triangle_count() const;
+
+  std::uint32_t add_material(const MaterialDescription& material);
+  void add_sphere(const Vec3& center, float radius, std::uint32_t material);
+  void add_sphere(const Vec3& center, float radius, std::uint32_t material,
+                  const SphereFrame& frame);
+  void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
+};
+
+}  // namespace pt

@@ -1,0 +1,25 @@
+// What a scene consists of, for reports.
+#pragma once
+
+#include <string>
+
+#include "common/accel/build/tree_summary.h"
+#include "common/options/stats.h"
+#include "common/scene/data/scene_data.h"
+
+namespace pt {
+
+/// `scene` is prepared.
+void describe_scene(const SceneData& scene, SceneFacts& facts);
+
+/// Of the tree over the scene's `triangles`.
+TreeFacts tree_facts(const TreeSummary& tree, std::uint64_t triangles);
+
+/// Two or three lines for a person: counts, memory, the tree. Empty for the paper's scenes, which
+/// have nothing to say.
+std::string scene_text(const SceneFacts& facts);
+
+/// The line about the tree; empty where there is none. Part of scene_text().
+std::string tree_text(const TreeFacts& tree);
+
+}  // namespace pt

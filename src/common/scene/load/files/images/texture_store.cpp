@@ -1,0 +1,123 @@
+#include "common/scene/load/files/images/texture_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/texture/sample_texture.h"
+
+namespace pt {
+namespace {
+
+constexpr std::size_t alignment = 16;  // of the first texel, bytes
+
+bool same(const Texture& a, const Texture& b) {
+  return a.kind == b.kind && a.format == b.format && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v &&
+         a.filter == b.filter && a.width == b.width && a.height == b.height &&
+         a.offset == b.offset && std::equal(a.u_row, a.u_row + 3, b.u_row) &&
+         std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 &&
+         a.color1 == b.color1 && std::equal(a.nested, a.nested + 2, b.nested);
+}
+
+/// The same file as linear8 and as srgb8, or grey, is two images.
+std::string key_of(const std::string& name, const Texture& look,
+                   const std::optional<Color>& weights) {
+  const std::string grey =
+      weights ? fmt::format("grey {} {} {} ", weights->x, weights->y, weights->z) : "";
+  return grey + (look.format == TextureFormat::linear8 ? "linear " : "srgb ") + name;
+}
+
+TextureImage in_grey(TextureImage image, const std::optional<Color>& weights) {
+  return weights ? grey_image(std::move(image), *weights) : image;
+}
+
+TextureFormat integers_of(const Texture& look) {
+  return look.format == TextureFormat::linear8 ? TextureFormat::linear8 : TextureFormat::srgb8;
+}
+
+}  // namespace
+
+std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Texture& look,
+                                     const std::optional<Color>& weights) {
+  std::error_code ignored;  // where there is no such file, reading it says so
+  const std::filesystem::path file = std::filesystem::weakly_canonical(path, ignored);
+  const std::string key = key_of(ignored ? path.string() : file.string(), look, weights);
+  auto found = stored_.find(key);
+  if (found == stored_.end()) {
+    const TextureImage image = in_grey(read_texture_image(path, integers_of(look)), weights);
+    found = stored_.emplace(key, store(image)).first;
+  }
+  return add_stored(found->second, look);
+}
+
+std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string& name,
+                                       const Texture& look, const std::optional<Color>& weights) {
+  const std::string key = key_of("memory " + name, look, weights);
+  auto found = stored_.find(key);
+  if (found == stored_.end()) {
+    const TextureImage image =
+        in_grey(decode_texture_image(bytes, name, integers_of(look)), weights);
+    found = stored_.emplace(key, store(image)).first;
+  }
+  return add_stored(found->second, look);
+}
+
+std::uint32_t TextureStore::add_image(const TextureImage& image, const Texture& look) {
+  return add_stored(store(image), look);
+}
+
+std::uint32_t TextureStore::add_plain(const Texture& texture) {
+  const auto equal =
+      std::ranges::find_if(textures_, [&](const Texture& t) { return same(t, texture); });
+  if (equal == textures_.end()) {
+    textures_.push_back(texture);
+    return static_cast<std::uint32_t>(textures_.size() - 1);
+  }
+  return static_cast<std::uint32_t>(equal - textures_.begin());
+}
+
+std::uint32_t TextureStore::add_alpha_of(std::uint32_t number) {
+  Texture alpha = textures_[number];
+  if (alpha.kind != TextureKind::image || alpha.format == TextureFormat::rgb32f) return no_texture;
+  const std::size_t end = alpha.offset + std::size_t{4} * alpha.width * alpha.height;
+  bool is_opaque = true;
+  for (std::size_t i = alpha.offset + 3; i < end; i += 4) {
+    is_opaque = is_opaque && texels_[i] == std::byte{255};
+  }
+  if (is_opaque) return no_texture;
+  alpha.format = TextureFormat::alpha8;
+  alpha.color0 = Color(1.0f);
+  return add_plain(alpha);
+}
+
+bool TextureStore::is_normal_map(std::uint32_t number) const {
+  const Texture& texture = textures_[number];
+  double sum[3] = {};
+  for (std::uint32_t y = 0; y < texture.height; ++y) {
+    for (std::uint32_t x = 0; x < texture.width; ++x) {
+      const Color c = load_texel(texture, texels_.data(), x, y);
+      for (int i = 0; i < 3; ++i) sum[i] += c[i];
+    }
+  }
+  const double red_green = 0.5 * (sum[0] + sum[1]);
+  return sum[2] > 1.3 * red_green;
+}
+
+TextureStore::Stored TextureStore::store(const TextureImage& image) {
+  const std::size_t offset = (texels_.size() + alignment - 1) / alignment * alignment;
+  texels_.resize(offset);
+  texels_.insert(texels_.end(), image.texels.begin(), image.texels.end());
+  return {image.format, image.width, image.height, offset};
+}
+
+std::uint32_t TextureStore::add_stored(const Stored& stored, Texture look) {
+  look.kind = TextureKind::image;
+  look.format = stored.format;
+  look.width = stored.width;
+  look.height = stored.height;
+  look.offset = stored.offset;
+  return add_plain(look);
+}
+
+}  // namespace pt

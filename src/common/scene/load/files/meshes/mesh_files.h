@@ -1,0 +1,76 @@
+// Triangle meshes in files: PLY, Wavefront OBJ, Mitsuba's .serialized.
+//
+// All readers triangulate polygons as fans, scale normals to unit length (one that has no
+// direction becomes that of a triangle at its vertex) and set no material and no group. They throw
+// Error, one line with the file and the line or element, for a file that is missing, truncated or
+// malformed: sizes that the file cannot hold, indices out of range, positions that are not finite.
+// A texture coordinate that is not finite becomes 0.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/geometry/mesh.h"
+#include "common/scene/data/material_description.h"
+
+namespace pt {
+
+struct MeshFileOptions {
+  bool face_normals = false;  ///< ignore the file's normals: flat triangles
+  /// Replace v by 1 - v. Files say v = 0 at the image's foot, as Mesh does; Mitsuba takes the v of
+  /// its textures from the head, so its `ply` and `serialized` shapes need this (unless they say
+  /// flip_tex_coords) and its `obj` shapes do not (unless they say not to flip).
+  bool flip_v = false;
+  std::vector<std::string>* warnings = nullptr;  ///< gets what was guessed, a line each; or null
+};
+
+/// PLY: ASCII or binary of either byte order, any properties in any order. Vertices give x y z,
+/// optional nx ny nz, optional texture coordinates (u v, s t, texture_u texture_v or
+/// texture_s texture_t) and colours (red green blue, r g b, or color_0 color_1 color_2 as Mitsuba
+/// writes them); faces give vertex_indices or vertex_index, and optional colours. Colours that are
+/// integers are in the sRGB curve, floats are linear. May return an empty mesh.
+Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options = {});
+
+/// All faces of an OBJ file as one mesh, ignoring its materials.
+Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options = {});
+
+/// A material of an MTL file as the nearest of ours.
+struct ObjMaterial {
+  std::string name;
+  MaterialDescription material;
+  std::filesystem::path albedo_map, emission_map;  ///< beside the MTL file; empty: none
+  std::filesystem::path opacity_map = {}, bump_map = {}, specular_map = {};
+  float bump_scale = 1.0f;
+};
+
+struct ObjFile {
+  std::vector<Mesh> meshes;  ///< one a material in use; Mesh::material is a number in `materials`
+  std::vector<ObjMaterial> materials;  ///< never empty: faces without a material are grey
+  std::vector<std::string> warnings;   ///< what the file asks for and we do otherwise
+};
+
+/// An OBJ file with the materials of its MTL files.
+ObjFile read_obj_with_materials(const std::filesystem::path& path,
+                                const MeshFileOptions& options = {});
+
+/// Shape number `shape_index` (0 is the first) of Mitsuba's .serialized, version 3 or 4. Flags that
+/// do not say how precise its numbers are get a warning: they are floats.
+Mesh read_serialized(const std::filesystem::path& path, int shape_index,
+                     const MeshFileOptions& options = {});
+
+// The same of a file's content in memory, for which `name` stands in errors.
+
+Mesh decode_ply(std::string_view bytes, const std::string& name,
+                const MeshFileOptions& options = {});
+Mesh decode_obj(std::string_view bytes, const std::string& name,
+                const MeshFileOptions& options = {});
+Mesh decode_serialized(std::string_view bytes, const std::string& name, int shape_index,
+                       const MeshFileOptions& options = {});
+
+/// Normals by vertex, the mean of the triangles' weighted by their angles (Thuermer and Wuethrich
+/// 1998): what Mitsuba gives meshes that have none and do not ask for face_normals.
+void compute_vertex_normals(Mesh& mesh);
+
+}  // namespace pt

@@ -1,0 +1,40 @@
+#include "common/scene/load/files/meshes/text_number.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "common/error/error.h"
+
+namespace pt {
+namespace {
+
+/// A number too large or too small for a double: from_chars does not say which.
+double out_of_range(std::string_view word) {
+  const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
+  return tiny ? 0.0 : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+std::string_view next_word(std::string_view& text) {
+  const auto begin = std::find_if_not(text.begin(), text.end(), is_text_space);
+  const auto end = std::find_if(begin, text.end(), is_text_space);
+  text = std::string_view(end, text.end());
+  return std::string_view(begin, end);
+}
+
+double parse_number(std::string_view word) {
+  const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+  double value = 0;
+  const char* end = digits.data() + digits.size();
+  const auto [stop, failure] = std::from_chars(digits.data(), end, value);
+  if (failure == std::errc::invalid_argument || stop != end) {
+    throw Error(fmt::format("expected a number, found '{}'", word.substr(0, 40)));
+  }
+  return failure == std::errc::result_out_of_range ? out_of_range(digits) : value;
+}
+
+}  // namespace pt

@@ -1,0 +1,170 @@
+#include "common/scene/load/files/meshes/vertex_colors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/scene/load/files/images/color_atlas.h"
+#include "common/texture/sample_texture.h"
+
+namespace pt {
+namespace {
+
+bool all_equal(const std::vector<Color>& colors) {
+  return std::ranges::all_of(colors, [&](const Color& c) { return c == colors.front(); });
+}
+
+/// Of all corners of triangles; white where there are none.
+Color mean_of_vertices(const Mesh& mesh) {
+  if (mesh.colors.empty() || mesh.triangles.empty()) return Color(1.0f);
+  if (all_equal(mesh.colors)) return mesh.colors.front();
+  double sum[3] = {};
+  for (const TriangleIndices& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle.v) {
+      for (int i = 0; i < 3; ++i) sum[i] += mesh.colors[v][i];
+    }
+  }
+  const double scale = 1.0 / (3.0 * static_cast<double>(mesh.triangles.size()));
+  return {static_cast<float>(scale * sum[0]), static_cast<float>(scale * sum[1]),
+          static_cast<float>(scale * sum[2])};
+}
+
+Color mean_of_faces(const Mesh& mesh) {
+  if (mesh.face_colors.empty()) return Color(1.0f);
+  Vec3 sum(0.0f);
+  for (const Color& c : mesh.face_colors) sum += c;
+  return sum / static_cast<float>(mesh.face_colors.size());
+}
+
+}  // namespace
+
+void VertexColors::report_mean(const std::string& place) {
+  if (reported_) return;
+  reported_ = true;
+  options_.report(place +
+                  ": colours of vertices or faces beside textures or in an anisotropic material "
+                  "are not supported: their mean is used");
+}
+
+std::uint32_t VertexColors::number_of(std::uint32_t& texture) {
+  if (texture == none) {
+    texture = static_cast<std::uint32_t>(scene_.textures.size());
+    scene_.textures.emplace_back();  // without texels until finish()
+  }
+  return texture;
+}
+
+VertexColors::Use VertexColors::use_of(std::uint32_t number) const {
+  const MaterialDescription& material = scene_.materials[number];
+  Use use;
+  const auto note = [&](std::uint32_t texture) {
+    if (texture == no_texture) return;
+    (texture == vertex_ ? use.by_vertex : texture == face_ ? use.by_face : use.others) = true;
+  };
+  for (const Parameter& p : material.parameters) note(p.texture);
+  note(material.emission.texture), note(material.opacity.texture);
+  if (material.node == MaterialNode::none) {
+    use.others |= uses_tangent(material);
+    return use;
+  }
+  use.others |= material.node >= MaterialNode::normal_map;
+  for (const std::uint32_t child : material.children) {
+    const Use inside = use_of(child);
+    use.by_vertex |= inside.by_vertex, use.by_face |= inside.by_face;
+    use.others |= inside.others;
+  }
+  return use;
+}
+
+/// The number of a copy with the change to the material and to what it is made of.
+std::uint32_t VertexColors::changed(std::uint32_t number, const Change& change) {
+  MaterialDescription material = scene_.materials[number];
+  if (material.node != MaterialNode::none) {
+    const bool same = material.children[0] == material.children[1];
+    material.children[0] = changed(material.children[0], change);
+    material.children[1] = same ? material.children[0] : changed(material.children[1], change);
+  }
+  change(material);
+  return scene_.add_material(material);
+}
+
+void VertexColors::tint(Mesh& mesh, bool emits, const std::string& place) {
+  if (mesh.colors.empty()) return;
+  const bool uniform = all_equal(mesh.colors), others = use_of(mesh.material).others;
+  if (uniform || others) {
+    if (!uniform) {
+      report_mean(place);
+    }
+    const Color mean = mean_of_vertices(mesh);
+    if (mean == Color(1.0f)) return;
+    mesh.material = changed(mesh.material, [&](MaterialDescription& m) {
+      if (emits) m.emission.radiance *= mean;
+      if (!emits && m.node == MaterialNode::none) m.parameters[0].value *= mean;
+    });
+    return;
+  }
+  const auto [entry, is_new] = tinted_.try_emplace({mesh.material, emits}, 0u);
+  if (is_new) {
+    const std::uint32_t texture = by_vertex();
+    entry->second = changed(mesh.material, [&](MaterialDescription& m) {
+      (emits ? m.emission.texture : m.parameters[0].texture) = texture;
+    });
+  }
+  mesh.material = entry->second;
+}
+
+/// Gives the mesh a material of its own, with the colours' means for the textures that stand for
+/// them.
+void VertexColors::show_means(Mesh& mesh) {
+  const Color by_vertices = mean_of_vertices(mesh), by_faces = mean_of_faces(mesh);
+  const auto replace = [&](std::uint32_t& texture, Color& value) {
+    if (!is_ours(texture)) return;
+    value *= texture == vertex_ ? by_vertices : by_faces;
+    texture = no_texture;
+  };
+  mesh.material = changed(mesh.material, [&](MaterialDescription& m) {
+    for (Parameter& p : m.parameters) replace(p.texture, p.value);
+    replace(m.emission.texture, m.emission.radiance);
+    Color opacity(1.0f);
+    replace(m.opacity.texture, opacity);
+    if (m.opacity.is_constant()) m.opacity.offset += m.opacity.scale * grey_of(opacity);
+    if (m.opacity.is_constant()) m.opacity.scale = 0.0f;
+  });
+}
+
+void VertexColors::report_lack(const char* attribute, bool lacks) {
+  if (!lacks || !lacks_.insert(attribute).second) return;
+  options_.report(
+      fmt::format("scene '{}': a mesh has no attribute '{}' for its material: white is used",
+                  scene_.name, attribute));
+}
+
+bool VertexColors::shows_texels(Mesh& mesh) {
+  const Use use = use_of(mesh.material);
+  if (!use.colors()) return false;
+  report_lack("vertex_color", use.by_vertex && mesh.colors.empty());
+  report_lack("face_color", use.by_face && mesh.face_colors.empty());
+  const bool uniform = all_equal(mesh.colors) && all_equal(mesh.face_colors);
+  if (use.others && !uniform) {
+    report_mean(fmt::format("scene '{}'", scene_.name));
+  }
+  if (use.others || uniform) show_means(mesh);
+  return !use.others && !uniform;
+}
+
+void VertexColors::finish() {
+  std::vector<Mesh*> shown;
+  std::size_t triangles = 0;
+  for (Mesh& mesh : scene_.meshes) {
+    if ((vertex_ == none && face_ == none) || !shows_texels(mesh)) continue;
+    shown.push_back(&mesh);
+    triangles += mesh.triangles.size();
+  }
+  ColorAtlas atlas(triangles);
+  for (Mesh* mesh : shown) atlas.add(*mesh);
+  if (vertex_ != none) atlas.store_vertices(scene_.textures[vertex_], scene_.texels);
+  if (face_ != none) atlas.store_faces(scene_.textures[face_], scene_.texels);
+  for (Mesh& mesh : scene_.meshes) mesh.colors.clear(), mesh.face_colors.clear();
+}
+
+}  // namespace pt

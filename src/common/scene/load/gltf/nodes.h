@@ -1,0 +1,24 @@
+// The hierarchy of nodes: where everything is.
+#pragma once
+
+#include <vector>
+
+#include "common/math/transform.h"
+#include "common/scene/load/gltf/file.h"
+
+namespace pt::gltf {
+
+struct PlacedNode {
+  int node = 0;  ///< number in the file
+  Affine to_world;
+};
+
+/// "nodes[7]"
+std::string node_place(int node);
+
+/// All nodes of the default scene, parents before their children, in the order of the file. Throws
+/// Error for a node that is its own ancestor or has two parents, and for a transformation that is
+/// not affine.
+std::vector<PlacedNode> place_nodes(const File& file);
+
+}  // namespace pt::gltf

@@ -1,0 +1,156 @@
+#include "common/scene/load/gltf/textures.h"
+
+#include "common/scene/load/gltf/values.h"
+
+namespace pt::gltf {
+
+namespace {
+
+TextureWrap to_wrap(const File& file, int wrap, const std::string& place) {
+  switch (wrap) {
+    case TINYGLTF_TEXTURE_WRAP_REPEAT:
+      return TextureWrap::repeat;
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
+      return TextureWrap::clamp;
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
+      return TextureWrap::mirror;
+    default:
+      file.fail(place, fmt::format("{}: expected 10497, 33071 or 33648", wrap));
+  }
+}
+
+/// Path tracing averages over a pixel, so that mipmaps, minFilter's subject, have no part.
+void apply_sampler(const File& file, const tinygltf::Texture& texture, const std::string& place,
+                   Texture& look) {
+  if (texture.sampler < 0) return;
+  const auto& sampler =
+      file.at(file.model.samplers, texture.sampler, "samplers", place + ".sampler");
+  const std::string sampler_place = fmt::format("samplers[{}]", texture.sampler);
+  look.wrap_u = to_wrap(file, sampler.wrapS, sampler_place + ".wrapS");
+  look.wrap_v = to_wrap(file, sampler.wrapT, sampler_place + ".wrapT");
+  if (sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) look.filter = TextureFilter::nearest;
+}
+
+/// KHR_texture_transform: translation * rotation * scale of (u, v) with v down from the image's
+/// head; a positive rotation turns the coordinates counterclockwise as one sees the image. Ours
+/// goes up: v' = 1 - v on both sides.
+void apply_transform(const tinygltf::Value& transform, Texture& look) {
+  const Vec2 offset = vector_or(transform, "offset", Vec2(0.0f));
+  const Vec2 scale = vector_or(transform, "scale", Vec2(1.0f));
+  const float rotation = number_or(transform, "rotation", 0.0f);
+  const float c = std::cos(rotation), s = std::sin(rotation);
+  const float uu = c * scale.x, uv = s * scale.y, vu = -s * scale.x, vv = c * scale.y;
+  look.u_row[0] = uu, look.u_row[1] = -uv, look.u_row[2] = uv + offset.x;
+  look.v_row[0] = -vu, look.v_row[1] = vv, look.v_row[2] = 1.0f - vv - offset.y;
+}
+
+}  // namespace
+
+TextureUse texture_use(const tinygltf::TextureInfo& info) {
+  TextureUse use{info.index, info.texCoord, {}};
+  if (const auto* transform = find_extension(info.extensions, "KHR_texture_transform")) {
+    use.transform = *transform;
+    use.tex_coord = integer_or(use.transform, "texCoord", use.tex_coord);
+  }
+  return use;
+}
+
+TextureUse texture_use(const tinygltf::Value& info) {
+  TextureUse use{integer_or(info, "index", -1), integer_or(info, "texCoord", 0), {}};
+  use.transform = member(member(info, "extensions"), "KHR_texture_transform");
+  use.tex_coord = integer_or(use.transform, "texCoord", use.tex_coord);
+  return use;
+}
+
+const tinygltf::Texture& Textures::texture(const TextureUse& use, const std::string& place) const {
+  return file_.at(file_.model.textures, use.texture, "textures", place + ".index");
+}
+
+const tinygltf::Image& Textures::image_at(int source, const TextureUse& use) const {
+  return file_.at(file_.model.images, source, "images",
+                  fmt::format("textures[{}].source", use.texture));
+}
+
+void Textures::check(const TextureUse& use, const std::string& place) const {
+  const int source = texture(use, place).source;
+  if (source >= 0) image_at(source, use);
+}
+
+Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::string& place) const {
+  const int source = texture(use, place).source;
+  if (source < 0) {
+    file_.fail(fmt::format("textures[{}].source", use.texture),
+               "no image in a format that is supported");
+  }
+  const tinygltf::Image& image = image_at(source, use);
+  const std::string image_place = fmt::format("images[{}]", source);
+  const auto text = [](const unsigned char* data, std::size_t size) {
+    return std::string_view(reinterpret_cast<const char*>(data), size);
+  };
+  // The store knows images by their names, so the name carries the image's number.
+  const std::string name =
+      file_.describe(image_place + (image.uri.empty() ? "" : " = " + image.uri));
+  if (image.bufferView >= 0) {  // within its buffer: check_json
+    const auto& view = file_.at(file_.model.bufferViews, image.bufferView, "bufferViews",
+                                image_place + ".bufferView");
+    const auto& buffer = file_.at(file_.model.buffers, view.buffer, "buffers", image_place);
+    return {text(buffer.data.data() + view.byteOffset, view.byteLength), name};
+  }
+  if (image.image.empty()) {
+    file_.fail(image_place, fmt::format("cannot read '{:.200}'", image.uri));
+  }
+  return {text(image.image.data(), image.image.size()), name};
+}
+
+TextureImage Textures::integers(const TextureUse& use, const std::string& place) const {
+  const Encoded encoded = encoded_image(use, place);
+  TextureImage image = decode_texture_image(encoded.bytes, encoded.name, TextureFormat::linear8);
+  if (image.format != TextureFormat::linear8) {
+    throw Error(encoded.name + ": an image of floats, expected one of integers");
+  }
+  return image;
+}
+
+std::uint32_t Textures::decode(const TextureUse& use, const std::string& place,
+                               TextureFormat format, const std::optional<Color>& weights) {
+  const Encoded image = encoded_image(use, place);
+  if (use.tex_coord != 0) {
+    file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
+  }
+  Texture look;
+  look.format = format;
+  apply_sampler(file_, texture(use, place), fmt::format("textures[{}]", use.texture), look);
+  if (use.transform.IsObject()) apply_transform(use.transform, look);
+  return store_.add_memory(image.bytes, image.name, look, weights);
+}
+
+std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,
+                            const std::optional<Color>& weights, const char* instead) {
+  check(use, place);
+  try {
+    return decode(use, place, format, weights);
+  } catch (const Error& error) {
+    file_.report(place, fmt::format("{}: {}", error.what(), instead));
+    return no_texture;
+  }
+}
+
+Color Textures::mean(const TextureUse& use, const std::string& place) {
+  check(use, place);
+  TextureImage image;
+  try {
+    image = integers(use, place);
+  } catch (const Error& error) {
+    file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
+    return Color(1.0f);
+  }
+  double sum[3] = {};
+  for (std::size_t i = 0; i < image.texels.size(); i += 4) {
+    for (std::size_t j = 0; j < 3; ++j) sum[j] += std::to_integer<int>(image.texels[i + j]);
+  }
+  const double scale = 4.0 / (255.0 * static_cast<double>(image.texels.size()));
+  return {static_cast<float>(scale * sum[0]), static_cast<float>(scale * sum[1]),
+          static_cast<float>(scale * sum[2])};
+}
+
+}  // namespace pt::gltf

@@ -1,0 +1,79 @@
+// Textures: images, samplers and KHR_texture_transform.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/math/vec.h"
+#include "common/scene/data/scene_data.h"
+#include "common/scene/load/files/images/texture_store.h"
+#include "common/scene/load/gltf/file.h"
+
+namespace pt::gltf {
+
+/// A textureInfo object: which texture, and how it lies on the surface.
+struct TextureUse {
+  int texture = -1;  ///< number in the file, -1: none
+  int tex_coord = 0;
+  tinygltf::Value transform;  ///< KHR_texture_transform, or null
+
+  explicit operator bool() const { return texture >= 0; }
+};
+
+TextureUse texture_use(const tinygltf::TextureInfo& info);
+/// The same within an extension; null: none.
+TextureUse texture_use(const tinygltf::Value& info);
+
+class Textures {
+ public:
+  /// Adds to `scene`, which outlives this.
+  Textures(File& file, SceneData& scene) : file_(file), store_(scene.textures, scene.texels) {}
+
+  // Each gives the number in the scene; `place` is that of the textureInfo. An image that cannot be
+  // decoded is no_texture, with a warning.
+
+  /// A colour texture (sRGB).
+  std::uint32_t add_color(const TextureUse& use, const std::string& place) {
+    return add(use, place, TextureFormat::srgb8);
+  }
+  /// A normal map.
+  std::uint32_t add_normals(const TextureUse& use, const std::string& place) {
+    return add(use, place, TextureFormat::linear8, {}, "there is no map");
+  }
+  /// One of numbers: the weighted sum of its components, in all of them.
+  std::uint32_t add_number(const TextureUse& use, const std::string& place, const Color& weights) {
+    return add(use, place, TextureFormat::linear8, weights);
+  }
+  /// The alpha of a colour texture; no_texture, too, where it is 1 everywhere.
+  std::uint32_t add_alpha(const TextureUse& use, const std::string& place) {
+    const std::uint32_t color = add_color(use, place);
+    return color == no_texture ? no_texture : store_.add_alpha_of(color);
+  }
+
+  /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
+  /// image cannot be decoded: a factor is then used alone.
+  Color mean(const TextureUse& use, const std::string& place);
+
+ private:
+  struct Encoded {
+    std::string_view bytes;
+    std::string name;
+  };
+
+  std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format,
+                    const std::optional<Color>& weights = {},
+                    const char* instead = "the factor alone is used");
+  std::uint32_t decode(const TextureUse& use, const std::string& place, TextureFormat format,
+                       const std::optional<Color>& weights);
+  const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
+  const tinygltf::Image& image_at(int source, const TextureUse& use) const;
+  /// A wrong number is an Error; a picture that we lack, or cannot decode, is not.
+  void check(const TextureUse& use, const std::string& place) const;
+  Encoded encoded_image(const TextureUse& use, const std::string& place) const;
+  TextureImage integers(const TextureUse& use, const std::string& place) const;
+
+  File& file_;
+  TextureStore store_;
+};
+
+}  // namespace pt::gltf

@@ -1,0 +1,25 @@
+// What a user says to the loaders of scene files.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "common/error/error.h"
+
+namespace pt {
+
+struct LoadOptions {
+  std::map<std::string, std::string> definitions;  ///< -D name=value; for formats with variables
+  bool strict = false;  ///< an Error instead of each warning: nothing is replaced or ignored
+  std::function<void(const std::string&)> warn;  ///< called with one line; empty: silence
+
+  /// For what a loader replaces or ignores. `message` names the file, the place, and what is used
+  /// instead.
+  void report(const std::string& message) const {
+    if (strict) throw Error(message + " (--strict)");
+    if (warn) warn(message);
+  }
+};
+
+}  // namespace pt

@@ -1,0 +1,21 @@
+// <emitter>s that are not on a shape.
+#pragma once
+
+#include "common/scene/load/mitsuba/context.h"
+
+namespace pt::mitsuba {
+
+/// Adds point, spot, projector, directional, constant, envmap or sunsky to the scene; others are
+/// reported. Adding a kind is adding a line to the table in emitters.cpp.
+void add_emitter(Context& context, const Object& emitter);
+
+/// Fills the scene's environment with an `envmap`.
+void add_environment_map(Context& context, const Object& emitter);
+
+/// `projector`: a point light that shows a picture.
+void add_projector(Context& context, const Object& emitter);
+
+/// `sunsky`, `sky`, `sun`.
+void add_daylight(Context& context, const Object& emitter);
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,66 @@
+#include "common/scene/load/mitsuba/mitsuba_xml.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/scene/data/frame_scene.h"
+#include "common/scene/load/mitsuba/emitters.h"
+#include "common/scene/load/mitsuba/sensor.h"
+#include "common/scene/load/mitsuba/shapes/shapes.h"
+
+namespace pt {
+namespace {
+
+using mitsuba::Context;
+using mitsuba::Object;
+
+/// A camera that frames what there is.
+void add_sensor(Context& context, const Object& root) {
+  const Bounds bounds = scene_bounds(context.scene);
+  context.note(root.element(), "no sensor: a camera that frames the scene is used");
+  if (std::isfinite(glm::length(bounds.max - bounds.min)) && !bounds.is_empty()) {
+    context.scene.camera = frame_scene(context.scene);
+  }
+}
+
+/// The sensor, in the name of 0.x's first versions or of today. After the shapes, for it may have
+/// to frame them.
+void load_sensor(Context& context, const Object& root) {
+  std::vector<const Object*> sensors = root.children("sensor");
+  for (const Object* camera : root.children("camera")) sensors.push_back(camera);
+  if (sensors.empty()) return add_sensor(context, root);
+  if (sensors.size() > 1) {
+    context.warn_once("sensors", sensors[1]->element(), "more than one sensor: the first is used");
+  }
+  read_sensor(context, *sensors.front());
+}
+
+void load_objects(Context& context, const Object& root) {
+  for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
+  load_sensor(context, root);
+  // What the camera sees is up to it.
+  if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
+  for (const Object* emitter : root.children("emitter")) add_emitter(context, *emitter);
+  for (const Object* emitter : root.children("luminaire")) add_emitter(context, *emitter);
+}
+
+}  // namespace
+
+SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options) {
+  const mitsuba::Element root = mitsuba::read_document(path, options);
+  const mitsuba::ObjectGraph graph(root, options);
+  SceneData scene;
+  // Many scenes are FOLDER/scene.xml.
+  const std::string stem = path.stem().string();
+  scene.name =
+      stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
+  Context context(scene, options, graph);
+  load_objects(context, graph.scene());
+  context.colors.finish();
+  context.add_studio_if_dark();
+  context.report_unused();
+  return scene;
+}
+
+}  // namespace pt

@@ -1,0 +1,16 @@
+// Scenes in Mitsuba's XML, dialects 0.5, 0.6, 2 and 3.
+#pragma once
+
+#include <filesystem>
+
+#include "common/scene/data/scene_data.h"
+#include "common/scene/load/load_options.h"
+
+namespace pt {
+
+/// Loads a scene and the meshes, textures and environment that it names. What we cannot do is
+/// replaced by the nearest that we can, or left out, and reported through the options, once for
+/// each kind. Throws Error, one line with file and line, for a file that is malformed or missing.
+SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options = {});
+
+}  // namespace pt

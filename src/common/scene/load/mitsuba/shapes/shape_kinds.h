@@ -1,0 +1,31 @@
+// The kinds of shapes: each adds one to the scene.
+#pragma once
+
+#include "common/scene/load/mitsuba/context.h"
+
+namespace pt::mitsuba {
+
+/// Where a shape goes and what it is made of.
+struct Target {
+  std::uint32_t group;
+  std::uint32_t material;
+  bool textured;    ///< shading asks where on it a point lies
+  bool tangents;    ///< and in which directions u and v grow there
+  bool needs_mesh;  ///< masked, of a mesh's colours, or a lamp with a texture
+
+  /// Quads and spheres: in the world, without texture coordinates.
+  bool analytic() const { return group == 0 && !textured && !needs_mesh; }
+};
+
+/// Adds a mesh in a shape's own space, placed by `to_world` and the shape's normals and flips.
+void add_mesh(Context& context, const Object& shape, const Target& target, Mesh mesh,
+              const Affine& to_world);
+
+void add_file(Context& context, const Object& shape, const Target& target);
+void add_rectangle(Context& context, const Object& shape, const Target& target);
+void add_cube(Context& context, const Object& shape, const Target& target);
+void add_sphere(Context& context, const Object& shape, const Target& target);
+void add_disk(Context& context, const Object& shape, const Target& target);
+void add_cylinder(Context& context, const Object& shape, const Target& target);
+
+}  // namespace pt::mitsuba

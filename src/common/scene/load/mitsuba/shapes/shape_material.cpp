@@ -1,0 +1,73 @@
+// The material of a shape: its bsdf and its emitter.
+#include <fmt/format.h>
+
+#include "common/scene/load/mitsuba/shapes/shapes.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
+
+namespace pt::mitsuba {
+namespace {
+
+/// Mitsuba's surface of a shape without a bsdf.
+Surface default_surface(const Object* emitter) {
+  Surface surface;
+  surface.material = make_diffuse(Color(emitter ? 0.0f : 0.5f));
+  surface.material.one_sided = true;
+  return surface;
+}
+
+void add_emission(Context& context, const Object& emitter, Surface& surface) {
+  if (emitter.type() != "area") {
+    context.warn_once(
+        "shape emitter " + emitter.type(), emitter.element(),
+        fmt::format("emitter '{}' on a shape is not supported: it is left out", emitter.type()));
+    return context.add_left_out(emitter);
+  }
+  context.add_lit();
+  emitter.ignore({"sampling_weight"});
+  const ColorTexture radiance =
+      read_color_texture(context, emitter, "radiance", Color(1.0f), Quantity::emission);
+  surface.material.emission = {radiance.color, radiance.texture};
+  if (surface.invisible) {
+    context.warn_once("invisible emitter", emitter.element(),
+                      "an emitter that light passes is not supported: it is black instead");
+    surface = default_surface(&emitter);
+    surface.material.emission = {radiance.color, radiance.texture};
+  }
+}
+
+const Object* emitter_of(Context& context, const Object& shape, std::uint32_t group) {
+  const Object* emitter = shape.child("emitter");
+  if (!emitter) emitter = shape.child("luminaire");
+  if (emitter) context.on_shapes.insert(emitter);
+  if (!emitter || group == 0) return emitter;
+  context.warn_once("instanced emitter", emitter->element(),
+                    "an emitter in a shapegroup is not supported: it is black instead");
+  context.add_left_out(*emitter);
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
+                                         std::uint32_t group) {
+  const Object* bsdf = shape.child("bsdf");
+  const Object* emitter = emitter_of(context, shape, group);
+  if (!shape.children("medium").empty()) {
+    context.warn_once("medium", shape.element(),
+                      "media are not supported: shapes are empty, and light passes one that has a "
+                      "medium and no bsdf");
+    if (!bsdf && !emitter) return std::nullopt;
+  }
+  constexpr std::uint32_t invisible = 0xffffffffu;
+  const auto [entry, is_new] = context.materials.try_emplace({bsdf, emitter}, invisible);
+  if (is_new) {
+    Surface surface = bsdf ? read_surface(context, *bsdf) : default_surface(emitter);
+    if (emitter) add_emission(context, *emitter, surface);
+    if (!surface.invisible) {
+      entry->second = context.scene.add_material(surface.material);
+    }
+  }
+  return entry->second == invisible ? std::nullopt : std::optional(entry->second);
+}
+
+}  // namespace pt::mitsuba

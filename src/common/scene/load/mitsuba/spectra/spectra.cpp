@@ -1,0 +1,150 @@
+#include "common/scene/load/mitsuba/spectra/spectra.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+#include "common/scene/load/mitsuba/xml/values.h"
+
+namespace pt::mitsuba {
+namespace {
+
+float srgb_to_linear(float v) {  // IEC 61966-2-1
+  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+}
+
+Color decoded(const Color& c) {
+  return {srgb_to_linear(c.x), srgb_to_linear(c.y), srgb_to_linear(c.z)};
+}
+
+/// #rrggbb, in the sRGB curve as on the web.
+Color hex_color(const Element& element, const std::string& text) {
+  std::uint32_t value = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + 1, end, value, 16);
+  if (text.size() != 7 || stop != end || error != std::errc()) {
+    fail(element, fmt::format("the colour '{}'; expected #rrggbb", text));
+  }
+  const Color bytes(value >> 16, value >> 8 & 255, value & 255);
+  return decoded(bytes / 255.0f);
+}
+
+Color rgb_color(const Element& element) {
+  const std::string& text = element.required("value");
+  if (!text.empty() && text[0] == '#') return hex_color(element, text);
+  const std::vector<double> v = parse_numbers(element, text);
+  if (v.size() != 1 && v.size() != 3) {
+    fail(element, fmt::format("the colour '{}'; expected one or three numbers", text));
+  }
+  const Color color = v.size() == 1 ? Color(static_cast<float>(v[0])) : Color(v[0], v[1], v[2]);
+  return element.tag == "srgb" ? decoded(color) : color;
+}
+
+Samples sorted_samples(const Element& element, Samples samples) {
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (!(samples[i].first > samples[i - 1].first)) {
+      fail(element, "<spectrum>: expected wavelengths in ascending order");
+    }
+  }
+  return samples;
+}
+
+/// "wavelength:value, ..."
+Samples listed_samples(const Element& element, std::string text) {
+  for (char& c : text) {
+    if (c == ':') c = ' ';
+  }
+  const std::vector<double> v = parse_numbers(element, text);
+  if (v.size() % 2 != 0) fail(element, "<spectrum>: expected pairs wavelength:value");
+  Samples samples;
+  for (std::size_t i = 0; i < v.size(); i += 2) samples.emplace_back(v[i], v[i + 1]);
+  return sorted_samples(element, std::move(samples));
+}
+
+/// A file of lines "wavelength value"; # begins a comment.
+Samples sample_file(Context& context, const Element& element) {
+  const std::filesystem::path path = context.resolve(element, element.required("filename"));
+  std::ifstream file(path);
+  if (!file) fail(element, fmt::format("cannot read the spectrum {}", path.string()));
+  std::string line, all;
+  while (std::getline(file, line)) all += line.substr(0, line.find('#')) + " ";
+  return listed_samples(element, std::move(all));
+}
+
+Color spectrum_color(Context& context, const Element& element, Quantity quantity) {
+  const std::string* text = element.attribute("value");
+  if (text && text->find(':') == text->npos) {
+    const Color color = rgb_color(element);
+    // Mitsuba 3 makes a constant emission spectrum the colour of equal energy, 0.x made it grey.
+    const bool equal_energy = context.modern && quantity == Quantity::emission;
+    return equal_energy ? color * Color(1.20479f, 0.948293f, 0.908916f) : color;
+  }
+  const Samples samples = text ? listed_samples(element, *text) : sample_file(context, element);
+  context.warn_once("spectrum", element,
+                    "<spectrum> of wavelengths: linear sRGB is used, as the CIE 1931 observer "
+                    "sees it");
+  return spectrum_to_rgb(samples, quantity);
+}
+
+/// The temperature may have the unit of 0.x: "5000K".
+Color blackbody_color(const Element& element) {
+  std::string text = element.required("temperature");
+  if (!text.empty() && (text.back() == 'K' || text.back() == 'k')) text.pop_back();
+  const std::optional<double> kelvin = parse_number(text);
+  if (!kelvin || !(*kelvin > 0)) {
+    fail(element, fmt::format("temperature '{}'; expected kelvins above 0", text));
+  }
+  return blackbody_to_rgb(*kelvin) * static_cast<float>(number_attribute(element, "scale", 1.0));
+}
+
+Color color_of(Context& context, const Element& element, Quantity quantity) {
+  if (element.tag == "spectrum") return spectrum_color(context, element, quantity);
+  if (element.tag == "blackbody") return blackbody_color(element);
+  if (element.tag == "rgb" || element.tag == "srgb" || element.tag == "float" ||
+      element.tag == "integer") {
+    return rgb_color(element);
+  }
+  fail(element,
+       fmt::format("a <{}>; expected a colour: <rgb>, <spectrum> or <float>", element.tag));
+}
+
+}  // namespace
+
+Color read_color(Context& context, const Element& element, Quantity quantity) {
+  Color color = color_of(context, element, quantity);
+  for (int i = 0; i < 3; ++i) {
+    if (quantity == Quantity::index_of_refraction && color[i] < 0.0f) {
+      context.warn_once("negative index", element,
+                        "a negative component of an index of refraction: 0 is used");
+      color[i] = 0.0f;
+    }
+    if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) {
+      fail(element, fmt::format("a colour with the component {}; expected one that is finite and "
+                                "not negative",
+                                color[i]));
+    }
+    if (quantity == Quantity::reflectance && color[i] > 1.0f) {
+      context.warn_once("reflectance above 1", element,
+                        "a reflectance above 1: 1 is used, for conservation of energy");
+      color[i] = 1.0f;
+    }
+  }
+  return color;
+}
+
+Color read_spectrum_object(Context& context, const Object& object, Quantity quantity) {
+  if (object.type() == "d65") return Color(object.number("scale", 1.0f));
+  if (object.type() == "uniform") return Color(object.number("value", 1.0f));
+  if (object.type() == "blackbody") {
+    return blackbody_to_rgb(object.number("temperature", 6500.0f)) * object.number("scale", 1.0f);
+  }
+  const Color grey(quantity == Quantity::reflectance ? 0.5f : 1.0f);
+  context.warn_once(
+      "spectrum " + object.type(), object.element(),
+      fmt::format("spectrum '{}' is not supported: grey {} is used", object.type(), grey.x));
+  return grey;
+}
+
+}  // namespace pt::mitsuba

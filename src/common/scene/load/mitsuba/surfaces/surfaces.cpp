@@ -1,0 +1,35 @@
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "common/scene/load/mitsuba/surfaces/surface_kinds.h"
+
+namespace pt::mitsuba {
+namespace {
+
+using Reader = Surface (*)(Context&, const Object&);
+
+const std::map<std::string_view, Reader>& readers() {
+#define PT_MITSUBA_SURFACE(name, read) {name, read},
+  static const std::map<std::string_view, Reader> table = {PT_MITSUBA_SURFACES(PT_MITSUBA_SURFACE)};
+#undef PT_MITSUBA_SURFACE
+  return table;
+}
+
+}  // namespace
+
+void report_replaced(Context& context, const Object& bsdf, std::string_view by) {
+  context.warn_once("bsdf " + bsdf.type(), bsdf.element(),
+                    fmt::format("bsdf '{}' is not supported: {}", bsdf.type(), by));
+}
+
+Surface read_surface(Context& context, const Object& bsdf) {
+  const auto reader = readers().find(bsdf.type());
+  if (reader != readers().end()) return reader->second(context, bsdf);
+  report_replaced(context, bsdf, "diffuse grey is used");
+  return diffuse_of({Color(0.5f)});
+}
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,39 @@
+// The elements of a scene's XML, after <include>s and $variables: what the rest of the loader sees.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/scene/load/load_options.h"
+
+namespace pt::mitsuba {
+
+struct Element {
+  std::string tag;
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<Element> children;
+  std::shared_ptr<const std::filesystem::path> file;
+  int line = 0;
+
+  /// The value of an attribute, or nullptr.
+  const std::string* attribute(std::string_view name) const;
+  /// The same; throws Error where the element has none.
+  const std::string& required(std::string_view name) const;
+  /// "file:line".
+  std::string place() const;
+};
+
+/// Throws Error with the element's place before `message`.
+[[noreturn]] void fail(const Element& element, const std::string& message);
+
+/// Reads a scene and what it includes. Variables come from the options' definitions and from
+/// <default>, in this order of precedence. Throws Error with file and line for malformed XML,
+/// undefined variables, definitions that nothing uses, files that include each other and elements
+/// nested deeper than 64.
+Element read_document(const std::filesystem::path& path, const LoadOptions& options);
+
+}  // namespace pt::mitsuba

@@ -1,0 +1,210 @@
+#include "common/scene/prepare/list_lights.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <numeric>
+
+#include "common/error/error.h"
+#include "common/light/lights.h"
+#include "common/plan/execution_plan.h"
+#include "common/scene/prepare/light_errors.h"
+
+namespace pt {
+namespace {
+
+constexpr std::size_t lights_max = std::size_t{1} << 24;
+
+class Lister {
+ public:
+  Lister(const SceneData& scene, const Bounds& bounds, LightSelection selection)
+      : scene_(scene), selection_(selection) {
+    radius_ = bounds.is_empty() ? 1.0f : 0.5f * glm::length(bounds.max - bounds.min);
+  }
+
+  LightListData list() {
+    list_lamps();
+    for (const Instance& instance : scene_.instances) add_group(instance.group, &instance.to_world);
+    add_group(0, nullptr);
+    for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
+    for (const DeltaLight& light : scene_.delta_lights) {
+      if (has_place(light.kind)) add_delta(light);
+    }
+    const std::size_t first_distant = data_.lights.size();
+    for (const DeltaLight& light : scene_.delta_lights) {
+      if (!has_place(light.kind)) add_delta(light);
+    }
+    if (scene_.sun.one_minus_cos > 0.0f) add_sun();
+    data_.lamps = lamps_done_;
+    selection_ = choose_light_selection(selection_, lamps_done_);
+    if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
+    if (data_.tree.pairs.empty()) {
+      make_table(0);
+      share_with_environment(data_.selection.empty() ? 0 : lamps_done_);
+    } else {
+      make_table(first_distant);
+      share_with_tree();
+    }
+    return std::move(data_);
+  }
+
+ private:
+  /// Of lights from `first` on.
+  void make_table(std::size_t first) {
+    std::vector<float> weights;
+    double total = 0;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) {
+      weights.push_back(data_.lights[i].weight);
+      total += data_.lights[i].weight;
+    }
+    data_.table_first = static_cast<std::uint32_t>(first);
+    data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
+    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
+    if (total > 0) data_.selection = build_alias_table(weights);
+  }
+
+  void share_with_environment(std::size_t lamps) {
+    if (scene_.environment.width == 0) return;
+    const bool uniform = selection_ == LightSelection::uniform;
+    data_.environment_probability = lamps == 0 ? 1.0f
+                                    : uniform  ? 1.0f / static_cast<float>(lamps + 1)
+                                               : 0.5f;
+  }
+
+  /// The environment, what else has no place, and the tree: as often each.
+  void share_with_tree() {
+    const bool has_table = !data_.selection.empty(), has_map = scene_.environment.width > 0;
+    data_.table_probability = has_table ? 0.5f : 0.0f;
+    data_.environment_probability = !has_map ? 0.0f : has_table ? 1.0f / 3.0f : 0.5f;
+  }
+
+  /// The lights from `first` on are one lamp.
+  void finish_lamp(std::size_t first) {
+    double total = 0;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) total += data_.lights[i].weight;
+    if (!(total > 0)) return;
+    ++lamps_done_;
+    if (selection_ != LightSelection::uniform) return;
+    for (std::size_t i = first; i < data_.lights.size(); ++i) {
+      data_.lights[i].weight = static_cast<float>(data_.lights[i].weight / total);
+    }
+  }
+
+  bool shines(const Mesh& mesh) const {
+    return !is_black(scene_.materials[mesh.material].emission.radiance);
+  }
+
+  /// A mesh that shines.
+  struct Lamp {
+    const Mesh* mesh;
+    std::uint32_t first_triangle;  ///< counted through all meshes
+  };
+
+  /// Triangles that shine are numbered through the meshes of a group.
+  void list_lamps() {
+    std::map<std::uint32_t, std::uint32_t> ranks;  // by group
+    std::uint32_t first_triangle = 0;
+    for (const Mesh& mesh : scene_.meshes) {
+      const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+      if (shines(mesh)) {
+        lamps_[mesh.group].push_back({&mesh, first_triangle});
+        data_.rank.resize(first_triangle + count);
+        std::uint32_t& next = ranks[mesh.group];
+        std::iota(data_.rank.end() - count, data_.rank.end(), next);
+        next += count;
+      }
+      first_triangle += count;
+    }
+  }
+
+  void add_group(std::uint32_t group, const Affine* to_world) {
+    data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    for (const Lamp& lamp : lamps_[group]) add_placed(*lamp.mesh, lamp.first_triangle, to_world);
+  }
+
+  void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world) {
+    const Emission& emission = scene_.materials[mesh.material].emission;
+    const PlacementErrors errors(to_world);
+    if (data_.lights.size() + mesh.triangles.size() > lights_max) {
+      throw Error(fmt::format("scene '{}' has more than {} triangles that emit light", scene_.name,
+                              lights_max));
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      Vec3 v[3];
+      for (int k = 0; k < 3; ++k) v[k] = mesh.positions[mesh.triangles[i].v[k]];
+      Vec3 edge1 = v[1] - v[0], edge2 = v[2] - v[0];
+      Light light{};
+      light.a = v[0];
+      if (to_world != nullptr) {
+        light.a = to_world->point(v[0]);
+        edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
+      }
+      const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
+      light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
+      light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
+      const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
+      light.relative_error = error.relative, light.absolute_error = error.absolute;
+      light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
+                                    emission.texture_mean);
+      // What is not there does not shine: met by chance.
+      if (!scene_.materials[mesh.material].opacity.is_opaque()) light.weight = 0.0f;
+      light.triangle =
+          mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
+      light.radiance = emission.radiance;
+      light.emission_texture = emission.texture;
+      data_.lights.push_back(light);
+    }
+    finish_lamp(data_.lights.size() - mesh.triangles.size());
+  }
+
+  void add_sphere(std::size_t i) {
+    data_.spheres.push_back(static_cast<std::uint32_t>(data_.lights.size()));
+    const Color& radiance = scene_.materials[scene_.sphere_material[i]].emission.radiance;
+    if (is_black(radiance)) return;
+    const Sphere& sphere = scene_.spheres[i];
+    Light light{};
+    light.kind = LightKind::sphere;
+    light.a = sphere.center;
+    light.c.x = sphere.radius_squared;
+    light.weight = emitter_weight(radiance, sphere_area(sphere));
+    light.radiance = radiance;
+    light.triangle = light.emission_texture = no_texture;
+    data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
+  }
+
+  void add_delta(const DeltaLight& delta) {
+    data_.lights.push_back(make_light(delta, radius_));
+    finish_lamp(data_.lights.size() - 1);
+  }
+
+  void add_sun() {
+    data_.sun = static_cast<std::uint32_t>(data_.lights.size());
+    const Sun& sun = scene_.sun;
+    Light light{};
+    light.kind = LightKind::sun;
+    light.b = sun.direction;
+    light.c.x = sun.one_minus_cos;
+    light.radiance = sun.radiance;
+    light.triangle = light.emission_texture = no_texture;
+    // As a directional light of its irradiance.
+    light.weight = 2 * pi * sun.one_minus_cos * radius_ * radius_ * luminance(sun.radiance);
+    data_.lights.push_back(light);
+    finish_lamp(data_.lights.size() - 1);
+  }
+
+  const SceneData& scene_;
+  LightSelection selection_;
+  float radius_;
+  std::size_t lamps_done_ = 0;                        ///< that give any light
+  std::map<std::uint32_t, std::vector<Lamp>> lamps_;  ///< by group
+  LightListData data_;
+};
+
+}  // namespace
+
+LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection) {
+  return Lister(scene, bounds, selection).list();
+}
+
+}  // namespace pt

@@ -1,0 +1,132 @@
+#include "common/scene/prepare/prepare_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error/error.h"
+#include "common/scene/prepare/weigh_textures.h"
+
+namespace pt {
+namespace {
+
+/// How many of the description's parameters its BSDF has.
+int parameter_count(const MaterialDescription& material) {
+  return visit(material.kind, material, [](const auto& bsdf) { return bsdf.parameter_count; });
+}
+
+bool is_delta(const MaterialDescription& material) {
+  return visit(material.kind, material, [](const auto& bsdf) { return bsdf.is_delta(); });
+}
+
+std::uint32_t size32(const auto& values) { return static_cast<std::uint32_t>(values.size()); }
+
+/// Its children are packed already. It needs of a surface what they need.
+void pack_node(const MaterialDescription& source, const SceneData& scene, Material& material) {
+  constexpr std::uint8_t inherited = Material::textured | Material::tangents;
+  material.flags = static_cast<std::uint8_t>(material.flags | Material::nested);
+  if (source.node >= MaterialNode::normal_map) material.flags |= Material::tangents;
+  for (const std::uint32_t child : source.children) {
+    if (child >= scene.material_records.size()) {
+      throw Error(
+          fmt::format("scene '{}': material {} is made of material {}, expected earlier ones",
+                      scene.name, scene.material_records.size(), child));
+    }
+    material.flags |= scene.material_records[child].flags & inherited;
+  }
+  material.node = source.node;
+  material.parameters = source.children[0], material.second = source.children[1];
+  material.kind = scene.material_records[source.children[0]].kind;
+  const MaterialKind second = scene.material_records[source.children[1]].kind;
+  if (material.kind != second) material.kind = several_kinds;
+}
+
+void pack_bsdf(const MaterialDescription& source, bool multiple_scattering, SceneData& scene,
+               Material& material) {
+  const Parameter* end = source.parameters + parameter_count(source);
+  const bool compensated = multiple_scattering && is_rough_conductor(source);
+  material.kind = compensated ? kind_of<CompensatedConductor> : source.kind;
+  material.flags |= static_cast<std::uint8_t>((is_delta(source) ? Material::delta : 0) |
+                                              (uses_tangent(source) ? Material::tangents : 0));
+  material.parameters = size32(scene.parameters);
+  scene.parameters.insert(scene.parameters.end(), source.parameters + 1, end);
+}
+
+Material pack(const MaterialDescription& source, bool multiple_scattering, SceneData& scene) {
+  Material material;
+  material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
+                                             (source.is_textured() ? Material::textured : 0));
+  if (source.node == MaterialNode::none) {
+    pack_bsdf(source, multiple_scattering, scene, material);
+  } else {
+    pack_node(source, scene, material);
+  }
+  if (!is_black(source.emission.radiance)) {
+    material.emission = size32(scene.emissions);
+    scene.emissions.push_back(source.emission);
+  }
+  return material;
+}
+
+/// With a camera that does not see all, masks' kernels are those that ask which ray it is.
+void list_opacities(SceneData& scene) {
+  scene.opacities.clear();
+  bool any = is_limited(scene.camera);
+  for (const MaterialDescription& m : scene.materials) any = any || !m.opacity.is_opaque();
+  for (Mesh& mesh : scene.meshes) {
+    mesh.masked = is_masked(scene, scene.materials[mesh.material]);
+  }
+  if (!any) return;
+  for (const MaterialDescription& m : scene.materials) {
+    Opacity& opacity = scene.opacities.emplace_back(m.opacity);
+    if (is_hidden_lamp(scene, m)) opacity.cutoff = Opacity::lamp_hidden;
+  }
+  for (const std::uint32_t material : scene.sphere_material) {
+    if (!scene.materials[material].opacity.is_opaque()) {
+      throw Error(
+          fmt::format("scene '{}' has a sphere of material {}, which is masked; expected "
+                      "masks on triangles alone",
+                      scene.name, material));
+    }
+  }
+}
+
+}  // namespace
+
+bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material) {
+  return scene.camera.hides_emitters && !is_black(material.emission.radiance);
+}
+
+bool is_masked(const SceneData& scene, const MaterialDescription& material) {
+  return !material.opacity.is_opaque() || is_hidden_lamp(scene, material);
+}
+
+bool is_rough_conductor(const MaterialDescription& material) {
+  return material.node == MaterialNode::none && material.kind == kind_of<Conductor> &&
+         !is_delta(material);
+}
+
+std::uint32_t kinds_of(const SceneData& scene) {
+  static_assert(kind_count <= 32);
+  std::uint32_t kinds = 0;
+  const auto add = [&](std::uint32_t material) {
+    kinds |= 1u << static_cast<int>(scene.material_records[material].kind);
+  };
+  for (const Mesh& mesh : scene.meshes) add(mesh.material);
+  for (const std::uint32_t material : scene.sphere_material) add(material);
+  for (const std::uint32_t material : scene.quad_material) add(material);
+  return kinds;
+}
+
+void prepare_materials(SceneData& scene, bool multiple_scattering) {
+  weigh_emission_textures(scene);
+  scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
+  list_opacities(scene);
+  for (const MaterialDescription& m : scene.materials) scene.parameters.push_back(m.parameters[0]);
+  for (const MaterialDescription& m : scene.materials) {
+    scene.material_records.push_back(pack(m, multiple_scattering, scene));
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,25 @@
+// Packs the materials' descriptions into what kernels read.
+#pragma once
+
+#include "common/scene/data/scene_data.h"
+
+namespace pt {
+
+/// Whether --multiple-scattering changes it.
+bool is_rough_conductor(const MaterialDescription& material);
+
+/// Camera rays do not meet it.
+bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material);
+
+/// Whether its triangles are there in part, or not for all rays.
+bool is_masked(const SceneData& scene, const MaterialDescription& material);
+
+/// A bit for each MaterialKind of the materials that surfaces have.
+std::uint32_t kinds_of(const SceneData& scene);
+
+/// Fills material_records, parameters and emissions from the materials: the first parameters by
+/// material and then the others, emissions only of what shines, textures' means measured. With
+/// `multiple_scattering` rough conductors become CompensatedConductors.
+void prepare_materials(SceneData& scene, bool multiple_scattering);
+
+}  // namespace pt

@@ -1,0 +1,85 @@
+#include "common/scene/prepare/prepare_scene.h"
+
+#include <fmt/format.h>
+
+#include "common/error/error.h"
+#include "common/scene/data/scene_arrays.h"
+#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_filter.h"
+#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_primitives.h"
+#include "common/scene/prepare/prepare_triangles.h"
+#include "common/scene/prepare/scene_properties.h"
+
+namespace pt {
+namespace {
+
+void prepare_primitives_only(SceneData& scene, Accel accel) {
+  prepare_primitives(scene, accel != Accel::brute);
+  scene.traits = {accel, Geometry::spheres_and_quads,
+                  scene.lights.empty() ? Lighting::sky : Lighting::emitters};
+}
+
+}  // namespace
+
+void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device) {
+  if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
+    throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
+  }
+  override_camera(scene.camera, options.camera);
+  check_camera(scene.camera);
+  drop_idle_clips(scene, options.width, options.height);
+  prepare_materials(scene, options.multiple_scattering);
+  prepare_filter(scene, filter_of(options, scene));
+  scene.properties = properties_of(scene);
+  const ExecutionPlan plan = plan_execution(options, scene.properties, device);
+  if (plan.kernel_set == KernelSet::lean) {
+    prepare_primitives_only(scene, plan.accel);
+  } else {
+    prepare_triangles(scene, options, plan.accel);
+    scene.properties.lamps = scene.light_list.lamps;
+  }
+  scene.properties.structure = plan.accel;
+  for (const Decision& d : plan.decisions) {
+    if (d.option == "accel") scene.properties.why_structure = d.reason;
+  }
+  scene.properties.scan_bytes = scene.half_spheres.size() * sizeof(HalfSpheres);
+}
+
+void prepare_scene(SceneData& scene, const Options& options) {
+  DeviceProperties device = cpu_properties(options.threads);
+  device.is_cuda = is_on_cuda(options);
+  device.has_ray_blocks = device.has_ray_blocks && !device.is_cuda;
+  prepare_scene(scene, options, device);
+}
+
+Scene host_view(const SceneData& scene, int width, int height) {
+  const auto count = [](const auto& values) { return static_cast<std::uint32_t>(values.size()); };
+  Scene view;
+  view.camera = make_camera(scene.camera, width, height);
+  view.filter = scene.filter;
+  view.sky = scene.sky;
+  view.sun = scene.sun;
+  view.sun.light = scene.light_list.sun;
+  view.primitives.sphere_count = count(scene.spheres);
+  view.primitives.quad_count = count(scene.quads);
+  view.primitives.scan_count = count(scene.scan_spheres);
+  view.primitives.scan_center = scene.scan_center;
+  view.primitives.half_count = count(scene.half_spheres);
+  view.primitives.half_scale = scene.half_scale;
+  view.light_count = count(scene.lights);
+  view.triangles = scene.tree.view();
+  view.triangles.embree = scene.embree.get();
+  view.light_selector.count = count(scene.light_list.selection);
+  view.light_selector.table_first = scene.light_list.table_first;
+  view.light_selector.table_probability = scene.light_list.table_probability;
+  view.light_selector.tree.root = scene.light_list.tree.root;
+  view.light_selector.total_weight = scene.light_list.total_weight;
+  view.light_selector.environment_probability = scene.light_list.environment_probability;
+  view.environment = scene.environment_map.view();
+  for_each_array(scene, view,
+                 [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
+  return view;
+}
+
+}  // namespace pt

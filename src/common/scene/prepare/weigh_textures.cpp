@@ -1,0 +1,50 @@
+#include "common/scene/prepare/weigh_textures.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <functional>
+
+#include "common/light/light.h"
+#include "common/texture/sample_texture.h"
+
+namespace pt {
+
+double mean_luminance(const Texture* textures, std::uint32_t number, const std::byte* texels,
+                      const Color& factor) {
+  const Texture& texture = textures[number];
+  if (texture.kind == TextureKind::checkerboard) {
+    const auto mean_of = [&](int square, const Color& color) {
+      const std::uint32_t nested = texture.nested[square];
+      return nested == no_texture ? double{luminance(factor * color)}
+                                  : mean_luminance(textures, nested, texels, factor * color);
+    };
+    return 0.5 * (mean_of(0, texture.color0) + mean_of(1, texture.color1));
+  }
+  const Color color = factor * texture.color0;
+  // Deterministic: the sum must not depend on the number of threads.
+  const double sum = tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::uint32_t>(0, texture.height, 64), 0.0,
+      [&](const tbb::blocked_range<std::uint32_t>& rows, double part) {
+        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+          for (std::uint32_t x = 0; x < texture.width; ++x)
+            part += std::fmax(0.0f, luminance(color * load_texel(texture, texels, x, y)));
+        }
+        return part;
+      },
+      std::plus<>());
+  return sum / (static_cast<double>(texture.width) * static_cast<double>(texture.height));
+}
+
+void weigh_emission_textures(SceneData& scene) {
+  for (MaterialDescription& material : scene.materials) {
+    Emission& emission = material.emission;
+    if (emission.texture == no_texture || is_black(emission.radiance)) continue;
+    const auto mean = static_cast<float>(
+        mean_luminance(scene.textures.data(), emission.texture, scene.texels.data()));
+    emission.texture_mean = std::isfinite(mean) ? mean : 1.0f;
+    if (emission.texture_mean == 0.0f) emission.radiance = Color(0.0f);  // nothing shines
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,273 @@
+// Defaults, factors and flags of surfaces and textures, each of which a loader could get wrong
+// without any picture of the suite being far off.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "common/scene/prepare/prepare_scene.h"
+#include "common/texture/sample_texture.h"
+#include "common/transport/mask.h"
+#include "mitsuba_scene.h"
+#include "render_serial.h"
+
+namespace pt {
+namespace {
+
+std::string number(const char* name, double value) {
+  return fmt::format("<float name='{}' value='{}'/>", name, value);
+}
+
+std::string bsdf(const std::string& type, const std::string& inside = "") {
+  return fmt::format("<bsdf type='{}'>{}</bsdf>", type, inside);
+}
+
+/// A picture of 2 x 1 texels, raw: 0.2 and 0.8 of 255.
+std::string picture(const std::string& name, const std::string& inside = "") {
+  return fmt::format(
+      "<texture type='bitmap' name='{}'><string name='filename' value='a.ppm'/>"
+      "<boolean name='raw' value='true'/>{}</texture>",
+      name, inside);
+}
+
+LoadedScene load(const std::string& inside, const std::string& version = "3.0.0") {
+  const TempFolder folder;
+  write_text(folder.file("a.ppm"), "P6\n2 1\n255\n" + std::string("\x33\x33\x33\xcc\xcc\xcc", 6));
+  write_text(
+      folder.file("scene.xml"),
+      fmt::format("<scene version='{}'><sensor type='perspective'/>{}</scene>", version, inside));
+  return load_with_warnings(folder.file("scene.xml"));
+}
+
+std::string square(const std::string& material) {
+  return "<shape type='rectangle'>" + material + "</shape><emitter type='constant'/>";
+}
+
+/// Of a shape's material, whose warnings are none.
+SceneData scene_of(const std::string& material, const std::string& version = "3.0.0") {
+  const LoadedScene loaded = load(square(material), version);
+  EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();
+  return loaded.scene;
+}
+
+const MaterialDescription& top_of(const SceneData& scene) {
+  return scene.materials.at(scene.meshes.empty() ? scene.quad_material.at(0)
+                                                 : scene.meshes.at(0).material);
+}
+
+Texture texture_of(const std::string& texture, const std::string& version = "3.0.0") {
+  return scene_of(bsdf("diffuse", texture), version).textures.at(0);
+}
+
+float opacity_at_texel(const SceneData& scene, float u) {
+  Scene view;
+  view.textures = scene.textures.data(), view.texels = scene.texels.data();
+  return opacity_at(view, top_of(scene).opacity, {u, 0.5f});
+}
+
+TEST(MitsubaTexture, ScalesAndOffsetsOfOldFilesHaveTwoAxes) {
+  const Texture t =
+      texture_of(picture("reflectance", number("uscale", 2) + number("vscale", 3) +
+                                            number("uoffset", 0.1) + number("voffset", 0.2)),
+                 "0.6.0");
+  // In the file's coordinates, whose v goes down: (2 u + 0.1, 3 v + 0.2).
+  const Vec2 mapped = map_coordinates(t, {0.3f, 1.0f - 0.4f});
+  EXPECT_NEAR(mapped.x, 2 * 0.3 + 0.1, 1e-6);
+  EXPECT_NEAR(1 - mapped.y, 3 * 0.4 + 0.2, 1e-6);
+}
+
+TEST(MitsubaTexture, AxesWrapByThemselves) {
+  const auto wraps = [](const char* u, const char* v) {
+    const auto mode = [](const char* axis, const char* value) {
+      return fmt::format("<string name='wrapMode{}' value='{}'/>", axis, value);
+    };
+    const Texture t = texture_of(picture("reflectance", mode("U", u) + mode("V", v)), "0.6.0");
+    return std::pair(t.wrap_u, t.wrap_v);
+  };
+  EXPECT_EQ(wraps("clamp", "mirror"), std::pair(TextureWrap::clamp, TextureWrap::mirror));
+  EXPECT_EQ(wraps("repeat", "clamp"), std::pair(TextureWrap::repeat, TextureWrap::clamp));
+}
+
+TEST(MitsubaTexture, NearestIsNearest) {
+  const std::string nearest = "<string name='filter_type' value='nearest'/>";
+  EXPECT_EQ(texture_of(picture("reflectance", nearest)).filter, TextureFilter::nearest);
+  EXPECT_EQ(texture_of(picture("reflectance")).filter, TextureFilter::bilinear);
+}
+
+TEST(MitsubaTexture, CheckerboardsHaveMitsubasColors) {
+  const Texture t = texture_of("<texture type='checkerboard' name='reflectance'/>");
+  EXPECT_EQ(t.color0, Color(0.4f));
+  EXPECT_EQ(t.color1, Color(0.2f));
+}
+
+TEST(MitsubaTexture, CheckerboardsMayHoldTextures) {
+  const std::string inner =
+      "<texture type='checkerboard' name='color1'><transform name='to_uv'><scale x='4'/>"
+      "</transform><rgb name='color0' value='0.1 0.2 0.3'/>" +
+      picture("color1") + "</texture>";
+  const SceneData scene =
+      scene_of(bsdf("diffuse", "<texture type='checkerboard' name='reflectance'>" +
+                                   picture("color0",
+                                           "<transform name='to_uv'><scale x='0.5'/></transform>"
+                                           "<string name='filter_type' value='nearest'/>") +
+                                   inner + "</texture>"));
+  const auto at = [&](float u, float v) {  // Mitsuba's v
+    return sample_texture(scene.textures.data(), top_of(scene).parameters[0].texture,
+                          scene.texels.data(), {u, 1 - v});
+  };
+  expect_near(at(0.1f, 0.1f), Color(0.2f));  // the outer one's first square: the picture, u / 2
+  expect_near(at(0.6f, 0.6f), Color(0.2f));
+  expect_near(at(0.55f, 0.1f), {0.1f, 0.2f, 0.3f});     // 4 u = 2.2, the inner one's first
+  EXPECT_NEAR(at(0.75f - 1e-4f, 0.1f).x, 0.8f, 1e-3f);  // 4 u just below 3: the picture at 0.75
+}
+
+// Whose colours are the other way round: eval_1() of Mitsuba 3.9.1.
+TEST(MitsubaTexture, CheckerboardsOfNumbersMayHoldTextures) {
+  const std::string nearest = "<string name='filter_type' value='nearest'/>";
+  const SceneData scene = scene_of(bsdf(
+      "roughconductor", "<texture type='checkerboard' name='alpha'>" + picture("color0", nearest) +
+                            number("color1", 0.6) + "</texture>"));
+  const auto at = [&](float u, float v) {
+    return sample_texture(scene.textures.data(), top_of(scene).parameters[3].texture,
+                          scene.texels.data(), {u, 1 - v});
+  };
+  expect_near(at(0.1f, 0.1f), Color(0.6f));
+  expect_near(at(0.9f, 0.9f), Color(0.6f));
+  expect_near(at(0.6f, 0.1f), Color(0.8f));
+  expect_near(at(0.1f, 0.6f), Color(0.2f));
+}
+
+TEST(MitsubaTexture, ColorsOfMeshesInACheckerboardAreReported) {
+  const LoadedScene loaded = load(
+      square(bsdf("diffuse",
+                  "<texture type='checkerboard' name='reflectance'><texture type='mesh_attribute' "
+                  "name='color0'><string name='name' value='vertex_color'/></texture></texture>")));
+  EXPECT_EQ(loaded.count("a mesh_attribute in a checkerboard is not supported"), 1);
+}
+
+TEST(MitsubaTexture, BitmapsHaveNoScale) {
+  // Mitsuba 3.9.1: 'Found 1 unreferenced property in texture plugin of type "bitmap"'.
+  const LoadedScene loaded =
+      load(square(bsdf("diffuse", picture("reflectance", number("scale", 2)))));
+  EXPECT_EQ(loaded.count("scale"), 1);
+  EXPECT_EQ(loaded.scene.textures.at(0).color0, Color(1.0f));
+}
+
+TEST(MitsubaSurface, MasksAreHalfThereByDefault) {
+  EXPECT_EQ(top_of(scene_of(bsdf("mask", bsdf("diffuse")))).opacity.offset, 0.5f);
+}
+
+TEST(MitsubaSurface, TwoSidedKeepsTheMaskInside) {
+  const std::string mask = bsdf("mask", number("opacity", 0.3) + bsdf("diffuse"));
+  const std::string blend =
+      bsdf("blendbsdf", number("weight", 0.5) + mask + mask);  // a node, and no bsdf
+  for (const std::string& inside : {mask, mask + mask, blend}) {
+    const SceneData scene = scene_of(bsdf("twosided", inside));
+    EXPECT_FLOAT_EQ(top_of(scene).opacity.offset, 0.3f) << inside;
+    EXPECT_TRUE(top_of(scene).node != MaterialNode::none || !top_of(scene).one_sided);
+  }
+}
+
+TEST(MitsubaSurface, HalfOfATexturedMaskIsHalf) {
+  const std::string hole =
+      bsdf("blendbsdf", picture("weight") + bsdf("diffuse") + bsdf("null"));  // 1 - w is there
+  const SceneData whole = scene_of(hole);
+  EXPECT_NEAR(opacity_at_texel(whole, 0.25f), 0.8f, 1e-5f);
+  EXPECT_NEAR(opacity_at_texel(whole, 0.75f), 0.2f, 1e-5f);
+  const SceneData half = scene_of(bsdf("mask", number("opacity", 0.5) + hole));
+  EXPECT_NEAR(opacity_at_texel(half, 0.25f), 0.4f, 1e-5f);
+  EXPECT_NEAR(opacity_at_texel(half, 0.75f), 0.1f, 1e-5f);
+}
+
+TEST(MitsubaSurface, BumpMapsHaveTheScaleOfTheirTexture) {
+  const SceneData scene = scene_of(
+      bsdf("bumpmap", number("scale", 3) + "<texture type='scale' name='map'>" +
+                          number("scale", 0.25) + picture("") + "</texture>" + bsdf("diffuse")),
+      "0.6.0");
+  EXPECT_EQ(top_of(scene).node, MaterialNode::bump_map);
+  EXPECT_FLOAT_EQ(top_of(scene).parameters[0].value.x, 0.75f);
+}
+
+TEST(MitsubaSurface, MapsHaveTwoFlagsOfTheirOwn) {
+  struct Flags {
+    bool flips, shadows;
+  };
+  const auto flags = [](const char* map, const std::string& inside) {
+    const SceneData scene =
+        scene_of(bsdf(map, inside + picture(map == std::string("bumpmap") ? "map" : "normalmap") +
+                               bsdf("diffuse")));
+    const Color value = top_of(scene).parameters[0].value;  // 1 is off: see turned_normal
+    return Flags{value.z == 0.0f, value.y == 0.0f};
+  };
+  const std::string no_flip = "<boolean name='flip_invalid_normals' value='false'/>";
+  const std::string no_shadow = "<boolean name='use_shadowing_function' value='false'/>";
+  for (const char* map : {"bumpmap", "normalmap"}) {
+    EXPECT_TRUE(flags(map, "").flips && flags(map, "").shadows);
+    EXPECT_TRUE(!flags(map, no_flip).flips && flags(map, no_flip).shadows);
+    EXPECT_TRUE(flags(map, no_shadow).flips && !flags(map, no_shadow).shadows);
+  }
+}
+
+TEST(MitsubaSurface, PhongsExponentIs30ByDefault) {  // documentation of Mitsuba 0.6, 8.2.11
+  EXPECT_EQ(top_of(scene_of(bsdf("phong"), "0.6.0")).scalar(2), 30.0f);
+}
+
+TEST(MitsubaSurface, MetalsStandInWhatIsOutside) {
+  const SceneData scene = scene_of(
+      bsdf("conductor", "<rgb name='eta' value='0.3 0.6 0.9'/><rgb name='k' value='3 6 9'/>" +
+                            number("ext_eta", 1.5)));
+  expect_near(top_of(scene).color(1), {0.2f, 0.4f, 0.6f});
+  expect_near(top_of(scene).color(2), {2, 4, 6});
+  const MaterialDescription gold =
+      top_of(scene_of(bsdf("conductor", "<string name='material' value='Au'/>")));
+  const MaterialDescription in_glass = top_of(
+      scene_of(bsdf("conductor", "<string name='material' value='Au'/>" + number("ext_eta", 1.5))));
+  for (const int i : {1, 2}) expect_near(1.5f * in_glass.color(i), gold.color(i));
+}
+
+TEST(MitsubaSurface, WardsAxesHaveTexturesOfTheirOwn) {
+  const SceneData scene =
+      scene_of(bsdf("ward", picture("alphaU") + picture("alphaV", number("uscale", 3))), "0.6.0");
+  const MaterialDescription& ward = top_of(scene);
+  EXPECT_EQ(scene.textures.at(ward.parameters[2].texture).u_row[0], 1.0f);
+  EXPECT_EQ(scene.textures.at(ward.parameters[3].texture).u_row[0], 3.0f);
+}
+
+TEST(MitsubaEmitter, LampsMayBeReferredTo) {
+  const std::string lamp =
+      "<emitter type='area' id='x'><rgb name='radiance' value='1 2 3'/></emitter>";
+  const std::string shape = "<shape type='rectangle'><ref id='x'/></shape>";
+  for (const std::string& xml : {lamp + shape, shape + lamp}) {
+    const LoadedScene loaded = load(xml);
+    EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();
+    EXPECT_EQ(top_of(loaded.scene).emission.radiance, Color(1, 2, 3));
+  }
+  EXPECT_EQ(load(lamp + "<shape type='rectangle'/>").count("in no shape"), 1);
+}
+
+// Two half-transparent instances of a black card, one behind the other, before a sky of 1.
+TEST(MitsubaInstances, MasksLetThroughIndependently) {
+  const auto card = [](double z) {
+    return fmt::format(
+        "<shape type='instance'><ref id='g'/><transform name='to_world'><scale value='9'/>"
+        "<translate z='{}'/></transform></shape>",
+        z);
+  };
+  SceneData scene =
+      load_xml(
+          "<sensor type='perspective'/><emitter type='constant'/><shape type='shapegroup' id='g'>"
+          "<shape type='rectangle'>" +
+          bsdf("mask", bsdf("twosided", bsdf("diffuse", "<rgb name='reflectance' value='0'/>"))) +
+          "</shape></shape>" + card(2) + card(3))
+          .scene;
+  Options options = image_options(16, 16, 16, 2);
+  prepare_scene(scene, options);
+  const Image image = render(scene, options).image;
+  double sum = 0;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) sum += image.pixel(x, y)[0];
+  }
+  // 4096 rays of which a quarter passes: a standard deviation of 0.0068.
+  EXPECT_NEAR(sum / 256, 0.25, 0.03);
+}
+
+}  // namespace
+}  // namespace pt
