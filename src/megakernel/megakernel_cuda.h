@@ -20,7 +20,7 @@ class MegakernelCuda : public CudaRenderer {
 
  protected:
   /// To ask each thread whether it follows a chain cost all renders 4 to 11 % (results/).
-  bool lets_chains_go_on() const override { return false; }
+  bool runs_chains_async() const override { return false; }
   void trace_batch(const SampleBuffer& batch) override;
 
  private:

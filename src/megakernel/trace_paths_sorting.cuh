@@ -327,13 +327,13 @@ class SortingTracer {
     pause(tracer.lane());
   }
 
-  // Volatile, see CwbvhLane::park.
-  __device__ volatile uint2* parked() const { return stack_ + bvh_depth_max; }
+  // Volatile, see CwbvhLane::suspend_to.
+  __device__ volatile uint2* suspended() const { return stack_ + bvh_depth_max; }
 
   __device__ void pause(const Lane& lane) {
     if (!lane.is_active()) return;
-    lane.park(parked());
-    volatile uint2& met = parked()[Lane::parked_size];
+    lane.suspend_to(suspended());
+    volatile uint2& met = suspended()[Lane::parked_size];
     met.x = __float_as_uint(lane.query().t_max());
     met.y = lane.query().result().primitive;
     atomicAdd(&memory_.paused, 1u);
@@ -347,11 +347,11 @@ class SortingTracer {
       warp_.rays.store(place, rays_.record(name), name);
       const PreparedRay ray = warp_.rays.load(place);
       lane.set_ray(ray);
-      const volatile uint2& met = parked()[Lane::parked_size];
+      const volatile uint2& met = suspended()[Lane::parked_size];
       const float t = __uint_as_float(met.x);
-      lane.unpark(parked(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
-                                                              rays_.is_shadow(name)),
-                                           ray.t_min));
+      lane.resume_from(suspended(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
+                                                                      rays_.is_shadow(name)),
+                                                   ray.t_min));
       if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(name));
     }
     __syncwarp();

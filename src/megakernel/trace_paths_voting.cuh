@@ -153,7 +153,7 @@ class VotingTracer {
     Ray ray;
     Hit hit;
     bool ended = waits && state_ != State::ray;
-    park();
+    suspend_to();
     if (waits && state_ == State::shadow_then_end) {
       samples_.store(load_path(), lit_radiance());
     } else if (waits && state_ == State::ray) {
@@ -183,7 +183,7 @@ class VotingTracer {
     }
     const bool works = waits && state_ != State::idle;
     if (works) go_on(path, radiance, ray, hit);
-    unpark();
+    resume_from();
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
     ray_.set_ray(prepared);
@@ -191,15 +191,15 @@ class VotingTracer {
   }
 
   /// All lanes: so those that were traversing need no registers while others are shaded.
-  __device__ void park() {
-    ray_.park(parked_);
+  __device__ void suspend_to() {
+    ray_.suspend_to(parked_);
     volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
     met.x = __float_as_uint(ray_.query().t_max()), met.y = ray_.query().result().primitive;
   }
-  __device__ void unpark() {
+  __device__ void resume_from() {
     const volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
     const float t = __uint_as_float(met.x);
-    ray_.unpark(parked_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
+    ray_.resume_from(parked_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
   }
 
   /// A path begins at the camera or goes on from a surface.

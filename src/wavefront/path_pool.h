@@ -155,7 +155,7 @@ struct PathPool {
 
   /// `lanes` for the next ray of the path.
   PT_HD LaneCounter path_lanes(const LaneCounter& lanes, std::uint32_t slot) const {
-    if constexpr (counts_lanes) return lanes.at(load_name(slot).rays);
+    if constexpr (counts_lanes) return lanes.at(load_path_id(slot).rays);
     return lanes;
   }
   /// `lanes` for its shadow ray.
@@ -165,7 +165,7 @@ struct PathPool {
   }
 
   /// The path's number and rays alone.
-  PT_HD PathState load_name(std::uint32_t slot) const {
+  PT_HD PathState load_path_id(std::uint32_t slot) const {
     PathState path;
     path.number = half_at(direction, slot)->w;
     if ((path.number & new_path) == 0)

@@ -16,7 +16,7 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t key = 0;
     if (traits.has_masks) {
-      const PathState path = stage.pool.load_name(slots[i]);
+      const PathState path = stage.pool.load_path_id(slots[i]);
       key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.number)), path.rays);
     }
     rays.append(stage.pool.load_ray(slots[i]), infinite_distance, key);

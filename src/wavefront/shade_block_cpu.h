@@ -28,7 +28,7 @@ void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, 
   const bool together = is_philox(context.source);
   DrawNames names{};
   for (std::uint32_t i = 0; i < count; ++i) {
-    const PathState path = context.pool.load_name(slots[i]);
+    const PathState path = context.pool.load_path_id(slots[i]);
     const PathId id = context.samples.id_of(path.number);
     const std::uint32_t rays = path.rays + 1u;  // with the one that has met the surface
     names.pixel[i] = id.pixel, names.sample[i] = id.sample, names.block[i] = scatter_block(rays);

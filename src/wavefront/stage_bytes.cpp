@@ -26,7 +26,7 @@ class Predictor {
     return {find(n) + n * 2 * record, stored * hit() + sent};
   }
 
-  PredictedBytes sort_hits() const {
+  PredictedBytes route_hits() const {
     return {find(flow_.rays) + flow_.rays * sizeof(StoredHit), flow_.rays * send()};
   }
 
@@ -114,7 +114,7 @@ struct PredictedKernel {
 constexpr PredictedKernel predicted_kernels[] = {
     {stage_info(StageId::generate).name, &Predictor::generate},
     {stage_info(StageId::intersect).name, &Predictor::intersect},
-    {stage_info(StageId::sort_hits).name, &Predictor::sort_hits},
+    {stage_info(StageId::route_hits).name, &Predictor::route_hits},
     {stage_info(StageId::shade_miss).name, &Predictor::shade_miss},
     {stage_info(StageId::shadow).name, &Predictor::shadow},
     {stage_info(StageId::bounce).name, &Predictor::bounce},

@@ -200,7 +200,7 @@ struct IntersectRays : PathRays {
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t key = 0;
     if constexpr (Traits::has_masks) {
-      const PathState path = pool.load_name(slot);
+      const PathState path = pool.load_path_id(slot);
       key = next_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
     }
     Ray ray = pool.load_ray(slot);
@@ -211,15 +211,15 @@ struct IntersectRays : PathRays {
 
 /// Sends each path whose ray has been traced to the stage that shades it: for tracers that store
 /// the hits and do no more (trace_rays in wavefront.h).
-struct SortHits {
-  static constexpr StageId id = StageId::sort_hits;
+struct RouteHits {
+  static constexpr StageId id = StageId::route_hits;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    pool.path_lanes(lanes_of(scene), slot).count(LanePoint::sort_hits);
+    pool.path_lanes(lanes_of(scene), slot).count(LanePoint::route_hits);
     return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };

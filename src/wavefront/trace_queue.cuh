@@ -53,7 +53,7 @@ struct QueuedPaths {
   /// For masks. `path_key` gives a path's key by its number.
   template <class PathKey>
   __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
-    const PathState path = rays.pool.load_name(slot);
+    const PathState path = rays.pool.load_path_id(slot);
     return next_ray_key(path_key(path.number), path.rays);
   }
 };

@@ -159,7 +159,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   if constexpr (Executor::template traces_queues<Traits>) {
     if (rays.appends && execute.traces_queues_here()) {
       execute.trace_queue(rays, samples);
-      execute.run(SortHits{b.pool}, rays);
+      execute.run(RouteHits{b.pool}, rays);
       return;
     }
   }

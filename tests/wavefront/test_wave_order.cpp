@@ -132,16 +132,16 @@ TEST(WaveOrder, AThreadPerRayTracesAndSendsOn) {
   }
 }
 
-TEST(WaveOrder, PersistentWarpsTraceAndSortHitsSendsOn) {
+TEST(WaveOrder, PersistentWarpsTraceAndRouteHitsSendsOn) {
   using enum StageId;
   for (const CompactionInfo& strategy : compaction_table) {
     SCOPED_TRACE(strategy.name);
     const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy);
     // They need queues that stages append to.
     EXPECT_EQ(notes.traced, strategy.appends ? (Ids{intersect, shadow}) : Ids{});
-    EXPECT_EQ(std::ranges::count(notes.ran, sort_hits), strategy.appends ? 1 : 0);
+    EXPECT_EQ(std::ranges::count(notes.ran, route_hits), strategy.appends ? 1 : 0);
     if (!strategy.appends) continue;
-    Ids expected{compact,    begin_wave,    generate, intersect, sort_hits, compact,
+    Ids expected{compact,    begin_wave,    generate, intersect, route_hits, compact,
                  shade_miss, shade_surface, compact,  shadow,    finish};
     EXPECT_EQ(notes.ran, expected);
   }

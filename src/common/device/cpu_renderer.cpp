@@ -314,16 +314,16 @@ void CpuRenderer::run_chains(std::uint32_t chains, const ChainStep& step, Render
 
 void CpuRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                                 RenderRun& run) {
-  if (!lets_chains_go_on()) {
+  if (!runs_chains_async()) {
     while (chain_arrays_.proposals[0].iteration <= last) run_chains(chains, step, run);
     return;
   }
   const SampleBuffer batch = chain_batch(chains);
   chain_run_ = {chain_arrays_, step, last};
   std::fill_n(samples(), chains, Sample{});
-  chains_go_on_ = true;
+  chains_are_async_ = true;
   time_in_arena(run, [&] { trace_batch(batch); });
-  chains_go_on_ = false;
+  chains_are_async_ = false;
 }
 
 void CpuRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {

@@ -57,9 +57,9 @@ class CpuRenderer : public FilmRenderer {
   }
 
   /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
-  virtual bool lets_chains_go_on() const { return true; }
+  virtual bool runs_chains_async() const { return true; }
   /// Null: the batch is of paths. Else it is of chains that go on by themselves (continue_chain).
-  const ChainRun* chains() const { return chains_go_on_ ? &chain_run_ : nullptr; }
+  const ChainRun* chains() const { return chains_are_async_ ? &chain_run_ : nullptr; }
 
   /// Whether the batch is to be abandoned: no path more needs to be traced.
   bool is_cancelled() const { return cancel_ != nullptr && *cancel_ && (*cancel_)(); }
@@ -118,7 +118,7 @@ class CpuRenderer : public FilmRenderer {
   PathTally tally_;
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
   ChainRun chain_run_;
-  bool chains_go_on_ = false;
+  bool chains_are_async_ = false;
   std::vector<std::vector<char>> chain_memory_;  ///< of chain_arrays_
   std::vector<BufferSize> memory_;
 };

@@ -46,10 +46,10 @@ class CudaRenderer : public FilmRenderer {
   virtual void predict_bytes(std::vector<LaunchCounters>& /*launches*/) const {}
 
   /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
-  virtual bool lets_chains_go_on() const { return true; }
+  virtual bool runs_chains_async() const { return true; }
   /// Null: the batch is of paths. Else, in the device's memory, of chains that go on by themselves
   /// (continue_chain); so it is from prepare_batch on.
-  const ChainRun* chains() const { return chains_go_on_ ? chain_run_ : nullptr; }
+  const ChainRun* chains() const { return chains_are_async_ ? chain_run_ : nullptr; }
 
   /// Whether the hardware's counters are read: every kernel is then launched by the host.
   bool is_counting() const { return counters_ != nullptr; }
@@ -173,7 +173,7 @@ class CudaRenderer : public FilmRenderer {
   PathTally* tally_ = nullptr;
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
   ChainRun* chain_run_ = nullptr;
-  bool chains_go_on_ = false;
+  bool chains_are_async_ = false;
   std::uint32_t chain_steps_ = 0;  ///< that each chain has taken where none goes on by itself
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;

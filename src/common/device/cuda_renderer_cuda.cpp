@@ -363,7 +363,7 @@ void CudaRenderer::run_chains(std::uint32_t chains, const ChainStep& step, Rende
 
 void CudaRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
                                  RenderRun& run) {
-  if (!lets_chains_go_on()) {
+  if (!runs_chains_async()) {
     for (; chain_steps_ < last; ++chain_steps_) run_chains(chains, step, run);
     return;
   }
@@ -374,10 +374,10 @@ void CudaRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, st
       cudaMemcpyAsync(chain_run_, &chain_run, sizeof chain_run, cudaMemcpyHostToDevice, stream_),
       "cudaMemcpyAsync");
   check_cuda(cudaMemsetAsync(samples(), 0, chains * sizeof(Sample), stream_), "cudaMemsetAsync");
-  chains_go_on_ = true;
+  chains_are_async_ = true;
   prepare_batch(batch);
   time_batch(run, [&] { trace_batch(batch); });
-  chains_go_on_ = false;
+  chains_are_async_ = false;
 }
 
 void CudaRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {

@@ -29,7 +29,8 @@ namespace pt {
 /// Those that one function samples, and all. The place is the LightKind.
 using OtherLights =
     TypeList<SphereLight, SunLight, PointLight, SpotLight, ProjectorLight, DirectionalLight>;
-using Lights = decltype(concatenate(TypeList<TriangleLight, TurnedTriangleLight>{}, OtherLights{}));
+using Lights =
+    decltype(concatenate(TypeList<TriangleLight, MirroredTriangleLight>{}, OtherLights{}));
 
 namespace detail {
 template <class... Types>

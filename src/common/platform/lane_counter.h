@@ -28,7 +28,7 @@ inline constexpr bool counts_lanes = false;
   POINT(intersect, "begin to trace a ray")                         \
   POINT(node, "visit a node")                                      \
   POINT(primitive, "test a primitive, or the triangles of a leaf") \
-  POINT(sort_hits, "send a path to the stage that shades it")      \
+  POINT(route_hits, "send a path to the stage that shades it")     \
   POINT(shade_miss, "shade a ray that left the scene")             \
   POINT(shade_surface, "shade a surface")                          \
   POINT(light, "sample a light")                                   \

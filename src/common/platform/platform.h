@@ -89,7 +89,7 @@ PT_HD void store_wide(T* p, const T& value) {
 
 /// x, which the compiler takes for a new value: what it made of x before it makes again, instead of
 /// keeping it in registers that other things need meanwhile.
-PT_HD float anew(float x) {
+PT_HD float hide_from_optimizer(float x) {
 #ifdef __CUDA_ARCH__
   asm volatile("" : "+f"(x));
 #endif

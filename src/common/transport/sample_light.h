@@ -29,7 +29,7 @@ PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, c
   PlainLight result = {{s.light.wi, s.light.end, light.radiance, s.light.pdf}};
   if (light.emission_texture != no_texture) {
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
-    if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
+    if (light.kind == LightKind::mirrored_triangle) b = {b.x, b.z, b.y};
     result.uv = texture_coordinates(scene, light.triangle, light.triangle != no_texture, b);
   }
   return result;

@@ -47,7 +47,7 @@ struct StreamedSteps {
   /// recognises in registers.
   PT_HD Vec4 draw(std::uint32_t block) const {
     auto stream = source.open(samples.id_of(path.number));
-    return stream.draw(float_to_bits(anew(bits_to_float(block))));
+    return stream.draw(float_to_bits(hide_from_optimizer(bits_to_float(block))));
   }
 };
 template <class Source, class Samples, class Sink>

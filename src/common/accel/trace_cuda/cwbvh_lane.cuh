@@ -81,13 +81,13 @@ class CwbvhLane {
     triangle_ray_ = ray.triangles;
   }
 
-  /// So many places park() needs.
+  /// So many places suspend_to() needs.
   static constexpr int parked_size = speculative ? 4 : 3;
 
   /// Puts away where the lane is in the tree, for code between two steps that needs all registers.
   /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
   /// step changes them.
-  __device__ void park(volatile uint2* place) const {
+  __device__ void suspend_to(volatile uint2* place) const {
     place[0].x = nodes_.base;
     place[0].y = nodes_.bits;
     place[1].x = leaves_.base;
@@ -98,7 +98,7 @@ class CwbvhLane {
       place[3].y = later_leaves_.bits;
     }
   }
-  __device__ void unpark(const volatile uint2* place, const Query& query) {
+  __device__ void resume_from(const volatile uint2* place, const Query& query) {
     nodes_ = {place[0].x, place[0].y};
     leaves_ = {place[1].x, place[1].y};
     depth_ = static_cast<int>(place[2].x);

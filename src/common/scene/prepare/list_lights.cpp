@@ -140,7 +140,7 @@ class Lister {
         edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
       }
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
-      light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
+      light.kind = turned ? LightKind::mirrored_triangle : LightKind::triangle;
       light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
       const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
