@@ -21,7 +21,7 @@ struct BsdfCase {
 
 /// White ones and coloured ones.
 template <class Bsdf>
-std::vector<BsdfCase> bsdf_cases();
+std::vector<BsdfCase> bsdf_cases() = delete;
 
 inline const Color white_case(1.0f), coloured_case(0.25f, 0.5f, 0.75f);
 

@@ -29,32 +29,28 @@ PT_HD void traverse_triangles(const TriangleTree& tree, const Ray& ray, Query& q
 /// The closest hit with t_min < t < t_max; t_min >= 0. Hit::primitive is the triangle's slot.
 template <Accel accel, bool instanced>
 PT_HD Hit closest_triangle(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  if constexpr (accel == Accel::brute) {
-    return closest_triangle_brute<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::bvh2) {
-    return closest_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh) {
-    return closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh_avx2) {
+  if constexpr (accel == Accel::cwbvh_avx2) {
     return closest_triangle_avx2(tree, ray, t_min, t_max);
-  } else {
+  } else if constexpr (accel == Accel::embree) {
     return closest_triangle_embree(*tree.embree, ray, t_min, t_max);
+  } else {
+    ClosestTriangle query(t_min, t_max);
+    traverse_triangles<accel, instanced>(tree, ray, query);
+    return query.result();
   }
 }
 
 /// Whether there is a hit with t_min < t < t_max; t_min >= 0.
 template <Accel accel, bool instanced>
 PT_HD bool any_triangle(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  if constexpr (accel == Accel::brute) {
-    return any_triangle_brute<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::bvh2) {
-    return any_triangle_bvh2<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh) {
-    return any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max);
-  } else if constexpr (accel == Accel::cwbvh_avx2) {
+  if constexpr (accel == Accel::cwbvh_avx2) {
     return any_triangle_avx2(tree, ray, t_min, t_max);
-  } else {
+  } else if constexpr (accel == Accel::embree) {
     return any_triangle_embree(*tree.embree, ray, t_min, t_max);
+  } else {
+    AnyTriangle query(t_min, t_max);
+    traverse_triangles<accel, instanced>(tree, ray, query);
+    return query.result();
   }
 }
 
