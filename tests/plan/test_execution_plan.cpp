@@ -370,8 +370,10 @@ void expect_refused(const Choices& settings, const SceneProperties& scene,
 }
 
 TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
-  expect_refused(mega({{"block", "64x32"}}), mesh(), gpu(),
-                 "--block 64x32: 2048 threads; a block has at most 1024");
+  DeviceProperties small = gpu();
+  small.block_threads_max = 512;
+  expect_refused(mega({{"block", "32x32"}}), mesh(), small,
+                 "--block 32x32: 1024 threads; a block has at most 512");
   Options huge;
   huge.mode = Mode::megakernel, huge.block = {32768, 65536};  // 2^31 threads
   EXPECT_THROW(plan_execution(huge, mesh(), gpu()), Error);
@@ -381,7 +383,7 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   expect_refused(mega({{"kernel", "vote"}, {"block", "32x16"}}), mesh(), gpu(),
                  "--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 to "
                  "256 threads");
-  expect_refused({{"scene-memory", "constant"}}, spheres(1025), gpu(),
+  expect_refused({{"scene-memory", "constant"}, {"accel", "brute"}}, spheres(1025), gpu(),
                  "--scene-memory constant: the scene has 1025 spheres; a kernel's parameters hold "
                  "at most 1024");
   const SceneProperties many = changed(spheres(8000), [](auto& s) { s.scan_bytes = 64000; });
