@@ -14,7 +14,7 @@ class FilmWindowsOf : public CudaTest, public testing::WithParamInterface<Settin
 };
 INSTANTIATE_TEST_SUITE_P(Cuda, FilmWindowsOf,
                          testing::Values(Settings{{"scene", "spheres"}},
-                                         Settings{{"scene", "cornell"}, {"rng", "xorwow"}},
+                                         Settings{{"scene", "spheres"}, {"rng", "xorwow"}},
                                          Settings{{"scene", "boxes"}, {"accel", "cwbvh"}}));
 
 TEST_P(FilmWindowsOf, MakeTheWholeInBothModes) {

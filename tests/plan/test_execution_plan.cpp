@@ -439,7 +439,7 @@ TEST(ExecutionPlan, SpheresLieInGlobalMemoryForMostKernels) {
             SceneMemory::global);
   expect_refused(mega({{"rng", "xorwow"}}), lit(quads(9)), gpu(),
                  "--rng xorwow: on CUDA not with surfaces that shine, as scene '' has; expected "
-                 "none");
+                 "a scene without");
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {

@@ -214,6 +214,15 @@ TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(refusal("dial", "multiple-scattering", "on"), "");
 }
 
+TEST(SceneOptions, LeanKernelsKnowThePapersCameraAlone) {
+  SceneData scene = build_scene(with_scene("spheres"));
+  EXPECT_TRUE(has_primitives_only(scene));
+  scene.camera.orthographic = true;
+  EXPECT_FALSE(has_primitives_only(scene));
+  scene.camera.orthographic = false, scene.camera.far_clip = 10;
+  EXPECT_FALSE(has_primitives_only(scene));
+}
+
 TEST(SceneOptions, LeanKernelsAreRefusedWithAReason) {
   EXPECT_EQ(refusal("spheres", "kernel-set", "lean"), "");
   EXPECT_EQ(refusal("spheres", "kernel-set", "general"), "");

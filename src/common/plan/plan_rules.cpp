@@ -106,7 +106,8 @@ void check_toggles(const ExecutionPlan& plan, const Options& o, const ScenePrope
     throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
   };
   if (plan.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
-  if (scene.has_lamps) refuse("surfaces that shine, as scene '" + scene.name + "' has", "none");
+  if (scene.has_lamps)
+    refuse("surfaces that shine, as scene '" + scene.name + "' has", "a scene without");
   if (o.rng != RngKind::philox && o.branching != Branching::divergent)
     refuse("--branching reduced", "divergent");
   if (plan.scene_memory != SceneMemory::global)

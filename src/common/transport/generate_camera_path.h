@@ -16,8 +16,8 @@ PT_HD Ray generate_camera_path(const Scene& scene, std::uint32_t pixel, const Ve
   const PixelFilter& filter = scene.filter;
   const Vec2 offset =
       lean ? filter.offsets(u.x, u.y) : Vec2(filter.offset(u.x), filter.offset(u.y));
-  Ray ray = camera_ray(scene.camera, static_cast<float>(pixel_x(pixel)) + offset.x,
-                       static_cast<float>(pixel_y(pixel)) + offset.y, u.z, u.w);
+  Ray ray = camera_ray<lean>(scene.camera, static_cast<float>(pixel_x(pixel)) + offset.x,
+                             static_cast<float>(pixel_y(pixel)) + offset.y, u.z, u.w);
   set_lanes(ray, lanes_of(scene));
   return ray;
 }

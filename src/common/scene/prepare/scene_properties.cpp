@@ -17,9 +17,9 @@ bool needs_triangles(const MaterialDescription& material) {
 }  // namespace
 
 bool has_primitives_only(const SceneData& scene) {
-  return !is_limited(scene.camera) && scene.meshes.empty() && scene.delta_lights.empty() &&
-         scene.environment.width == 0 && scene.sun.one_minus_cos == 0.0f &&
-         scene.textures.empty() && scene.sphere_frames.empty() &&
+  return !is_limited(scene.camera) && !scene.camera.orthographic && scene.meshes.empty() &&
+         scene.delta_lights.empty() && scene.environment.width == 0 &&
+         scene.sun.one_minus_cos == 0.0f && scene.textures.empty() && scene.sphere_frames.empty() &&
          std::ranges::none_of(scene.materials, needs_triangles);
 }
 
