@@ -26,15 +26,16 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
   return c * sample_texture(scene.textures, texture, scene.texels, uv);
 }
 
-/// The same, not inlined: a lookup's code is long, and there would be dozens of it.
-PT_NOINLINE inline Color multiply_texture(Color c, const Texture* textures, std::uint32_t number,
-                                          const std::byte* texels, Vec2 uv) {
-  return c * sample_texture(textures, number, texels, uv);
+/// The same, not inlined: a lookup's code is long, and there would be dozens of it. With one
+/// argument less than the table and a number, which callers would have to keep.
+PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const std::byte* texels,
+                                          Vec2 uv) {
+  return c * sample_texture(texture - texture->number, texture->number, texels, uv);
 }
 PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
                            const Vec2& uv) {
   if (texture == no_texture) return c;
-  return multiply_texture(c, scene.textures, texture, scene.texels, uv);
+  return multiply_texture(c, &scene.textures[texture], scene.texels, uv);
 }
 
 /// What a BSDF makes itself of (bsdf.h): the parameters of a surface's material. The first one is

@@ -120,6 +120,9 @@ std::uint32_t kinds_of(const SceneData& scene) {
 }
 
 void prepare_materials(SceneData& scene, bool multiple_scattering) {
+  for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+    scene.textures[i].number = static_cast<std::uint32_t>(i);
+  }
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
   list_opacities(scene);
