@@ -20,7 +20,7 @@ def way(row):
 
 def scene_rows(device):
     """(table, scene, commit, rows of one image): the megakernel's rows and the wavefront's."""
-    for name in ("image_size", "by_itself", "scenes", "shading", "dial"):
+    for name in ("image_size", "defaults", "scenes", "shading", "dial"):
         table = device.to_judge(name)
         groups, kinds = {}, {row.get("device_kind") for row in table.measured} if table else ()
         kind = "cuda" if "cuda" in kinds else "cpu"
@@ -62,7 +62,7 @@ def which_mode(device):
         lines.append([scene, time_cell(mega[0]), time_cell(wave[0]), ratio_cell(ratio),
                       winner + (" (no spread known)" if unsure else ""), name, commit[:7]])
     if not lines:
-        return paragraph(NOT_MEASURED.format("with both modes in it (image_size, by_itself, scenes, "
+        return paragraph(NOT_MEASURED.format("with both modes in it (image_size, defaults, scenes, "
                                              "shading, dial)"))
     parts = [f"{word}: {'; '.join(dict.fromkeys(scenes))}." for word, scenes in winners.items()]
     return (paragraph("The faster one, each with its fastest options measured. "

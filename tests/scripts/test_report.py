@@ -183,7 +183,7 @@ class Report(unittest.TestCase):
         plots = {"toggles": TOGGLES, "image_size": SIZES,
                  "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
                  "sampling": {**SIZES, "y": "relmse"}, "ladder": TOGGLES,
-                 "by_itself": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
+                 "defaults": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
                  "random_numbers": TOGGLES, "pool_size": SIZES,
                  "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
                  "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
@@ -315,12 +315,12 @@ class Report(unittest.TestCase):
                                    (2.0, 2.01, "no significant difference")):
             rows = [{**toggle("room", mode, 0.98 * ms, ms, 1.02 * ms), "mode": mode}
                     for mode, ms in (("megakernel", mega), ("wavefront", wave))]
-            text = self.make(by_itself=rows)
+            text = self.make(defaults=rows)
             answer = re.sub("<.*?>", " ", text[text.index("Which mode for my scene?"):
                                                text.index("Which block size?")])
             answer = " ".join(answer.split())
             self.assertIn(f"{winner[0].upper()}{winner[1:]}: room.", answer)
-            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} by.itself")
+            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} defaults")
 
     def test_metropolis_is_judged_at_equal_samples(self):
         good, bad, unclear = (7.5, 8.0, 9.0), (0.1, 0.2, 0.3), (1.5, 2.0, 2.5)
