@@ -79,20 +79,20 @@ void add_image(std::vector<OptionEntry>& list) {
                "nee", OptionForm::text, "on|off",
                [](Options& o, const std::string& s) { o.nee = parse_switch("nee", s); },
                [](const Options& o) { return o.nee ? "on" : "off"; }),
-           "Next-event estimation: surfaces ask a light for its direct\n"
-           "contribution; off: paths find the lights by chance")
+           "Next-event estimation: a light is sampled at each surface;\n"
+           "off: paths find the lights by chance")
       .add(choice("light-selection", &Options::light_selection),
-           "Which light is asked: any lamp alike, by its power, or by\n"
-           "what it can do for the place, through a tree of lights;\n"
-           "auto: the tree for more than 16 lamps, else by power; uniform\n"
-           "in scenes of quads and spheres alone")
+           "Which light is sampled: uniform; by power; or tree, by the\n"
+           "estimated contribution at the shading point; auto: the tree\n"
+           "for more than 16 lights, else by power; uniform in scenes of\n"
+           "quads and spheres alone")
       .add(choice("mis", &Options::mis),
-           "How next-event estimation and the path's own directions share\n"
-           "a lamp: by the power or the balance heuristic; none: only\n"
-           "mirrors' rays find what can be asked")
+           "Weights of light samples and BSDF samples: the power or the\n"
+           "balance heuristic; none: emitters that can be sampled count\n"
+           "only after a delta bounce")
       .add(choice("sampling", &Options::sampling),
-           "Where a surface sends a path: anywhere, by the cosine, or as\n"
-           "its BSDF scatters")
+           "Directions of paths at surfaces: uniform or cosine-weighted\n"
+           "hemisphere, or BSDF sampling")
       .add(choice("sampler", &Options::sampler),
            "A pixel's samples: independent, in the cells of a grid, or\n"
            "scrambled Sobol points (best if --spp is a power of two)")
@@ -170,7 +170,7 @@ void add_metropolis(std::vector<OptionEntry>& list) {
            "device. Another number, other noise")
       .add(number("large-step-probability", "P", &Options::large_step_probability,
                   "a number above 0, at most 1", [](float x) { return x > 0 && x <= 1; }),
-           "Of mutations that draw a path anew")
+           "Share of large steps, mutations that draw all numbers again")
       .add(number("mutation-size", "SIZE", &Options::mutation_size, "a number above 0, at most 0.5",
                   [](float x) { return x > 0 && x <= 0.5f; }),
            "The largest step of a random number by other mutations; the\n"
