@@ -200,10 +200,11 @@ class Planner {
     plan_.fused = o_.stages == Stages::fused;
     if (o_.stages == Stages::automatic) {
       plan_.fused = is_possible && is_cheap && !device_.has_ray_blocks;
-      reason = plan_.fused    ? "one scan a ray and few BSDFs: saves the hits' bytes"
-               : !is_possible ? "--branching, --shade or --order-surfaces look at stages"
-               : is_cheap     ? "blocks of rays save more"
-                              : "threads of one kernel would wait for each other";
+      reason = plan_.fused       ? "one scan a ray and few BSDFs: saves the hits' bytes"
+               : !is_possible    ? "--branching, --shade or --order-surfaces look at stages"
+               : device_.is_cuda ? "threads of one kernel would wait for each other"
+               : is_cheap        ? "stages take blocks of rays, which save more"
+                                 : "rays and surfaces are dear: stages take them in blocks";
     }
     decide("stages", plan_.fused ? "fused" : "split", reason);
   }
@@ -233,7 +234,8 @@ class Planner {
            !is_free               ? asked
            : plan_.shades_by_kind ? "--shade material"
            : !has_queues          ? "there is no queue"
-                         : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
+           : !device_.is_cuda     ? "threads of a CPU do not run in warps"
+                              : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
   }
 
   /// A wave costs some 0.1 ms however few rays it has; a thread that follows a path waits for the
@@ -272,7 +274,8 @@ class Planner {
     decide("light-selection", to_string(selection),
            o_.light_selection != LightSelection::automatic
                ? asked
-               : fmt::format("{} lamps, a tree from {} on", *scene_.lamps, few_lamps + 1));
+               : fmt::format("{} of at least {} lights that a tree pays for", *scene_.lamps,
+                             few_lamps + 1));
   }
 
   const Options& o_;
