@@ -5,9 +5,9 @@
 #include <variant>
 #include <vector>
 
-#include "app/compact_command.h"
 #include "app/options/check_options.h"
-#include "app/trace_command.h"
+#include "app/options/compact_options.h"
+#include "app/options/trace_options.h"
 #include "common/options/options.h"
 
 namespace pt {

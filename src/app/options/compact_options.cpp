@@ -1,4 +1,5 @@
-#include "app/compact_command.h"
+#include "app/options/compact_options.h"
+
 #include "app/options/option_values.h"
 
 namespace pt {

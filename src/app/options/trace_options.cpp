@@ -1,5 +1,6 @@
+#include "app/options/trace_options.h"
+
 #include "app/options/option_values.h"
-#include "app/trace_command.h"
 
 namespace pt {
 
