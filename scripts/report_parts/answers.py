@@ -111,11 +111,11 @@ def effect(idea, where, default, value, source):
 
 
 def steps(device):
-    """Each rung of the ladder against the one before it."""
+    """Each step of the ladder against the one before it."""
     table = device.to_judge("ladder")
     for scene, rows in (in_groups(table.measured, "panel").items() if table else ()):
         for before, row in zip(rows, rows[1:]):
-            yield effect(f"rung {row['x']}", f"{scene}, after {before['x']}",
+            yield effect(f"step {row['x']}", f"{scene}, after {before['x']}",
                          interval(before, "kernel_ms"), interval(row, "kernel_ms"), "ladder")
 
 
@@ -167,7 +167,7 @@ def each_idea(device):
     if not lines:
         return paragraph(NOT_MEASURED.format("of toggles, ladder, shading or dial"))
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
-                     "defaults; of one kernel over unordered surfaces for shading; of the rung "
+                     "defaults; of one kernel over unordered surfaces for shading; of the step "
                      "before it for the ladder): above 1 the "
                      "choice costs, below 1 it gains. The interval follows from the extremes of "
                      "both.") + html_table(

@@ -45,7 +45,7 @@ TEST(Lights, ThoseWithoutExtentAreSampledAlone) {
       ASSERT_EQ(s.pdf, 1.0f);
       ASSERT_TRUE(s.is_delta);
       ASSERT_NEAR(glm::length(s.wi), 1, 1e-6);
-      if (has_place(kind)) {
+      if (has_position(kind)) {
         ASSERT_LT(glm::length(s.end), glm::length(light.a - from));
       } else {
         ASSERT_GE(glm::length(s.end), 0.99f * beyond_scene);
@@ -61,7 +61,7 @@ TEST(Lights, ShineWithinTheirBounds) {
   for_each_delta_kind([](LightKind kind) {
     const Light light = make_light(lamp_of(kind), 7);
     const std::optional<LightBounds> bounds = bounds_of(light);
-    ASSERT_EQ(bounds.has_value(), has_place(kind));
+    ASSERT_EQ(bounds.has_value(), has_position(kind));
     if (!bounds) return;
     EXPECT_EQ(bounds->box.min, light.a);
     EXPECT_EQ(bounds->box.max, light.a);

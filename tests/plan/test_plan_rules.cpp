@@ -172,12 +172,13 @@ TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
 }
 
 TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
-  for (const auto& [shade, lean] : {std::pair{Shade::material, false}, {Shade::uber, true}}) {
+  for (const auto& [shade, specialized] :
+       {std::pair{Shade::material, false}, {Shade::uber, true}}) {
     Options options;
     options.shade = shade;
     SceneData scene = build_scene(options);
     prepare_materials(scene, false);
-    EXPECT_EQ(why_general(options, properties_of(scene)).empty(), lean);
+    EXPECT_EQ(why_general(options, properties_of(scene)).empty(), specialized);
   }
 }
 
@@ -230,7 +231,7 @@ TEST(SceneOptions, LeanKernelsAreRefusedWithAReason) {
             "--kernel-set lean: not here, the scene has more than the paper's spheres and quads; "
             "expected auto or general");
   Options options = with_scene("spheres");
-  options.kernel_set = KernelSet::lean;
+  options.kernel_set = KernelSet::specialized;
   options.mis = MisHeuristic::balance;
   SceneData scene = build_scene(options);
   EXPECT_THROW(prepare_scene(scene, options), Error);

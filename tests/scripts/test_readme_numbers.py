@@ -19,7 +19,7 @@ NUMBERS = [
      f"{STATUE}: megakernel", "mpaths_per_s", 1),
     ("{:.0f} million paths a second in the wavefront", "defaults", f"{STATUE}: wavefront",
      "mpaths_per_s", 1),
-    *[(text, "ladder", f"{scene}: {rung}", "kernel_ms_median", 1) for text, scene, rung in [
+    *[(text, "ladder", f"{scene}: {step}", "kernel_ms_median", 1) for text, scene, step in [
         ("16 materials takes {:.1f} ms in the plain", "dial:16:0:closed", "1 megakernel"),
         ("{:.1f} ms in the block-local wavefront", "dial:16:0:closed", "0 megakernel at its best"),
         ("{:.1f} ms in a plain wavefront", "dial:16:0:closed", "2 split kernels"),

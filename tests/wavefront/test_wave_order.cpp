@@ -109,7 +109,7 @@ struct OrderedWave {
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
     buffers.orders_surfaces = orders;
     buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
-    buffers.ordered = ordered, buffers.kind_of_place = kinds;
+    buffers.ordered = ordered, buffers.kind_of_entry = kinds;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
     run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
   }
@@ -226,7 +226,7 @@ TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
   const auto places_of = [&](bool fused, bool reuses_slots) {
     buffers.fused = fused, buffers.reuses_slots = reuses_slots;
     std::uint64_t all = 0;
-    buffers.for_each_queue(true, [&](auto*&, std::uint64_t places) { all += places; });
+    buffers.for_each_queue(true, [&](auto*&, std::uint64_t capacity) { all += capacity; });
     return all / few_slots;
   };
   EXPECT_EQ(places_of(false, true), 5u);

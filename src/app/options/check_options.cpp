@@ -148,7 +148,7 @@ void check_surface_order(const Options& options) {
 }
 
 /// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.
-void check_voting(const Options& options, const GivenOptions& given) {
+void check_phase_voting(const Options& options, const GivenOptions& given) {
   if (options.kernel != MegakernelKind::vote && options.kernel != MegakernelKind::sort) return;
   const std::string kernel = to_string(options.kernel);
   if (options.work != Work::persistent)
@@ -215,7 +215,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);
-  check_voting(options, given);
+  check_phase_voting(options, given);
   check_inert(options, given);
   check_surface_order(options);
   if (given.contains("spheres") && options.scene != "spheres")

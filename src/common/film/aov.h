@@ -61,7 +61,7 @@ struct Instance {
   static constexpr const char *name = "instance", *channels = "I";
   static PT_HD std::uint32_t of(const FirstHit& hit) { return hit.instance; }
 };
-struct MaterialNumber {
+struct MaterialIndex {
   static constexpr const char *name = "material", *channels = "I";
   static PT_HD std::uint32_t of(const FirstHit& hit) { return hit.material; }
 };
@@ -86,7 +86,7 @@ struct Rays {
 
 /// Every AOV, once. Its place is its bit in Options::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
-                      aov::Uv, aov::Primitive, aov::Instance, aov::MaterialNumber, aov::Variance,
+                      aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
                       aov::Samples, aov::Bounces, aov::Rays>;
 static_assert(Aovs::size <= 32);
 

@@ -7,7 +7,7 @@ namespace pt {
 
 struct DirectionalLight {
   static constexpr LightKind kind = LightKind::directional;
-  static constexpr bool has_place = false;
+  static constexpr bool has_position = false;
 
   PT_HD static PlainLight sample(const Light& light, const Vec3&, float, float) {
     return {{-light.b, -beyond_scene * light.b, light.radiance, 1.0f, true}};

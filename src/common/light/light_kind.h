@@ -9,7 +9,7 @@ namespace pt {
 /// instance that mirrors, and mirroring would turn the side that shines away.
 enum class LightKind : std::uint8_t {
   triangle,
-  mirrored_triangle,
+  flipped_triangle,
   sphere,
   sun,
   point,
@@ -18,6 +18,6 @@ enum class LightKind : std::uint8_t {
   directional
 };
 
-PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::mirrored_triangle; }
+PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::flipped_triangle; }
 
 }  // namespace pt

@@ -2,14 +2,14 @@
 
 namespace pt {
 
-bool has_place(LightKind kind) {
-  return visit_light(Lights{}, kind, [](auto type) { return decltype(type)::type::has_place; });
+bool has_position(LightKind kind) {
+  return visit_light(Lights{}, kind, [](auto type) { return decltype(type)::type::has_position; });
 }
 
 std::optional<LightBounds> bounds_of(const Light& light) {
   return visit_light(Lights{}, light.kind, [&](auto type) -> std::optional<LightBounds> {
     using Type = typename decltype(type)::type;
-    if constexpr (Type::has_place) {
+    if constexpr (Type::has_position) {
       const LightBounds bounds = Type::bounds(light);
       if (bounds.intensity > 0.0f) return bounds;
     }

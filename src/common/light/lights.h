@@ -49,7 +49,7 @@ PT_HD auto visit_light(TypeList<First, Rest...>, LightKind kind, Function&& func
   return function(std::type_identity<First>{});
 }
 
-bool has_place(LightKind kind);
+bool has_position(LightKind kind);
 
 /// None for a light without place and for one that gives nothing.
 std::optional<LightBounds> bounds_of(const Light& light);

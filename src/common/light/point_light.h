@@ -7,7 +7,7 @@ namespace pt {
 
 struct PointLight {
   static constexpr LightKind kind = LightKind::point;
-  static constexpr bool has_place = true;
+  static constexpr bool has_position = true;
 
   PT_HD static PlainLight sample(const Light& light, const Vec3& from, float, float) {
     return sample_place(light.a, light.radiance, from, [](const Vec3&) { return 1.0f; });

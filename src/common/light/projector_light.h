@@ -24,7 +24,7 @@ PT_HD Projection project(const Light& light, const Vec3& direction) {
 
 struct ProjectorLight {
   static constexpr LightKind kind = LightKind::projector;
-  static constexpr bool has_place = true;
+  static constexpr bool has_position = true;
 
   PT_HD static PlainLight sample(const Light& light, const Vec3& from, float, float) {
     PlainLight result =

@@ -10,7 +10,7 @@ namespace pt {
 
 struct SphereLight {
   static constexpr LightKind kind = LightKind::sphere;
-  static constexpr bool has_place = true;
+  static constexpr bool has_position = true;
 
   PT_HD static PlainLight sample(const Light& light, const Vec3& from, float u0, float u1) {
     const LightSample s = sample_sphere({light.a, light.c.x}, from, u0, u1);

@@ -24,7 +24,7 @@ PT_HD float spot_share(const DeltaLight& light, float cosine) {
 
 struct SpotLight {
   static constexpr LightKind kind = LightKind::spot;
-  static constexpr bool has_place = true;
+  static constexpr bool has_position = true;
 
   PT_HD static PlainLight sample(const Light& light, const Vec3& from, float, float) {
     const DeltaLight spot = light.delta();

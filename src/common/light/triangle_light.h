@@ -19,7 +19,7 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
                  : TrianglePoint{u0 - 0.5f * u1, 0.5f * u1};
 }
 
-/// What samples a triangle: its area, or where it use_solid_angle_sampling large the solid angle
+/// What samples a triangle: its area, or where it uses_solid_angle_sampling large the solid angle
 /// under which it is seen. A function of the triangle and of who sees it, so that it can be asked
 /// for afterwards.
 struct TriangleSampler {
@@ -31,7 +31,7 @@ struct TriangleSampler {
       : v0(relative_v0), edge1(e1), edge2(e2), normal(cross_rounded(e1, e2)) {}
 
   /// Area over the square of the distance above 1/10: beyond, densities differ little over it.
-  PT_HD bool use_solid_angle_sampling() const {
+  PT_HD bool uses_solid_angle_sampling() const {
     const Vec3 middle = add_scaled(v0, 1.0f / 3.0f, edge1 + edge2);
     const float distance2 = dot(middle, middle);
     return dot(normal, normal) > 0.04f * distance2 * distance2;
@@ -47,7 +47,7 @@ struct TriangleSampler {
 
   /// Density per solid angle at a point `distance` away along `wi`, from either side.
   PT_HD float pdf(const Vec3& wi, float distance) const {
-    if (use_solid_angle_sampling()) {
+    if (uses_solid_angle_sampling()) {
       const SphericalTriangle s = seen();
       if (has_solid_angle(s)) return divide(1.0f, s.solid_angle);
     }
@@ -67,7 +67,7 @@ struct TriangleSampler {
   }
 
   PT_HD TrianglePoint sample(float u0, float u1) const {
-    if (use_solid_angle_sampling()) {
+    if (uses_solid_angle_sampling()) {
       const SphericalTriangle s = seen();
       if (has_solid_angle(s)) return point_along(s.sample(u0, u1));
     }
@@ -103,7 +103,7 @@ PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, con
 /// sample_triangle_light (transport/sample_light.h) samples it.
 struct TriangleLight {
   static constexpr LightKind kind = LightKind::triangle;
-  static constexpr bool has_place = true;
+  static constexpr bool has_position = true;
 
   static LightBounds bounds(const Light& light) {
     LightBounds bounds;
@@ -120,7 +120,7 @@ struct TriangleLight {
 };
 
 struct MirroredTriangleLight : TriangleLight {
-  static constexpr LightKind kind = LightKind::mirrored_triangle;
+  static constexpr LightKind kind = LightKind::flipped_triangle;
 };
 
 }  // namespace pt

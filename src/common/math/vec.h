@@ -48,8 +48,8 @@ PT_HD Vec3 normalize(const Vec3& v) {
   return {multiply_rounded(v.x, scale), multiply_rounded(v.y, scale), multiply_rounded(v.z, scale)};
 }
 
-PT_HD Vec3 hide_from_optimizer(const Vec3& v) {
-  return {hide_from_optimizer(v.x), hide_from_optimizer(v.y), hide_from_optimizer(v.z)};
+PT_HD Vec3 optimization_barrier(const Vec3& v) {
+  return {optimization_barrier(v.x), optimization_barrier(v.y), optimization_barrier(v.z)};
 }
 
 PT_HD Color multiply_rounded(const Color& a, const Color& b) {

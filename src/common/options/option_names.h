@@ -32,8 +32,10 @@ template <>
 inline constexpr auto enum_names<Work> = std::to_array<EnumName<Work>>(
     {{Work::pixel, "pixel"}, {Work::sample, "sample"}, {Work::persistent, "persistent"}});
 template <>
-inline constexpr auto enum_names<KernelSet> = std::to_array<EnumName<KernelSet>>(
-    {{KernelSet::automatic, "auto"}, {KernelSet::lean, "lean"}, {KernelSet::general, "general"}});
+inline constexpr auto enum_names<KernelSet> =
+    std::to_array<EnumName<KernelSet>>({{KernelSet::automatic, "auto"},
+                                        {KernelSet::specialized, "lean"},
+                                        {KernelSet::general, "general"}});
 template <>
 inline constexpr auto enum_names<MegakernelKind> =
     std::to_array<EnumName<MegakernelKind>>({{MegakernelKind::automatic, "auto"},

@@ -17,7 +17,7 @@ namespace pt {
 
 enum class Mode { serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
-enum class KernelSet { automatic, lean, general };
+enum class KernelSet { automatic, specialized, general };
 enum class MegakernelKind { automatic, loop, vote, sort };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };

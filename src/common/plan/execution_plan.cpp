@@ -42,15 +42,15 @@ class Planner {
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
     choose_structure();
     if (o_.mode == Mode::wavefront) choose_stages();
-    if (device_.is_cuda && is_lean()) choose_scene_memory();
+    if (device_.is_cuda && is_specialized()) choose_scene_memory();
     if (o_.mode == Mode::wavefront) choose_waves();
-    if (!is_lean() && scene_.lamps && o_.nee) choose_lights();
+    if (!is_specialized() && scene_.lamps && o_.nee) choose_lights();
     check_plan(plan_, o_, scene_, device_);
     return std::move(plan_);
   }
 
  private:
-  bool is_lean() const { return plan_.kernel_set == KernelSet::lean; }
+  bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
   bool is_on_gpu(Mode mode) const { return device_.is_cuda && o_.mode == mode; }
 
   void decide(const char* option, std::string value, std::string reason) {
@@ -59,7 +59,7 @@ class Planner {
 
   void choose_kernels() {
     const std::string why = why_general(o_, scene_);
-    plan_.kernel_set = why.empty() ? KernelSet::lean : KernelSet::general;
+    plan_.kernel_set = why.empty() ? KernelSet::specialized : KernelSet::general;
     const bool is_given = o_.kernel_set != KernelSet::automatic;
     decide("kernel-set", to_string(plan_.kernel_set),
            is_given      ? asked
@@ -84,7 +84,7 @@ class Planner {
 
   std::pair<MegakernelKind, std::string> automatic_megakernel() const {
     using enum MegakernelKind;
-    if (is_lean()) return {loop, "spheres and quads alone: the paper's loop"};
+    if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
       return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
@@ -93,7 +93,8 @@ class Planner {
     if (o_.block == BlockSize{} && device_.block_shared_bytes >= sorting_bytes_min)
       return {sort, "triangles alone: a wavefront in each block was the fastest"};
     const std::int64_t threads = o_.block.threads();
-    const bool may_vote = !scene_.has_masks && threads % 32 == 0 && threads <= voting_threads_max;
+    const bool may_vote =
+        !scene_.has_masks && threads % 32 == 0 && threads <= phase_voting_threads_max;
     const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
     if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
     return {loop, "blocks or materials suit no other"};
@@ -108,7 +109,7 @@ class Planner {
       decide("accel", accel_name(plan_.accel), asked);
     } else {
       std::string reason;
-      std::tie(plan_.accel, reason) = is_lean() ? automatic_scan() : automatic_tree();
+      std::tie(plan_.accel, reason) = is_specialized() ? automatic_scan() : automatic_tree();
       decide("accel", accel_name(plan_.accel), reason);
     }
     // Masks have no code by vectors.
@@ -157,9 +158,9 @@ class Planner {
   }
 
   bool warps_can_persist() const {
-    return is_on_gpu(Mode::wavefront) && !is_lean() && compaction_info(o_.compaction).appends &&
-           scene_.spheres == 0 && !scene_.limits_camera_rays &&
-           (scene_.instances == 0 || !scene_.has_masks);
+    return is_on_gpu(Mode::wavefront) && !is_specialized() &&
+           compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
+           !scene_.limits_camera_rays && (scene_.instances == 0 || !scene_.has_masks);
   }
 
   void choose_scene_memory() {
@@ -195,7 +196,7 @@ class Planner {
   void choose_stages() {
     const bool is_possible = o_.branching == Branching::divergent && o_.shade == Shade::automatic &&
                              o_.order_surfaces != SurfaceOrdering::on;
-    const bool is_cheap = is_lean() && plan_.accel == Accel::brute;
+    const bool is_cheap = is_specialized() && plan_.accel == Accel::brute;
     std::string reason = asked;
     plan_.fused = o_.stages == Stages::fused;
     if (o_.stages == Stages::automatic) {
@@ -224,7 +225,7 @@ class Planner {
     decide("shade", plan_.shades_by_kind ? "material" : "uber",
            o_.shade != Shade::automatic ? asked : "kernels for each kind give no more");
     const bool has_queues = compaction_info(o_.compaction).has_queues;
-    const bool pays = device_.is_cuda && !is_lean() && order_pays_for(scene_.bsdf_kinds);
+    const bool pays = device_.is_cuda && !is_specialized() && order_pays_for(scene_.bsdf_kinds);
     const bool is_free = o_.order_surfaces == SurfaceOrdering::automatic;
     const bool wanted =
         is_free ? o_.shade == Shade::automatic && pays : o_.order_surfaces == SurfaceOrdering::on;
@@ -247,11 +248,11 @@ class Planner {
       return decide("finish-paths", std::to_string(plan_.finish_paths), asked);
     }
     const bool is_dear = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
-    plan_.finish_paths = is_lean() ? 1u << 17 : is_dear ? 1u << 13 : 1u << 15;
+    plan_.finish_paths = is_specialized() ? 1u << 17 : is_dear ? 1u << 13 : 1u << 15;
     decide("finish-paths", std::to_string(plan_.finish_paths),
-           is_lean() ? "a path is cheap to follow alone"
-           : is_dear ? "instances or many kinds of BSDFs: paths are dear to follow alone"
-                     : "triangles");
+           is_specialized() ? "a path is cheap to follow alone"
+           : is_dear        ? "instances or many kinds of BSDFs: paths are dear to follow alone"
+                            : "triangles");
   }
 
   void choose_pool() {

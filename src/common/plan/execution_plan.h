@@ -60,7 +60,7 @@ std::string plan_text(const std::vector<Decision>& decisions);
 // Limits of kernels that the plan knows, and the kernels assert.
 
 /// More threads in a block would leave too few registers to warps that vote on their phase.
-inline constexpr int voting_threads_max = 256;
+inline constexpr int phase_voting_threads_max = 256;
 /// Shared memory that a block-local wavefront needs at least.
 inline constexpr std::size_t sorting_bytes_min = 73 * 1024;
 /// A kernel's parameters may take 32,764 bytes (CUDA 12.1 and later, compute capability 7.0); half

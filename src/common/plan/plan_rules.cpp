@@ -26,11 +26,13 @@ std::string unless(E value, Usual... usual) {
   return ((value == usual) || ...) ? "" : to_string(value);
 }
 
-bool is_lean(const SceneProperties& scene, const Options& o) {
+bool has_specialized_kernels(const SceneProperties& scene, const Options& o) {
   return why_general(o, scene).empty();
 }
 
-bool is_general(const SceneProperties& scene, const Options& o) { return !is_lean(scene, o); }
+bool is_general(const SceneProperties& scene, const Options& o) {
+  return !has_specialized_kernels(scene, o);
+}
 
 bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
   return is_general(scene, o) && scene.has_only_triangles() && !scene.limits_camera_rays;
@@ -86,10 +88,12 @@ constexpr SceneRule rules[] = {
      [](const Options& o) {
        return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
      },
-     is_lean, "holds the spheres of scenes without triangles; expected global or auto"},
+     has_specialized_kernels,
+     "holds the spheres of scenes without triangles; expected global or auto"},
     {"branching", [](const Options& o) { return unless(o.branching, Branching::divergent); },
-     is_lean, paper},
-    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); }, is_lean, paper},
+     has_specialized_kernels, paper},
+    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); },
+     has_specialized_kernels, paper},
     {"multiple-scattering",
      [](const Options& o) { return std::string(o.multiple_scattering ? "on" : ""); },
      has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
@@ -170,11 +174,11 @@ void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceP
                             o.block.y, threads, device.block_threads_max));
   const bool persists = plan.accel == Accel::cwbvh && o.work == Work::persistent;
   if (plan.megakernel == MegakernelKind::vote &&
-      !(persists && threads % 32 == 0 && threads <= voting_threads_max))
+      !(persists && threads % 32 == 0 && threads <= phase_voting_threads_max))
     throw Error(
         fmt::format("--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 "
                     "to {} threads, a multiple of 32; {}x{} has {}",
-                    voting_threads_max, o.block.x, o.block.y, threads));
+                    phase_voting_threads_max, o.block.x, o.block.y, threads));
   if (plan.megakernel == MegakernelKind::sort &&
       !(persists && device.block_shared_bytes >= sorting_bytes_min))
     throw Error(
@@ -187,7 +191,7 @@ void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceP
 
 void check_options_for_scene(const Options& options, const SceneProperties& scene) {
   const std::string why = why_general(options, scene);
-  if (options.kernel_set == KernelSet::lean && !why.empty())
+  if (options.kernel_set == KernelSet::specialized && !why.empty())
     throw Error(fmt::format("--kernel-set lean: not here, {}; expected auto or general", why));
   for (const SceneRule& rule : rules) {
     const std::string value = rule.limited(options);

@@ -4,13 +4,13 @@
 //
 //   void emit(const PathState&, const Color&)      joins the path's sample
 //   void cast(const PathState&, const ShadowRay&)  its radiance joins if the ray is not occluded
-//   void go_on(const PathState&, const Ray&)       the path's next ray
+//   void continue_path(const PathState&, const Ray&)       the path's next ray
 //   void end(const PathState&)                     there is none
 // or, instead of both,
-//   void go_on_if(bool, const PathState&, const Ray&)
+//   void continue_path_if(bool, const PathState&, const Ray&)
 //
-// A ray that leaves the scene: emit, end. One that meets a surface: emit, perhaps cast, then go_on
-// or end. `path.rays` counts the ray that has ended.
+// A ray that leaves the scene: emit, end. One that meets a surface: emit, perhaps cast, then
+// continue_path or end. `path.rays` counts the ray that has ended.
 #pragma once
 
 #include "common/transport/generate_camera_path.h"
@@ -40,10 +40,10 @@ PT_HD void follow_scattering(const Scattering& scattering, const PathState& path
   if (Traits::has_lights && !is_black(scattering.shadow.radiance)) {
     sink.cast(path, scattering.shadow);
   }
-  if constexpr (requires { sink.go_on_if(scattering.alive, path, scattering.ray); }) {
-    sink.go_on_if(scattering.alive, path, scattering.ray);
+  if constexpr (requires { sink.continue_path_if(scattering.alive, path, scattering.ray); }) {
+    sink.continue_path_if(scattering.alive, path, scattering.ray);
   } else if (scattering.alive) {
-    sink.go_on(path, scattering.ray);
+    sink.continue_path(path, scattering.ray);
   } else {
     sink.end(path);
   }
@@ -97,7 +97,7 @@ struct PathRegisters {
   }
   /// Without a branch: else the old ray would have to live until the end of shading, which takes
   /// ten registers and 2.5 % of the paper's image.
-  PT_HD void go_on_if(bool goes_on, const PathState&, const Ray& next) {
+  PT_HD void continue_path_if(bool goes_on, const PathState&, const Ray& next) {
     ray = next, alive = goes_on;
   }
   PT_HD void end(const PathState&) { alive = false; }

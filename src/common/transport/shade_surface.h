@@ -154,7 +154,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   });
   // The same frame, made anew where registers are scarce.
   const Vec3 normal =
-      has_lights ? hide_from_optimizer(surface.shading_normal) : surface.shading_normal;
+      has_lights ? optimization_barrier(surface.shading_normal) : surface.shading_normal;
   const Vec3 wi =
       (has_lights ? shading_frame<Traits>(normal, surface.dp_du) : frame).to_world(next.wi);
   if constexpr (full) {

@@ -117,12 +117,12 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
 
 /// The ray through film position (x, y), in pixels; `u` in [0, 1)^2 chooses the point of the lens.
 /// `lean`: the camera is none of parallel rays.
-template <bool lean = false>
+template <bool specialized = false>
 PT_HD Ray camera_ray(const Camera& camera, float x, float y, float u0, float u1) {
   const Disk lens = sample_unit_disk(u0, u1);
   const Vec3 offset = lens.x * camera.lens_x + lens.y * camera.lens_y;
   const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
-  if (!lean && camera.is_orthographic) return {camera.origin + to_focus, camera.forward};
+  if (!specialized && camera.is_orthographic) return {camera.origin + to_focus, camera.forward};
   return {camera.origin + offset, normalize(to_focus - offset)};
 }
 

@@ -33,7 +33,7 @@ void prepare_scene(SceneData& scene, const Options& options, const DevicePropert
   prepare_filter(scene, filter_of(options, scene));
   scene.properties = properties_of(scene);
   const ExecutionPlan plan = plan_execution(options, scene.properties, device);
-  if (plan.kernel_set == KernelSet::lean) {
+  if (plan.kernel_set == KernelSet::specialized) {
     prepare_primitives_only(scene, plan.accel);
   } else {
     prepare_triangles(scene, options, plan.accel);
