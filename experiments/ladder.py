@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Ladder: from the megakernel to the wavefront step by step: what does each step give?
 
-Each rung has the options of the one before it and one more; `gain` is the time of the rung before,
+Each step has the options of the one before it and one more; `gain` is the time of the step before,
 divided by its own. The lowest is the megakernel at its best, with the structure and the kernel that
-it takes by itself; the next one is plain, as the wavefront's first rung is. The pool has 1M paths
-up to the last rungs, because regeneration matters where slots are used again; triangles are in a
+it takes by itself; the next one is plain, as the wavefront's first step is. The pool has 1M paths
+up to the last steps, because regeneration matters where slots are used again; triangles are in a
 binary tree up to there.
 """
 import sys
@@ -17,7 +17,7 @@ from scene_files import add_scene_files
 from sentences import against, in_groups, time_of
 
 CUDA, TRIANGLES, SPHERES = "a GPU", "triangles", "spheres"
-# (rung, what changes against the one before, what it needs)
+# (step, what changes against the one before, what it needs)
 STEPS = [
     ("SoA instead of AoS", "--layout soa", ()),
     ("compaction", "--compaction atomic", ()),
@@ -39,8 +39,8 @@ PLAIN = (f"--mode wavefront --stages split --compaction none {SHADE}--regenerate
 QUICK = "--pool-size 256"
 
 
-def rungs_of(scene, device):
-    """(rung, options besides the image's) from the lowest to the highest."""
+def steps_of(scene, device):
+    """(step, options besides the image's) from the lowest to the highest."""
     has = [CUDA] * (device.kind == "cuda") + [SPHERES if scene == "spheres" else TRIANGLES]
     tree = "--accel bvh2" if TRIANGLES in has else ""
     if TRIANGLES in has:
@@ -48,27 +48,27 @@ def rungs_of(scene, device):
     yield "megakernel", f"--mode megakernel {tree}"
     options = f"{PLAIN} {tree}"
     yield "split kernels", f"{options} --layout aos"
-    for rung, change, needs in STEPS:
+    for step, change, needs in STEPS:
         if set(needs) <= set(has):
             options = " ".join(with_options(options, change))
-            yield rung, options
-    for rung, change in FUSED if SPHERES in has else []:
+            yield step, options
+    for step, change in FUSED if SPHERES in has else []:
         options = " ".join(with_options(options.replace(SHADE, ""), change))
-        yield rung, options
+        yield step, options
 
 
 def configurations(arguments, device):
     def quick(options):
         return QUICK if arguments.quick and "--mode wavefront" in options else ""
     return [Configuration(
-        f"{scene}: {number} {rung}", " ".join(with_options(f"{image} {options}", quick(options))),
-        {"panel": scene, "x": f"{number} {rung}", "gain": ""}, same_image=scene)
+        f"{scene}: {number} {step}", " ".join(with_options(f"{image} {options}", quick(options))),
+        {"panel": scene, "x": f"{number} {step}", "gain": ""}, same_image=scene)
             for scene, image in images_of(arguments).items()
-            for number, (rung, options) in enumerate(rungs_of(scene, device))]
+            for number, (step, options) in enumerate(steps_of(scene, device))]
 
 
 def steps(rows):
-    """(row, the row of the measured rung before it)"""
+    """(row, the row of the measured step before it)"""
     for mine in in_groups(rows, "panel").values():
         yield from zip(mine[1:], mine)
 

@@ -20,7 +20,7 @@ def way(row):
 
 def scene_rows(device):
     """(table, scene, commit, rows of one image): the megakernel's rows and the wavefront's."""
-    for name in ("image_size", "by_itself", "scenes", "shading", "dial"):
+    for name in ("image_size", "defaults", "scenes", "shading", "dial"):
         table = device.to_judge(name)
         groups, kinds = {}, {row.get("device_kind") for row in table.measured} if table else ()
         kind = "cuda" if "cuda" in kinds else "cpu"
@@ -62,7 +62,7 @@ def which_mode(device):
         lines.append([scene, time_cell(mega[0]), time_cell(wave[0]), ratio_cell(ratio),
                       winner + (" (no spread known)" if unsure else ""), name, commit[:7]])
     if not lines:
-        return paragraph(NOT_MEASURED.format("with both modes in it (image_size, by_itself, scenes, "
+        return paragraph(NOT_MEASURED.format("with both modes in it (image_size, defaults, scenes, "
                                              "shading, dial)"))
     parts = [f"{word}: {'; '.join(dict.fromkeys(scenes))}." for word, scenes in winners.items()]
     return (paragraph("The faster one, each with its fastest options measured. "
@@ -111,11 +111,11 @@ def effect(idea, where, default, value, source):
 
 
 def steps(device):
-    """Each rung of the ladder against the one before it."""
+    """Each step of the ladder against the one before it."""
     table = device.to_judge("ladder")
     for scene, rows in (in_groups(table.measured, "panel").items() if table else ()):
         for before, row in zip(rows, rows[1:]):
-            yield effect(f"rung {row['x']}", f"{scene}, after {before['x']}",
+            yield effect(f"step {row['x']}", f"{scene}, after {before['x']}",
                          interval(before, "kernel_ms"), interval(row, "kernel_ms"), "ladder")
 
 
@@ -167,7 +167,7 @@ def each_idea(device):
     if not lines:
         return paragraph(NOT_MEASURED.format("of toggles, ladder, shading or dial"))
     return paragraph("Time with the choice, divided by the time without it (of the mode's "
-                     "defaults; of one kernel over unordered surfaces for shading; of the rung "
+                     "defaults; of one kernel over unordered surfaces for shading; of the step "
                      "before it for the ladder): above 1 the "
                      "choice costs, below 1 it gains. The interval follows from the extremes of "
                      "both.") + html_table(

@@ -147,12 +147,12 @@ def about_metropolis(table):
 
 
 def about_steps(table):
-    """The rungs of a ladder are compared with those before them."""
+    """The steps of a ladder are compared with those before them."""
     for panel, rows in in_groups(table.measured, "panel").items():
         pairs = pairs_of(rows, "kernel_ms", "x")
         steps = [(name, *change(before, value)) for (_, before), (name, value)
                  in zip(pairs, pairs[1:])]
-        yield panel, "Time against the rung before: " + listed(
+        yield panel, "Time against the step before: " + listed(
             f"{name} x{show(ratio)}" + (f" ({word})" if word not in ("faster", "slower") else "")
             for name, word, ratio in steps) + "."
 

@@ -20,21 +20,21 @@ inline constexpr bool counts_lanes = false;
 #endif
 
 // The points, in the order in which a path passes them: name, what the lanes do there.
-#define PT_LANE_POINTS(POINT)                                      \
-  POINT(turn, "have a path in a turn of the megakernel's loop")    \
-  POINT(generate, "begin a path")                                  \
-  POINT(bounce, "trace and shade a ray in one kernel")             \
-  POINT(finish, "follow one of a batch's last paths to its end")   \
-  POINT(intersect, "begin to trace a ray")                         \
-  POINT(node, "visit a node")                                      \
-  POINT(primitive, "test a primitive, or the triangles of a leaf") \
-  POINT(sort_hits, "send a path to the stage that shades it")      \
-  POINT(shade_miss, "shade a ray that left the scene")             \
-  POINT(shade_surface, "shade a surface")                          \
-  POINT(light, "sample a light")                                   \
-  POINT(bsdf, "evaluate and sample the same BSDF")                 \
-  POINT(shadow, "begin to trace a shadow ray")                     \
-  POINT(shadow_node, "visit a node for shadow rays")               \
+#define PT_LANE_POINTS(POINT)                                              \
+  POINT(iteration, "have a path in an iteration of the megakernel's loop") \
+  POINT(generate, "begin a path")                                          \
+  POINT(bounce, "trace and shade a ray in one kernel")                     \
+  POINT(finish, "follow one of a batch's last paths to its end")           \
+  POINT(intersect, "begin to trace a ray")                                 \
+  POINT(node, "visit a node")                                              \
+  POINT(primitive, "test a primitive, or the triangles of a leaf")         \
+  POINT(route_hits, "send a path to the stage that shades it")             \
+  POINT(shade_miss, "shade a ray that left the scene")                     \
+  POINT(shade_surface, "shade a surface")                                  \
+  POINT(light, "sample a light")                                           \
+  POINT(bsdf, "evaluate and sample the same BSDF")                         \
+  POINT(shadow, "begin to trace a shadow ray")                             \
+  POINT(shadow_node, "visit a node for shadow rays")                       \
   POINT(shadow_primitive, "test a primitive, or a leaf, for shadow rays")
 
 #define PT_LANE_POINT_ENUMERATOR(name, meaning) name,

@@ -89,7 +89,7 @@ PT_HD void store_wide(T* p, const T& value) {
 
 /// x, which the compiler takes for a new value: what it made of x before it makes again, instead of
 /// keeping it in registers that other things need meanwhile.
-PT_HD float anew(float x) {
+PT_HD float optimization_barrier(float x) {
 #ifdef __CUDA_ARCH__
   asm volatile("" : "+f"(x));
 #endif
@@ -363,9 +363,9 @@ PT_HD std::uint32_t min_integer(std::uint32_t a, std::uint32_t b) { return a < b
 /// The place of the highest bit that is set; x is not 0.
 PT_HD std::uint32_t highest_bit(std::uint32_t x) {
 #ifdef __CUDA_ARCH__
-  std::uint32_t place;
-  asm("bfind.u32 %0, %1;" : "=r"(place) : "r"(x));
-  return place;
+  std::uint32_t bit;
+  asm("bfind.u32 %0, %1;" : "=r"(bit) : "r"(x));
+  return bit;
 #else
   return 31u - static_cast<std::uint32_t>(count_leading_zeros(x));
 #endif

@@ -27,16 +27,16 @@ class PathRange {
 
   bool any(bool value) const { return value; }
 
-  bool next(std::uint32_t& number, bool wanted) {
+  bool next(std::uint32_t& path_index, bool wanted) {
     if (!wanted) return true;
     for (; next_ < end_; advance()) {
-      number = next_;
+      path_index = next_;
       if (chains_ == nullptr) {
         if (cancelled_()) return false;
         advance();
         return true;
       }
-      if (continue_chain_apart(chains_, samples_, number)) return true;
+      if (continue_chain_apart(chains_, samples_, path_index)) return true;
     }
     return false;
   }

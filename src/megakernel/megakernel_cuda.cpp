@@ -47,10 +47,10 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     using Source = std::remove_cvref_t<decltype(source)>;
     const SceneStorage<SceneMemory::global> in_global{scene_};
     if constexpr (std::is_same_v<Source, SamplerSource>) {
-      if (kernel_ == MegakernelKind::vote) return launch_voting(source, batch);
+      if (kernel_ == MegakernelKind::vote) return launch_phase_voting(source, batch);
       if (kernel_ == MegakernelKind::sort) {
-        return traits_.has_masks ? launch_sorting<true>(source, batch)
-                                 : launch_sorting<false>(source, batch);
+        return traits_.has_masks ? launch_block_wavefront<true>(source, batch)
+                                 : launch_block_wavefront<false>(source, batch);
       }
       launch_megakernel(in_global, 0, source, batch);
     } else {

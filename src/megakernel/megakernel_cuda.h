@@ -34,14 +34,14 @@ class MegakernelCuda : public CudaRenderer {
   bool can_sort() const;
   /// How many paths a block that sorts has for each thread: what its shared memory has room for;
   /// 0 where that is too few.
-  int sorting_slots() const;
-  void launch_voting(const SamplerSource& source, const SampleBuffer& batch);
+  int block_wavefront_slots() const;
+  void launch_phase_voting(const SamplerSource& source, const SampleBuffer& batch);
   template <bool has_masks>
-  std::uint32_t sorting_blocks();
+  std::uint32_t block_wavefront_blocks();
   template <bool has_masks>
   void allocate_slots();
   template <bool has_masks>
-  void launch_sorting(const SamplerSource& source, const SampleBuffer& batch);
+  void launch_block_wavefront(const SamplerSource& source, const SampleBuffer& batch);
 
   std::uint32_t* next_path_ = nullptr;
   PathSlot* slots_ = nullptr;  ///< only where blocks sort

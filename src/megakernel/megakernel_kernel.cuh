@@ -35,11 +35,11 @@ class ThreadWork {
 
   __device__ bool any(bool value) const { return __any_sync(warp_, value); }
 
-  __device__ bool next(std::uint32_t& number, bool wanted) {
-    if (division_.work == Work::persistent) return fetch(number, wanted);
+  __device__ bool next(std::uint32_t& path_index, bool wanted) {
+    if (division_.work == Work::persistent) return fetch(path_index, wanted);
     if (!wanted) return true;
     if (next_ >= end_) return false;
-    number = next_;
+    path_index = next_;
     next_ += batch_.pixel_count.divisor();
     return true;
   }
@@ -47,7 +47,7 @@ class ThreadWork {
  private:
   /// The warp owns the paths [next_, end_), the same in all of its threads; when they run out in
   /// the middle of a request, one of them fetches more for all.
-  __device__ bool fetch(std::uint32_t& number, bool wanted) {
+  __device__ bool fetch(std::uint32_t& path_index, bool wanted) {
     const std::uint32_t asking = __ballot_sync(warp_, wanted);
     const std::uint32_t lane = (threadIdx.y * blockDim.x + threadIdx.x) & 31;
     const std::uint32_t rank = __popc(asking & ((1u << lane) - 1));
@@ -66,7 +66,7 @@ class ThreadWork {
     }
     if (!wanted) return true;
     if (fetched >= batch_.path_count) return false;
-    number = fetched;
+    path_index = fetched;
     return true;
   }
 

@@ -4,6 +4,7 @@
 namespace pt {
 
 template void MegakernelCuda::allocate_slots<true>();
-template void MegakernelCuda::launch_sorting<true>(const SamplerSource&, const SampleBuffer&);
+template void MegakernelCuda::launch_block_wavefront<true>(const SamplerSource&,
+                                                           const SampleBuffer&);
 
 }  // namespace pt

@@ -7,32 +7,32 @@
 namespace pt {
 namespace {
 
-using VotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
+using PhaseVotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
 
 constexpr int blocks_least = 3;  // 80 registers for a thread
 
 /// Of a block with so many threads.
 constexpr std::size_t shared_bytes_of(int threads) {
-  return sizeof(SlotOrder) + static_cast<std::size_t>(threads) / 32 * sizeof(VotingWarp);
+  return sizeof(SlotOrder) + static_cast<std::size_t>(threads) / 32 * sizeof(PhaseVotingWarp);
 }
 
-__global__ void __launch_bounds__(voting_threads_max, blocks_least)
-    voting_megakernel(const __grid_constant__ Scene scene,
-                      const __grid_constant__ SampleBuffer batch,
-                      const __grid_constant__ WorkDivision division,
-                      const __grid_constant__ SamplerSource source,
-                      const __grid_constant__ PathLimits limits, StageClock* clock) {
-  extern __shared__ uint4 voting_memory[];
+__global__ void __launch_bounds__(phase_voting_threads_max, blocks_least)
+    phase_voting_megakernel(const __grid_constant__ Scene scene,
+                            const __grid_constant__ SampleBuffer batch,
+                            const __grid_constant__ WorkDivision division,
+                            const __grid_constant__ SamplerSource source,
+                            const __grid_constant__ PathLimits limits, StageClock* clock) {
+  extern __shared__ uint4 phase_voting_memory[];
   static_assert(sizeof(SlotOrder) % sizeof(uint4) == 0);
-  SlotOrder& order = *reinterpret_cast<SlotOrder*>(voting_memory);
+  SlotOrder& order = *reinterpret_cast<SlotOrder*>(phase_voting_memory);
   auto* const warps =
-      reinterpret_cast<VotingWarp*>(voting_memory + sizeof(SlotOrder) / sizeof(uint4));
+      reinterpret_cast<PhaseVotingWarp*>(phase_voting_memory + sizeof(SlotOrder) / sizeof(uint4));
   stamp_first_thread(clock, StageId::megakernel);
   order.fill();
   __syncthreads();
   ThreadWork work(division, batch);
-  uint2 stack[voting_stack_size];
-  VotingTracer<VotingTraits, SamplerSource, ThreadWork> tracer(
+  uint2 stack[phase_voting_stack_size];
+  PhaseVotingTracer<PhaseVotingTraits, SamplerSource, ThreadWork> tracer(
       scene, source, batch, limits, work, order, warps[threadIdx.x / 32], threadIdx.x % 32, stack);
   tracer.run();
 }
@@ -40,17 +40,17 @@ __global__ void __launch_bounds__(voting_threads_max, blocks_least)
 }  // namespace
 
 bool MegakernelCuda::can_vote() const {
-  return traits_ == VotingTraits::value() && may_vote(options_);
+  return traits_ == PhaseVotingTraits::value() && may_vote(options_);
 }
 
-void MegakernelCuda::launch_voting(const SamplerSource& source, const SampleBuffer& batch) {
+void MegakernelCuda::launch_phase_voting(const SamplerSource& source, const SampleBuffer& batch) {
   const int threads = options_.block.x * options_.block.y;
   const std::size_t shared_bytes = shared_bytes_of(threads);
   const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_};
-  const std::uint32_t blocks =
-      resident_blocks(reinterpret_cast<const void*>(voting_megakernel), threads, shared_bytes);
-  launch("megakernel", voting_megakernel, blocks, threads, shared_bytes, scene_, batch, division,
-         source, limits_, clock());
+  const std::uint32_t blocks = resident_blocks(
+      reinterpret_cast<const void*>(phase_voting_megakernel), threads, shared_bytes);
+  launch("megakernel", phase_voting_megakernel, blocks, threads, shared_bytes, scene_, batch,
+         division, source, limits_, clock());
 }
 
 }  // namespace pt

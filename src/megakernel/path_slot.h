@@ -37,12 +37,12 @@ struct alignas(128) PathSlot {
     sum = vec(r);
     PathState path;
     unpack_throughput(b, path);
-    path.number = d.w;
+    path.index = d.w;
     path.bsdf_pdf = bits_to_float(o.w);
     path.receiver = {r.w};
     return path;
   }
-  PT_HD std::uint32_t load_number() const { return direction.w; }
+  PT_HD std::uint32_t load_path_index() const { return direction.w; }
   /// Of the path, those traced so far.
   PT_HD std::uint32_t load_rays() const { return throughput.w & 0xffffu; }
 

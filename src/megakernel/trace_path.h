@@ -20,8 +20,8 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
                        const PathLimits& limits, Work& work) {
   using Integrator = typename Traits::Integrator;
   PathState path;
-  bool working = work.next(path.number, true);
-  PathId id = samples.id_of(path.number);
+  bool working = work.next(path.index, true);
+  PathId id = samples.id_of(path.index);
   typename Source::Stream random = source.open(id);
   Color radiance(0.0f);
   Ray ray;
@@ -31,7 +31,7 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
   while (work.any(working)) {
     bool ended = false;
     if (working) {
-      lanes_of(scene).at(path.rays).count(LanePoint::turn);
+      lanes_of(scene).at(path.rays).count(LanePoint::iteration);
       const Vec4 u = random.draw(scatter_block(path.rays));
       if (path.rays == 0) {
         ray = generate_camera_path(scene, random, id.pixel, u);
@@ -55,13 +55,13 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
       if (ended) samples.store(path, radiance);
     }
     if (work.any(ended)) {
-      std::uint32_t number = path.number;
-      const bool has_path = work.next(number, ended);
+      std::uint32_t path_index = path.index;
+      const bool has_path = work.next(path_index, ended);
       if (ended) {
         working = has_path;
         path = PathState{};
-        path.number = number;
-        id = samples.id_of(number);
+        path.index = path_index;
+        id = samples.id_of(path_index);
         random = source.open(id);
         radiance = Color(0.0f);
       }

@@ -26,26 +26,26 @@
 
 namespace pt {
 
-struct SortingTuning {
-  static constexpr int slots_most = 12;  ///< of a thread; fewer where a block's memory is small
-  static constexpr int pausing = 12;     ///< lanes of 32 for whose rays a phase does not wait
+struct BlockWavefrontTuning {
+  static constexpr int slots_most = 12;     ///< of a thread; fewer where a block's memory is small
+  static constexpr int suspended_max = 12;  ///< lanes of 32 for whose rays a phase does not wait
 };
 
 /// How blocks share the paths of a batch.
 struct PathShare {
   std::uint32_t* next;    ///< paths that have been taken
   std::uint32_t at_once;  ///< that a block may take: else the first ones would take small batches
-  int slots_per_thread;   ///< up to SortingTuning::slots_most
+  int slots_per_thread;   ///< up to BlockWavefrontTuning::slots_most
 };
 
 /// A lane of a block. Traits: of triangles alone.
 template <class Traits>
-using SortingLane =
+using BlockWavefrontLane =
     CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>;
 
 /// What a block shares, in shared memory: of `places` only those that it has slots for.
 template <class Lane, int threads>
-struct SortingMemory {
+struct BlockWavefrontMemory {
   static constexpr int class_count = kind_count + 1;  ///< misses come first
 
   /// What the path of a slot waits for.
@@ -64,7 +64,7 @@ struct SortingMemory {
   };
 
   /// What a slot waits for, and a place in each list.
-  struct Places {
+  struct SlotState {
     std::uint16_t rays[2];  ///< to be traced: see BlockRays
     std::uint16_t ordered;  ///< slots to be shaded, by kind
     std::uint16_t free;     ///< slots whose paths have ended
@@ -77,22 +77,22 @@ struct SortingMemory {
   std::uint32_t ray_count, next_ray;
   std::uint32_t free_end;                                        ///< of `free_slots`
   std::uint32_t start_count, first_free, start_ray, first_path;  ///< of the slots that get a path
-  std::uint32_t paused;                                          ///< lanes
+  std::uint32_t suspended;                                       ///< lanes
   bool has_ended;                                                ///< no path is left
   std::uint32_t next_shaded;
   std::uint32_t counts[class_count], first[class_count];  ///< of the slots to be shaded, by class
-  Places places[threads * SortingTuning::slots_most];
+  SlotState slots[threads * BlockWavefrontTuning::slots_most];
 
   static constexpr std::size_t bytes(int slots_per_thread) {
-    const int fewer = SortingTuning::slots_most - slots_per_thread;
-    return sizeof(SortingMemory) - sizeof(Places) * threads * fewer;
+    const int fewer = BlockWavefrontTuning::slots_most - slots_per_thread;
+    return sizeof(BlockWavefrontMemory) - sizeof(SlotState) * threads * fewer;
   }
 
-  __device__ std::uint16_t& ray(std::uint32_t i) { return places[i / 2].rays[i % 2]; }
-  __device__ std::uint16_t& ordered(std::uint32_t i) { return places[i].ordered; }
-  __device__ std::uint16_t& free_slot(std::uint32_t i) { return places[i].free; }
-  __device__ Path& path(std::uint32_t slot) { return places[slot].path; }
-  __device__ Shadow& shadow(std::uint32_t slot) { return places[slot].shadow; }
+  __device__ std::uint16_t& ray(std::uint32_t i) { return slots[i / 2].rays[i % 2]; }
+  __device__ std::uint16_t& ordered(std::uint32_t i) { return slots[i].ordered; }
+  __device__ std::uint16_t& free_slot(std::uint32_t i) { return slots[i].free; }
+  __device__ Path& path(std::uint32_t slot) { return slots[slot].path; }
+  __device__ Shadow& shadow(std::uint32_t slot) { return slots[slot].shadow; }
 };
 
 /// Reserves a place at the end of a list where `wanted`. By whole warps.
@@ -108,7 +108,7 @@ __device__ inline std::uint32_t take_end(std::uint32_t& end, bool wanted) {
 /// The block's rays for PersistentTracer, by name: twice the slot, and one more for the shadow ray.
 template <class Traits, class Memory>
 struct BlockRays {
-  using Query = typename SortingLane<Traits>::Query;
+  using Query = typename BlockWavefrontLane<Traits>::Query;
   using Path = typename Memory::Path;
   using Shadow = typename Memory::Shadow;
   Memory& memory;
@@ -116,14 +116,14 @@ struct BlockRays {
   const Scene& scene;
   const SampleBuffer& samples;
 
-  __device__ static bool is_shadow(std::uint32_t name) { return (name & 1u) != 0; }
+  __device__ static bool is_shadow(std::uint32_t ray_id) { return (ray_id & 1u) != 0; }
 
-  __device__ RayRecord record(std::uint32_t name) const {
-    const PathSlot& slot = slots[name / 2];
+  __device__ RayRecord record(std::uint32_t ray_id) const {
+    const PathSlot& slot = slots[ray_id / 2];
     float distance = infinite_distance;
-    const Ray ray = is_shadow(name) ? slot.load_shadow_ray(distance) : slot.load_ray();
+    const Ray ray = is_shadow(ray_id) ? slot.load_shadow_ray(distance) : slot.load_ray();
     float key = 0.0f;  // in the place of t_min, which is 0
-    if constexpr (Traits::has_masks) key = __uint_as_float(key_of(name));
+    if constexpr (Traits::has_masks) key = __uint_as_float(key_of(ray_id));
     return {ray.origin, key, ray.direction, distance};
   }
 
@@ -133,14 +133,14 @@ struct BlockRays {
     first = __shfl_sync(0xffffffffu, first, 0);
     const std::uint32_t all = memory.ray_count;
     count = first < all ? static_cast<int>(min(32u, all - first)) : 0;
-    if (static_cast<int>(lane) < count) next = record(name(first + lane));
+    if (static_cast<int>(lane) < count) next = record(id_of(first + lane));
     return first;
   }
 
-  __device__ std::uint32_t name(std::uint32_t number) const { return memory.ray(number); }
+  __device__ std::uint32_t id_of(std::uint32_t index) const { return memory.ray(index); }
 
   __device__ Query query(const PreparedRay& ray) const {
-    return with_key(PathQuery(0.0f, ray.t_max, is_shadow(ray.number)), ray.t_min);
+    return with_key(PathQuery(0.0f, ray.t_max, is_shadow(ray.id)), ray.t_min);
   }
   __device__ static Query with_key(const PathQuery& query, [[maybe_unused]] float key) {
     if constexpr (Traits::has_masks) {
@@ -154,10 +154,10 @@ struct BlockRays {
     return mask_hides(&scene, query.key(), slot, hit.b1, hit.b2);
   }
 
-  __device__ void finish(std::uint32_t name, const Query& query) const {
-    const std::uint32_t slot = name / 2;
+  __device__ void finish(std::uint32_t ray_id, const Query& query) const {
+    const std::uint32_t slot = ray_id / 2;
     const Hit hit = query.result();
-    if (is_shadow(name)) {
+    if (is_shadow(ray_id)) {
       memory.shadow(slot) = hit.is_miss() ? Shadow::free : Shadow::none;
     } else if (hit.is_miss()) {
       memory.path(slot) = Path::miss;
@@ -167,25 +167,25 @@ struct BlockRays {
     }
   }
 
-  __device__ LaneCounter lanes(std::uint32_t name) const {
-    const std::uint32_t rays = slots[name / 2].load_rays();
+  __device__ LaneCounter lanes(std::uint32_t ray_id) const {
+    const std::uint32_t rays = slots[ray_id / 2].load_rays();
     const LaneCounter all = lanes_of(scene);
-    return is_shadow(name) ? all.at(rays - 1).of_shadow_ray() : all.at(rays);
+    return is_shadow(ray_id) ? all.at(rays - 1).of_shadow_ray() : all.at(rays);
   }
 
  private:
-  __device__ std::uint32_t key_of(std::uint32_t name) const {
-    const PathSlot& slot = slots[name / 2];
-    const std::uint32_t key = mask_key<Traits>(scene, samples.id_of(slot.load_number()));
-    return is_shadow(name) ? shadow_ray_key(key, slot.load_rays())
-                           : next_ray_key(key, slot.load_rays());
+  __device__ std::uint32_t key_of(std::uint32_t ray_id) const {
+    const PathSlot& slot = slots[ray_id / 2];
+    const std::uint32_t key = mask_key<Traits>(scene, samples.id_of(slot.load_path_index()));
+    return is_shadow(ray_id) ? shadow_ray_key(key, slot.load_rays())
+                             : next_ray_key(key, slot.load_rays());
   }
 };
 
 /// Of a lane, where it is in the tree and what it has met, while its block does other things: in
 /// its stack's memory, beyond the stack.
-inline constexpr int sorting_stack_size =
-    bvh_depth_max + CwbvhLane<PathQuery, true>::parked_size + 1;
+inline constexpr int block_wavefront_stack_size =
+    bvh_depth_max + CwbvhLane<PathQuery, true>::suspended_size + 1;
 
 /// A sink (transport/path_step.h) that keeps a path in its slot. It takes results as shading finds
 /// them (StreamedSteps).
@@ -202,7 +202,7 @@ struct SlotSink {
     slot.store_shadow_radiance(shadow.radiance);
     casts = true;
   }
-  PT_HD void go_on(const PathState& path, const Ray& ray) {
+  PT_HD void continue_path(const PathState& path, const Ray& ray) {
     slot.store_path(path, ray);
     alive = true;
   }
@@ -218,11 +218,11 @@ struct SlotSink {
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
 /// are opened anew for each draw.
 template <class Traits, class Source, class Memory>
-class SortingTracer {
+class BlockWavefront {
  public:
-  __device__ SortingTracer(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                           const PathLimits& limits, const PathShare& paths, Memory& memory,
-                           PathSlot* slots, uint2* stack)
+  __device__ BlockWavefront(const Scene& scene, const Source& source, const SampleBuffer& samples,
+                            const PathLimits& limits, const PathShare& paths, Memory& memory,
+                            PathSlot* slots, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
@@ -248,7 +248,7 @@ class SortingTracer {
  private:
   using Path = typename Memory::Path;
   using Shadow = typename Memory::Shadow;
-  using Lane = SortingLane<Traits>;
+  using Lane = BlockWavefrontLane<Traits>;
   using Shading = ShadingTraits<Traits>;
 
   /// The k-th that this thread looks after where a block goes through all of its slots.
@@ -261,10 +261,10 @@ class SortingTracer {
       memory_.path(slot) = Path::none;
       memory_.shadow(slot) = Shadow::none;
     }
-    warp_.number[threadIdx.x & 31] = PersistentWarp<Lane>::none;
+    warp_.ray_id[threadIdx.x & 31] = PersistentWarp<Lane>::none;
     if (threadIdx.x == 0) {
       memory_.free_end = paths_.slots_per_thread * blockDim.x;
-      memory_.ray_end = memory_.paused = 0;
+      memory_.ray_end = memory_.suspended = 0;
     }
     memory_.tracing.order.fill();
   }
@@ -278,12 +278,12 @@ class SortingTracer {
     const std::uint32_t count = memory_.start_count;
     for (std::uint32_t i = threadIdx.x; i < count; i += blockDim.x) {
       const std::uint32_t slot = memory_.free_slot(memory_.first_free + i);
-      const std::uint32_t number = memory_.first_path + i;
-      const bool exists = number < samples_.path_count;
+      const std::uint32_t path_index = memory_.first_path + i;
+      const bool exists = path_index < samples_.path_count;
       memory_.path(slot) = exists ? Path::ray : Path::none;
       if (!exists) continue;
       memory_.ray(memory_.start_ray + i) = static_cast<std::uint16_t>(2 * slot);
-      start_path(slots_[slot], number);
+      start_path(slots_[slot], path_index);
     }
     const bool goes_on = !memory_.has_ended;
     __syncthreads();
@@ -302,16 +302,16 @@ class SortingTracer {
     memory_.free_end = count < left ? memory_.first_free : 0;
     memory_.start_ray = memory_.ray_end;
     memory_.ray_count = memory_.ray_end + min(count, left);
-    memory_.has_ended = memory_.ray_count == 0 && memory_.paused == 0;
-    memory_.next_ray = memory_.next_shaded = memory_.ray_end = memory_.paused = 0;
+    memory_.has_ended = memory_.ray_count == 0 && memory_.suspended == 0;
+    memory_.next_ray = memory_.next_shaded = memory_.ray_end = memory_.suspended = 0;
   }
 
-  __device__ void start_path(PathSlot& slot, std::uint32_t number) {
-    lanes_of(scene_).at(0).count(LanePoint::turn);
-    const PathId id = samples_.id_of(number);
+  __device__ void start_path(PathSlot& slot, std::uint32_t path_index) {
+    lanes_of(scene_).at(0).count(LanePoint::iteration);
+    const PathId id = samples_.id_of(path_index);
     typename Source::Stream random = source_.open(id);
     PathState path;
-    path.number = number;
+    path.index = path_index;
     slot.store_path(path, begin_path(scene_, id, random));
     slot.store_radiance(Color(0.0f), path);
   }
@@ -319,40 +319,41 @@ class SortingTracer {
   /// What the block's rays meet. With many rays lanes pause when none are left but theirs; these
   /// are fewer than all that are traced, so that some end in each phase.
   __device__ __forceinline__ void trace() {
-    const int pausing = memory_.ray_count > blockDim.x ? SortingTuning::pausing : 0;
+    const int suspended_max =
+        memory_.ray_count > blockDim.x ? BlockWavefrontTuning::suspended_max : 0;
     PersistentTracer<Lane, const BlockRays<Traits, Memory>> tracer(
         scene_.triangles, rays_, memory_.tracing.order, warp_, stack_);
     resume(tracer.lane());
-    tracer.go_on(pausing);
-    pause(tracer.lane());
+    tracer.run(suspended_max);
+    suspend(tracer.lane());
   }
 
   // Volatile, see CwbvhLane::park.
-  __device__ volatile uint2* parked() const { return stack_ + bvh_depth_max; }
+  __device__ volatile uint2* suspended_state() const { return stack_ + bvh_depth_max; }
 
-  __device__ void pause(const Lane& lane) {
+  __device__ void suspend(const Lane& lane) {
     if (!lane.is_active()) return;
-    lane.park(parked());
-    volatile uint2& met = parked()[Lane::parked_size];
+    lane.suspend(suspended_state());
+    volatile uint2& met = suspended_state()[Lane::suspended_size];
     met.x = __float_as_uint(lane.query().t_max());
     met.y = lane.query().result().primitive;
-    atomicAdd(&memory_.paused, 1u);
+    atomicAdd(&memory_.suspended, 1u);
   }
 
   __device__ void resume(Lane& lane) {
-    const unsigned place = threadIdx.x & 31;
-    const std::uint32_t name = warp_.number[place];
-    const bool paused = name != PersistentWarp<Lane>::none;
-    if (paused) {
-      warp_.rays.store(place, rays_.record(name), name);
-      const PreparedRay ray = warp_.rays.load(place);
+    const unsigned lane_index = threadIdx.x & 31;
+    const std::uint32_t ray_id = warp_.ray_id[lane_index];
+    const bool suspended = ray_id != PersistentWarp<Lane>::none;
+    if (suspended) {
+      warp_.rays.store(lane_index, rays_.record(ray_id), ray_id);
+      const PreparedRay ray = warp_.rays.load(lane_index);
       lane.set_ray(ray);
-      const volatile uint2& met = parked()[Lane::parked_size];
+      const volatile uint2& met = suspended_state()[Lane::suspended_size];
       const float t = __uint_as_float(met.x);
-      lane.unpark(parked(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
-                                                              rays_.is_shadow(name)),
-                                           ray.t_min));
-      if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(name));
+      lane.resume(suspended_state(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
+                                                                       rays_.is_shadow(ray_id)),
+                                                    ray.t_min));
+      if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(ray_id));
     }
     __syncwarp();
   }
@@ -364,19 +365,19 @@ class SortingTracer {
     if (path <= Path::ray || memory_.shadow(slot) == Shadow::ray) return -1;
     if (path != Path::hit) return 0;
     const Hit hit = slots_[slot].load_hit();
-    return 1 + static_cast<int>(scene_.material(material_number_at(scene_, hit)).kind);
+    return 1 + static_cast<int>(scene_.material(material_index_at(scene_, hit)).kind);
   }
 
   __device__ __forceinline__ void sort() {
-    constexpr int most = SortingTuning::slots_most;
+    constexpr int most = BlockWavefrontTuning::slots_most;
     const int count = paths_.slots_per_thread;
     int classes[most];
-    std::uint32_t place[most] = {};
+    std::uint32_t rank[most] = {};
     PT_UNROLL(12)
     for (int k = 0; k < most; ++k) classes[k] = k < count ? class_of(slot_of(k)) : -1;
     PT_UNROLL(12)
     for (int k = 0; k < most; ++k) {
-      if (k < count) place[k] = take_places(memory_.counts, classes[k]);
+      if (k < count) rank[k] = reserve_indices(memory_.counts, classes[k]);
     }
     __syncthreads();
     if (threadIdx.x < Memory::class_count) {
@@ -386,8 +387,7 @@ class SortingTracer {
     PT_UNROLL(12)
     for (int k = 0; k < most; ++k) {
       if (classes[k] < 0) continue;
-      memory_.ordered(memory_.first[classes[k]] + place[k]) =
-          static_cast<std::uint16_t>(slot_of(k));
+      memory_.ordered(memory_.first[classes[k]] + rank[k]) = static_cast<std::uint16_t>(slot_of(k));
     }
     __syncthreads();
   }
@@ -398,17 +398,17 @@ class SortingTracer {
     const std::uint32_t count = memory_.first[last] + memory_.counts[last];
     const unsigned lane = threadIdx.x & 31;
     while (true) {
-      std::uint32_t place = 0;
-      if (lane == 0) place = atomicAdd(&memory_.next_shaded, 32u);
-      place = __shfl_sync(0xffffffffu, place, 0);
-      if (place >= count) return;
-      place += lane;
-      const bool has_path = place < count;
+      std::uint32_t index = 0;
+      if (lane == 0) index = atomicAdd(&memory_.next_shaded, 32u);
+      index = __shfl_sync(0xffffffffu, index, 0);
+      if (index >= count) return;
+      index += lane;
+      const bool has_path = index < count;
       std::uint32_t slot = 0;
       Path path = Path::hit;
       Shadow shadow = Shadow::none;
       if (has_path) {
-        slot = memory_.ordered(place);
+        slot = memory_.ordered(index);
         path = memory_.path(slot), shadow = memory_.shadow(slot);
         shade_path(slots_[slot], path, shadow);
         memory_.path(slot) = path, memory_.shadow(slot) = shadow;
@@ -422,9 +422,9 @@ class SortingTracer {
     }
   }
 
-  __device__ void append_ray(bool wanted, std::uint32_t name) {
+  __device__ void append_ray(bool wanted, std::uint32_t ray_id) {
     const std::uint32_t end = take_end(memory_.ray_end, wanted);
-    if (wanted) memory_.ray(end) = static_cast<std::uint16_t>(name);
+    if (wanted) memory_.ray(end) = static_cast<std::uint16_t>(ray_id);
   }
 
   /// Takes what the path has waited for, and leaves what it waits for then.
@@ -455,7 +455,7 @@ class SortingTracer {
 
   __device__ __forceinline__ void shade_hit(PathSlot& slot, PathState& path, const Ray& ray,
                                             Path& state, Shadow& shadow) {
-    lanes_of(scene_).at(path.rays).count(LanePoint::turn);
+    lanes_of(scene_).at(path.rays).count(LanePoint::iteration);
     SlotSink sink{samples_, slot};
     const StreamedSteps steps{source_, samples_, path, sink};
     meet_surface<Shading>(scene_, ray, slot.load_hit(), path, limits_, steps, sink);

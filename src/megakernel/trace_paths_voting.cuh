@@ -16,14 +16,14 @@
 namespace pt {
 
 /// When a warp leaves the traversal: lanes of 32 that have a path; of fewer, in proportion.
-struct VotingTuning {
-  static constexpr int shade = 20;  ///< lanes that wait to be shaded
-  static constexpr int resume = 4;  ///< lanes whose shadow ray has ended and whose next ray waits
+struct PhaseVotingTuning {
+  static constexpr int shade = 20;    ///< lanes that wait to be shaded
+  static constexpr int next_ray = 4;  ///< lanes whose shadow ray has ended and whose next ray waits
 };
 
 /// The paths of a warp while their rays are traced, by lane, in shared memory: traversal and
 /// shading need all registers. Each lane sees its own alone.
-struct VotingWarp {
+struct PhaseVotingWarp {
   PreparedRays rays, shadow_rays;
   float4 direction[32];          ///< of the ray; the path's number
   float4 throughput[32];         ///< beta; rays and shadow rays
@@ -34,16 +34,18 @@ struct VotingWarp {
 
 /// Of a lane, where it is in the tree and what it has met, while others are shaded: in its stack's
 /// memory, beyond the stack.
-inline constexpr int voting_stack_size = bvh_depth_max + CwbvhLane<PathQuery>::parked_size + 1;
+inline constexpr int phase_voting_stack_size =
+    bvh_depth_max + CwbvhLane<PathQuery>::suspended_size + 1;
 
 /// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
 /// opened anew for each draw; Work: see trace_path.h.
 template <class Traits, class Source, class Work>
-class VotingTracer {
+class PhaseVotingTracer {
  public:
-  __device__ VotingTracer(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                          const PathLimits& limits, Work& work, const SlotOrder& order,
-                          VotingWarp& warp, unsigned lane, uint2* stack)
+  __device__ PhaseVotingTracer(const Scene& scene, const Source& source,
+                               const SampleBuffer& samples, const PathLimits& limits, Work& work,
+                               const SlotOrder& order, PhaseVotingWarp& warp, unsigned lane,
+                               uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
@@ -52,7 +54,7 @@ class VotingTracer {
         warp_(warp),
         lane_(lane),
         ray_(scene.triangles, order, stack),
-        parked_(stack + bvh_depth_max) {}
+        suspended_(stack + bvh_depth_max) {}
 
   /// By the whole warp; returns when no paths are left.
   __device__ __forceinline__ void run() {
@@ -63,14 +65,15 @@ class VotingTracer {
       const int stepping = __popc(__ballot_sync(whole_warp, steps));
       const int waiting = live - testing - stepping;
       const auto are_enough = [&](int lanes, int of_32) { return lanes * 32 >= live * of_32; };
-      if (are_enough(waiting, VotingTuning::resume)) {
-        const bool resumes = state_ == State::shadow_then_ray && !tests && !steps;
-        const int resuming = __popc(__ballot_sync(whole_warp, resumes));
-        const bool shades = are_enough(waiting - resuming, VotingTuning::shade);
-        if (shades || testing + stepping == 0 || are_enough(resuming, VotingTuning::resume)) {
-          if (resumes) resume();
+      if (are_enough(waiting, PhaseVotingTuning::next_ray)) {
+        const bool begins_next = state_ == State::shadow_then_ray && !tests && !steps;
+        const int beginning = __popc(__ballot_sync(whole_warp, begins_next));
+        const bool shades = are_enough(waiting - beginning, PhaseVotingTuning::shade);
+        if (shades || testing + stepping == 0 ||
+            are_enough(beginning, PhaseVotingTuning::next_ray)) {
+          if (begins_next) begin_next_ray();
           if (!shades) continue;
-          shade(state_ != State::idle && !tests && !steps && !resumes);
+          shade(state_ != State::idle && !tests && !steps && !begins_next);
           live = __popc(__ballot_sync(whole_warp, state_ != State::idle));
           if (live == 0) return;
           continue;
@@ -86,7 +89,8 @@ class VotingTracer {
 
  private:
   static constexpr unsigned whole_warp = 0xffffffffu;
-  static_assert(VotingTuning::resume <= VotingTuning::shade && VotingTuning::shade <= 32);
+  static_assert(PhaseVotingTuning::next_ray <= PhaseVotingTuning::shade &&
+                PhaseVotingTuning::shade <= 32);
 
   /// What the lane traces, and what comes then.
   enum class State : std::uint8_t { no_path, ray, shadow_then_ray, shadow_then_end, idle };
@@ -100,7 +104,7 @@ class VotingTracer {
     const std::uint32_t rays = __float_as_uint(beta.w);
     PathState path;
     path.beta = {beta.x, beta.y, beta.z};
-    path.number = __float_as_uint(warp_.direction[lane_].w);
+    path.index = __float_as_uint(warp_.direction[lane_].w);
     path.rays = static_cast<std::uint16_t>(rays);
     path.shadow_rays = static_cast<std::uint16_t>(rays >> 16);
     path.bsdf_pdf = warp_.bsdf_pdf[lane_];
@@ -115,7 +119,7 @@ class VotingTracer {
 
   __device__ void store(const PathState& path, const Color& radiance, const Vec3& direction) {
     const auto bits = [](std::uint32_t x) { return __uint_as_float(x); };
-    warp_.direction[lane_] = {direction.x, direction.y, direction.z, bits(path.number)};
+    warp_.direction[lane_] = {direction.x, direction.y, direction.z, bits(path.index)};
     warp_.throughput[lane_] = {path.beta.x, path.beta.y, path.beta.z, bits(path.packed_rays())};
     warp_.radiance[lane_] = {radiance.x, radiance.y, radiance.z, bits(path.receiver.bits)};
     warp_.bsdf_pdf[lane_] = path.bsdf_pdf;
@@ -131,7 +135,7 @@ class VotingTracer {
   }
 
   /// The shadow ray has ended; the path's next ray is ready.
-  __device__ void resume() {
+  __device__ void begin_next_ray() {
     const Color radiance = lit_radiance();
     warp_.radiance[lane_] = {radiance.x, radiance.y, radiance.z, warp_.radiance[lane_].w};
     state_ = State::ray;
@@ -153,7 +157,7 @@ class VotingTracer {
     Ray ray;
     Hit hit;
     bool ended = waits && state_ != State::ray;
-    park();
+    suspend();
     if (waits && state_ == State::shadow_then_end) {
       samples_.store(load_path(), lit_radiance());
     } else if (waits && state_ == State::ray) {
@@ -172,18 +176,18 @@ class VotingTracer {
       }
     }
     if (__any_sync(whole_warp, ended)) {
-      std::uint32_t number = 0;
-      const bool has_path = work_.next(number, ended);
+      std::uint32_t path_index = 0;
+      const bool has_path = work_.next(path_index, ended);
       if (ended) {
         state_ = has_path ? State::ray : State::idle;
         path = PathState{};
-        path.number = number;
+        path.index = path_index;
         radiance = Color(0.0f);
       }
     }
     const bool works = waits && state_ != State::idle;
-    if (works) go_on(path, radiance, ray, hit);
-    unpark();
+    if (works) continue_path(path, radiance, ray, hit);
+    resume_traversal();
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
     ray_.set_ray(prepared);
@@ -191,26 +195,27 @@ class VotingTracer {
   }
 
   /// All lanes: so those that were traversing need no registers while others are shaded.
-  __device__ void park() {
-    ray_.park(parked_);
-    volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
+  __device__ void suspend() {
+    ray_.suspend(suspended_);
+    volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
     met.x = __float_as_uint(ray_.query().t_max()), met.y = ray_.query().result().primitive;
   }
-  __device__ void unpark() {
-    const volatile uint2& met = parked_[CwbvhLane<PathQuery>::parked_size];
+  __device__ void resume_traversal() {
+    const volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
     const float t = __uint_as_float(met.x);
-    ray_.unpark(parked_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
+    ray_.resume(suspended_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
   }
 
   /// A path begins at the camera or goes on from a surface.
-  __device__ __forceinline__ void go_on(PathState path, Color radiance, Ray ray, const Hit& hit) {
-    lanes_of(scene_).at(path.rays).count(LanePoint::turn);
-    const PathId id = samples_.id_of(path.number);
+  __device__ __forceinline__ void continue_path(PathState path, Color radiance, Ray ray,
+                                                const Hit& hit) {
+    lanes_of(scene_).at(path.rays).count(LanePoint::iteration);
+    const PathId id = samples_.id_of(path.index);
     typename Source::Stream random = source_.open(id);
     const Vec4 u = random.draw(scatter_block(path.rays));
     LaneSink sink{*this, radiance, ray};
     if (path.rays == 0) {
-      sink.go_on(path, generate_camera_path(scene_, random, id.pixel, u));
+      sink.continue_path(path, generate_camera_path(scene_, random, id.pixel, u));
     } else {
       meet_surface<Traits>(scene_, ray, hit, path, limits_, draw_steps<Traits>(u, random, path),
                            sink);
@@ -221,7 +226,7 @@ class VotingTracer {
 
   /// A sink (transport/path_step.h): rays into the lane's part of the warp's memory.
   struct LaneSink {
-    VotingTracer& tracer;
+    PhaseVotingTracer& tracer;
     Color& radiance;
     Ray& ray;  ///< the path's next one
     State state = State::no_path;
@@ -230,7 +235,7 @@ class VotingTracer {
       radiance = add_rounded(radiance, emitted);
     }
     __device__ void cast(const PathState&, const ShadowRay& shadow) {
-      VotingWarp& warp = tracer.warp_;
+      PhaseVotingWarp& warp = tracer.warp_;
       const unsigned lane = tracer.lane_;
       warp.shadow_rays.store(lane, {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance},
                              0);
@@ -238,7 +243,7 @@ class VotingTracer {
       count_begun(shadow.ray);
       state = State::shadow_then_end;
     }
-    __device__ void go_on(const PathState&, const Ray& next) {
+    __device__ void continue_path(const PathState&, const Ray& next) {
       ray = next;
       tracer.warp_.rays.store(tracer.lane_, {ray.origin, 0.0f, ray.direction, infinite_distance},
                               0);
@@ -261,10 +266,10 @@ class VotingTracer {
   const SampleBuffer& samples_;
   const PathLimits& limits_;
   Work& work_;
-  VotingWarp& warp_;
+  PhaseVotingWarp& warp_;
   unsigned lane_;
   CwbvhLane<PathQuery> ray_;
-  volatile uint2* parked_;
+  volatile uint2* suspended_;
   State state_ = State::no_path;
 };
 

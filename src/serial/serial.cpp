@@ -29,7 +29,7 @@ class SerialRenderer : public CpuRenderer {
       const PathId id = batch.id_of(i);
       auto random = source.open(id);
       PathState path;
-      path.number = i;
+      path.index = i;
       const Ray ray = begin_path(scene_, id, random);
       batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
                                             mask_key<Traits>(scene_, id)));

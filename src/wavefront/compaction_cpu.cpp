@@ -33,10 +33,10 @@ Counts sum(Counts a, const Counts& b) {
 }
 
 // Writes the range's slots to their queues, from the given places on.
-void gather(const CompactionRequest& request, const Range& range, Counts place) {
+void gather(const CompactionRequest& request, const Range& range, Counts index) {
   for (std::uint32_t slot = range.begin(); slot < range.end(); ++slot) {
     for (int c = 0; c < request.queues_wanted; ++c) {
-      if (request.tags[slot] == request.wanted[c]) request.queues[c][place[c]++] = slot;
+      if (request.tags[slot] == request.wanted[c]) request.queues[c][index[c]++] = slot;
     }
   }
 }

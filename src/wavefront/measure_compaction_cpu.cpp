@@ -52,8 +52,8 @@ class Slots {
  public:
   Slots(const std::vector<StageId>& tags, int queues, std::uint32_t sets)
       : count_(tags.size()), queue_count_(queues) {
-    const auto places = static_cast<std::uint64_t>(queues) * sizeof(std::uint32_t);
-    check_host_memory(sets * count_ * (sizeof(StageId) + places), "the slots of a compaction");
+    const auto index_bytes = static_cast<std::uint64_t>(queues) * sizeof(std::uint32_t);
+    check_host_memory(sets * count_ * (sizeof(StageId) + index_bytes), "the slots of a compaction");
     for (std::uint32_t set = 0; set < sets; ++set)
       tags_.insert(tags_.end(), tags.begin(), tags.end());
     queues_.assign(static_cast<std::size_t>(queues) * tags_.size(), CompactionResult::unwritten);

@@ -74,7 +74,7 @@ struct PathPool {
       std::byte* const slot_0 = allocate(static_cast<std::byte*>(nullptr), n * slot_bytes);
       std::uint32_t end = 0;
       for_each_field(parts, [&]<class T>(T*& field) {
-        field = reinterpret_cast<T*>(slot_0 + next_place<T>(end));
+        field = reinterpret_cast<T*>(slot_0 + next_offset<T>(end));
       });
     } else {
       if (parts.layout == PoolLayout::sectors) {
@@ -127,7 +127,7 @@ struct PathPool {
     const PathRecord d = load_wide(half_at(direction, slot));
     ray_direction = vec(d);
     PathState path;
-    path.number = d.w & ~new_path;
+    path.index = d.w & ~new_path;
     if ((d.w & new_path) == 0) unpack_throughput(load_wide(at(throughput, slot)), path);
     return path;
   }
@@ -141,9 +141,9 @@ struct PathPool {
     return path;
   }
 
-  PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t number) const {
+  PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t path_index) const {
     store_wide(half_at(origin, slot), pack_origin(ray, PathState()));
-    store_wide(half_at(direction, slot), pack(ray.direction, number | new_path));
+    store_wide(half_at(direction, slot), pack(ray.direction, path_index | new_path));
   }
 
   PT_HD void store_path(std::uint32_t slot, const Ray& ray, const PathState& path) const {
@@ -155,7 +155,7 @@ struct PathPool {
 
   /// `lanes` for the next ray of the path.
   PT_HD LaneCounter path_lanes(const LaneCounter& lanes, std::uint32_t slot) const {
-    if constexpr (counts_lanes) return lanes.at(load_name(slot).rays);
+    if constexpr (counts_lanes) return lanes.at(load_path_id(slot).rays);
     return lanes;
   }
   /// `lanes` for its shadow ray.
@@ -165,12 +165,12 @@ struct PathPool {
   }
 
   /// The path's number and rays alone.
-  PT_HD PathState load_name(std::uint32_t slot) const {
+  PT_HD PathState load_path_id(std::uint32_t slot) const {
     PathState path;
-    path.number = half_at(direction, slot)->w;
-    if ((path.number & new_path) == 0)
+    path.index = half_at(direction, slot)->w;
+    if ((path.index & new_path) == 0)
       path.rays = static_cast<std::uint16_t>(at(throughput, slot)->w);
-    path.number &= ~new_path;
+    path.index &= ~new_path;
     return path;
   }
 
@@ -191,7 +191,7 @@ struct PathPool {
   PT_HD void store_shadow_ray(std::uint32_t slot, const ShadowRay& shadow,
                               const PathState& path) const {
     store_wide(half_at(shadow_origin, slot), pack_shadow_origin(shadow));
-    store_wide(half_at(shadow_direction, slot), pack(shadow.ray.direction, path.number));
+    store_wide(half_at(shadow_direction, slot), pack(shadow.ray.direction, path.index));
   }
   PT_HD void store_shadow_radiance(std::uint32_t slot, const Color& radiance,
                                    const PathState& path) const {
@@ -201,10 +201,10 @@ struct PathPool {
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w;
   }
-  PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& number) const {
+  PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& path_index) const {
     const PathRecord o = load_wide(half_at(shadow_origin, slot));
     const PathRecord d = load_wide(half_at(shadow_direction, slot));
-    number = d.w;
+    path_index = d.w;
     return {{vec(o), vec(d)}, bits_to_float(o.w), vec(load_wide(at(shadow_radiance, slot)))};
   }
 
@@ -232,18 +232,18 @@ struct PathPool {
 
   /// Where a T may lie behind `end` bytes, which it then counts among.
   template <class T>
-  static std::uint32_t next_place(std::uint32_t& end) {
+  static std::uint32_t next_offset(std::uint32_t& end) {
     constexpr std::uint32_t alignment = alignof(T);
-    const std::uint32_t place = (end + alignment - 1) / alignment * alignment;
-    end = place + sizeof(T);
-    return place;
+    const std::uint32_t offset = (end + alignment - 1) / alignment * alignment;
+    end = offset + sizeof(T);
+    return offset;
   }
 
   /// Of all fields side by side, with what makes the next slot's lie as they do.
   static std::uint32_t fields_bytes(const Parts& parts) {
     std::uint32_t end = 0;
-    PathPool().for_each_field(parts, [&]<class T>(T*) { next_place<T>(end); });
-    return next_place<PathRecord>(end);
+    PathPool().for_each_field(parts, [&]<class T>(T*) { next_offset<T>(end); });
+    return next_offset<PathRecord>(end);
   }
 
   template <class T>

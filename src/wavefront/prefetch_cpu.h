@@ -66,9 +66,9 @@ inline Vec2 rough_barycentric(const Ray& ray, float t, const Triangle& triangle)
 inline void prefetch_texels(const Scene& scene, const Ray& ray, const Hit& hit) {
   const Triangle* const triangle = triangle_of(scene, hit);
   if (triangle == nullptr || (triangle->attributes & TriangleAttributes::uvs) == 0) return;
-  const std::uint32_t number = scene.parameters[triangle->material].texture;
-  if (number == no_texture) return;
-  const Texture& texture = scene.textures[number];
+  const std::uint32_t texture_index = scene.parameters[triangle->material].texture;
+  if (texture_index == no_texture) return;
+  const Texture& texture = scene.textures[texture_index];
   if (texture.kind != TextureKind::image) return;
   const Vec2 b = rough_barycentric(ray, hit.t, *triangle);
   const Vec2 uv = scene.corners[triangle->id].uv_at(Vec3(1.0f - b.x - b.y, b.x, b.y));

@@ -16,8 +16,8 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
   for (std::uint32_t i = 0; i < count; ++i) {
     std::uint32_t key = 0;
     if (traits.has_masks) {
-      const PathState path = stage.pool.load_name(slots[i]);
-      key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.number)), path.rays);
+      const PathState path = stage.pool.load_path_id(slots[i]);
+      key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.index)), path.rays);
     }
     rays.append(stage.pool.load_ray(slots[i]), infinite_distance, key);
   }
@@ -31,20 +31,20 @@ template <class Send>
 void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
                const Scene& scene, const Slots& slots, std::uint32_t count, Send&& send) {
   RayBlock rays;
-  std::uint32_t number;
+  std::uint32_t path_index;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
+    const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
     std::uint32_t key = 0;
     if (traits.has_masks) {
-      key = shadow_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(number)),
+      key = shadow_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path_index)),
                            stage.pool.load_shadow_rays(slots[i]));
     }
     rays.append(shadow.ray, shadow.distance, key);
   }
   const std::uint32_t occluded = intersect_shadow_block(traits, scene, rays);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const ShadowRay shadow = stage.pool.load_shadow(slots[i], number);
-    send(slots[i], stage.finish(number, shadow, (occluded >> i & 1u) != 0));
+    const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
+    send(slots[i], stage.finish(path_index, shadow, (occluded >> i & 1u) != 0));
   }
 }
 

@@ -25,8 +25,8 @@ class RangeAppender {
   void flush(const StageQueues& queues) {
     for (int q = 0; q < queue_count; ++q) {
       if (counts_[q] == 0) continue;
-      const std::uint32_t place = atomic_fetch_add(&queues.waiting[q], counts_[q]);
-      std::copy_n(slots_[q].begin(), counts_[q], queues.next[q] + place);
+      const std::uint32_t first = atomic_fetch_add(&queues.waiting[q], counts_[q]);
+      std::copy_n(slots_[q].begin(), counts_[q], queues.next[q] + first);
       counts_[q] = 0;
     }
   }

@@ -57,7 +57,7 @@ struct alignas(16) RowStage {
 
 /// Writes the row's slots whose bits are set, the lowest to queue[place], and returns how many they
 /// are. `first`: slot of the first lane's bit 0. All threads of the warp together.
-__device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t place,
+__device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t index,
                                           std::uint32_t first, std::uint32_t mask,
                                           RowStage& stage) {
   const std::uint32_t lane = threadIdx.x & 31;
@@ -69,7 +69,7 @@ __device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t pl
   }
   const std::uint32_t total = __shfl_sync(0xffffffffu, end, 31);
   // Four neighbours of the stage make one aligned store.
-  std::uint32_t* const to = queue + place;
+  std::uint32_t* const to = queue + index;
   const std::uint32_t shift =
       static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(to) / 4 % 4);
   __syncwarp();  // others may still read the last row
@@ -80,8 +80,8 @@ __device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t pl
   for (std::uint32_t i = 4 * lane; i < shift + total; i += 4 * 32) {
     const ushort4 four = *reinterpret_cast<const ushort4*>(&stage.slots[i]);
     const uint4 slots = {first + four.x, first + four.y, first + four.z, first + four.w};
-    const auto is_inside = [&](std::uint32_t place) {
-      return place >= shift && place < shift + total;
+    const auto is_inside = [&](std::uint32_t index) {
+      return index >= shift && index < shift + total;
     };
     if (is_inside(i) && is_inside(i + 3)) {
       __stcs(reinterpret_cast<uint4*>(to - shift + i), slots);
@@ -155,10 +155,10 @@ __global__ void __launch_bounds__(scan_threads)
   }
   PT_UNROLL(2)
   for (int q = 0; q < queues; ++q) {
-    auto place = static_cast<std::uint32_t>(begin >> 32 * q);
+    auto index = static_cast<std::uint32_t>(begin >> 32 * q);
     PT_UNROLL(8)
     for (int r = 0; r < rows; ++r) {
-      place += write_row(request.queues[q], place, warp_first + r * row_slots, masks[r][q],
+      index += write_row(request.queues[q], index, warp_first + r * row_slots, masks[r][q],
                          stages[warp]);
     }
   }

@@ -28,8 +28,8 @@ void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, 
   const bool together = is_philox(context.source);
   DrawNames names{};
   for (std::uint32_t i = 0; i < count; ++i) {
-    const PathState path = context.pool.load_name(slots[i]);
-    const PathId id = context.samples.id_of(path.number);
+    const PathState path = context.pool.load_path_id(slots[i]);
+    const PathId id = context.samples.id_of(path.index);
     const std::uint32_t rays = path.rays + 1u;  // with the one that has met the surface
     names.pixel[i] = id.pixel, names.sample[i] = id.sample, names.block[i] = scatter_block(rays);
     if (together) continue;
@@ -93,7 +93,7 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
           for (std::uint32_t i = 0; i < count; ++i) {
             ask_for_attributes(i + attributes_ahead);
             ask_for_texels(i + texels_ahead);
-            drawn.context.source.place = i;
+            drawn.context.source.index = i;
             const std::uint32_t slot = slots[i];
             send(slot, fast ? shade_slot(drawn, scene, slot) : drawn(scene, slot, 0));
           }

@@ -5,7 +5,7 @@
 namespace pt {
 namespace {
 
-constexpr double record = sizeof(PathRecord), place = sizeof(std::uint32_t), tag = sizeof(StageId);
+constexpr double record = sizeof(PathRecord), index = sizeof(std::uint32_t), tag = sizeof(StageId);
 constexpr double sample = sizeof(Sample), radiance = sizeof(Color);
 
 class Predictor {
@@ -14,10 +14,10 @@ class Predictor {
 
   PredictedBytes generate() const {
     const double sample_bytes = layout_.parts.lights ? sample : 0;
-    const double ray_place = layout_.has_queues ? place : 0;
+    const double ray_index = layout_.has_queues ? index : 0;
     const bool has_input = layout_.queues_free || !layout_.has_queues;
     return {has_input ? find(flow_.generated) : 0,
-            flow_.generated * (2 * record + ray_place + sample_bytes + own_tag())};
+            flow_.generated * (2 * record + ray_index + sample_bytes + own_tag())};
   }
 
   PredictedBytes intersect() const {
@@ -26,7 +26,7 @@ class Predictor {
     return {find(n) + n * 2 * record, stored * hit() + sent};
   }
 
-  PredictedBytes sort_hits() const {
+  PredictedBytes route_hits() const {
     return {find(flow_.rays) + flow_.rays * sizeof(StoredHit), flow_.rays * send()};
   }
 
@@ -45,7 +45,7 @@ class Predictor {
     const double shadows = share * flow_.shadows;
     return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
             alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
-                shadows * (3 * record + (layout_.appends ? place : 0)) +
+                shadows * (3 * record + (layout_.appends ? index : 0)) +
                 (layout_.parts.lights && !layout_.appends ? n * tag : 0)};
   }
 
@@ -70,24 +70,24 @@ class Predictor {
   }
 
   PredictedBytes order_tiles() const {
-    return {flow_.surfaces * (place + hit()), flow_.surfaces * place};
+    return {flow_.surfaces * (index + hit()), flow_.surfaces * index};
   }
   PredictedBytes count_surfaces() const {
-    return {flow_.surfaces * (place + hit()), flow_.surfaces * sizeof(std::uint8_t)};
+    return {flow_.surfaces * (index + hit()), flow_.surfaces * sizeof(std::uint8_t)};
   }
   PredictedBytes place_surfaces() const {
-    return {flow_.surfaces * (sizeof(std::uint8_t) + place), flow_.surfaces * place};
+    return {flow_.surfaces * (sizeof(std::uint8_t) + index), flow_.surfaces * index};
   }
 
  private:
   /// To find the `n` slots that wait.
-  double find(double n) const { return layout_.has_queues ? n * place : layout_.slots * tag; }
+  double find(double n) const { return layout_.has_queues ? n * index : layout_.slots * tag; }
   /// To send a slot on.
-  double send() const { return layout_.appends ? place : tag; }
+  double send() const { return layout_.appends ? index : tag; }
   /// To give a slot back.
   double free() const {
     if (!layout_.appends) return tag;
-    return layout_.queues_free ? place : 0;
+    return layout_.queues_free ? index : 0;
   }
   /// Of stages that append nothing.
   double own_tag() const { return layout_.appends ? 0 : tag; }
@@ -140,7 +140,7 @@ PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
   const std::string kind = stage.size() < kernel.size() ? kernel.substr(stage.size() + 1) : "";
   if (stage == "generate") return predict.generate();
   if (stage == "intersect") return predict.intersect();
-  if (stage == "sort_hits") return predict.sort_hits();
+  if (stage == "route_hits") return predict.route_hits();
   if (stage == "shade_miss") return predict.shade_miss();
   if (stage == "shade_surface") return predict.shade_surface(surfaces_of(kind, flow, layout));
   if (stage == "shadow") return predict.shadow();

@@ -13,7 +13,7 @@ template <int streams>
 class BlockAppender {
  public:
   struct Shared {
-    std::uint32_t place[2][streams][32];  // [turn][stream][warp]: votes, then places
+    std::uint32_t index[2][streams][32];  // [turn][stream][warp]: votes, then places
   };
 
   __device__ explicit BlockAppender(Shared& shared)
@@ -26,22 +26,22 @@ class BlockAppender {
   __device__ void append(const bool (&wanted)[streams], std::uint32_t slot,
                          std::uint32_t* const (&queues)[streams],
                          std::uint32_t* const (&ends)[streams]) {
-    auto& place = shared_.place[turn_];
+    auto& index = shared_.index[buffer_];
     std::uint32_t votes[streams];
     for (int s = 0; s < streams; ++s) {
       votes[s] = __ballot_sync(warp_mask_, wanted[s]);
-      if (lane_ == 0) place[s][warp_] = __popc(votes[s]);
+      if (lane_ == 0) index[s][warp_] = __popc(votes[s]);
     }
     __syncthreads();
     // A thread per queue; one for several where a block has fewer threads than queues.
-    for (int s = threadIdx.x; s < streams; s += blockDim.x) reserve(place[s], pick(ends, s));
+    for (int s = threadIdx.x; s < streams; s += blockDim.x) reserve(index[s], pick(ends, s));
     __syncthreads();
     for (int s = 0; s < streams; ++s) {
       if (wanted[s]) {
-        queues[s][place[s][warp_] + __popc(votes[s] & ((1u << lane_) - 1))] = slot;
+        queues[s][index[s][warp_] + __popc(votes[s] & ((1u << lane_) - 1))] = slot;
       }
     }
-    turn_ ^= 1;  // the next call must not overwrite what slower warps still read
+    buffer_ ^= 1;  // the next call must not overwrite what slower warps still read
   }
 
  private:
@@ -71,7 +71,7 @@ class BlockAppender {
   Shared& shared_;
   int lane_, warp_;
   std::uint32_t warp_mask_;
-  int turn_ = 0;
+  int buffer_ = 0;
 };
 
 /// Sends what a block has finished to the next queues. Called by all of its threads, with `done` in

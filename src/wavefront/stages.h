@@ -71,17 +71,18 @@ struct StageContext {
 /// The camera ray of a path in a free slot.
 template <class Source>
 PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, std::uint32_t slot,
-                      std::uint32_t number) {
-  const PathId id = context.samples.id_of(number);
+                      std::uint32_t path_index) {
+  const PathId id = context.samples.id_of(path_index);
   auto random = context.source.open(id);
   const Ray ray = begin_path(scene, id, random);
   context.source.close(id, random);
-  context.pool.store_new_path(slot, ray, number);
+  context.pool.store_new_path(slot, ray, path_index);
 }
 
-PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t number, const Color& radiance) {
+PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
+                        const Color& radiance) {
   if (is_black(radiance)) return;
-  Color& sum = samples.samples[number].radiance;
+  Color& sum = samples.samples[path_index].radiance;
   sum = add_rounded(sum, radiance);
 }
 
@@ -100,7 +101,7 @@ struct PoolSink {
 
   PT_HD void emit(const PathState& path, const Color& radiance) {
     if constexpr (streams) {
-      add_radiance(samples, path.number, radiance);
+      add_radiance(samples, path.index, radiance);
     } else {
       emitted = radiance;
     }
@@ -113,13 +114,13 @@ struct PoolSink {
     pool.store_shadow_radiance(slot, shadow.radiance, path);
     next.shadow = true;
   }
-  PT_HD void go_on(const PathState& path, const Ray& ray) {
-    if (has_lights) add_radiance(samples, path.number, emitted);
+  PT_HD void continue_path(const PathState& path, const Ray& ray) {
+    if (has_lights) add_radiance(samples, path.index, emitted);
     pool.store_path(slot, ray, path);
     next.to = StageId::intersect;
   }
   PT_HD void end(const PathState& path) {
-    const Color before = has_lights ? samples.samples[path.number].radiance : Color(0.0f);
+    const Color before = has_lights ? samples.samples[path.index].radiance : Color(0.0f);
     samples.store(path, add_rounded(before, emitted));
   }
 };
@@ -141,9 +142,9 @@ struct GeneratePaths {
       // A new path takes part in this very wave.
       context.ray_queue[counters->first_ray + counters->live + rank] = slot;
     }
-    const std::uint32_t number = counters->first_path + rank;
-    start_path(scene, context, slot, number);
-    if (has_lights) store_wide(&context.samples.samples[number], Sample{});
+    const std::uint32_t path_index = counters->first_path + rank;
+    start_path(scene, context, slot, path_index);
+    if (has_lights) store_wide(&context.samples.samples[path_index], Sample{});
     return {StageId::intersect};
   }
 };
@@ -163,9 +164,9 @@ struct ContinueChains {
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const SampleBuffer& samples = context.samples;
     for (std::uint64_t chain = first_slot + slot; chain < samples.path_count; chain += all_slots) {
-      const auto number = static_cast<std::uint32_t>(chain);
-      if (continue_chain(*context.chains, samples.samples, number)) {
-        start_path(scene, context, slot, number);
+      const auto path_index = static_cast<std::uint32_t>(chain);
+      if (continue_chain(*context.chains, samples.samples, path_index)) {
+        start_path(scene, context, slot, path_index);
         return {StageId::intersect};
       }
     }
@@ -200,8 +201,8 @@ struct IntersectRays : PathRays {
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     std::uint32_t key = 0;
     if constexpr (Traits::has_masks) {
-      const PathState path = pool.load_name(slot);
-      key = next_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path.number)), path.rays);
+      const PathState path = pool.load_path_id(slot);
+      key = next_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path.index)), path.rays);
     }
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
@@ -211,15 +212,15 @@ struct IntersectRays : PathRays {
 
 /// Sends each path whose ray has been traced to the stage that shades it: for tracers that store
 /// the hits and do no more (trace_rays in wavefront.h).
-struct SortHits {
-  static constexpr StageId id = StageId::sort_hits;
+struct RouteHits {
+  static constexpr StageId id = StageId::route_hits;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {
       {StageId::shade_surface, StageId::shade_miss}, true, false};
   PathPool pool;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    pool.path_lanes(lanes_of(scene), slot).count(LanePoint::sort_hits);
+    pool.path_lanes(lanes_of(scene), slot).count(LanePoint::route_hits);
     return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };
@@ -272,7 +273,7 @@ struct ShadeSurface {
       meet_surface<Traits>(scene, ray, hit, path, limits,
                            StreamedSteps{source, samples, path, sink}, sink);
     } else {
-      const PathId id_of_path = samples.id_of(path.number);
+      const PathId id_of_path = samples.id_of(path.index);
       auto random = source.open(id_of_path);
       const DrawnSteps steps = draw_steps<Traits>(random, path);
       if constexpr (branching == Branching::reduced) {
@@ -294,8 +295,8 @@ struct ShadowRays {
   SampleBuffer samples;
 
   /// `number`: the path's.
-  PT_HD Next finish(std::uint32_t number, const ShadowRay& shadow, bool is_occluded) const {
-    if (!is_occluded) add_radiance(samples, number, shadow.radiance);
+  PT_HD Next finish(std::uint32_t path_index, const ShadowRay& shadow, bool is_occluded) const {
+    if (!is_occluded) add_radiance(samples, path_index, shadow.radiance);
     return {free_slot};
   }
 };
@@ -305,14 +306,14 @@ struct TraceShadowRays : ShadowRays {
   static constexpr SphereAccess spheres = sphere_access<Traits>;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    std::uint32_t number, key = 0;
-    ShadowRay shadow = pool.load_shadow(slot, number);
+    std::uint32_t path_index, key = 0;
+    ShadowRay shadow = pool.load_shadow(slot, path_index);
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     if constexpr (Traits::has_masks) {
-      key = shadow_ray_key(scene, mask_key<Traits>(scene, samples.id_of(number)),
+      key = shadow_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path_index)),
                            pool.load_shadow_rays(slot));
     }
-    return finish(number, shadow, intersect_shadow<Traits>(scene, shadow, key));
+    return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key));
   }
 };
 
@@ -338,17 +339,17 @@ struct FollowPaths {
     Ray ray;
     PathState path;
     if (starts_paths) {
-      path.number = slot;  // the pool holds the whole batch
+      path.index = slot;  // the pool holds the whole batch
     } else {
       path = pool.load_path(slot, ray);
     }
-    const PathId id_of_path = samples.id_of(path.number);
+    const PathId id_of_path = samples.id_of(path.index);
     auto random = source.open(id_of_path);
     if (starts_paths) ray = begin_path(scene, id_of_path, random);
     set_lanes(ray, lanes_of(scene).at(path.rays));
     lanes_of(ray).count(as == StageId::bounce ? LanePoint::bounce : LanePoint::finish);
     Color radiance(0.0f);
-    if (has_lights && !starts_paths) radiance = load_wide(&samples.samples[path.number]).radiance;
+    if (has_lights && !starts_paths) radiance = load_wide(&samples.samples[path.index]).radiance;
     const std::uint32_t key = mask_key<Traits>(scene, id_of_path);
     bool alive = true;
     for (std::uint32_t traced = 0; alive && traced < rays_max; ++traced) {
@@ -359,7 +360,7 @@ struct FollowPaths {
       samples.store(path, radiance);
       return {free_slot};
     }
-    if (has_lights) store_wide(&samples.samples[path.number], Sample{radiance, 0});
+    if (has_lights) store_wide(&samples.samples[path.index], Sample{radiance, 0});
     pool.store_path(slot, ray, path);
     return {StageId::intersect};
   }

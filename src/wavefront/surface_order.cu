@@ -25,20 +25,20 @@ __global__ void __launch_bounds__(tile_block, 2)
     __syncthreads();  // slower warps may still put the last tile in order
     if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
     __syncthreads();
-    const std::uint32_t places = min(count - tile, order_tile);
-    const std::uint32_t end = (places + 31) / 32 * 32;  // whole warps take places
+    const std::uint32_t in_tile = min(count - tile, order_tile);
+    const std::uint32_t end = (in_tile + 31) / 32 * 32;  // whole warps take places
     for (std::uint32_t i = threadIdx.x; i < end; i += tile_block) {
       int kind = -1;
-      if (i < places) kind = surface_kind(scene, order.pool, order.slots[tile + i]);
+      if (i < in_tile) kind = surface_kind(scene, order.pool, order.slots[tile + i]);
       kinds[i] = static_cast<std::int8_t>(kind);
-      take_places(counts, kind);
+      reserve_indices(counts, kind);
     }
     __syncthreads();
     if (threadIdx.x < kind_count) next[threadIdx.x] = tile + sum_before(counts, threadIdx.x);
     __syncthreads();
     for (std::uint32_t i = threadIdx.x; i < end; i += tile_block) {
-      const std::uint32_t place = take_places(next, kinds[i]);
-      if (i < places) order.ordered[place] = order.slots[tile + i];
+      const std::uint32_t index = reserve_indices(next, kinds[i]);
+      if (i < in_tile) order.ordered[index] = order.slots[tile + i];
     }
   }
 }
@@ -59,7 +59,7 @@ __global__ void __launch_bounds__(order_block)
       kind = surface_kind(scene, order.pool, order.slots[i]);
       order.kinds[i] = static_cast<std::uint8_t>(kind);
     }
-    take_places(counts, kind);
+    reserve_indices(counts, kind);
   }
   __syncthreads();
   if (threadIdx.x < kind_count && counts[threadIdx.x] > 0) {
@@ -82,14 +82,14 @@ __global__ void __launch_bounds__(order_block)
     const int kind = i < count ? order.kinds[i] : -1;
     if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
     __syncthreads();
-    const std::uint32_t place = take_places(counts, kind);
+    const std::uint32_t index = reserve_indices(counts, kind);
     __syncthreads();
     if (threadIdx.x < kind_count && counts[threadIdx.x] > 0) {
       next[threadIdx.x] =
           first[threadIdx.x] + atomicAdd(&order.ranges->placed[threadIdx.x], counts[threadIdx.x]);
     }
     __syncthreads();
-    if (kind >= 0) order.ordered[next[kind] + place] = order.slots[i];
+    if (kind >= 0) order.ordered[next[kind] + index] = order.slots[i];
   }
 }
 

@@ -34,7 +34,7 @@ struct SurfaceOrder {
 PT_HD std::uint8_t surface_kind(const Scene& scene, const PathPool& pool, std::uint32_t slot) {
   const Hit hit = pool.load_hit(slot);
   if (hit.is_miss()) return 0;
-  const std::uint32_t material = material_number_at(scene, hit);
+  const std::uint32_t material = material_index_at(scene, hit);
   return static_cast<std::uint8_t>(scene.material(material).kind);
 }
 

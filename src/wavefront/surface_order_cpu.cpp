@@ -72,10 +72,10 @@ void order_in_ranges(const Scene& scene, const SurfaceOrder& order) {
       all, Counts{},
       [&](const Range& range, Counts before, bool final) {
         if (final) {
-          Counts place = before;
+          Counts index = before;
           for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
             const std::uint8_t kind = order.kinds[i];
-            order.ordered[order.ranges->first[kind] + place[kind]++] = order.slots[i];
+            order.ordered[order.ranges->first[kind] + index[kind]++] = order.slots[i];
           }
         }
         return sum(before, count_kinds(order, range));

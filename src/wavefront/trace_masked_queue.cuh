@@ -44,8 +44,8 @@ struct MaskedRays : Rays {
   using MaskedTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
 
   __device__ std::uint32_t key_of(std::uint32_t slot) const {
-    return this->ray_key(slot, [this](std::uint32_t number) {
-      return mask_key<MaskedTraits>(scene, names.id_of(number));
+    return this->ray_key(slot, [this](std::uint32_t path_index) {
+      return mask_key<MaskedTraits>(scene, names.id_of(path_index));
     });
   }
 };

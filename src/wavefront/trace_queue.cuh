@@ -17,7 +17,7 @@ struct QueuedRays {
   std::uint32_t* next;  ///< of the queue's places: handed out so far
   PT_LANE_COUNTER;      ///< the scene's
 
-  __device__ std::uint32_t slot(std::uint32_t number) const { return queues.slots[number]; }
+  __device__ std::uint32_t slot(std::uint32_t ray_index) const { return queues.slots[ray_index]; }
 
   /// See PersistentTracer. `load(slot)` gives the ray.
   template <class Load>
@@ -42,19 +42,19 @@ struct QueuedPaths {
     });
   }
 
-  __device__ void finish(std::uint32_t number, const ClosestTriangle& query) const {
-    rays.pool.store_hit(rays.slot(number), query.result());
+  __device__ void finish(std::uint32_t ray_index, const ClosestTriangle& query) const {
+    rays.pool.store_hit(rays.slot(ray_index), query.result());
   }
 
-  __device__ LaneCounter lanes(std::uint32_t number) const {
-    return rays.pool.path_lanes(lanes_of(rays), rays.slot(number));
+  __device__ LaneCounter lanes(std::uint32_t ray_index) const {
+    return rays.pool.path_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
   /// For masks. `path_key` gives a path's key by its number.
   template <class PathKey>
   __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
-    const PathState path = rays.pool.load_name(slot);
-    return next_ray_key(path_key(path.number), path.rays);
+    const PathState path = rays.pool.load_path_id(slot);
+    return next_ray_key(path_key(path.index), path.rays);
   }
 };
 
@@ -67,28 +67,28 @@ struct QueuedShadowRays {
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
                                  int& count) const {
     return rays.fetch(lane, reserved, count, [&](std::uint32_t slot) {
-      std::uint32_t number;
-      const ShadowRay shadow = rays.pool.load_shadow(slot, number);
+      std::uint32_t path_index;
+      const ShadowRay shadow = rays.pool.load_shadow(slot, path_index);
       record = {shadow.ray.origin, 0.0f, shadow.ray.direction, shadow.distance};
     });
   }
 
-  __device__ void finish(std::uint32_t number, const AnyTriangle& query) const {
+  __device__ void finish(std::uint32_t ray_index, const AnyTriangle& query) const {
     if (query.result()) return;
     std::uint32_t path;
-    const ShadowRay shadow = rays.pool.load_shadow(rays.slot(number), path);
+    const ShadowRay shadow = rays.pool.load_shadow(rays.slot(ray_index), path);
     add_radiance(samples, path, shadow.radiance);
   }
 
-  __device__ LaneCounter lanes(std::uint32_t number) const {
-    return rays.pool.shadow_lanes(lanes_of(rays), rays.slot(number));
+  __device__ LaneCounter lanes(std::uint32_t ray_index) const {
+    return rays.pool.shadow_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
   template <class PathKey>
   __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
-    std::uint32_t number;
-    rays.pool.load_shadow(slot, number);
-    return shadow_ray_key(path_key(number), rays.pool.load_shadow_rays(slot));
+    std::uint32_t path_index;
+    rays.pool.load_shadow(slot, path_index);
+    return shadow_ray_key(path_key(path_index), rays.pool.load_shadow_rays(slot));
   }
 };
 

@@ -52,13 +52,13 @@ struct WaveBuffers {
   bool orders_surfaces = false;
   bool shades_by_kind = false;            ///< --shade material: only where they are ordered
   std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
-  std::uint8_t* kind_of_place = nullptr;  ///< [slot_count] likewise
+  std::uint8_t* kind_of_entry = nullptr;  ///< [slot_count] likewise
   std::uint32_t* ordered = nullptr;       ///< [slot_count] the queue of surfaces, in order
 
   /// Of all queues, at most.
   std::size_t queue_bytes_per_slot() const {
     return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? sizeof *ordered : 0) +
-           (shades_by_kind ? sizeof *kind_of_place : 0);
+           (shades_by_kind ? sizeof *kind_of_entry : 0);
   }
 
   /// Fused stages send paths on while they read the queue of rays: they fill one half of it and
@@ -75,7 +75,7 @@ struct WaveBuffers {
       function(queues[queue_index(stage.id)], std::uint64_t{pool.slot_count} * (twice ? 2 : 1));
     }
     if (orders_surfaces) function(ordered, pool.slot_count);
-    if (shades_by_kind) function(kind_of_place, pool.slot_count);
+    if (shades_by_kind) function(kind_of_entry, pool.slot_count);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -169,7 +169,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   if constexpr (Executor::template traces_queues<Traits>) {
     if (rays.appends && execute.traces_queues_here()) {
       execute.trace_queue(rays, samples);
-      execute.run(SortHits{b.pool}, rays);
+      execute.run(RouteHits{b.pool}, rays);
       return;
     }
   }
@@ -224,7 +224,7 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
   if (b.orders_surfaces) {
     KindRanges* const ranges = b.shades_by_kind ? &b.counters->kinds : nullptr;
     execute.order_surfaces(
-        SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered, ranges, b.kind_of_place});
+        SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered, ranges, b.kind_of_entry});
     surfaces.slots = b.ordered;
   }
   if constexpr (Shading::lighting == Lighting::full) {

@@ -65,8 +65,8 @@ struct PoolPart {
     buffers.pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
       return array<std::remove_pointer_t<decltype(p)>>(count);
     });
-    buffers.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t places) {
-      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(places);
+    buffers.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t capacity) {
+      queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(capacity);
     });
   }
 

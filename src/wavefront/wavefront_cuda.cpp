@@ -22,7 +22,7 @@ constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 20;
 
 // A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
 // ray find empty queues.
-constexpr int waves_per_turn = 2;
+constexpr int waves_per_iteration = 2;
 
 constexpr double mib = 1024.0 * 1024.0;
 
@@ -86,9 +86,9 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   pool.allocate_arrays(parts_, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
-  buffers_.for_each_queue(parts_.lights, [&](auto*& queue, std::uint64_t places) {
+  buffers_.for_each_queue(parts_.lights, [&](auto*& queue, std::uint64_t capacity) {
     queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(
-        "queues", places);
+        "queues", capacity);
   });
   if (appends && buffers_.reuses_slots) {
     std::vector<std::uint32_t> all(n);
@@ -190,7 +190,7 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaStreamBeginCaptureToGraph(stream(), body, nullptr, nullptr, 0,
                                            cudaStreamCaptureModeThreadLocal),
              "cudaStreamBeginCaptureToGraph");
-  for (int i = 0; i < waves_per_turn; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
+  for (int i = 0; i < waves_per_iteration; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
   cudaGraph_t captured{};
   check_cuda(cudaStreamEndCapture(stream(), &captured), "cudaStreamEndCapture");
   check_cuda(cudaGraphInstantiate(&graph_exec_, graph_, 0), "cudaGraphInstantiate");

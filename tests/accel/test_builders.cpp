@@ -168,7 +168,7 @@ TEST_P(Builders, EachGroupHasATreeAndEachInstanceAPlace) {
   }
   ASSERT_EQ(tree.instances.size(), 4u);
   std::set<std::uint32_t> numbers;
-  for (const InstanceRecord& record : tree.instances) numbers.insert(record.number);
+  for (const InstanceRecord& record : tree.instances) numbers.insert(record.index);
   EXPECT_EQ(numbers, (std::set<std::uint32_t>{0, 1, 2, 4})) << "the world comes last";
 }
 
@@ -191,7 +191,7 @@ TEST_P(Builders, InstancesLieInTheTopTreesBoxes) {
     for (std::uint32_t s = record.first_slot; s < record.first_slot + record.slot_count; ++s) {
       const Vec3 v = tree.triangles[s].v1;
       const Vec3 p =
-          record.number < instances.size() ? instances[record.number].to_world.point(v) : v;
+          record.index < instances.size() ? instances[record.index].to_world.point(v) : v;
       EXPECT_TRUE(leaf.box.contains(p));
     }
   }

@@ -120,7 +120,7 @@ TEST(EncodeCwbvh, FieldsNameEachChildOnce) {
       seen |= 1u << c;
       const CwbvhChild child = cwbvh_child(node, s);
       EXPECT_EQ(child.count, children.triangles[c]);
-      EXPECT_EQ(child.place, child.count == 0 ? inner++ : triangles);
+      EXPECT_EQ(child.index, child.count == 0 ? inner++ : triangles);
       triangles += child.count;
     }
     EXPECT_EQ(seen, (1u << children.count) - 1);

@@ -56,7 +56,7 @@ TEST(Ties, GoToTheLowestTriangleThenTheLowestInstance) {
       if (hit.is_miss()) continue;
       ++hits;
       ASSERT_LT(tree.triangles.at(hit.primitive).id, different) << kind.name;
-      ASSERT_EQ(tree.instances.at(hit.instance).number % 2, 0u) << kind.name;
+      ASSERT_EQ(tree.instances.at(hit.instance).index % 2, 0u) << kind.name;
     }
     EXPECT_GT(hits, 500) << kind.name;
   };

@@ -84,7 +84,7 @@ int expect_same(const TestTrees& trees, const Ray& ray, float t_min, float t_max
     EXPECT_EQ(hit.t, expected.t);
     EXPECT_EQ(tree.triangles[hit.primitive].id, binary.triangles[expected.primitive].id);
     if (instanced && binary.instance_count > 0) {
-      EXPECT_EQ(tree.instances[hit.instance].number, binary.instances[expected.instance].number);
+      EXPECT_EQ(tree.instances[hit.instance].index, binary.instances[expected.instance].index);
     }
   };
   expect("brute", binary, expected, any_triangle_brute<instanced>(binary, ray, t_min, t_max));
@@ -213,8 +213,8 @@ TEST(Traversal, Instances) {
       box.grow({p - Vec3(1e-4f), p + Vec3(1e-4f)});
     }
     for (int twice = 0; twice < 2; ++twice) {  // ties between instances
-      const std::uint32_t number = 99 - (2 * i + static_cast<std::uint32_t>(twice));
-      const InstanceRecord record{inverse(to_world), group.order.binary_root, number,
+      const std::uint32_t index = 99 - (2 * i + static_cast<std::uint32_t>(twice));
+      const InstanceRecord record{inverse(to_world), group.order.binary_root, index,
                                   group.first_slot,  group.slot_count,        box};
       binary.push_back(record);
       wide.push_back(record);

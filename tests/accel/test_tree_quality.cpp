@@ -38,7 +38,7 @@ const auto inner_children_bvh2 = [](const Bvh2Node& node, const auto& visit) {
 };
 const auto inner_children_cwbvh = [](const CwbvhNode& node, const auto& visit) {
   for_each_cwbvh_child(node, [&](int slot, const CwbvhChild& child) {
-    if (child.count == 0) visit(decode_cwbvh_bounds(node, slot), child.place);
+    if (child.count == 0) visit(decode_cwbvh_bounds(node, slot), child.index);
   });
 };
 

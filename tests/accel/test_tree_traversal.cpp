@@ -22,7 +22,7 @@ struct Met {
   Met(const TriangleTreeData& tree, const Hit& hit) : t(hit.t) {
     if (hit.is_miss()) return;
     id = tree.triangles.at(hit.primitive).id;
-    if (!tree.instances.empty()) instance = tree.instances.at(hit.instance).number;
+    if (!tree.instances.empty()) instance = tree.instances.at(hit.instance).index;
   }
   bool operator==(const Met& other) const = default;
 };

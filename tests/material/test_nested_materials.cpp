@@ -95,13 +95,13 @@ TEST(NestedMaterials, TheRestOfTheRandomNumberIsUniformAgain) {
   for (int i = 0; i < 100'000; ++i) {
     Surface surface{};
     surface.shading_normal = {0, 0, 1};
-    surface.material_number = outer;
+    surface.material_index = outer;
     surface.material = scene.material(outer);
     float u = (static_cast<float>(i) + 0.5f) / 100'000.0f;
     resolve_material(scene, {0, 0, 1}, u, surface);
-    ASSERT_TRUE(surface.material_number == a || surface.material_number == b);
+    ASSERT_TRUE(surface.material_index == a || surface.material_index == b);
     ASSERT_TRUE(u >= 0.0f && u < 1.0f);
-    const int k = surface.material_number == a ? 0 : 1;
+    const int k = surface.material_index == a ? 0 : 1;
     share.add(k), rest[k].add(u), square[k].add(u * u);
   }
   EXPECT_NEAR(share.mean(), 0.6 + 0.4 * 0.25, 1e-4);

@@ -95,7 +95,7 @@ TEST_F(CudaDivergence, EveryRayCountsOnce) {
       SCOPED_TRACE(scene + " " + accel + " " + mode + " " + (more.empty() ? "" : more[0].second));
       const Counted found = render(scene, mode, settings);
       expect_every_ray_once(found);
-      EXPECT_EQ(found.at("turn").lanes > 0, mode == "megakernel");
+      EXPECT_EQ(found.at("iteration").lanes > 0, mode == "megakernel");
       EXPECT_EQ(found.at("node").lanes > 0, accel != "brute");
       EXPECT_GT(found.at("primitive").lanes, 0u);
     }

@@ -121,7 +121,7 @@ class CudaPersistent : public CudaTest {
     expect_same(found, render_small(scene, megakernel));
     std::uint64_t sorted = 0;  // only where warps persist has this stage anything to do
     for (const StageTime& stage : found.run.stages) {
-      if (stage.stage == "sort_hits") sorted += stage.launches;
+      if (stage.stage == "route_hits") sorted += stage.launches;
     }
     EXPECT_EQ(sorted > 0, persistent);
   }

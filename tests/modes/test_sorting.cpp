@@ -15,7 +15,7 @@ namespace pt {
 namespace {
 
 template <bool has_masks>
-using SortingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks>;
+using BlockWavefrontTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks>;
 constexpr int threads = 64;
 
 /// What blocks made of the paths of a scene, and what each is alone.
@@ -36,8 +36,9 @@ class SortedPaths {
   /// What a grid of blocks does, one after the other; later ones may find nothing left. Beyond what
   /// a block may use of its memory nothing is written.
   template <class Traits>
-  void sort(int blocks, std::uint32_t at_once, int slots_per_thread = SortingTuning::slots_most) {
-    using Memory = SortingMemory<SortingLane<Traits>, threads>;
+  void sort(int blocks, std::uint32_t at_once,
+            int slots_per_thread = BlockWavefrontTuning::slots_most) {
+    using Memory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, threads>;
     const auto memory = std::make_unique<Memory>();
     std::vector<PathSlot> slots(std::size_t{threads} * slots_per_thread);
     std::uint32_t next_path = 0;
@@ -46,9 +47,9 @@ class SortedPaths {
     for (int i = 0; i < blocks; ++i) {
       std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
       EmulatedBlock(threads).run([&] {
-        uint2 stack[sorting_stack_size];
-        SortingTracer<Traits, SamplerSource, Memory> tracer(scene_, source_, batch_, limits_, paths,
-                                                            *memory, slots.data(), stack);
+        uint2 stack[block_wavefront_stack_size];
+        BlockWavefront<Traits, SamplerSource, Memory> tracer(scene_, source_, batch_, limits_,
+                                                             paths, *memory, slots.data(), stack);
         tracer.run();
       });
       ASSERT_TRUE(std::all_of(bytes + Memory::bytes(slots_per_thread), bytes + sizeof *memory,
@@ -59,10 +60,10 @@ class SortedPaths {
   template <class Traits>
   void expect_what_each_gets_alone() const {
     int lit = 0;
-    for (std::uint32_t number = 0; number < batch_.path_count; ++number) {
-      const Sample expected = follow<Traits>(number), found = samples_[number];
-      ASSERT_EQ(found.rays, expected.rays) << "path " << number;
-      ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "path " << number;
+    for (std::uint32_t path_index = 0; path_index < batch_.path_count; ++path_index) {
+      const Sample expected = follow<Traits>(path_index), found = samples_[path_index];
+      ASSERT_EQ(found.rays, expected.rays) << "path " << path_index;
+      ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << "path " << path_index;
       lit += is_black(expected.radiance) ? 0 : 1;
     }
     EXPECT_GT(lit, 0);
@@ -70,11 +71,11 @@ class SortedPaths {
 
  private:
   template <class Traits>
-  Sample follow(std::uint32_t number) const {
-    const PathId id = batch_.id_of(number);
+  Sample follow(std::uint32_t path_index) const {
+    const PathId id = batch_.id_of(path_index);
     auto random = source_.open(id);
     PathState path;
-    path.number = number;
+    path.index = path_index;
     const Vec4 u = random.draw(scatter_block(0));
     const Ray ray = generate_camera_path(scene_, random, id.pixel, u);
     const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
@@ -111,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& kind) { return kind.param.name; });
 
 TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
-  using Traits = SortingTraits<false>;
+  using Traits = BlockWavefrontTraits<false>;
   const Options options = with(small_image(), GetParam().settings);
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   ASSERT_EQ(scene.traits, Traits::value());
@@ -121,7 +122,7 @@ TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
 }
 
 TEST(SortingOfFewSlots, GivesEachPathWhatItGetsAlone) {
-  using Traits = SortingTraits<false>;
+  using Traits = BlockWavefrontTraits<false>;
   const Options options = with(small_image(), {{"scene", "boxes"}});
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   for (const int slots_per_thread : {1, 4, 7}) {
@@ -137,8 +138,8 @@ TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
   prepare_scene(scene, options);
   ASSERT_TRUE(scene.traits.has_masks);
   SortedPaths paths(scene, options);
-  paths.sort<SortingTraits<true>>(1, 31 * 23 * 2);
-  paths.expect_what_each_gets_alone<SortingTraits<true>>();
+  paths.sort<BlockWavefrontTraits<true>>(1, 31 * 23 * 2);
+  paths.expect_what_each_gets_alone<BlockWavefrontTraits<true>>();
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct KeptHits {
     if (static_cast<int>(lane) < got) record = rays.rays[first + lane];
     return first;
   }
-  void finish(std::uint32_t number, const ClosestTriangle& query) { hits[number] = query.result(); }
+  void finish(std::uint32_t ray_id, const ClosestTriangle& query) { hits[ray_id] = query.result(); }
 };
 
 template <class Lane>

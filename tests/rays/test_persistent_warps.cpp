@@ -13,7 +13,7 @@ namespace pt {
 namespace {
 
 /// Of a ray's traversal: how many steps, after each third of which a leaf is tested.
-std::uint32_t cost_of(std::uint32_t number) { return number % 7 == 0 ? 0 : number * 37 % 23; }
+std::uint32_t cost_of(std::uint32_t ray_id) { return ray_id % 7 == 0 ? 0 : ray_id * 37 % 23; }
 
 struct CountedQuery {
   float first = 0.0f, cost = 0.0f;
@@ -26,12 +26,12 @@ class CountedRays {
  public:
   struct Ray {
     float t_min, t_max;
-    std::uint32_t number;
+    std::uint32_t id;
   };
-  void store(unsigned place, const RayRecord& record, std::uint32_t number) {
-    rays_[place] = {record.t_min, record.t_max, number};
+  void store(unsigned lane, const RayRecord& record, std::uint32_t ray_id) {
+    rays_[lane] = {record.t_min, record.t_max, ray_id};
   }
-  Ray load(unsigned place) const { return rays_[place]; }
+  Ray load(unsigned lane) const { return rays_[lane]; }
 
  private:
   Ray rays_[32];
@@ -87,18 +87,18 @@ struct CountedWork {
 
   std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record, int& count) const {
     const std::uint32_t first = reserve_rays(&rays.next, rays.count, lane, reserved, count);
-    const std::uint32_t number = first + lane;
-    record.t_min = static_cast<float>(number);
-    record.t_max = static_cast<float>(cost_of(number));
+    const std::uint32_t ray_id = first + lane;
+    record.t_min = static_cast<float>(ray_id);
+    record.t_max = static_cast<float>(cost_of(ray_id));
     return first;
   }
 
-  void finish(std::uint32_t number, const CountedQuery& query) const {
-    const std::uint32_t cost = cost_of(number);
+  void finish(std::uint32_t ray_id, const CountedQuery& query) const {
+    const std::uint32_t cost = cost_of(ray_id);
     const bool is_right =
-        query.first == static_cast<float>(number) && query.steps == cost && query.tests == cost / 3;
-    if (!is_right || number >= rays.count) ++rays.wrong;
-    if (number < rays.count) ++rays.finished[number];
+        query.first == static_cast<float>(ray_id) && query.steps == cost && query.tests == cost / 3;
+    if (!is_right || ray_id >= rays.count) ++rays.wrong;
+    if (ray_id < rays.count) ++rays.finished[ray_id];
   }
 };
 

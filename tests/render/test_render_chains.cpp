@@ -22,7 +22,7 @@ class ClockedDevice : public ChainDevice {
   std::uint32_t dark = 0;
   std::vector<std::uint32_t> traced, splatted;  ///< bootstrap paths of each call
   ChainStep bootstrap_step, chain_step;
-  ChainPlaces places;
+  ChainPositions positions;
   std::uint32_t steps = 0;
 
   void begin_chains(const ChainWindow&) override {}
@@ -49,7 +49,7 @@ class ClockedDevice : public ChainDevice {
     return groups;
   }
   void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun&) override {
-    places = starts.places;
+    positions = starts.positions;
     chain_step = step;
   }
   void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
@@ -105,7 +105,7 @@ TEST(RenderChains, ABootstrapIsAsLongAsIsAskedForAndCountsForTheImage) {
   EXPECT_EQ(device.traced, (std::vector<std::uint32_t>{1000, 1000, 500}));
   EXPECT_EQ(device.splatted, device.traced);
   EXPECT_EQ(device.steps, 160u);  // 16 pixels, 100 chains
-  EXPECT_EQ(device.places.paths, 2500u);
+  EXPECT_EQ(device.positions.paths, 2500u);
   EXPECT_DOUBLE_EQ(device.chain_step.weights.bootstrap_share, 2500.0 / 16000);
   EXPECT_DOUBLE_EQ(device.chain_step.weights.expected, 2);
   EXPECT_DOUBLE_EQ(device.chain_step.weights.brightness, 2);
@@ -179,7 +179,7 @@ TEST(RenderChains, ABatchOfTheBootstrapIsAbandoned) {
   hooks.stop = hooks.cancel = [&] { return device.now_s > 0.3; };
   const Outcome some = render_on(device, plan_of(1 << 20, false), 1 << 20, 0, hooks);
   EXPECT_EQ(device.traced.size(), 2u) << "the third was abandoned";
-  EXPECT_EQ(device.places.paths, 2000u);
+  EXPECT_EQ(device.positions.paths, 2000u);
   EXPECT_EQ(device.steps, 1u);
   EXPECT_EQ(some.run.ended_by, RunEnd::interrupted);
   EXPECT_EQ(some.run.samples_done, 6) << "100 mutations, 16 pixels";
@@ -199,7 +199,7 @@ TEST(RenderChains, ATurnIsNoLongerThanThePaceAllows) {
   hooks.progress = [&](std::uint64_t done, std::uint64_t) { progress.push_back(done); };
   hooks.stops.clock = [&] { return device.now_s; };
   ChainPlan plan = plan_of(1000, false);
-  plan.turn = 1000;
+  plan.clock_interval = 1000;
   BatchPace pace(1);
   Film film;
   film.window = {0, 0, side, side};

@@ -38,7 +38,7 @@ TEST(DrawBlock, SourceGivesEachPathItsNumbers) {
   }
   DrawnSource source{&scatter, &light};
   for (std::uint32_t i = 0; i < DrawNames::size_max; ++i) {
-    source.place = i;
+    source.index = i;
     const auto stream = source.open({});
     EXPECT_EQ(stream.draw(scatter_block(i)), scatter.at(i));
     EXPECT_EQ(stream.draw(light_block(i)), light.at(i));

@@ -166,10 +166,11 @@ TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
 }
 
 TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
-  for (const auto& [shade, lean] : {std::pair{Shade::material, false}, {Shade::uber, true}}) {
+  for (const auto& [shade, specialized] :
+       {std::pair{Shade::material, false}, {Shade::uber, true}}) {
     Options options;
     options.shade = shade;
-    EXPECT_EQ(is_lean(build_scene(options), options), lean);
+    EXPECT_EQ(has_specialized_kernels(build_scene(options), options), specialized);
   }
 }
 

@@ -72,18 +72,18 @@ class Ladder(unittest.TestCase):
         names = ("--stages", "--layout", "--compaction", "--shade", "--regenerate",
                  "--finish-paths", "--schedule", "--pool-size", "--accel", "--persistent",
                  "--wave-rays")
-        for scene, rungs in by_scene.items():
-            self.assertEqual(len(rungs), 12 if scene == "spheres" else 13)
-            rungs = [rung for rung in rungs if option(rung, "--mode") == "wavefront"]
-            for above, below in zip(rungs[1:], rungs):
+        for scene, steps in by_scene.items():
+            self.assertEqual(len(steps), 12 if scene == "spheres" else 13)
+            steps = [step for step in steps if option(step, "--mode") == "wavefront"]
+            for above, below in zip(steps[1:], steps):
                 changed = {name for name in names if option(above, name) != option(below, name)
                            and not (name == "--persistent" and option(below, name) is None)}
                 if "--stages" in changed:  # and what only split stages have
                     changed -= {"--compaction", "--shade", "--wave-rays"}
                 self.assertEqual(len(changed), 1, f"{above.name}: {changed}")
             # Persistent warps, the default, trace wide trees alone: each comes by itself.
-            self.assertEqual([(option(rung, "--accel"), option(rung, "--persistent"))
-                              for rung in rungs[-3:]],
+            self.assertEqual([(option(step, "--accel"), option(step, "--persistent"))
+                              for step in steps[-3:]],
                              [(None, None)] * 3 if scene == "spheres" else
                              [("bvh2", None), ("cwbvh", "off"), ("cwbvh", "on")])
 

@@ -11,15 +11,15 @@ PAPER, STATUE = "spheres 600x300", "statue:1M 1024x1024"
 # What README.md says, with the number's place and format; table, row and column of the number, and
 # what the column is multiplied with.
 NUMBERS = [
-    ("takes the megakernel {:.1f} ms", "by_itself", f"{PAPER}: megakernel", "kernel_ms_median", 1),
-    ("the wavefront {:.1f} ms", "by_itself", f"{PAPER}: wavefront", "kernel_ms_median", 1),
+    ("takes the megakernel {:.1f} ms", "defaults", f"{PAPER}: megakernel", "kernel_ms_median", 1),
+    ("the wavefront {:.1f} ms", "defaults", f"{PAPER}: wavefront", "kernel_ms_median", 1),
     ("one CPU thread {:.0f} s", "image_size", "serial, CPU 2400x1200", "image_ms_median", 1e-3),
     ("the megakernel {:.0f} ms, and one", "image_size", "megakernel, CUDA 2400x1200", "image_ms_median", 1),
-    ("{:.0f} million paths a second in the megakernel", "by_itself",
+    ("{:.0f} million paths a second in the megakernel", "defaults",
      f"{STATUE}: megakernel", "mpaths_per_s", 1),
-    ("{:.0f} million paths a second in the wavefront", "by_itself", f"{STATUE}: wavefront",
+    ("{:.0f} million paths a second in the wavefront", "defaults", f"{STATUE}: wavefront",
      "mpaths_per_s", 1),
-    *[(text, "ladder", f"{scene}: {rung}", "kernel_ms_median", 1) for text, scene, rung in [
+    *[(text, "ladder", f"{scene}: {step}", "kernel_ms_median", 1) for text, scene, step in [
         ("16 materials takes {:.1f} ms in the plain", "dial:16:0:closed", "1 megakernel"),
         ("{:.1f} ms in the block-local wavefront", "dial:16:0:closed", "0 megakernel at its best"),
         ("{:.1f} ms in a plain wavefront", "dial:16:0:closed", "2 split kernels"),

@@ -183,7 +183,7 @@ class Report(unittest.TestCase):
         plots = {"toggles": TOGGLES, "image_size": SIZES,
                  "block_size": {**SIZES, "y": "kernel_ms", "x_label": "threads per block"},
                  "sampling": {**SIZES, "y": "relmse"}, "ladder": TOGGLES,
-                 "by_itself": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
+                 "defaults": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
                  "random_numbers": TOGGLES, "pool_size": SIZES,
                  "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
                  "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
@@ -315,7 +315,7 @@ class Report(unittest.TestCase):
                                    (2.0, 2.01, "no significant difference")):
             rows = [{**toggle("room", mode, 0.98 * ms, ms, 1.02 * ms), "mode": mode}
                     for mode, ms in (("megakernel", mega), ("wavefront", wave))]
-            text = self.make(by_itself=rows)
+            text = self.make(defaults=rows)
             answer = re.sub("<.*?>", " ", text[text.index("Which mode for my scene?"):
                                                text.index("Which block size?")])
             answer = " ".join(answer.split())
@@ -360,22 +360,22 @@ class Report(unittest.TestCase):
                                   "(faster), 1,000 spheres 1.02 (no significant difference).")
 
     def test_ideas_are_held_against_what_they_replace(self):
-        rungs = [toggle("s", name, 0.99 * ms, ms, 1.01 * ms)
+        steps = [toggle("s", name, 0.99 * ms, ms, 1.01 * ms)
                  for name, ms in (("0 mega", 1.0), ("1 split", 4.0), ("2 soa", 2.0))]
         numbers = [toggle("s", name, 0.99 * ms, ms, 1.01 * ms)
                    for name, ms in (("Philox", 1.0), ("XORWOW", 1.5))]
         pools = [{**one, "panel": "s", "series": series, "x": 64, "pool": "64K"} for one, series in
                  ((toggle("s", "a", 3.9, 4.0, 4.1), "filled when empty"),
                   (toggle("s", "b", 0.9, 1.0, 1.1), "regenerated"))]
-        text = self.make(ladder=[{**rung, "gain": ""} for rung in rungs])
-        self.assertIn("Time against the rung before: 1 split x4.00 and 2 soa x0.500.", text)
-        self.make(ladder=rungs, random_numbers=numbers, scene_memory=places(), pool_size=pools)
+        text = self.make(ladder=[{**step, "gain": ""} for step in steps])
+        self.assertIn("Time against the step before: 1 split x4.00 and 2 soa x0.500.", text)
+        self.make(ladder=steps, random_numbers=numbers, scene_memory=places(), pool_size=pools)
         found = [(idea, where, re.sub("<.*?>", "", ratio).split(" ")[0],
                   re.sub("<.*?>", "", verdict), source) for idea, where, ratio, verdict, source
                  in answers.effects(read_device(self.folder))]
         self.assertEqual(found, [
-            ("rung 1 split", "s, after 0 mega", "4.00", "slower", "ladder"),
-            ("rung 2 soa", "s, after 1 split", "0.500", "faster", "ladder"),
+            ("step 1 split", "s, after 0 mega", "4.00", "slower", "ladder"),
+            ("step 2 soa", "s, after 1 split", "0.500", "faster", "ladder"),
             ("XORWOW, against Philox", "s", "1.50", "slower", "random_numbers"),
             ("regenerated, against filled when empty", "s, 64K paths", "0.250", "faster",
              "pool_size"),

@@ -87,10 +87,10 @@ class TreeWalk {
     for_each_cwbvh_child(node, [&](int s, const CwbvhChild& child) {
       const ExactBox inside = box.intersection(exact_child_box(node, s));
       if (child.count == 0) {
-        EXPECT_EQ(child.place, inner++);
-        return walk_wide(child.place, inside, level + 1);
+        EXPECT_EQ(child.index, inner++);
+        return walk_wide(child.index, inside, level + 1);
       }
-      EXPECT_EQ(child.place, slot) << "leaves are not contiguous";
+      EXPECT_EQ(child.index, slot) << "leaves are not contiguous";
       leaves.push_back({slot, child.count, inside});
       slot += child.count;
     });

@@ -63,8 +63,8 @@ class EmulatedBlock {
   /// The values of all threads of the warp, which meet here.
   const std::uint32_t* exchange(std::uint32_t mask, std::uint32_t value) {
     if (mask != 0xffffffffu) std::abort();
-    const std::uint32_t number = thread().x;
-    return warps_[number / 32].exchange(*this, number % 32, value);
+    const std::uint32_t thread_index = thread().x;
+    return warps_[thread_index / 32].exchange(*this, thread_index % 32, value);
   }
   void meet_block() {
     const std::uint32_t turn = block_turn_;

@@ -25,10 +25,11 @@ inline SceneData material_room(bool masks) {
     MaterialDescription material = materials[i];
     material.one_sided = i < made_of_others && i % 5 == 4;
     if (masks && i % 3 == 1) material.opacity = constant_opacity(0.3f + 0.1f * (i % 4));
-    const std::uint32_t number = scene.add_material(material);
+    const std::uint32_t panel_material = scene.add_material(material);
     // Panels lean to and fro, so that some are met at a grazing angle and from behind.
     const float tilt = 0.4f * static_cast<float>(static_cast<int>(i % 7) - 3);
-    Mesh panel = parallelogram({}, {x, y, 0}, {0.9f, 0, tilt}, {0, 0.9f, 0.3f * tilt}, number);
+    Mesh panel =
+        parallelogram({}, {x, y, 0}, {0.9f, 0, tilt}, {0, 0.9f, 0.3f * tilt}, panel_material);
     panel.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     scene.meshes.push_back(panel);
   }

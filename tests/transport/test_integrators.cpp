@@ -73,7 +73,7 @@ class Integrators : public testing::Test {
     for (std::uint32_t i = 0; i < batch.path_count; ++i) {
       auto random = source.open(batch.id_of(i));
       PathState path;
-      path.number = i;
+      path.index = i;
       const Ray ray = generate_camera_path(view_, batch.id_of(i).pixel, random.draw(0));
       batch.store(path, follow_path<Kind>(view_, ray, path, Color(0.0f), limits, random, 0));
     }
@@ -84,9 +84,9 @@ class Integrators : public testing::Test {
     struct Work {
       std::uint32_t end, given = 0;
       bool any(bool value) const { return value; }
-      bool next(std::uint32_t& number, bool wanted) {
+      bool next(std::uint32_t& path_index, bool wanted) {
         if (!wanted) return true;
-        number = given;
+        path_index = given;
         return given++ < end;
       }
     };
@@ -148,7 +148,8 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
     return memory->data();
   };
   b.pool.allocate_arrays({!b.fused, false, false, false, PoolLayout::soa, !b.fused}, array);
-  b.for_each_queue(true, [&](auto*& queue, std::uint64_t places) { queue = array(queue, places); });
+  b.for_each_queue(true,
+                   [&](auto*& queue, std::uint64_t capacity) { queue = array(queue, capacity); });
   if (b.reuses_slots) std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;
 

@@ -225,7 +225,7 @@ class ToyChains {
         finish_chain(arrays_, step_, i);
         continue;
       }
-      const ChainTally& steps = arrays_.counts[i % ChainCounts::places].steps;
+      const ChainTally& steps = arrays_.counts[i % ChainCounts::copies].steps;
       const std::uint64_t before = steps.large_accepted + steps.small_accepted;
       step_chain(arrays_, step_, i, samples_[i]);
       if (steps.large_accepted + steps.small_accepted > before) current_[i] = paths_[i];
@@ -417,7 +417,7 @@ Begun begin_chains(std::vector<float> targets, std::uint32_t chains, double u) {
   Begun begun{choose_starts(groups, count, chains, u), {}};
   bootstrap.below = begun.starts.below.data();
   for (std::uint32_t i = 0; i < chains; ++i) {
-    begun.paths.push_back(start_of(bootstrap, begun.starts.places, i));
+    begun.paths.push_back(start_of(bootstrap, begun.starts.positions, i));
   }
   return begun;
 }

@@ -51,7 +51,7 @@ Vec3 vector_of(std::uint32_t slot, int field) {
 
 PathState path_of(std::uint32_t slot) {
   PathState path;
-  path.number = 7 * slot;
+  path.index = 7 * slot;
   path.beta = vector_of(slot, 1);
   path.rays = static_cast<std::uint16_t>(slot + 1);
   path.shadow_rays = static_cast<std::uint16_t>(slot / 2);
@@ -78,7 +78,7 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
   const PathState path = pool.load_path(slot, ray);
   EXPECT_EQ(ray.origin, vector_of(slot, 2));
   EXPECT_EQ(ray.direction, vector_of(slot, 3));
-  EXPECT_EQ(path.number, expected.number);
+  EXPECT_EQ(path.index, expected.index);
   EXPECT_EQ(path.beta, expected.beta);
   EXPECT_EQ(path.rays, expected.rays);
   EXPECT_EQ(path.shadow_rays, expected.shadow_rays);
@@ -91,9 +91,9 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
   EXPECT_EQ(hit.primitive, slot + 100);
   EXPECT_EQ(hit.instance, parts.instances ? slot + 200 : 0);
   if (parts.lights) {
-    std::uint32_t number = 0;
-    const ShadowRay shadow = pool.load_shadow(slot, number);
-    EXPECT_EQ(number, expected.number);
+    std::uint32_t path_index = 0;
+    const ShadowRay shadow = pool.load_shadow(slot, path_index);
+    EXPECT_EQ(path_index, expected.index);
     EXPECT_EQ(shadow.ray.origin, vector_of(slot, 4));
     EXPECT_EQ(shadow.ray.direction, vector_of(slot, 5));
     EXPECT_EQ(shadow.distance, static_cast<float>(slot) + 0.5f);

@@ -94,7 +94,7 @@ TEST(StageBytes, PersistentWarpsStoreAllHits) {
   WaveLayout layout = usual();
   layout.persistent = true;
   expect_bytes(predict_bytes("intersect", first_wave(), layout), 100 * 36, 100 * 8);
-  expect_bytes(predict_bytes("sort_hits", first_wave(), layout), 100 * 12, 100 * 4);
+  expect_bytes(predict_bytes("route_hits", first_wave(), layout), 100 * 12, 100 * 4);
 }
 
 TEST(StageBytes, KindsShareTheSurfaces) {

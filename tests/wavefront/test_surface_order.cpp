@@ -67,8 +67,8 @@ TEST_P(SurfaceOrderOf, AStableSortByKind) {
   Slots expected(slots.begin(), slots.begin() + count);
   const std::uint32_t tile = in_tiles ? order_tile : slot_count;
   for (std::uint32_t begin = 0; begin < count; begin += tile) {
-    const std::uint32_t places = std::min(tile, count - begin);
-    std::ranges::stable_sort(std::span(expected).subspan(begin, places), {}, kind);
+    const std::uint32_t in_tile = std::min(tile, count - begin);
+    std::ranges::stable_sort(std::span(expected).subspan(begin, in_tile), {}, kind);
   }
 
   SurfaceOrder order;

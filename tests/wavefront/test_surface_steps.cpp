@@ -42,27 +42,27 @@ void expect_same_ray(const Ray& a, const Ray& b) {
 
 /// Follows the path of this number; at each surface the stage does the same as shade_surface.
 void follow(const Scene& scene, const SamplerSource& source, const PathLimits& limits,
-            std::uint32_t number, OneSlot& slot, Seen& seen) {
+            std::uint32_t path_index, OneSlot& slot, Seen& seen) {
   const StageContext<SamplerSource> context{slot.pool, slot.batch, source,
                                             nullptr,   nullptr,    limits};
   const ShadeSurface<Kind, Branching::divergent, SamplerSource, true> stage{context};
-  auto random = source.open(slot.batch.id_of(number));
+  auto random = source.open(slot.batch.id_of(path_index));
   PathState path;
-  path.number = number;
-  Ray ray = generate_camera_path(scene, random, slot.batch.id_of(number).pixel, random.draw(0));
+  path.index = path_index;
+  Ray ray = generate_camera_path(scene, random, slot.batch.id_of(path_index).pixel, random.draw(0));
   for (bool alive = true; alive;) {
     const Hit hit = intersect_closest<Kind>(scene, ray);
     if (hit.is_miss()) return;
     ++seen.surfaces;
     slot.pool.store_path(0, ray, path);
     slot.pool.store_hit(0, hit);
-    const Color before = slot.samples[number].radiance;
+    const Color before = slot.samples[path_index].radiance;
     const Next next = stage(scene, 0, 0);
     ++path.rays;
     const Scattering expected =
         shade_surface<Kind>(scene, ray, hit, path, limits, draw_steps<Kind>(random, path));
     alive = expected.alive, ray = expected.ray;
-    EXPECT_EQ(slot.samples[number].radiance, add_rounded(before, expected.emitted));
+    EXPECT_EQ(slot.samples[path_index].radiance, add_rounded(before, expected.emitted));
     EXPECT_EQ(next.to, alive ? StageId::intersect : free_slot);
     EXPECT_EQ(next.shadow, !is_black(expected.shadow.radiance));
     seen.emitted += !is_black(expected.emitted), seen.ended += !alive;
@@ -70,14 +70,14 @@ void follow(const Scene& scene, const SamplerSource& source, const PathLimits& l
       ++seen.shadow_rays;
       std::uint32_t of = 0;
       const ShadowRay shadow = slot.pool.load_shadow(0, of);
-      EXPECT_EQ(of, number);
+      EXPECT_EQ(of, path_index);
       EXPECT_EQ(slot.pool.load_shadow_rays(0), path.rays);
       EXPECT_EQ(shadow.radiance, expected.shadow.radiance);
       EXPECT_EQ(shadow.distance, expected.shadow.distance);
       expect_same_ray(shadow.ray, expected.shadow.ray);
     }
     if (!alive) {
-      EXPECT_EQ(slot.samples[number].rays, path.packed_rays());
+      EXPECT_EQ(slot.samples[path_index].rays, path.packed_rays());
       return;
     }
     Ray stored_ray;

@@ -108,7 +108,7 @@ struct OrderedWave {
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
     buffers.orders_surfaces = by_kind || buffers.compaction.orders;
     buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
-    buffers.ordered = ordered, buffers.kind_of_place = kinds;
+    buffers.ordered = ordered, buffers.kind_of_entry = kinds;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
     run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
   }
@@ -135,9 +135,9 @@ TEST(WaveOrder, PersistentWarpsTraceAndSortHitsSendsOn) {
     const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy);
     // They need queues that stages append to.
     EXPECT_EQ(notes.traced, strategy.appends ? (Ids{intersect, shadow}) : Ids{});
-    EXPECT_EQ(std::ranges::count(notes.ran, sort_hits), strategy.appends ? 1 : 0);
+    EXPECT_EQ(std::ranges::count(notes.ran, route_hits), strategy.appends ? 1 : 0);
     if (!strategy.appends) continue;
-    Ids expected{compact,    begin_wave,    generate, intersect, sort_hits, compact,
+    Ids expected{compact,    begin_wave,    generate, intersect, route_hits, compact,
                  shade_miss, shade_surface, compact,  shadow,    finish};
     if (strategy.orders) expected.insert(expected.begin() + 7, order_surfaces);
     EXPECT_EQ(notes.ran, expected);
@@ -223,7 +223,7 @@ TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
   const auto places_of = [&](bool fused, bool reuses_slots) {
     buffers.fused = fused, buffers.reuses_slots = reuses_slots;
     std::uint64_t all = 0;
-    buffers.for_each_queue(true, [&](auto*&, std::uint64_t places) { all += places; });
+    buffers.for_each_queue(true, [&](auto*&, std::uint64_t capacity) { all += capacity; });
     return all / few_slots;
   };
   EXPECT_EQ(places_of(false, true), 5u);

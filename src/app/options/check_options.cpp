@@ -134,7 +134,7 @@ void check_stages(const Options& options, const GivenOptions& given) {
 }
 
 /// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.
-void check_voting(const Options& options, const GivenOptions& given) {
+void check_phase_voting(const Options& options, const GivenOptions& given) {
   if (options.kernel != MegakernelKind::vote && options.kernel != MegakernelKind::sort) return;
   const std::string kernel = to_string(options.kernel);
   if (options.work != Work::persistent)
@@ -201,7 +201,7 @@ void check_consistent(const Options& options, const GivenOptions& given) {
   check_files(options, given);
   check_film(options, given);
   check_camera(options.camera);
-  check_voting(options, given);
+  check_phase_voting(options, given);
   check_inert(options, given);
   if (options.shade == Shade::material && !compaction_info(options.compaction).has_queues)
     throw Error(

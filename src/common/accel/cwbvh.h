@@ -38,7 +38,7 @@ inline constexpr float cwbvh_grid_tolerance = 4.75f / 4096.0f;  ///< in steps
 
 /// What a child is.
 struct CwbvhChild {
-  std::uint32_t place;  ///< of an inner node among the nodes, else the first of its slots
+  std::uint32_t index;  ///< of an inner node among the nodes, else the first of its slots
   std::uint32_t count;  ///< triangles; 0: an inner node
 };
 

@@ -25,14 +25,14 @@ PT_HD std::uint32_t half_number(std::uint32_t bit, std::uint32_t groups) {
 }
 
 /// Where sphere i lies: in which group, and which byte of sign_bytes is its own.
-struct HalfPlace {
+struct HalfIndex {
   std::uint32_t group;
   int byte;
 };
-PT_HD HalfPlace half_place(std::uint32_t i, std::uint32_t count) {
+PT_HD HalfIndex half_index(std::uint32_t i, std::uint32_t count) {
   const std::uint32_t first = i / half_chunk * half_groups, groups = groups_of_chunk(first, count);
-  const std::uint32_t place = i % half_chunk;
-  return {first + place % groups, 3 - static_cast<int>(place / groups)};
+  const std::uint32_t index = i % half_chunk;
+  return {first + index % groups, 3 - static_cast<int>(index / groups)};
 }
 
 /// A ProjectedRay for two spheres at once.
@@ -69,7 +69,7 @@ class HalfProjectedRay {
   Coordinate x_, y_;
 };
 
-/// The candidates among the groups [first, first + 8) of `count`; see half_place.
+/// The candidates among the groups [first, first + 8) of `count`; see half_index.
 template <class First>
 PT_HD std::uint32_t half_candidates(const HalfSpheres* groups, First first, std::uint32_t count,
                                     const HalfProjectedRay& ray) {

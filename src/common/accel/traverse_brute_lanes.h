@@ -61,12 +61,12 @@ struct LaneRays {
 template <class L>
 PT_LANES inline void keep_nearer_lanes(LaneRays<L>& rays, typename L::Mask met, typename L::Float t,
                                        std::uint32_t primitive) {
-  const typename L::Int number = L::all_int(primitive);
-  const typename L::Mask ties = L::both(L::equal(t, rays.t), L::less_int(number, rays.primitive));
+  const typename L::Int index = L::all_int(primitive);
+  const typename L::Mask ties = L::both(L::equal(t, rays.t), L::less_int(index, rays.primitive));
   const typename L::Mask nearer =
       L::both(L::both(met, L::less(L::all(0.0f), t)), L::either(L::less(t, rays.t), ties));
   rays.t = L::select(nearer, t, rays.t);
-  rays.primitive = L::select(nearer, number, rays.primitive);
+  rays.primitive = L::select(nearer, index, rays.primitive);
 }
 
 /// As ProjectedRay.

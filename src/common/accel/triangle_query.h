@@ -49,7 +49,7 @@ class ClosestTriangle {
     if (hit_.is_miss()) return false;
     const std::uint32_t id = tree.triangles[slot].id, best = tree.triangles[hit_.primitive].id;
     if (id != best || tree.instance_count == 0) return id < best;
-    return tree.instances[instance].number < tree.instances[hit_.instance].number;
+    return tree.instances[instance].index < tree.instances[hit_.instance].index;
   }
 
   float t_min_;

@@ -15,7 +15,7 @@ class EmbreeTree;
 struct alignas(16) InstanceRecord {
   Affine to_object;    ///< from world space
   std::uint32_t root;  ///< the group's root among the nodes
-  std::uint32_t number;
+  std::uint32_t index;
   std::uint32_t first_slot, slot_count;  ///< the group's triangles
   Bounds bounds;                         ///< in the world; widened
   std::uint32_t padding[2] = {};

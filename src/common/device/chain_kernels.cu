@@ -52,10 +52,11 @@ __global__ void __launch_bounds__(1024) sum_groups(const __grid_constant__ Boots
 
 __global__ void __launch_bounds__(1024)
     propose_starts(const __grid_constant__ ChainArrays arrays,
-                   const __grid_constant__ ChainPlaces places, StageClock* clock) {
+                   const __grid_constant__ ChainPositions positions, StageClock* clock) {
   const std::uint32_t chain = stamped_thread(clock);
-  if (chain >= places.chains) return;
-  store_wide(&arrays.proposals[chain], bootstrap_path(start_of(arrays.bootstrap, places, chain)));
+  if (chain >= positions.chains) return;
+  store_wide(&arrays.proposals[chain],
+             bootstrap_path(start_of(arrays.bootstrap, positions, chain)));
 }
 
 __global__ void __launch_bounds__(1024)

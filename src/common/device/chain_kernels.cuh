@@ -29,7 +29,7 @@ __global__ void sum_groups(const __grid_constant__ Bootstrap bootstrap, std::uin
 
 /// Proposes the paths at which the chains begin.
 __global__ void propose_starts(const __grid_constant__ ChainArrays arrays,
-                               const __grid_constant__ ChainPlaces places, StageClock* clock);
+                               const __grid_constant__ ChainPositions positions, StageClock* clock);
 
 /// ChainStep::Kind::start and mutate: the batch has a path of each chain.
 __global__ void step_chains(const __grid_constant__ ChainArrays arrays,

@@ -20,7 +20,7 @@ struct Peers {
 
 /// Adds the warp's threads of each kind to `next` and returns this one's place: what next[kind] was
 /// before, and the peers before it. Called by whole warps.
-__device__ inline std::uint32_t take_places(std::uint32_t* next, int kind) {
+__device__ inline std::uint32_t reserve_indices(std::uint32_t* next, int kind) {
   const Peers peers(kind);
   std::uint32_t first = 0;
   if (kind >= 0 && peers.before == 0) first = atomicAdd(&next[kind], peers.count);

@@ -229,7 +229,7 @@ void CpuRenderer::begin_chains(const ChainWindow& window) {
 }
 
 void CpuRenderer::clear_chain_sums() {
-  std::fill_n(chain_arrays_.counts, ChainCounts::places, ChainCounts{});
+  std::fill_n(chain_arrays_.counts, ChainCounts::copies, ChainCounts{});
   std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
 }
 
@@ -297,11 +297,11 @@ void CpuRenderer::start_chains(const ChainStarts& starts, const ChainStep& step,
   const Bootstrap& bootstrap = chain_arrays_.bootstrap;
   std::ranges::copy(starts.below, bootstrap.below);
   time_in_arena(run, [&] {
-    for_each_path(starts.places.chains, [&](std::uint32_t chain) {
-      chain_arrays_.proposals[chain] = bootstrap_path(start_of(bootstrap, starts.places, chain));
+    for_each_path(starts.positions.chains, [&](std::uint32_t chain) {
+      chain_arrays_.proposals[chain] = bootstrap_path(start_of(bootstrap, starts.positions, chain));
     });
   });
-  run_chains(starts.places.chains, step, run);
+  run_chains(starts.positions.chains, step, run);
 }
 
 /// Traces a path of each chain, and the chain takes this step.

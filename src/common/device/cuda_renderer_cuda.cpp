@@ -327,7 +327,7 @@ void CudaRenderer::clear_chain_sums() {
   const std::uint64_t bytes = 3 * window().pixel_count() * sizeof(SplatSum);
   check_cuda(cudaMemsetAsync(chain_arrays_.sums, 0, bytes, stream_), "cudaMemset");
   check_cuda(
-      cudaMemsetAsync(chain_arrays_.counts, 0, ChainCounts::places * sizeof(ChainCounts), stream_),
+      cudaMemsetAsync(chain_arrays_.counts, 0, ChainCounts::copies * sizeof(ChainCounts), stream_),
       "cudaMemset");
 }
 
@@ -379,10 +379,10 @@ void CudaRenderer::start_chains(const ChainStarts& starts, const ChainStep& step
                              starts.below.size() * sizeof(double), cudaMemcpyHostToDevice, stream_),
              "uploading sums of targets");
   time_batch(run, [&] {
-    launch_each("propose_starts", propose_starts, starts.places.chains, chain_arrays_,
-                starts.places, clock_);
+    launch_each("propose_starts", propose_starts, starts.positions.chains, chain_arrays_,
+                starts.positions, clock_);
   });
-  run_chains(starts.places.chains, step, run);
+  run_chains(starts.positions.chains, step, run);
 }
 
 /// Traces a path of each chain, and the chain takes this step.
@@ -428,7 +428,7 @@ ChainSums CudaRenderer::take_chain_sums() {
   check_cuda(cudaMemcpy(result.sums.data(), chain_arrays_.sums,
                         result.sums.size() * sizeof(SplatSum), cudaMemcpyDeviceToHost),
              "downloading the film");
-  std::vector<ChainCounts> counts(ChainCounts::places);
+  std::vector<ChainCounts> counts(ChainCounts::copies);
   check_cuda(cudaMemcpy(counts.data(), chain_arrays_.counts, counts.size() * sizeof counts[0],
                         cudaMemcpyDeviceToHost),
              "downloading counts");

@@ -53,7 +53,7 @@ PT_HD TargetSum sum_group(const Bootstrap& bootstrap, std::uint32_t group, std::
 
 /// Where chains begin: on the sum of the first `paths` targets, at equal distances from a place of
 /// its first part (systematic resampling; Kitagawa 1996).
-struct ChainPlaces {
+struct ChainPositions {
   std::uint32_t paths = 1;
   std::uint32_t chains = 1;
   double sum = 0;
@@ -66,21 +66,21 @@ struct ChainPlaces {
 };
 
 /// The path with light at which the sum of the targets exceeds the chain's place.
-PT_HD std::uint32_t start_of(const Bootstrap& bootstrap, const ChainPlaces& places,
+PT_HD std::uint32_t start_of(const Bootstrap& bootstrap, const ChainPositions& positions,
                              std::uint32_t chain) {
-  const double place = places.of_chain(chain);
+  const double position = positions.of_chain(chain);
   std::uint32_t group = 0;
-  std::uint32_t end = static_cast<std::uint32_t>(Bootstrap::group_count(places.paths));
+  std::uint32_t end = static_cast<std::uint32_t>(Bootstrap::group_count(positions.paths));
   while (end - group > 1) {
     const std::uint32_t middle = group + (end - group) / 2;
-    (bootstrap.below[middle] <= place ? group : end) = middle;
+    (bootstrap.below[middle] <= position ? group : end) = middle;
   }
   double sum = bootstrap.below[group];
   std::uint32_t path = group * Bootstrap::group_paths;
   const std::uint32_t last = path + Bootstrap::group_paths;
   std::uint32_t found = path;
   // The sum's last bits are those of another order: the group's last path with light ends it.
-  for (; path < last && path < places.paths && sum <= place; ++path) {
+  for (; path < last && path < positions.paths && sum <= position; ++path) {
     if (bootstrap.targets[path] > 0.0f) found = path;
     sum += bootstrap.targets[path];
   }

@@ -28,11 +28,11 @@ ImageLayer make_layer(const PixelReader& reader, std::uint64_t pixel_count, std:
       layer.values[pixel] = Aov::of(reader.statistics(pixel, samples));
     } else {
       for (std::uint32_t c = 0; c < channels.size(); ++c) {
-        const std::uint64_t place = pixel * channels.size() + c;
+        const std::uint64_t index = pixel * channels.size() + c;
         if constexpr (has_numbers) {
-          layer.numbers[place] = reader.number(pixel, plane + c);
+          layer.numbers[index] = reader.number(pixel, plane + c);
         } else {
-          layer.values[place] = static_cast<float>(reader.feature(pixel, plane + c));
+          layer.values[index] = static_cast<float>(reader.feature(pixel, plane + c));
         }
       }
     }

@@ -50,8 +50,8 @@ struct SampleBuffer {
 
   SampleBuffer() = default;
   /// The samples [first, first + count) of a window's pixels.
-  SampleBuffer(Sample* place, const Window& window, std::uint32_t first, std::uint32_t count)
-      : samples(place),
+  SampleBuffer(Sample* memory, const Window& window, std::uint32_t first, std::uint32_t count)
+      : samples(memory),
         width(window.width),
         pixel_count(window.width * window.height),
         corner(pack_pixel(window.x, window.y)),
@@ -62,11 +62,11 @@ struct SampleBuffer {
 
   PT_HD std::uint32_t height() const { return pixel_count.divisor() / width.divisor(); }
 
-  PT_HD PathId id_of(std::uint32_t number) const {
-    const std::uint32_t sample = pixel_count.quotient(number);
-    const std::uint32_t pixel = number - sample * pixel_count.divisor();
+  PT_HD PathId id_of(std::uint32_t path_index) const {
+    const std::uint32_t sample = pixel_count.quotient(path_index);
+    const std::uint32_t pixel = path_index - sample * pixel_count.divisor();
     const std::uint32_t y = width.quotient(pixel);
-    return {corner + pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, number};
+    return {corner + pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, path_index};
   }
 
   /// The path of a sample of the batch, at this place in the window.
@@ -76,7 +76,7 @@ struct SampleBuffer {
 
   /// The end of every path, in all modes.
   PT_HD void store(const PathState& path, const Color& radiance) const {
-    store_wide(&samples[path.number], Sample{radiance, path.packed_rays()});
+    store_wide(&samples[path.index], Sample{radiance, path.packed_rays()});
   }
 };
 
@@ -129,18 +129,18 @@ struct PixelMoments {
 /// (film_planes.h) is the other kind of sum.
 class RadianceSum {
  public:
-  PT_HD RadianceSum(FilmPixel* film, std::uint32_t pixel) : place_(film + pixel), sum_(*place_) {}
+  PT_HD RadianceSum(FilmPixel* film, std::uint32_t pixel) : stored_(film + pixel), sum_(*stored_) {}
 
   /// `number` counts the samples of the batch; `is_finite` is what the tally says of it.
-  PT_HD void add(const Sample& sample, std::uint32_t /*number*/, bool is_finite) {
+  PT_HD void add(const Sample& sample, std::uint32_t /*sample_index*/, bool is_finite) {
     if (!is_finite) return;
     for (int c = 0; c < 3; ++c) sum_.sum[c] += sample.radiance[c];
     ++sum_.samples;
   }
-  PT_HD void store() const { *place_ = sum_; }
+  PT_HD void store() const { *stored_ = sum_; }
 
  private:
-  FilmPixel* place_;
+  FilmPixel* stored_;
   FilmPixel sum_;
 };
 

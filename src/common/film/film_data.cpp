@@ -43,7 +43,7 @@ void check_merge(const Film& film, const Film& part) {
 }
 
 /// The pixel in the film's own order.
-std::uint64_t place_of(const Film& film, std::uint32_t x, std::uint32_t y) {
+std::uint64_t index_of(const Film& film, std::uint32_t x, std::uint32_t y) {
   return std::uint64_t{y - film.window.y} * film.window.width + (x - film.window.x);
 }
 
@@ -56,8 +56,8 @@ void copy_planes(const Film& film, std::vector<T>& to, const Film& part, const s
   to.resize(planes * count);
   for (std::uint64_t plane = 0; plane < planes; ++plane) {
     for (std::uint32_t y = w.y; y < w.y + w.height; ++y) {
-      const T* row = &from[plane * part_count + place_of(part, w.x, y)];
-      std::copy(row, row + w.width, &to[plane * count + place_of(film, w.x, y)]);
+      const T* row = &from[plane * part_count + index_of(part, w.x, y)];
+      std::copy(row, row + w.width, &to[plane * count + index_of(film, w.x, y)]);
     }
   }
 }

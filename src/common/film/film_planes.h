@@ -51,15 +51,15 @@ class PixelPlanes {
     pixel_count_ = buffer.pixel_count.divisor();
   }
 
-  PT_HD void add(const Sample& sample, std::uint32_t number, bool is_finite) const {
-    const std::uint32_t place = pixel_ + (is_negative(number) ? pixel_count_ : 0);
+  PT_HD void add(const Sample& sample, std::uint32_t sample_index, bool is_finite) const {
+    const std::uint32_t index = pixel_ + (is_negative(sample_index) ? pixel_count_ : 0);
     if (is_finite) {
-      FilmPixel& sum = film_.pixels[place];
+      FilmPixel& sum = film_.pixels[index];
       for (int c = 0; c < 3; ++c) sum.sum[c] += sample.radiance[c];
       ++sum.samples;
     }
     if (film_.moments == nullptr) return;
-    PixelMoments& moments = film_.moments[place];
+    PixelMoments& moments = film_.moments[index];
     if (is_finite) {
       const double y = luminance(sample.radiance);
       moments.luminance_squares += y * y;
@@ -70,9 +70,9 @@ class PixelPlanes {
   PT_HD void store() const {}
 
  private:
-  PT_HD bool is_negative(std::uint32_t number) const {
+  PT_HD bool is_negative(std::uint32_t sample_index) const {
     if (!film_.two_signs) return false;
-    auto random = source_.open({id_.pixel, id_.sample + number, 0});
+    auto random = source_.open({id_.pixel, id_.sample + sample_index, 0});
     const Vec4 u = random.draw(scatter_block(0));
     return filter_.is_negative(u.x, u.y);
   }

@@ -34,7 +34,7 @@ PT_HD ChainTally operator+(const ChainTally& a, const ChainTally& b) {
 
 /// What chains have done. Each has one of a few places to count in, so that threads seldom meet.
 struct ChainCounts {
-  static constexpr std::uint32_t places = 1024;
+  static constexpr std::uint32_t copies = 1024;
   PathTally paths;
   ChainTally steps;
 };
@@ -65,7 +65,7 @@ struct ChainArrays {
     make(states, chain_count);
     make(unsplatted, chain_count);
     make(sums, 3 * pixels);
-    make(counts, ChainCounts::places);
+    make(counts, ChainCounts::copies);
     bootstrap.for_each_array(bootstrap_paths, make);
   }
   static constexpr std::uint64_t bytes_per_chain(std::uint64_t blocks) {
@@ -165,7 +165,7 @@ PT_HD void finish_chain(const ChainArrays& arrays, const ChainStep& step, std::u
 PT_HD void step_chain(const ChainArrays& arrays, const ChainStep& step, std::uint32_t chain,
                       const Sample& sample) {
   const Chains& chains = *arrays.chains;
-  ChainCounts& counts = arrays.counts[chain % ChainCounts::places];
+  ChainCounts& counts = arrays.counts[chain % ChainCounts::copies];
   ChainSplat& unsplatted = arrays.unsplatted[chain];
   const ChainState state = load_wide(&arrays.states[chain]);
   count_path(sample, counts);

@@ -18,9 +18,9 @@ constexpr std::array<std::array<float, 3>, 6> ramp = {{{0.00f, 0.00f, 0.02f},
                                                        {0.99f, 0.99f, 0.75f}}};
 
 std::array<float, 3> color_of(float value) {
-  const float place = std::clamp(value, 0.0f, 1.0f) * (ramp.size() - 1);
-  const std::size_t low = std::min(static_cast<std::size_t>(place), ramp.size() - 2);
-  const float part = place - static_cast<float>(low);
+  const float position = std::clamp(value, 0.0f, 1.0f) * (ramp.size() - 1);
+  const std::size_t low = std::min(static_cast<std::size_t>(position), ramp.size() - 2);
+  const float part = position - static_cast<float>(low);
   std::array<float, 3> color{};
   for (std::size_t c = 0; c < 3; ++c) {
     color[c] = srgb_curve.decode((1 - part) * ramp[low][c] + part * ramp[low + 1][c]);

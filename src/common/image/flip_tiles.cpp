@@ -23,7 +23,7 @@ Part widened(const Part& part, int by, const Image& image) {
           std::min(part.y1 + by, image.height)};
 }
 
-std::size_t place(const Image& image, int x, int y) {
+std::size_t pixel_index(const Image& image, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
          static_cast<std::size_t>(x);
 }
@@ -31,7 +31,7 @@ std::size_t place(const Image& image, int x, int y) {
 bool are_same(const Image& a, const Image& b, const Part& part) {
   const auto bytes = 3 * sizeof(float) * static_cast<std::size_t>(part.width());
   for (int y = part.y0; y < part.y1; ++y) {
-    const std::size_t first = 3 * place(a, part.x0, y);
+    const std::size_t first = 3 * pixel_index(a, part.x0, y);
     if (std::memcmp(&a.rgb[first], &b.rgb[first], bytes) != 0) return false;
   }
   return true;
@@ -41,7 +41,7 @@ Image cut(const Image& image, const Part& part) {
   Image result{part.width(), part.height(), {}};
   for (int y = part.y0; y < part.y1; ++y) {
     const auto first =
-        image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * place(image, part.x0, y));
+        image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * pixel_index(image, part.x0, y));
     result.rgb.insert(result.rgb.end(), first, first + 3 * part.width());
   }
   return result;
@@ -64,8 +64,9 @@ std::vector<float> flip_by_tiles(const Image& test, const Image& reference, cons
     for (int row = tile.y0; row < tile.y1; ++row) {
       const std::ptrdiff_t from =
           std::ptrdiff_t{row - part.y0} * part.width() + (tile.x0 - part.x0);
-      std::copy_n(found.begin() + from, tile.width(),
-                  errors.begin() + static_cast<std::ptrdiff_t>(place(reference, tile.x0, row)));
+      std::copy_n(
+          found.begin() + from, tile.width(),
+          errors.begin() + static_cast<std::ptrdiff_t>(pixel_index(reference, tile.x0, row)));
     }
   });
   return errors;

@@ -194,7 +194,7 @@ void bound_spot(const DeltaLight& spot, LightBounds& bounds) {
 }  // namespace
 
 std::optional<LightBounds> bounds_of(const Light& light) {
-  if (!has_place(light.kind)) return std::nullopt;
+  if (!has_position(light.kind)) return std::nullopt;
   LightBounds bounds;
   bounds.emission = quarter_turn;
   bounds.box.grow(light.a);

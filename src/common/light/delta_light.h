@@ -18,7 +18,7 @@ enum class SpotFalloff : std::uint32_t {
 /// mirroring would turn the side that shines away.
 enum class LightKind : std::uint8_t {
   triangle,
-  turned_triangle,
+  flipped_triangle,
   sphere,
   sun,
   point,
@@ -27,8 +27,8 @@ enum class LightKind : std::uint8_t {
   directional
 };
 
-PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::turned_triangle; }
-PT_HD bool has_place(LightKind kind) {
+PT_HD bool is_triangle(LightKind kind) { return kind <= LightKind::flipped_triangle; }
+PT_HD bool has_position(LightKind kind) {
   return kind != LightKind::sun && kind != LightKind::directional;
 }
 PT_HD bool is_delta(LightKind kind) { return kind >= LightKind::point; }

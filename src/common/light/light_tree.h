@@ -121,16 +121,16 @@ struct LightTree {
 /// nothing is rescaled: after a choice of probability p, 64 - log2(1 / p) bits are left.
 struct Interval {
   std::uint64_t width = ~std::uint64_t{0};
-  std::uint64_t place;
+  std::uint64_t position;
 
   /// From the 48 random bits of two floats that are multiples of 2^-24 in [0, 1).
   PT_HD Interval(float u0, float u1)
-      : place(static_cast<std::uint64_t>(u0 * 16777216.0f) << 40 |
-              static_cast<std::uint64_t>(u1 * 16777216.0f) << 16) {}
+      : position(static_cast<std::uint64_t>(u0 * 16777216.0f) << 40 |
+                 static_cast<std::uint64_t>(u1 * 16777216.0f) << 16) {}
 
   /// The place, uniform in [0, 1): for a last choice.
   PT_HD float unit() const {
-    return fminf(static_cast<float>(place) / static_cast<float>(width), one_minus_ulp);
+    return fminf(static_cast<float>(position) / static_cast<float>(width), one_minus_ulp);
   }
 
   /// True with this probability.
@@ -143,8 +143,8 @@ struct Interval {
     const std::uint64_t part =
         probability >= 1.0f ? width
                             : std::uint64_t{high} * share + (std::uint64_t{low} * share >> 32);
-    const bool chosen = place < part;
-    if (!chosen) place -= part;
+    const bool chosen = position < part;
+    if (!chosen) position -= part;
     width = chosen ? part : width - part;
     return chosen;
   }

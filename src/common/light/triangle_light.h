@@ -18,8 +18,9 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
                  : TrianglePoint{u0 - 0.5f * u1, 0.5f * u1};
 }
 
-/// What samples a triangle: its area, or where it looms large the solid angle under which it is
-/// seen. A function of the triangle and of who sees it, so that it can be asked for afterwards.
+/// What samples a triangle: its area, or where it uses_solid_angle_sampling large the solid angle
+/// under which it is seen. A function of the triangle and of who sees it, so that it can be asked
+/// for afterwards.
 struct TriangleSampler {
   Vec3 v0;  ///< relative to who sees it
   Vec3 edge1, edge2;
@@ -29,7 +30,7 @@ struct TriangleSampler {
       : v0(relative_v0), edge1(e1), edge2(e2), normal(cross_rounded(e1, e2)) {}
 
   /// Area over the square of the distance above 1/10: beyond, densities differ little over it.
-  PT_HD bool looms() const {
+  PT_HD bool uses_solid_angle_sampling() const {
     const Vec3 middle = add_scaled(v0, 1.0f / 3.0f, edge1 + edge2);
     const float distance2 = dot(middle, middle);
     return dot(normal, normal) > 0.04f * distance2 * distance2;
@@ -45,7 +46,7 @@ struct TriangleSampler {
 
   /// Density per solid angle at a point `distance` away along `wi`, from either side.
   PT_HD float pdf(const Vec3& wi, float distance) const {
-    if (looms()) {
+    if (uses_solid_angle_sampling()) {
       const SphericalTriangle s = seen();
       if (has_solid_angle(s)) return divide(1.0f, s.solid_angle);
     }
@@ -65,7 +66,7 @@ struct TriangleSampler {
   }
 
   PT_HD TrianglePoint sample(float u0, float u1) const {
-    if (looms()) {
+    if (uses_solid_angle_sampling()) {
       const SphericalTriangle s = seen();
       if (has_solid_angle(s)) return point_along(s.sample(u0, u1));
     }

@@ -11,9 +11,9 @@ struct alignas(16) Opacity {
   float offset = 1.0f;
   float scale = 0.0f;
   std::uint32_t texture = no_texture;
-  float cutoff = 0.0f;  ///< 0: none; lamp_hidden: none, and camera rays do not meet it
+  float cutoff = 0.0f;  ///< 0: none; light_hidden: none, and camera rays do not meet it
 
-  static constexpr float lamp_hidden = -1.0f;
+  static constexpr float light_hidden = -1.0f;
 
   PT_HD bool is_opaque() const { return texture == no_texture && offset >= 1.0f; }
   PT_HD bool hides_from_camera() const { return cutoff < 0.0f; }

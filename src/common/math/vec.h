@@ -48,7 +48,9 @@ PT_HD Vec3 normalize(const Vec3& v) {
   return {multiply_rounded(v.x, scale), multiply_rounded(v.y, scale), multiply_rounded(v.z, scale)};
 }
 
-PT_HD Vec3 anew(const Vec3& v) { return {anew(v.x), anew(v.y), anew(v.z)}; }
+PT_HD Vec3 optimization_barrier(const Vec3& v) {
+  return {optimization_barrier(v.x), optimization_barrier(v.y), optimization_barrier(v.z)};
+}
 
 PT_HD Color multiply_rounded(const Color& a, const Color& b) {
   return {multiply_rounded(a.x, b.x), multiply_rounded(a.y, b.y), multiply_rounded(a.z, b.z)};

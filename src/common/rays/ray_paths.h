@@ -59,11 +59,12 @@ class RayPaths {
 
   /// Of a path that the scene's materials scatter; no_ray if it ends before.
   RayRecord after_bounces(std::uint32_t pixel, std::uint32_t sample, int bounces) const {
-    const std::uint32_t place = pack_pixel(morton_coordinate(pixel), morton_coordinate(pixel >> 1));
-    auto random = PhiloxSource{bounce_seed}.open({place, sample, 0});
+    const std::uint32_t pixel_id =
+        pack_pixel(morton_coordinate(pixel), morton_coordinate(pixel >> 1));
+    auto random = PhiloxSource{bounce_seed}.open({pixel_id, sample, 0});
     const PathLimits limits{1u << 15, 0, false};
     PathState path;
-    Ray ray = generate_camera_path(scene_, place, random.draw(scatter_block(0)));
+    Ray ray = generate_camera_path(scene_, pixel_id, random.draw(scatter_block(0)));
     for (int bounce = 0; bounce < bounces; ++bounce) {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;

@@ -36,8 +36,8 @@ class RayQueue {
   }
 
   template <class Query>
-  __device__ void finish(std::uint32_t number, const Query& query) const {
-    store_result(tree_, query, arrays_.hits + number);
+  __device__ void finish(std::uint32_t ray_id, const Query& query) const {
+    store_result(tree_, query, arrays_.hits + ray_id);
   }
 
  private:

@@ -120,9 +120,9 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 
 MetropolisStats statistics_of(const ChainStarts& starts, const ChainTally& tally) {
   MetropolisStats stats;
-  stats.chains = starts.places.chains;
+  stats.chains = starts.positions.chains;
   stats.mutations = tally.large + tally.small;
-  stats.bootstrap = starts.places.paths;
+  stats.bootstrap = starts.positions.paths;
   stats.brightness = starts.brightness;
   stats.brightness_error = starts.brightness_error;
   stats.large_share = ratio(tally.large, stats.mutations);
@@ -181,7 +181,7 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
   plan.bootstrap =
       o.bootstrap > 0 ? o.bootstrap : automatic_bootstrap(o, defaults, pixels, memory.free_bytes);
   plan.bootstrap_is_timed = o.bootstrap == 0 && o.time_limit > 0;
-  plan.bootstrap_batch = std::min(plan.bootstrap, defaults.turn);
+  plan.bootstrap_batch = std::min(plan.bootstrap, defaults.clock_interval);
   const std::uint64_t film_bytes = pixels * (memory.bytes_per_pixel + 3 * sizeof(SplatSum));
   const std::uint64_t bytes_per_path = memory.bytes_per_path + sizeof(Proposal);
   const std::uint64_t bytes_per_chain = ChainArrays::bytes_per_chain(plan.blocks);
@@ -191,7 +191,8 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
     const std::uint64_t quarter = mutations_of(pixels, o.spp) / 4;
     plan.chains = std::max<std::uint64_t>(std::min({defaults.chains, fitting, quarter}), 1);
   }
-  plan.turn = static_cast<int>(std::max<std::uint64_t>(defaults.turn / plan.chains, 1));
+  plan.clock_interval =
+      static_cast<int>(std::max<std::uint64_t>(defaults.clock_interval / plan.chains, 1));
   const std::uint64_t bytes = film_bytes + plan.batch_paths() * bytes_per_path +
                               plan.chains * bytes_per_chain +
                               Bootstrap::group_count(plan.bootstrap) * Bootstrap::bytes_per_group;
@@ -205,7 +206,7 @@ ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const Fil
 }
 
 void ChainSums::add(const ChainCounts* counts) {
-  for (std::uint32_t i = 0; i < ChainCounts::places; ++i) {
+  for (std::uint32_t i = 0; i < ChainCounts::copies; ++i) {
     steps = steps + counts[i].steps;
     paths = paths + counts[i].paths;
   }
@@ -230,7 +231,7 @@ ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t pa
   starts.brightness = sum / n;
   const double spread = std::max(squares - sum * starts.brightness, 0.0);
   starts.brightness_error = n > 1 ? std::sqrt(spread / (n * (n - 1))) : 0.0;
-  starts.places = {paths, chains, sum, u};
+  starts.positions = {paths, chains, sum, u};
   return starts;
 }
 
@@ -310,8 +311,8 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
     };
   }
   const BatchRun batches =
-      for_each_batch(static_cast<int>(std::min(iterations, most)), std::min(plan.turn, segment),
-                     plan.chains, rest, mutate, {}, pace);
+      for_each_batch(static_cast<int>(std::min(iterations, most)),
+                     std::min(plan.clock_interval, segment), plan.chains, rest, mutate, {}, pace);
   const double mutated_ms = run.kernel_ms - before_ms;
   take();
 

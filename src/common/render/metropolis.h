@@ -15,7 +15,7 @@ struct ChainPlan {
   std::uint64_t bootstrap_batch = 0;  ///< of them at once
   bool bootstrap_is_timed = false;    ///< it ends when it has had its share of --time-limit
   std::uint32_t blocks = 0;           ///< of random numbers that each chain stores
-  int turn = 1;                       ///< iterations between two looks at the clock
+  int clock_interval = 1;             ///< iterations between two looks at the clock
 
   /// Of the largest batch.
   std::uint64_t batch_paths() const { return std::max(chains, bootstrap_batch); }
@@ -26,7 +26,7 @@ struct ChainDefaults {
   std::uint64_t chains = std::uint64_t{1} << 13;
   std::uint64_t bootstrap = std::uint64_t{1} << 17;  ///< at least; twice the mutations
   std::uint64_t bootstrap_most = std::uint64_t{1} << 25;
-  std::uint64_t turn = std::uint64_t{1} << 16;  ///< paths between two looks at the clock
+  std::uint64_t clock_interval = std::uint64_t{1} << 16;  ///< paths between two looks at the clock
 };
 
 /// Throws Error when the memory cannot hold what the options ask for.
@@ -50,7 +50,7 @@ struct ChainSums {
 struct ChainStarts {
   double brightness = 0, brightness_error = 0;
   std::vector<double> below;  ///< [group]: Bootstrap::below
-  ChainPlaces places;
+  ChainPositions positions;
 };
 
 /// Of so many bootstrap paths, of whose targets these are the sums, and of chains that begin in

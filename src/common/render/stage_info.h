@@ -17,7 +17,7 @@ namespace pt {
   STAGE(generate, generate, true)           \
   STAGE(mutate, generate, true)             \
   STAGE(intersect, intersect, true)         \
-  STAGE(sort_hits, intersect, true)         \
+  STAGE(route_hits, intersect, true)        \
   STAGE(shade_miss, shade_miss, true)       \
   STAGE(shade_surface, shade_surface, true) \
   STAGE(shadow, shadow, true)               \

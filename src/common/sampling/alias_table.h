@@ -48,9 +48,9 @@ PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, f
 PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, float u0, float u1) {
   const auto high = static_cast<std::uint64_t>(u0 * 16777216.0f) * count;
   const auto low = static_cast<std::uint64_t>(u1 * 16777216.0f) * count;
-  const std::uint64_t place = high + (low >> 24);  // count * u in steps of 2^-24
-  return resolve_alias(entries, static_cast<std::uint32_t>(place >> 24),
-                       static_cast<float>(place & 0xffffffu) * half_ulp);
+  const std::uint64_t position = high + (low >> 24);  // count * u in steps of 2^-24
+  return resolve_alias(entries, static_cast<std::uint32_t>(position >> 24),
+                       static_cast<float>(position & 0xffffffu) * half_ulp);
 }
 
 /// The table with probabilities weight / sum, in time O(n). Throws Error naming the first weight

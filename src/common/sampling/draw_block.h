@@ -36,13 +36,13 @@ inline bool is_philox(const SamplerSource& source) {
 struct DrawnSource {
   const DrawnBlock* scatter;
   const DrawnBlock* light;
-  std::uint32_t place = 0;
+  std::uint32_t index = 0;
 
   struct Stream {
     const DrawnSource& source;
 
     Vec4 draw(std::uint32_t block) const {
-      return ((block & 1u) == 0 ? source.scatter : source.light)->at(source.place);
+      return ((block & 1u) == 0 ? source.scatter : source.light)->at(source.index);
     }
   };
   Stream open(const PathId&) const { return {*this}; }

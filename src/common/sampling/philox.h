@@ -15,12 +15,12 @@ struct Uint4 {
 /// philox4x32_10({offset/4 lo, offset/4 hi, subsequence lo, hi}, seed lo, seed hi).
 /// `lean`: by fewer instructions on CUDA, for kernels that draw numbers often; in large ones ptxas
 /// then allocates registers worse.
-template <bool lean = false>
+template <bool specialized = false>
 PT_HD Uint4 philox4x32_10(Uint4 counter, std::uint32_t key0, std::uint32_t key1) {
   PT_UNROLL(10)
   for (int round = 0; round < 10; ++round) {
-    const WideProduct p0 = multiply_wide<lean>(0xD2511F53u, counter.x);
-    const WideProduct p1 = multiply_wide<lean>(0xCD9E8D57u, counter.z);
+    const WideProduct p0 = multiply_wide<specialized>(0xD2511F53u, counter.x);
+    const WideProduct p1 = multiply_wide<specialized>(0xCD9E8D57u, counter.z);
     counter = {p1.high ^ counter.y ^ key0, p1.low, p0.high ^ counter.w ^ key1, p0.low};
     key0 += 0x9E3779B9u;
     key1 += 0xBB67AE85u;

@@ -25,20 +25,21 @@ struct PhiloxSource {
   std::uint64_t seed;
 
   struct Stream {
-    static constexpr bool is_lean = true;  ///< of the paper's kernels, whose code is small
+    static constexpr bool is_specialized = true;  ///< of the paper's kernels, whose code is small
     std::uint64_t seed;
     std::uint32_t pixel, sample;
 
     /// `purpose` 0 is draw()'s.
-    template <bool lean = true>
+    template <bool specialized = true>
     PT_HD Uint4 bits(std::uint32_t block, std::uint32_t purpose) const {
-      return philox4x32_10<lean>({block, purpose, pixel, sample}, static_cast<std::uint32_t>(seed),
-                                 static_cast<std::uint32_t>(seed >> 32));
+      return philox4x32_10<specialized>({block, purpose, pixel, sample},
+                                        static_cast<std::uint32_t>(seed),
+                                        static_cast<std::uint32_t>(seed >> 32));
     }
 
-    template <bool lean = true>
+    template <bool specialized = true>
     PT_HD Vec4 draw(std::uint32_t block) {
-      const Uint4 b = bits<lean>(block, 0);
+      const Uint4 b = bits<specialized>(block, 0);
       return {to_unit_float(b.x), to_unit_float(b.y), to_unit_float(b.z), to_unit_float(b.w)};
     }
   };
@@ -62,7 +63,7 @@ struct XorwowSource {
   State* states;  ///< [index of the path in the batch]
 
   struct Stream {
-    static constexpr bool is_lean = true;
+    static constexpr bool is_specialized = true;
     State state;
 
     PT_HD Vec4 draw(std::uint32_t /*block*/) {

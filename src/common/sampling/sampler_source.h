@@ -29,14 +29,14 @@ struct SamplerSource {
   const Chains* chains = nullptr;
 
   struct Stream {
-    static constexpr bool is_lean = false;
+    static constexpr bool is_specialized = false;
     PhiloxSource::Stream philox;
     Sampler sampler;
     const Chains* chains;
 
     PT_HD Vec4 draw(std::uint32_t block) {
       const bool alone = sampler.kind == SamplerKind::independent && chains == nullptr;
-      return alone ? philox.draw<is_lean>(block) : draw_apart(*this, block);
+      return alone ? philox.draw<is_specialized>(block) : draw_apart(*this, block);
     }
   };
 

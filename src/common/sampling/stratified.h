@@ -55,10 +55,10 @@ PT_HD Vec2 stratify(const Vec2& u, const StrataGrid& grid, std::uint32_t sample,
 /// same for all samples of a pixel) give this sample. Samples after the last cell begin a new grid.
 PT_HD Vec4 stratified_block(const Vec4& u, const StrataGrid& grid, std::uint32_t count,
                             std::uint32_t sample, const Uint4& seeds) {
-  const std::uint32_t round = sample / count, place = sample - round * count;
-  if (place >= grid.cells()) return u;
-  const Vec2 a = stratify({u.x, u.y}, grid, place, seeds.x + round * seeds.z);
-  const Vec2 b = stratify({u.z, u.w}, grid, place, seeds.y + round * seeds.w);
+  const std::uint32_t round = sample / count, index = sample - round * count;
+  if (index >= grid.cells()) return u;
+  const Vec2 a = stratify({u.x, u.y}, grid, index, seeds.x + round * seeds.z);
+  const Vec2 b = stratify({u.z, u.w}, grid, index, seeds.y + round * seeds.w);
   return {a.x, a.y, b.x, b.y};
 }
 

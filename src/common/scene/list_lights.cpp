@@ -23,22 +23,22 @@ class Lister {
   }
 
   LightListData list() {
-    list_lamps();
+    list_area_lights();
     for (const Instance& instance : scene_.instances) add_group(instance.group, &instance.to_world);
     add_group(0, nullptr);
     for (std::size_t i = 0; i < scene_.spheres.size(); ++i) add_sphere(i);
     for (const DeltaLight& light : scene_.delta_lights) {
-      if (has_place(light.kind)) add_delta(light);
+      if (has_position(light.kind)) add_delta(light);
     }
     const std::size_t first_distant = data_.lights.size();
     for (const DeltaLight& light : scene_.delta_lights) {
-      if (!has_place(light.kind)) add_delta(light);
+      if (!has_position(light.kind)) add_delta(light);
     }
     if (scene_.sun.one_minus_cos > 0.0f) add_sun();
     if (wants_tree()) data_.tree = build_light_tree(data_.lights);
     if (data_.tree.pairs.empty()) {
       make_table(0);
-      share_with_environment(data_.selection.empty() ? 0 : lamps_done_);
+      share_with_environment(data_.selection.empty() ? 0 : emitter_count_);
     } else {
       make_table(first_distant);
       share_with_tree();
@@ -50,9 +50,9 @@ class Lister {
   /// On a GPU a tree's descents can take as long as all other shading
   /// (results/log/2026-11-material-cost.md), which few lamps are not worth.
   bool wants_tree() const {
-    constexpr std::size_t few_lamps = 16;
+    constexpr std::size_t few_emitters = 16;
     return selection_ == LightSelection::tree ||
-           (selection_ == LightSelection::automatic && lamps_done_ > few_lamps);
+           (selection_ == LightSelection::automatic && emitter_count_ > few_emitters);
   }
 
   /// Of lights from `first` on.
@@ -69,12 +69,12 @@ class Lister {
     if (total > 0) data_.selection = build_alias_table(weights);
   }
 
-  void share_with_environment(std::size_t lamps) {
+  void share_with_environment(std::size_t emitters) {
     if (scene_.environment.width == 0) return;
     const bool uniform = selection_ == LightSelection::uniform;
-    data_.environment_probability = lamps == 0 ? 1.0f
-                                    : uniform  ? 1.0f / static_cast<float>(lamps + 1)
-                                               : 0.5f;
+    data_.environment_probability = emitters == 0 ? 1.0f
+                                    : uniform     ? 1.0f / static_cast<float>(emitters + 1)
+                                                  : 0.5f;
   }
 
   /// The environment, what else has no place, and the tree: as often each.
@@ -85,11 +85,11 @@ class Lister {
   }
 
   /// The lights from `first` on are one lamp.
-  void finish_lamp(std::size_t first) {
+  void finish_emitter(std::size_t first) {
     double total = 0;
     for (std::size_t i = first; i < data_.lights.size(); ++i) total += data_.lights[i].weight;
     if (!(total > 0)) return;
-    ++lamps_done_;
+    ++emitter_count_;
     if (selection_ != LightSelection::uniform) return;
     for (std::size_t i = first; i < data_.lights.size(); ++i) {
       data_.lights[i].weight = static_cast<float>(data_.lights[i].weight / total);
@@ -101,19 +101,19 @@ class Lister {
   }
 
   /// A mesh that shines.
-  struct Lamp {
+  struct EmissiveMesh {
     const Mesh* mesh;
     std::uint32_t first_triangle;  ///< counted through all meshes
   };
 
   /// Triangles that shine are numbered through the meshes of a group.
-  void list_lamps() {
+  void list_area_lights() {
     std::map<std::uint32_t, std::uint32_t> ranks;  // by group
     std::uint32_t first_triangle = 0;
     for (const Mesh& mesh : scene_.meshes) {
       const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
       if (shines(mesh)) {
-        lamps_[mesh.group].push_back({&mesh, first_triangle});
+        emissive_meshes_[mesh.group].push_back({&mesh, first_triangle});
         data_.rank.resize(first_triangle + count);
         std::uint32_t& next = ranks[mesh.group];
         std::iota(data_.rank.end() - count, data_.rank.end(), next);
@@ -125,7 +125,8 @@ class Lister {
 
   void add_group(std::uint32_t group, const Affine* to_world) {
     data_.first.push_back(static_cast<std::uint32_t>(data_.lights.size()));
-    for (const Lamp& lamp : lamps_[group]) add_placed(*lamp.mesh, lamp.first_triangle, to_world);
+    for (const EmissiveMesh& emissive : emissive_meshes_[group])
+      add_placed(*emissive.mesh, emissive.first_triangle, to_world);
   }
 
   void add_placed(const Mesh& mesh, std::uint32_t first_triangle, const Affine* to_world) {
@@ -146,7 +147,7 @@ class Lister {
         edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
       }
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
-      light.kind = turned ? LightKind::turned_triangle : LightKind::triangle;
+      light.kind = turned ? LightKind::flipped_triangle : LightKind::triangle;
       light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
       const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
@@ -160,7 +161,7 @@ class Lister {
       light.emission_texture = emission.texture;
       data_.lights.push_back(light);
     }
-    finish_lamp(data_.lights.size() - mesh.triangles.size());
+    finish_emitter(data_.lights.size() - mesh.triangles.size());
   }
 
   void add_sphere(std::size_t i) {
@@ -176,7 +177,7 @@ class Lister {
     light.radiance = radiance;
     light.triangle = light.emission_texture = no_texture;
     data_.lights.push_back(light);
-    finish_lamp(data_.lights.size() - 1);
+    finish_emitter(data_.lights.size() - 1);
   }
 
   void add_delta(const DeltaLight& delta) {
@@ -198,7 +199,7 @@ class Lister {
     }
     light.weight = inverse_pi * luminance(delta_light_power(delta, radius_));
     data_.lights.push_back(light);
-    finish_lamp(data_.lights.size() - 1);
+    finish_emitter(data_.lights.size() - 1);
   }
 
   void add_sun() {
@@ -213,14 +214,14 @@ class Lister {
     // As a directional light of its irradiance.
     light.weight = 2 * pi * sun.one_minus_cos * radius_ * radius_ * luminance(sun.radiance);
     data_.lights.push_back(light);
-    finish_lamp(data_.lights.size() - 1);
+    finish_emitter(data_.lights.size() - 1);
   }
 
   const SceneData& scene_;
   LightSelection selection_;
   float radius_;
-  std::size_t lamps_done_ = 0;                        ///< that give any light
-  std::map<std::uint32_t, std::vector<Lamp>> lamps_;  ///< by group
+  std::size_t emitter_count_ = 0;                                       ///< that give any light
+  std::map<std::uint32_t, std::vector<EmissiveMesh>> emissive_meshes_;  ///< by group
   LightListData data_;
 };
 

@@ -42,11 +42,11 @@ inline bool uses_tangent(const MaterialDescription& material) {
 
 /// Of a BSDF whose parameters are a colour and, perhaps, a number.
 template <class Bsdf>
-PT_HD MaterialDescription describe(const Color& color, float number = 0.0f) {
+PT_HD MaterialDescription describe(const Color& color, float second = 0.0f) {
   MaterialDescription m;
   m.kind = kind_of<Bsdf>;
   m.parameters[0].value = color;
-  m.parameters[1].value = Color(number);
+  m.parameters[1].value = Color(second);
   return m;
 }
 

@@ -97,8 +97,8 @@ HalfScan prepare_half_spheres(std::span<const Sphere> spheres) {
   const auto groups = static_cast<std::uint32_t>(scan.groups.size());
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const bool is_large = !(extent_of(spheres[i]) <= limit);
-    const HalfPlace place = half_place(i, groups);
-    store(scan.groups[place.group], place.byte,
+    const HalfIndex index = half_index(i, groups);
+    store(scan.groups[index.group], index.byte,
           is_large ? HalfSphere{} : convert(spheres[i], scan.scale));
   }
   return scan;

@@ -80,7 +80,7 @@ void list_opacities(SceneData& scene) {
   if (!any) return;
   for (const MaterialDescription& m : scene.materials) {
     Opacity& opacity = scene.opacities.emplace_back(m.opacity);
-    if (is_hidden_lamp(scene, m)) opacity.cutoff = Opacity::lamp_hidden;
+    if (is_hidden_light(scene, m)) opacity.cutoff = Opacity::light_hidden;
   }
   for (const std::uint32_t material : scene.sphere_material) {
     if (!scene.materials[material].opacity.is_opaque()) {
@@ -94,12 +94,12 @@ void list_opacities(SceneData& scene) {
 
 }  // namespace
 
-bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material) {
+bool is_hidden_light(const SceneData& scene, const MaterialDescription& material) {
   return scene.camera.hides_emitters && !is_black(material.emission.radiance);
 }
 
 bool is_masked(const SceneData& scene, const MaterialDescription& material) {
-  return !material.opacity.is_opaque() || is_hidden_lamp(scene, material);
+  return !material.opacity.is_opaque() || is_hidden_light(scene, material);
 }
 
 bool is_rough_conductor(const MaterialDescription& material) {

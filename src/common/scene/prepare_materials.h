@@ -9,7 +9,7 @@ namespace pt {
 bool is_rough_conductor(const MaterialDescription& material);
 
 /// Camera rays do not meet it.
-bool is_hidden_lamp(const SceneData& scene, const MaterialDescription& material);
+bool is_hidden_light(const SceneData& scene, const MaterialDescription& material);
 
 /// Whether its triangles are there in part, or not for all rays.
 bool is_masked(const SceneData& scene, const MaterialDescription& material);

@@ -46,7 +46,7 @@ void prepare_scene(SceneData& scene, const Options& options) {
   check_scene_options(options, scene);
   prepare_materials(scene, options.multiple_scattering);
   prepare_filter(scene, filter_of(options, scene));
-  if (is_lean(scene, options)) {
+  if (has_specialized_kernels(scene, options)) {
     prepare_primitives_only(scene, options);
   } else {
     prepare_triangles(scene, options);

@@ -50,7 +50,7 @@ struct Scene {
   bool has_only_triangles() const {
     return primitives.count() == 0 && triangles.instance_count == 0;
   }
-  PT_HD Material material(std::uint32_t number) const { return load_wide(&materials[number]); }
+  PT_HD Material material(std::uint32_t index) const { return load_wide(&materials[index]); }
   /// `material` shines.
   PT_HD Emission emission(const Material& material) const {
     return load_wide(&emissions[material.emission]);

@@ -29,10 +29,12 @@ std::string unless(E value, Usual... usual) {
   return ((value == usual) || ...) ? "" : to_string(value);
 }
 
-bool has_triangles(const SceneData& scene, const Options& o) { return !is_lean(scene, o); }
+bool has_triangles(const SceneData& scene, const Options& o) {
+  return !has_specialized_kernels(scene, o);
+}
 
 bool has_triangles_alone(const SceneData& scene, const Options& o) {
-  return !is_lean(scene, o) && scene.spheres.empty() && scene.instances.empty() &&
+  return !has_specialized_kernels(scene, o) && scene.spheres.empty() && scene.instances.empty() &&
          !is_limited(scene.camera);
 }
 
@@ -88,10 +90,12 @@ constexpr SceneRule rules[] = {
      [](const Options& o) {
        return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
      },
-     is_lean, "holds the spheres of scenes without triangles; expected global or auto"},
+     has_specialized_kernels,
+     "holds the spheres of scenes without triangles; expected global or auto"},
     {"branching", [](const Options& o) { return unless(o.branching, Branching::divergent); },
-     is_lean, paper},
-    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); }, is_lean, paper},
+     has_specialized_kernels, paper},
+    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); },
+     has_specialized_kernels, paper},
     {"multiple-scattering",
      [](const Options& o) { return std::string(o.multiple_scattering ? "on" : ""); },
      has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
@@ -106,7 +110,7 @@ bool needs_triangles(const MaterialDescription& material) {
 
 }  // namespace
 
-bool is_lean(const SceneData& scene, const Options& o) {
+bool has_specialized_kernels(const SceneData& scene, const Options& o) {
   return has_primitives_only(scene) && o.sampling == DirectionSampling::bsdf &&
          o.mis == MisHeuristic::power && o.sampler == SamplerKind::independent &&
          o.shade != Shade::material && o.integrator != IntegratorKind::mlt;

@@ -11,19 +11,20 @@ bool has_primitives_only(const SceneData& scene);
 
 /// Whether the lean kernels of the paper's scenes can render it as the options say; else those of
 /// all other scenes do, which have more ways to sample.
-bool is_lean(const SceneData& scene, const Options& options);
+bool has_specialized_kernels(const SceneData& scene, const Options& options);
 
 /// Throws Error when the options ask for what this scene cannot have.
 void check_scene_options(const Options& options, const SceneData& scene);
 
 /// More threads in a block would leave too few registers to a megakernel whose warps vote.
-inline constexpr int voting_threads_max = 256;
+inline constexpr int phase_voting_threads_max = 256;
 
 /// Whether the options suit it (megakernel/trace_paths_voting.cuh): warps fetch paths, and blocks
 /// are of whole warps, at most so many.
 inline bool may_vote(const Options& options) {
   const int threads = options.block.x * options.block.y;
-  return options.work == Work::persistent && threads % 32 == 0 && threads <= voting_threads_max;
+  return options.work == Work::persistent && threads % 32 == 0 &&
+         threads <= phase_voting_threads_max;
 }
 
 inline bool is_on_cuda(const Options& options) {

@@ -10,9 +10,9 @@
 
 namespace pt {
 
-double mean_luminance(const Texture* textures, std::uint32_t number, const std::byte* texels,
+double mean_luminance(const Texture* textures, std::uint32_t texture_index, const std::byte* texels,
                       const Color& factor) {
-  const Texture& texture = textures[number];
+  const Texture& texture = textures[texture_index];
   if (texture.kind == TextureKind::checkerboard) {
     const auto mean_of = [&](int square, const Color& color) {
       const std::uint32_t nested = texture.nested[square];

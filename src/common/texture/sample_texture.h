@@ -44,13 +44,12 @@ PT_HD float wrap_coordinate(float t, TextureWrap wrap) {
 /// The linear colour of a texel; x < width, y < height, row 0 the image's head.
 PT_HD Color load_texel(const Texture& texture, const std::byte* texels, std::uint32_t x,
                        std::uint32_t y) {
-  const std::size_t number = static_cast<std::size_t>(y) * texture.width + x;
+  const std::size_t texel = static_cast<std::size_t>(y) * texture.width + x;
   if (texture.format == TextureFormat::rgb32f) {
-    const auto* rgb = reinterpret_cast<const float*>(texels + texture.offset) + 3 * number;
+    const auto* rgb = reinterpret_cast<const float*>(texels + texture.offset) + 3 * texel;
     return {rgb[0], rgb[1], rgb[2]};
   }
-  const std::uint32_t rgba =
-      reinterpret_cast<const std::uint32_t*>(texels + texture.offset)[number];
+  const std::uint32_t rgba = reinterpret_cast<const std::uint32_t*>(texels + texture.offset)[texel];
   const std::uint32_t r = rgba & 0xffu, g = (rgba >> 8) & 0xffu, b = (rgba >> 16) & 0xffu;
   if (texture.format == TextureFormat::srgb8) {
     return {srgb_to_linear(r), srgb_to_linear(g), srgb_to_linear(b)};
@@ -132,9 +131,9 @@ PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, cons
 
 /// The same of any of the scene's textures, by its number. What a checkerboard names has its own
 /// map of the surface's coordinates, as in Mitsuba.
-PT_HD Color sample_texture(const Texture* textures, std::uint32_t number, const std::byte* texels,
-                           const Vec2& uv) {
-  const Texture* texture = &textures[number];
+PT_HD Color sample_texture(const Texture* textures, std::uint32_t texture_index,
+                           const std::byte* texels, const Vec2& uv) {
+  const Texture* texture = &textures[texture_index];
   Color factor(1.0f);
   while (texture->kind == TextureKind::checkerboard) {
     const bool first = is_first_square(map_coordinates(*texture, uv));

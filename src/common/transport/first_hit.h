@@ -52,7 +52,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   FirstHit first;
   if (hit.is_miss()) return first;
   const Surface surface = surface_at<Traits>(scene, ray, hit);
-  first.material = surface.material_number;
+  first.material = surface.material_index;
   first.distance = hit.t;
   first.position = surface.point.position;
   first.normal = surface.point.normal;
@@ -71,7 +71,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   if constexpr (Traits::geometry != Geometry::spheres_and_quads) {
     const Triangle triangle = load_wide(&scene.triangles.triangles[hit.primitive - primitives]);
     first.primitive = primitives + triangle.id;
-    if (is_placed<Traits>(scene)) first.instance = scene.triangles.instances[hit.instance].number;
+    if (is_placed<Traits>(scene)) first.instance = scene.triangles.instances[hit.instance].index;
     if (!surface.material.is(Material::textured)) {
       first.uv = triangle_uv<Traits>(scene, ray, hit, triangle);
     }

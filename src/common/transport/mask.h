@@ -78,9 +78,10 @@ struct MaskTest {
     }
     const float there = opacity_at(scene, opacity, uv);
     if (opacity.cutoff > 0.0f) return !(there >= opacity.cutoff);
-    const std::uint32_t number =
-        scene.triangles.instance_count > 0 ? scene.triangles.instances[instance].number : 0;
-    return !(to_unit_float(combine_hash(combine_hash(ray_key, triangle.id), number)) < there);
+    const std::uint32_t instance_index =
+        scene.triangles.instance_count > 0 ? scene.triangles.instances[instance].index : 0;
+    return !(to_unit_float(combine_hash(combine_hash(ray_key, triangle.id), instance_index)) <
+             there);
   }
 };
 

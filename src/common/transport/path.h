@@ -12,7 +12,7 @@ PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 struct PathState {
   Color beta = Color(1.0f);  ///< throughput: product of f |cos| / pdf so far
-  std::uint32_t number = 0;  ///< the path's place in the batch: tells its pixel and sample
+  std::uint32_t index = 0;   ///< the path's place in the batch: tells its pixel and sample
   std::uint16_t rays = 0;    ///< traced so far, the camera ray included
   std::uint16_t shadow_rays = 0;
   float bsdf_pdf = delta_distribution;  ///< density that chose the current ray, for MIS

@@ -18,7 +18,7 @@ PT_HD PathRecord pack_origin(const Ray& ray, const PathState& path) {
   return pack(ray.origin, float_to_bits(path.bsdf_pdf));
 }
 PT_HD PathRecord pack_direction(const Ray& ray, const PathState& path) {
-  return pack(ray.direction, path.number);
+  return pack(ray.direction, path.index);
 }
 PT_HD PathRecord pack_throughput(const PathState& path) {
   return pack(path.beta, path.packed_rays());

@@ -4,11 +4,11 @@
 //
 //   void emit(const PathState&, const Color&)      joins the path's sample
 //   void cast(const PathState&, const ShadowRay&)  its radiance joins if the ray is not occluded
-//   void go_on(const PathState&, const Ray&)       the path's next ray
+//   void continue_path(const PathState&, const Ray&)       the path's next ray
 //   void end(const PathState&)                     there is none
 //
-// A ray that leaves the scene: emit, end. One that meets a surface: emit, perhaps cast, then go_on
-// or end. `path.rays` counts the ray that has ended.
+// A ray that leaves the scene: emit, end. One that meets a surface: emit, perhaps cast, then
+// continue_path or end. `path.rays` counts the ray that has ended.
 #pragma once
 
 #include "common/transport/generate_camera_path.h"
@@ -39,7 +39,7 @@ PT_HD void follow_scattering(const Scattering& scattering, const PathState& path
     sink.cast(path, scattering.shadow);
   }
   if (scattering.alive) {
-    sink.go_on(path, scattering.ray);
+    sink.continue_path(path, scattering.ray);
   } else {
     sink.end(path);
   }
@@ -91,7 +91,7 @@ struct PathRegisters {
       radiance = add_rounded(radiance, shadow.radiance);
     }
   }
-  PT_HD void go_on(const PathState&, const Ray& next) { ray = next, alive = true; }
+  PT_HD void continue_path(const PathState&, const Ray& next) { ray = next, alive = true; }
   PT_HD void end(const PathState&) { alive = false; }
 };
 

@@ -81,7 +81,7 @@ PT_NOINLINE inline TurnedNormal turned_normal(Surface surface, Parameter map,
 
 /// One of the two materials of a blend, and a random number that is again uniform in [0, 1).
 PT_HD std::uint32_t choose_blended(const Scene& scene, const Surface& surface, float& u) {
-  const Parameter p = load_wide(&scene.parameters[surface.material_number]);
+  const Parameter p = load_wide(&scene.parameters[surface.material_index]);
   const float weight =
       fminf(fmaxf(grey_of(textured_apart(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
   const bool second = u < weight;
@@ -105,13 +105,13 @@ PT_HD void resolve_material(const Scene& scene, const Vec3& wo, float& u, Surfac
       next = choose_blended(scene, surface, u);
     } else {
       const TurnedNormal map =
-          turned_normal(surface, load_wide(&scene.parameters[surface.material_number]),
+          turned_normal(surface, load_wide(&scene.parameters[surface.material_index]),
                         scene.textures, scene.texels, wo, turned);
       surface.shading_normal = map.normal;
       surface.base_normal = map.base;
       surface.map_roughness2 = map.roughness2;
     }
-    surface.material_number = next;
+    surface.material_index = next;
     surface.material = scene.material(next);
   }
 }

@@ -46,7 +46,7 @@ PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, c
   PlainLight result = {{s.light.wi, s.light.end, light.radiance, s.light.pdf}};
   if (light.emission_texture != no_texture) {
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
-    if (light.kind == LightKind::turned_triangle) b = {b.x, b.z, b.y};
+    if (light.kind == LightKind::flipped_triangle) b = {b.x, b.z, b.y};
     result.uv = texture_coordinates(scene, light.triangle, light.triangle != no_texture, b);
   }
   return result;
@@ -128,11 +128,11 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
     const Triangle& hit_triangle =
         scene.triangles.triangles[hit.primitive - scene.primitives.count()];
     const std::uint32_t instance =
-        is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].number : 0;
-    const std::uint32_t number = scene.light_map.of_triangle(hit_triangle.id, instance);
+        is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].index : 0;
+    const std::uint32_t light_index = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
-    const Light light = load_wide(&selector.lights[number]);
-    return light_pmf_apart(selector, ray.origin, receiver, number) *
+    const Light light = load_wide(&selector.lights[light_index]);
+    return light_pmf_apart(selector, ray.origin, receiver, light_index) *
            TriangleSampler(light.a - ray.origin, light.b, light.c).pdf(ray.direction, hit.t);
   }
 }

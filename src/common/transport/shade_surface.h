@@ -153,7 +153,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     next = sample_direction(bsdf, directions, wo, Vec3(scatter));
   });
   // The same frame, made anew where registers are scarce.
-  const Vec3 normal = has_lights ? anew(surface.shading_normal) : surface.shading_normal;
+  const Vec3 normal =
+      has_lights ? optimization_barrier(surface.shading_normal) : surface.shading_normal;
   const Vec3 wi =
       (has_lights ? shading_frame<Traits>(normal, surface.dp_du) : frame).to_world(next.wi);
   if constexpr (full) {

@@ -11,7 +11,7 @@ namespace pt {
 struct Surface {
   SurfacePoint point;
   Vec3 shading_normal;
-  std::uint32_t material_number;
+  std::uint32_t material_index;
   Material material;
   Vec2 uv = Vec2(0.0f);  ///< where the material is textured
   // Lighting::full. Derivatives of the place where the material needs tangents; 0: there are none.
@@ -27,9 +27,10 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
 }
 
 /// The same, not inlined: a lookup's code is long, and there would be dozens of it.
-PT_NOINLINE inline Color multiply_texture(Color c, const Texture* textures, std::uint32_t number,
-                                          const std::byte* texels, Vec2 uv) {
-  return c * sample_texture(textures, number, texels, uv);
+PT_NOINLINE inline Color multiply_texture(Color c, const Texture* textures,
+                                          std::uint32_t texture_index, const std::byte* texels,
+                                          Vec2 uv) {
+  return c * sample_texture(textures, texture_index, texels, uv);
 }
 PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
                            const Vec2& uv) {
@@ -46,7 +47,7 @@ class SurfaceParameters {
   PT_HD SurfaceParameters(const Scene& scene, const Surface& surface)
       : scene_(scene),
         surface_(surface),
-        first_(value_of(load_wide(&scene.parameters[surface.material_number]))) {}
+        first_(value_of(load_wide(&scene.parameters[surface.material_index]))) {}
 
   PT_HD Color color(int i) const { return i == 0 ? first_ : read(i); }
   PT_HD float scalar(int i) const { return color(i).x; }
@@ -146,7 +147,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   Vec3 normal = cross_rounded(triangle.v1 - triangle.v0, triangle.v2 - triangle.v0);
   Vec3 shading_normal = has_normals ? corners.normal_at(b) : normal;
   if (placed) {
-    const Affine to_world = load_wide(&scene.to_world[instance.number]);
+    const Affine to_world = load_wide(&scene.to_world[instance.index]);
     position = to_world.point(position);
     extent = to_world.absolute(extent);
     size = to_world.absolute(size);
@@ -165,7 +166,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   }
   if constexpr (Traits::lighting == Lighting::full) {
     if (surface.material.is(Material::tangents) && has_uvs) {
-      set_derivatives(triangle, corners, placed ? &scene.to_world[instance.number] : nullptr,
+      set_derivatives(triangle, corners, placed ? &scene.to_world[instance.index] : nullptr,
                       surface);
     }
   }
@@ -173,7 +174,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
 }
 
 /// The material that a ray met.
-PT_HD std::uint32_t material_number_at(const Scene& scene, const Hit& hit) {
+PT_HD std::uint32_t material_index_at(const Scene& scene, const Hit& hit) {
   const std::uint32_t primitives = scene.primitives.count();
   return hit.primitive < primitives
              ? scene.material_of[hit.primitive]

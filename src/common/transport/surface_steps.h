@@ -46,8 +46,8 @@ struct StreamedSteps {
   /// The block's number is hidden from the optimiser, which else would keep a block that it
   /// recognises in registers.
   PT_HD Vec4 draw(std::uint32_t block) const {
-    auto stream = source.open(samples.id_of(path.number));
-    return stream.draw(float_to_bits(anew(bits_to_float(block))));
+    auto stream = source.open(samples.id_of(path.index));
+    return stream.draw(float_to_bits(optimization_barrier(bits_to_float(block))));
   }
 };
 template <class Source, class Samples, class Sink>

@@ -16,17 +16,17 @@ constexpr TreeCosts primitive_costs = {1.0f, 0.5f, leaf_size_max};
 // Sorts `order` by kind, keeping each kind's sequence, and renumbers the leaves.
 void number_by_kind(Bvh2& tree, std::uint32_t first_of_second_kind) {
   const auto is_first = [&](std::uint32_t primitive) { return primitive < first_of_second_kind; };
-  std::vector<std::uint32_t> place(tree.order.size()), sorted(tree.order.size());
+  std::vector<std::uint32_t> new_index(tree.order.size()), sorted(tree.order.size());
   std::uint32_t first = 0;
   auto second =
       static_cast<std::uint32_t>(std::count_if(tree.order.begin(), tree.order.end(), is_first));
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    place[i] = is_first(tree.order[i]) ? first++ : second++;
-    sorted[place[i]] = tree.order[i];
+  for (std::size_t i = 0; i < new_index.size(); ++i) {
+    new_index[i] = is_first(tree.order[i]) ? first++ : second++;
+    sorted[new_index[i]] = tree.order[i];
   }
   for (Bvh2Node& node : tree.nodes) {
     for (std::uint32_t& child : node.child) {
-      if (is_leaf(child)) child = make_leaf(place[leaf_first(child)], leaf_count(child));
+      if (is_leaf(child)) child = make_leaf(new_index[leaf_first(child)], leaf_count(child));
     }
   }
   tree.order = std::move(sorted);

@@ -98,13 +98,13 @@ BuiltGroup list_triangles(const MeshTriangles& triangles) {
 
 /// Appends the group's tree, and its triangles in the order of the tree's slots. Returns who built
 /// it.
-std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles, std::uint32_t number,
-                      const TreeOptions& options) {
+std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles,
+                      std::uint32_t group_index, const TreeOptions& options) {
   BuiltGroup built = options.accel == AccelKind::bvh2 || options.accel == AccelKind::cwbvh
                          ? build_tree(triangles, options)
                          : list_triangles(triangles);
   GroupTree group;
-  group.group = number;
+  group.group = group_index;
   group.bounds = built.bounds;
   group.first_slot = static_cast<std::uint32_t>(tree.triangles.size());
   group.slot_count = static_cast<std::uint32_t>(built.order.size());

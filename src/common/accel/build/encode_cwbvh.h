@@ -27,8 +27,8 @@ struct CwbvhGrid {
 
   /// The largest q at or below x >= origin, and the smallest at or above; planes that x misses by
   /// no more than the tolerance count as met.
-  PT_HD float floor_of(float x) const { return floorf(place_of(x) + snap); }
-  PT_HD float ceil_of(float x) const { return ceilf(fmaxf(place_of(x) - snap, 0.0f)); }
+  PT_HD float floor_of(float x) const { return floorf(coordinate_of(x) + snap); }
+  PT_HD float ceil_of(float x) const { return ceilf(fmaxf(coordinate_of(x) - snap, 0.0f)); }
 
   // With the margins of hit_bounds, walls of a room up to twice as long as wide are flat. What is
   // left of the tolerance is the traversal's.
@@ -36,7 +36,7 @@ struct CwbvhGrid {
   static constexpr float fit = 0.5f / 4096.0f;
 
  private:
-  PT_HD float place_of(float x) const { return add_rounded(x, -origin) / step; }
+  PT_HD float coordinate_of(float x) const { return add_rounded(x, -origin) / step; }
 };
 
 /// A step of 16 significant bits, rounded to nearest; never 0.

@@ -55,23 +55,23 @@ Bounds world_bounds(const Bounds& box, const Affine& to_object) {
   return {Vec3(low - margin), Vec3(high + margin)};
 }
 
-InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t number) {
-  return {to_object,        group.root,       static_cast<std::uint32_t>(number),
+InstanceRecord make_record(const GroupTree& group, const Affine& to_object, std::size_t index) {
+  return {to_object,        group.root,       static_cast<std::uint32_t>(index),
           group.first_slot, group.slot_count, world_bounds(group.bounds, to_object)};
 }
 
-const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t number) {
+const GroupTree* find_group(std::span<const GroupTree> groups, std::uint32_t index) {
   const auto found = std::lower_bound(
-      groups.begin(), groups.end(), number,
+      groups.begin(), groups.end(), index,
       [](const GroupTree& group, std::uint32_t wanted) { return group.group < wanted; });
-  return found == groups.end() || found->group != number ? nullptr : &*found;
+  return found == groups.end() || found->group != index ? nullptr : &*found;
 }
 
 std::vector<InstanceRecord> place_instances(std::span<const GroupTree> groups,
                                             std::span<const Instance> instances) {
   std::vector<InstanceRecord> records;
-  const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t number) {
-    if (group != nullptr) records.push_back(make_record(*group, to_object, number));
+  const auto add = [&](const GroupTree* group, const Affine& to_object, std::size_t index) {
+    if (group != nullptr) records.push_back(make_record(*group, to_object, index));
   };
   for (std::size_t i = 0; i < instances.size(); ++i) {
     add(find_group(groups, instances[i].group), inverse(instances[i].to_world), i);

@@ -35,10 +35,10 @@ std::size_t first_invalid(const Mesh& mesh) {
       [](std::size_t a, std::size_t b) { return std::min(a, b); });
 }
 
-[[noreturn]] void throw_invalid(const Mesh& mesh, std::size_t number, std::size_t triangle) {
+[[noreturn]] void throw_invalid(const Mesh& mesh, std::size_t mesh_index, std::size_t triangle) {
   for (const std::uint32_t v : mesh.triangles[triangle].v) {
     if (v >= mesh.positions.size()) {
-      throw Error(fmt::format("mesh {}, triangle {}: vertex {}, expected less than {}", number,
+      throw Error(fmt::format("mesh {}, triangle {}: vertex {}, expected less than {}", mesh_index,
                               triangle, v, mesh.positions.size()));
     }
     const Vec3 p = mesh.positions[v];
@@ -46,10 +46,10 @@ std::size_t first_invalid(const Mesh& mesh) {
       throw Error(fmt::format(
           "mesh {}, triangle {}: vertex {} at ({}, {}, {}), expected finite coordinates within "
           "{:g}",
-          number, triangle, v, p.x, p.y, p.z, coordinate_max));
+          mesh_index, triangle, v, p.x, p.y, p.z, coordinate_max));
     }
   }
-  throw Error(fmt::format("mesh {}, triangle {}: invalid", number, triangle));
+  throw Error(fmt::format("mesh {}, triangle {}: invalid", mesh_index, triangle));
 }
 
 }  // namespace

@@ -27,10 +27,10 @@ PT_HD std::uint32_t pair_rank(const Bounds& a, const Bounds& b, int lower, int d
 }
 
 /// The other member of the pair that a cluster at `place` belongs to.
-PT_HD int pair_partner(std::uint32_t rank, int place) {
+PT_HD int pair_partner(std::uint32_t rank, int index) {
   const int distance = static_cast<int>(rank >> 1 & 7u) + 1;
-  const bool is_lower = (place >> lowest_bit(distance) & 1) == static_cast<int>(rank & 1u);
-  return is_lower ? place + distance : place - distance;
+  const bool is_lower = (index >> lowest_bit(distance) & 1) == static_cast<int>(rank & 1u);
+  return is_lower ? index + distance : index - distance;
 }
 
 }  // namespace pt

@@ -87,8 +87,8 @@ CwbvhNode encode_again(const TriangleTreeData& tree, const CwbvhNode& node,
     const int c = children.count++;
     slots.child[s] = static_cast<std::uint8_t>(c);
     children.triangles[c] = child.count;
-    children.bounds[c] = child.count == 0 ? bounds[child.place - first_node]
-                                          : slot_bounds(tree, child.place, child.count);
+    children.bounds[c] = child.count == 0 ? bounds[child.index - first_node]
+                                          : slot_bounds(tree, child.index, child.count);
   });
   return encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);
 }
@@ -98,12 +98,12 @@ void refit_cwbvh(TriangleTreeData& tree, const GroupTree& group) {
   std::vector<Bounds> bounds(nodes.size());
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {
     for_each_cwbvh_child(nodes[n], [&](int, const CwbvhChild& child) {
-      if (child.count > 0) bounds[n].grow(slot_bounds(tree, child.place, child.count));
+      if (child.count > 0) bounds[n].grow(slot_bounds(tree, child.index, child.count));
     });
   });
   for (std::size_t n = nodes.size(); n-- > 0;) {
     for_each_cwbvh_child(nodes[n], [&](int, const CwbvhChild& child) {
-      if (child.count == 0) bounds[n].grow(bounds[child.place - group.first_node]);
+      if (child.count == 0) bounds[n].grow(bounds[child.index - group.first_node]);
     });
   }
   tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t n) {

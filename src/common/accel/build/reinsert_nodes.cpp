@@ -60,10 +60,10 @@ class Reinserter {
     const std::vector<std::uint32_t> tried = largest_nodes();
     std::vector<char> gains(tried.size());
     tbb::parallel_for(std::size_t{0}, tried.size(),
-                      [&](std::size_t i) { gains[i] = find_place(tried[i]).gain > 0; });
+                      [&](std::size_t i) { gains[i] = find_best_move(tried[i]).gain > 0; });
     for (std::size_t i = 0; i < tried.size(); ++i) {
       if (gains[i] == 0) continue;
-      const Move move = find_place(tried[i]);
+      const Move move = find_best_move(tried[i]);
       if (move.gain > 0) apply(tried[i], move.at);
     }
   }
@@ -201,7 +201,7 @@ class Reinserter {
   // beside a node it costs the area of the new parent and what that node's ancestors grow by. So
   // the search goes up, and from each ancestor (the pivot, which stays as it is) down the other
   // side, as long as there may be a better place than the best.
-  Move find_place(std::uint32_t moved) const {
+  Move find_best_move(std::uint32_t moved) const {
     const Bounds& box = nodes_[moved].bounds;
     const float area = box.half_area();
     const std::uint32_t parent = nodes_[moved].parent;

@@ -12,7 +12,7 @@ namespace {
 struct Child {
   Bounds bounds;
   bool is_inner;
-  std::uint32_t place;      // of an inner node, or a leaf's first slot
+  std::uint32_t index;      // of an inner node, or a leaf's first slot
   std::uint32_t count = 0;  // of a leaf's slots
 };
 
@@ -30,7 +30,7 @@ void for_each_child(const Bvh2Node& node, Visit visit) {
 template <class Visit>
 void for_each_child(const CwbvhNode& node, Visit visit) {
   for_each_cwbvh_child(node, [&](int slot, const CwbvhChild& child) {
-    visit(Child{decode_cwbvh_bounds(node, slot), child.count == 0, child.place, child.count});
+    visit(Child{decode_cwbvh_bounds(node, slot), child.count == 0, child.index, child.count});
   });
 }
 
@@ -41,7 +41,7 @@ void add_subtree(std::span<const Node> nodes, std::uint32_t first_node, const Ch
   ++sum.nodes;
   sum.nodes_per_ray += inner.bounds.half_area() / root_area;
   sum.depth = std::max(sum.depth, depth);
-  for_each_child(nodes[inner.place - first_node], [&](const Child& child) {
+  for_each_child(nodes[inner.index - first_node], [&](const Child& child) {
     if (child.is_inner) {
       add_subtree(nodes, first_node, child, root_area, depth + 1, add_leaf, sum);
     } else {
@@ -73,7 +73,7 @@ TreeQuality measure_two_levels(std::span<const Node> nodes, std::uint32_t first_
                                std::span<const InstanceRecord> instances,
                                const QualityByRoot& groups) {
   const auto add_instances = [&](const Child& leaf, double area, int depth, TreeQuality& sum) {
-    for (std::uint32_t i = leaf.place; i < leaf.place + leaf.count; ++i) {
+    for (std::uint32_t i = leaf.index; i < leaf.index + leaf.count; ++i) {
       const TreeQuality& group = groups.at(instances[i].root);
       sum.nodes_per_ray += area * group.nodes_per_ray;
       sum.triangles_per_ray += area * group.triangles_per_ray;

@@ -16,15 +16,15 @@ namespace detail {
 
 // An array that stays in registers: places are found by comparing, not by addressing.
 template <class T>
-PT_HD void set_at(T (&array)[cwbvh_width], int place, T value) {
+PT_HD void set_at(T (&array)[cwbvh_width], int index, T value) {
   PT_UNROLL(8)
-  for (int i = 0; i < cwbvh_width; ++i) array[i] = i == place ? value : array[i];
+  for (int i = 0; i < cwbvh_width; ++i) array[i] = i == index ? value : array[i];
 }
 template <class T>
-PT_HD T get_at(const T (&array)[cwbvh_width], int place) {
+PT_HD T get_at(const T (&array)[cwbvh_width], int index) {
   T value = array[0];
   PT_UNROLL(8)
-  for (int i = 1; i < cwbvh_width; ++i) value = i == place ? array[i] : value;
+  for (int i = 1; i < cwbvh_width; ++i) value = i == index ? array[i] : value;
   return value;
 }
 

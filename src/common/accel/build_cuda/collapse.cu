@@ -23,13 +23,13 @@ __device__ T read_shared(const T* p) {
 }
 
 // Places for a node's inner children and for its primitives.
-struct Places {
+struct Offsets {
   std::uint32_t node, slot;
 };
 
 // One atomic operation per warp. `nodes` <= 8 and `slots` <= 24 are what this lane needs.
-__device__ Places allocate(CollapseCounters* counters, std::uint32_t nodes, std::uint32_t slots,
-                           int lane) {
+__device__ Offsets allocate(CollapseCounters* counters, std::uint32_t nodes, std::uint32_t slots,
+                            int lane) {
   const std::uint32_t mine = nodes << 16 | slots;
   std::uint32_t sum = mine;
   for (int step = 1; step < 32; step *= 2) {
@@ -49,15 +49,15 @@ __device__ Places allocate(CollapseCounters* counters, std::uint32_t nodes, std:
 
 struct QueueWriter {
   const CollapseJob& job;
-  Places places;
+  Offsets offsets;
   std::uint32_t depth;  // of the children
 
   __device__ void push_node(TreeRef ref) {
     volatile std::uint64_t* queue = job.queue;
-    queue[places.node++] = pack(depth, ref);
+    queue[offsets.node++] = pack(depth, ref);
   }
   __device__ void push_primitives(TreeRef ref) {
-    for_each_primitive(job.tree, ref, [&](std::uint32_t i) { job.order[places.slot++] = i; });
+    for_each_primitive(job.tree, ref, [&](std::uint32_t i) { job.order[offsets.slot++] = i; });
   }
 };
 
@@ -84,13 +84,13 @@ __device__ void drain_queue(const CollapseJob& job, const Maker& maker) {
       children = maker.choose(static_cast<TreeRef>(item));
       maker.count(children, nodes, slots);
     }
-    const Places places = allocate(job.counters, nodes, slots, lane);
+    const Offsets offsets = allocate(job.counters, nodes, slots, lane);
     if (!works) continue;
     const auto depth = static_cast<std::uint32_t>(item >> 32);
-    if (places.node + nodes > job.capacity) {
+    if (offsets.node + nodes > job.capacity) {
       job.counters->overflowed = 1;
     } else {
-      maker.write(k, children, QueueWriter{job, places, depth + 1});
+      maker.write(k, children, QueueWriter{job, offsets, depth + 1});
     }
     depth_max = max(depth_max, depth);
     k += gridDim.x * blockDim.x;
@@ -126,8 +126,8 @@ struct WideMaker {
       children.triangles[i] = (c.leaf_mask >> i & 1u) != 0 ? ref_count(c.ref[i]) : 0u;
     }
     const CwbvhSlots slots = assign_cwbvh_slots(children);
-    store_wide(&nodes[k], encode_cwbvh_node(children, slots, job.first_node + queue.places.node,
-                                            job.first_slot + queue.places.slot));
+    store_wide(&nodes[k], encode_cwbvh_node(children, slots, job.first_node + queue.offsets.node,
+                                            job.first_slot + queue.offsets.slot));
     for (const std::uint8_t child : slots.child) {
       if (child == no_cwbvh_child) continue;
       const TreeRef ref = detail::get_at(c.ref, child);
@@ -180,10 +180,10 @@ struct BinaryMaker {
       if (i == 1 && c.ref[0] == c.ref[1]) {
         node.child[1] = node.child[0];
       } else if (c.is_leaf[i]) {
-        node.child[i] = make_leaf(job.first_slot + queue.places.slot, ref_count(c.ref[i]));
+        node.child[i] = make_leaf(job.first_slot + queue.offsets.slot, ref_count(c.ref[i]));
         queue.push_primitives(c.ref[i]);
       } else {
-        node.child[i] = job.first_node + queue.places.node;
+        node.child[i] = job.first_node + queue.offsets.node;
         queue.push_node(c.ref[i]);
       }
     }

@@ -25,11 +25,11 @@ constexpr int hploc_block = 128;
 
 struct Cluster {
   TreeRef ref;  // nobody: none
-  std::uint32_t place;
+  std::uint32_t node_index;
 };
 
 __device__ std::uint64_t pack(const Cluster& c) {
-  return static_cast<std::uint64_t>(c.place) << 32 | c.ref;
+  return static_cast<std::uint64_t>(c.node_index) << 32 | c.ref;
 }
 __device__ Cluster unpack(std::uint64_t bits) {
   return {static_cast<TreeRef>(bits), static_cast<std::uint32_t>(bits >> 32)};
@@ -80,9 +80,9 @@ __device__ int merge_pairs(const HierarchyJob& job, WarpClusters& clusters, int 
     const auto costs = costs_of<Costs>(job, mine.ref, box);
     const auto other_costs = costs_of<Costs>(job, other.ref, other_box);
     box.grow(other_box);
-    store_wide(&job.nodes[mine.place], BuildNode{box.min, mine.ref, box.max, other.ref});
-    Costs::join(job, mine.place, costs, other_costs, box.half_area(), size);
-    mine = {make_ref(size, mine.place), other.place};
+    store_wide(&job.nodes[mine.node_index], BuildNode{box.min, mine.ref, box.max, other.ref});
+    Costs::join(job, mine.node_index, costs, other_costs, box.half_area(), size);
+    mine = {make_ref(size, mine.node_index), other.node_index};
   }
   const bool stays = lane < count && !(pairs && lane > partner);
   const unsigned staying = __ballot_sync(all_lanes, stays);
@@ -96,9 +96,9 @@ __device__ int merge_pairs(const HierarchyJob& job, WarpClusters& clusters, int 
 __device__ int load_clusters(const HierarchyJob& job, std::uint32_t first, std::uint32_t split,
                              std::uint32_t last, WarpClusters& clusters, int lane) {
   const bool is_left = lane < kept;
-  const std::uint32_t place = is_left ? first + lane : split + (lane - kept);
-  const bool is_inside = place < (is_left ? split : last + 1);
-  const Cluster mine = is_inside ? unpack(__ldcg(&job.pairs[place])) : Cluster{nobody, 0};
+  const std::uint32_t index = is_left ? first + lane : split + (lane - kept);
+  const bool is_inside = index < (is_left ? split : last + 1);
+  const Cluster mine = is_inside ? unpack(__ldcg(&job.pairs[index])) : Cluster{nobody, 0};
   const bool is_found = mine.ref != nobody;
   const unsigned found = __ballot_sync(all_lanes, is_found);
   if (is_found) {

@@ -63,8 +63,8 @@ __device__ Bounds refit_node(const RefitJob& job, CwbvhNode& node) {
     const int c = children.count++;
     slots.child[s] = static_cast<std::uint8_t>(c);
     children.triangles[c] = child.count;
-    children.bounds[c] = child.count == 0 ? inner_bounds(job, child.place)
-                                          : slot_bounds(job, child.place, child.count);
+    children.bounds[c] = child.count == 0 ? inner_bounds(job, child.index)
+                                          : slot_bounds(job, child.index, child.count);
     all.grow(children.bounds[c]);
   });
   node = encode_cwbvh_node(children, slots, node.child_base, node.triangle_base);

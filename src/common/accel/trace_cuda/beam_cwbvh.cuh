@@ -97,8 +97,8 @@ class BeamTracer {
 
   /// Takes up to four nodes from the stack; lane l tests a child of the (l / 8)th.
   __device__ void step_down() {
-    const int place = size_ - 1 - static_cast<int>(lane_ >> 3);
-    const CwbvhNode* node = &tree_.cwbvh[memory_.stack[max(place, 0)]];
+    const int index = size_ - 1 - static_cast<int>(lane_ >> 3);
+    const CwbvhNode* node = &tree_.cwbvh[memory_.stack[max(index, 0)]];
     const uint4 head = __ldg(reinterpret_cast<const uint4*>(node));
     const uint4 more = __ldg(reinterpret_cast<const uint4*>(node) + 1);
     const Planes x = planes(0, node, __uint_as_float(head.x), head.w);
@@ -108,7 +108,7 @@ class BeamTracer {
     const std::uint32_t bit = 1u << slot_, before = bit - 1u;
     const std::uint32_t leaf_mask = more.x & 0xffu, pair_mask = more.y & 0xffu;
     const bool is_inner = (head.w & bit) != 0, is_used = is_inner || (leaf_mask & bit) != 0;
-    const bool is_hit = place >= 0 && is_used && beam_meets(memory_.beam, near, far, t_max_);
+    const bool is_hit = index >= 0 && is_used && beam_meets(memory_.beam, near, far, t_max_);
     const unsigned below = (1u << lane_) - 1;
     const unsigned inner = __ballot_sync(whole_warp, is_hit && is_inner);
     const unsigned leaves = __ballot_sync(whole_warp, is_hit && !is_inner);

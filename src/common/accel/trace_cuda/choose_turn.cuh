@@ -10,13 +10,13 @@ __device__ inline bool warp_steps(int stepping, int testing) { return stepping >
 
 /// Likewise where there are instances, or where lanes speculate, of which some want both: a test
 /// that comes too late lets these wait. Found by simulation, as warp_steps, and by measurement.
-enum class Turn { step, test, enter };
+enum class Phase { step, test, enter };
 template <class Lane>
-__device__ Turn choose_turn(int stepping, int testing, int entering) {
+__device__ Phase choose_phase(int stepping, int testing, int entering) {
   const bool steps = Lane::is_speculative ? 2 * stepping >= 3 * testing
                                           : warp_steps(stepping, max(testing, entering));
-  if (steps) return Turn::step;
-  return testing >= entering ? Turn::test : Turn::enter;
+  if (steps) return Phase::step;
+  return testing >= entering ? Phase::test : Phase::enter;
 }
 
 }  // namespace pt

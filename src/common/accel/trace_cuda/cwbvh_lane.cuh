@@ -82,27 +82,27 @@ class CwbvhLane {
   }
 
   /// So many places park() needs.
-  static constexpr int parked_size = speculative ? 4 : 3;
+  static constexpr int suspended_size = speculative ? 4 : 3;
 
   /// Puts away where the lane is in the tree, for code between two steps that needs all registers.
   /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
   /// step changes them.
-  __device__ void park(volatile uint2* place) const {
-    place[0].x = nodes_.base;
-    place[0].y = nodes_.bits;
-    place[1].x = leaves_.base;
-    place[1].y = leaves_.bits;
-    place[2].x = static_cast<std::uint32_t>(depth_);
+  __device__ void suspend(volatile uint2* state) const {
+    state[0].x = nodes_.base;
+    state[0].y = nodes_.bits;
+    state[1].x = leaves_.base;
+    state[1].y = leaves_.bits;
+    state[2].x = static_cast<std::uint32_t>(depth_);
     if constexpr (speculative) {
-      place[3].x = later_leaves_.base;
-      place[3].y = later_leaves_.bits;
+      state[3].x = later_leaves_.base;
+      state[3].y = later_leaves_.bits;
     }
   }
-  __device__ void unpark(const volatile uint2* place, const Query& query) {
-    nodes_ = {place[0].x, place[0].y};
-    leaves_ = {place[1].x, place[1].y};
-    depth_ = static_cast<int>(place[2].x);
-    if constexpr (speculative) later_leaves_ = {place[3].x, place[3].y};
+  __device__ void resume(const volatile uint2* state, const Query& query) {
+    nodes_ = {state[0].x, state[0].y};
+    leaves_ = {state[1].x, state[1].y};
+    depth_ = static_cast<int>(state[2].x);
+    if constexpr (speculative) later_leaves_ = {state[3].x, state[3].y};
     query_ = query;
   }
 

@@ -86,8 +86,8 @@ class InstancedLane {
 
   /// Goes to the root of the next instance, if the ray meets its box before the best hit.
   __device__ void enter() {
-    const std::uint32_t number = take_first();
-    const InstanceRecord instance = load_wide(&tree_.instances[number]);
+    const std::uint32_t instance_index = take_first();
+    const InstanceRecord instance = load_wide(&tree_.instances[instance_index]);
     const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
     const Ray ray = {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
     const InstanceVisit visit = visit_instance(instance, ray, make_slab_test_ray(ray), d.w, t_max_);
@@ -99,7 +99,7 @@ class InstancedLane {
     if (depth_ > 0) push({0, mark | 1u});
     memory_.origin[lane()].w = visit.part.near;
     memory_.inverse[lane()].w = visit.part.far;
-    memory_.instance[lane()] = number;
+    memory_.instance[lane()] = instance_index;
     limit_ = visit.limit(t_max_);
     const CwbvhRay local = make_cwbvh_ray(visit.ray);
     origin_ = local.origin, inverse_ = local.inverse, triangle_ray_ = local.triangles;

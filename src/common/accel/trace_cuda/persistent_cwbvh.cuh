@@ -22,7 +22,7 @@ struct PersistentWarp {
   typename Lane::Rays rays;
   typename Lane::Memory lanes;
   int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not handed out
-  std::uint32_t number[32];  ///< by lane: of the ray whose result is not written; none
+  std::uint32_t ray_id[32];  ///< by lane: of the ray whose result is not written; none
   ReservedRays reserved;
 };
 
@@ -70,13 +70,13 @@ class PersistentTracer {
 
   /// By the whole warp; returns when all rays are done.
   __device__ void run() {
-    warp_.number[threadIdx.x & 31] = Warp::none;
-    go_on(0);
+    warp_.ray_id[threadIdx.x & 31] = Warp::none;
+    run(0);
   }
 
   /// Likewise, with lanes that may have a ray already; returns when no more rays are handed out and
-  /// at most `pausing` lanes still trace one.
-  __device__ void go_on(int pausing) {
+  /// at most `suspended_max` lanes still trace one.
+  __device__ void run(int suspended_max) {
     warp_.next_ray = warp_.ray_count = 0;
     warp_.reserved = {0, 0};
     __syncwarp();
@@ -95,13 +95,13 @@ class PersistentTracer {
       const int busy_count = __popc(busy);
       if (busy_count <= few) {
         const bool is_drained = !refill(~busy);
-        if (is_drained && busy_count <= pausing) return;
-        few = is_drained ? pausing : enough_idle;
+        if (is_drained && busy_count <= suspended_max) return;
+        few = is_drained ? suspended_max : enough_idle;
       } else {
-        const Turn turn = choose_turn<Lane>(__popc(stepping), __popc(testing), __popc(entering));
-        if (turn == Turn::step) {
+        const Phase phase = choose_phase<Lane>(__popc(stepping), __popc(testing), __popc(entering));
+        if (phase == Phase::step) {
           if (steps) lane_.step();
-        } else if (turn == Turn::test) {
+        } else if (phase == Phase::test) {
           if (tests) lane_.test_leaf(work_);
         } else if constexpr (Lane::has_instances) {
           if (enters) lane_.enter();
@@ -117,19 +117,19 @@ class PersistentTracer {
   /// Finishes the rays of idle lanes and hands out others. False: there were none.
   __device__ bool refill(unsigned idle) {
     const unsigned lane = threadIdx.x & 31;
-    if (!lane_.is_active() && warp_.number[lane] != Warp::none) {
-      work_.finish(warp_.number[lane], lane_.query());
-      warp_.number[lane] = Warp::none;
+    if (!lane_.is_active() && warp_.ray_id[lane] != Warp::none) {
+      work_.finish(warp_.ray_id[lane], lane_.query());
+      warp_.ray_id[lane] = Warp::none;
     }
     int next = warp_.next_ray, count = warp_.ray_count;
     bool are_left = next < count;
-    int place = (idle >> lane & 1u) != 0 ? next + __popc(idle & ((1u << lane) - 1)) : -1;
+    int index = (idle >> lane & 1u) != 0 ? next + __popc(idle & ((1u << lane) - 1)) : -1;
     next += __popc(idle);
     __syncwarp();
     while (true) {
-      if (place >= 0 && place < count) begin(warp_.rays.load(static_cast<unsigned>(place)));
+      if (index >= 0 && index < count) begin(warp_.rays.load(static_cast<unsigned>(index)));
       if (next <= count) break;
-      place -= count, next -= count;  // lanes that got none
+      index -= count, next -= count;  // lanes that got none
       __syncwarp();
       count = fetch(lane);
       if (count == 0) break;
@@ -150,22 +150,22 @@ class PersistentTracer {
     return count;
   }
 
-  __device__ void prepare(unsigned place, const RayRecord& record, std::uint32_t number) {
-    std::uint32_t name = number;
-    if constexpr (requires { work_.name(number); }) name = work_.name(number);
-    warp_.rays.store(place, record, name);
+  __device__ void prepare(unsigned lane, const RayRecord& record, std::uint32_t index) {
+    std::uint32_t id = index;
+    if constexpr (requires { work_.id_of(index); }) id = work_.id_of(index);
+    warp_.rays.store(lane, record, id);
     if constexpr (Lane::is_speculative) {
-      if constexpr (counts_lanes && requires { work_.lanes(name); }) {
-        work_.lanes(name).count(LanePoint::node);
+      if constexpr (counts_lanes && requires { work_.lanes(id); }) {
+        work_.lanes(id).count(LanePoint::node);
       }
-      warp_.rays.meet_root(place, tree_);
+      warp_.rays.meet_root(lane, tree_);
     }
   }
 
   __device__ void begin(const auto& ray) {
-    warp_.number[threadIdx.x & 31] = ray.number;
-    if constexpr (counts_lanes && requires { work_.lanes(ray.number); }) {
-      set_lanes(lane_, work_.lanes(ray.number));
+    warp_.ray_id[threadIdx.x & 31] = ray.id;
+    if constexpr (counts_lanes && requires { work_.lanes(ray.id); }) {
+      set_lanes(lane_, work_.lanes(ray.id));
       lanes_of(lane_).count(LanePoint::intersect);
     }
     if constexpr (requires { work_.query(ray); }) {

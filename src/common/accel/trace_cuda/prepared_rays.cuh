@@ -13,7 +13,7 @@ struct PreparedRay {
   Vec3 inverse;
   float t_max;  ///< negative: not to be traced, a miss
   TriangleRay triangles;
-  std::uint32_t number;
+  std::uint32_t id;
   std::uint32_t octant;       ///< bit `axis`: the direction is negative
   std::uint32_t root_misses;  ///< after meet_root: missed_slots
 };
@@ -22,22 +22,22 @@ struct PreparedRay {
 /// once, with all lanes, it costs a third of what it costs whenever some lanes need a ray.
 class PreparedRays {
  public:
-  __device__ void store(unsigned place, const RayRecord& record, std::uint32_t number) {
+  __device__ void store(unsigned lane, const RayRecord& record, std::uint32_t id) {
     const Ray ray = record.ray();
     const CwbvhRay r = make_cwbvh_ray(ray);
     const TriangleRay& t = r.triangles;
     const float t_max = is_traceable(ray) ? record.t_max : -1.0f;
-    part_[0][place] = {r.origin.x, r.origin.y, r.origin.z, record.t_min};
-    part_[1][place] = {r.inverse.x, r.inverse.y, r.inverse.z, t_max};
-    part_[2][place] = {t.x_axis.x, t.x_axis.y, t.x_axis.z, __uint_as_float(number)};
-    part_[3][place] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(r.octant | t.axis << 3)};
-    inverse_[place] = t.inverse;
+    part_[0][lane] = {r.origin.x, r.origin.y, r.origin.z, record.t_min};
+    part_[1][lane] = {r.inverse.x, r.inverse.y, r.inverse.z, t_max};
+    part_[2][lane] = {t.x_axis.x, t.x_axis.y, t.x_axis.z, __uint_as_float(id)};
+    part_[3][lane] = {t.y_axis.x, t.y_axis.y, t.y_axis.z, __uint_as_float(r.octant | t.axis << 3)};
+    inverse_[lane] = t.inverse;
   }
 
   /// The step at the root, with which all rays begin. Taken for 32 rays at once it has all lanes,
   /// and reads one node.
-  __device__ void meet_root(unsigned place, const TriangleTree& tree) {
-    const float4 a = part_[0][place], b = part_[1][place];
+  __device__ void meet_root(unsigned lane, const TriangleTree& tree) {
+    const float4 a = part_[0][lane], b = part_[1][lane];
     const Vec3 origin = {a.x, a.y, a.z}, inverse = {b.x, b.y, b.z};
     const float t_max = b.w;
     const CwbvhWords root = load_cwbvh_words(&tree.cwbvh[tree.root]);
@@ -45,19 +45,19 @@ class PreparedRays {
     if (t_max > 0.0f) {
       misses = missed_slots(root, origin, inverse, select_near_planes(inverse), t_max);
     }
-    float& word = part_[3][place].w;
+    float& word = part_[3][lane].w;
     word = __uint_as_float(__float_as_uint(word) | misses << 5);
   }
 
-  __device__ PreparedRay load(unsigned place) const {
-    const float4 a = part_[0][place], b = part_[1][place], c = part_[2][place], d = part_[3][place];
+  __device__ PreparedRay load(unsigned lane) const {
+    const float4 a = part_[0][lane], b = part_[1][lane], c = part_[2][lane], d = part_[3][lane];
     const Vec3 origin = {a.x, a.y, a.z};
     const std::uint32_t word = __float_as_uint(d.w);
     return {origin,
             a.w,
             {b.x, b.y, b.z},
             b.w,
-            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, inverse_[place], word >> 3 & 3u},
+            {origin, {c.x, c.y, c.z}, {d.x, d.y, d.z}, inverse_[lane], word >> 3 & 3u},
             __float_as_uint(c.w),
             word & 7u,
             word >> 5};

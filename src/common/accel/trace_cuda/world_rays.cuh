@@ -12,27 +12,27 @@ struct WorldRay {
   float t_min;
   Vec3 direction;
   float t_max;  ///< negative: not to be traced, a miss
-  std::uint32_t number;
+  std::uint32_t id;
 };
 
 /// 32 rays that a warp holds ready for its lanes.
 class WorldRays {
  public:
-  __device__ void store(unsigned place, const RayRecord& record, std::uint32_t number) {
+  __device__ void store(unsigned lane, const RayRecord& record, std::uint32_t id) {
     const Vec3 &o = record.origin, &d = record.direction;
-    origin_[place] = {o.x, o.y, o.z, record.t_min};
-    direction_[place] = {d.x, d.y, d.z, is_traceable(record.ray()) ? record.t_max : -1.0f};
-    number_[place] = number;
+    origin_[lane] = {o.x, o.y, o.z, record.t_min};
+    direction_[lane] = {d.x, d.y, d.z, is_traceable(record.ray()) ? record.t_max : -1.0f};
+    id_[lane] = id;
   }
 
-  __device__ WorldRay load(unsigned place) const {
-    const float4 o = origin_[place], d = direction_[place];
-    return {{o.x, o.y, o.z}, o.w, {d.x, d.y, d.z}, d.w, number_[place]};
+  __device__ WorldRay load(unsigned lane) const {
+    const float4 o = origin_[lane], d = direction_[lane];
+    return {{o.x, o.y, o.z}, o.w, {d.x, d.y, d.z}, d.w, id_[lane]};
   }
 
  private:
   float4 origin_[32], direction_[32];
-  std::uint32_t number_[32];
+  std::uint32_t id_[32];
 };
 
 /// What lanes need now and then, by lane, beside registers; each sees its own alone.

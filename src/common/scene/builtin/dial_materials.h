@@ -14,6 +14,6 @@ inline constexpr std::uint32_t dial_kinds = 13;
 /// of the light, in hues that differ a little, then three kinds of glass, which absorb nothing. The
 /// kinds repeat with other roughness, exponent or index, and then with the other distribution of
 /// facets where they have two. The first one is diffuse.
-MaterialDescription make_dial_material(std::uint32_t number);
+MaterialDescription make_dial_material(std::uint32_t index);
 
 }  // namespace pt

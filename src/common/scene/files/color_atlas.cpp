@@ -25,7 +25,7 @@ void ColorAtlas::set(std::vector<Color>& texels, std::size_t block, const Color 
   first[width + 1] = corners[1] + corners[2] - corners[0];
 }
 
-void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t number, Mesh& out) {
+void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t triangle_index, Mesh& out) {
   const std::size_t block = used_++;
   const auto first = static_cast<std::uint32_t>(out.positions.size());
   const auto width = static_cast<double>(2 * per_row_), height = static_cast<double>(2 * rows_);
@@ -36,13 +36,13 @@ void ColorAtlas::add_triangle(const Mesh& mesh, std::size_t number, Mesh& out) {
   const double y = static_cast<double>(2 * (block / per_row_)) + 0.5 + inset;
   Color vertices[3], faces[3];
   for (int k = 0; k < 3; ++k) {
-    const std::uint32_t v = mesh.triangles[number].v[k];
+    const std::uint32_t v = mesh.triangles[triangle_index].v[k];
     out.positions.push_back(mesh.positions[v]);
     if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[v]);
     out.uvs.emplace_back(static_cast<float>((x + (k == 1 ? side : 0.0)) / width),
                          static_cast<float>(1.0 - (y + (k == 2 ? side : 0.0)) / height));
     vertices[k] = mesh.colors.empty() ? Color(1.0f) : mesh.colors[v];
-    faces[k] = mesh.face_colors.empty() ? Color(1.0f) : mesh.face_colors[number];
+    faces[k] = mesh.face_colors.empty() ? Color(1.0f) : mesh.face_colors[triangle_index];
   }
   out.triangles.push_back({{first, first + 1, first + 2}});
   set(by_vertex_, block, vertices), set(by_face_, block, faces);

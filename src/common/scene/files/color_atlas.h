@@ -27,7 +27,7 @@ class ColorAtlas {
   }
 
  private:
-  void add_triangle(const Mesh& mesh, std::size_t number, Mesh& out);
+  void add_triangle(const Mesh& mesh, std::size_t triangle_index, Mesh& out);
   void set(std::vector<Color>& texels, std::size_t block, const Color (&corners)[3]);
   void store(const std::vector<Color>& colors, Texture& texture,
              std::vector<std::byte>& texels) const;

@@ -51,8 +51,8 @@ TextureImage grey_image(TextureImage image, const Color& weights) {
   for (std::uint32_t y = 0; y < image.height; ++y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const Color grey(dot(weights, load_texel(look, image.texels.data(), x, y)));
-      const std::size_t place = std::size_t{12} * (std::size_t{y} * image.width + x);
-      std::memcpy(result.texels.data() + place, &grey, sizeof grey);
+      const std::size_t offset = std::size_t{12} * (std::size_t{y} * image.width + x);
+      std::memcpy(result.texels.data() + offset, &grey, sizeof grey);
     }
   }
   return result;

@@ -16,23 +16,23 @@ namespace {
 [[noreturn]] void fail() { throw Error(std::generic_category().message(errno)); }
 
 struct Descriptor {
-  int number;
-  ~Descriptor() { ::close(number); }
+  int fd;
+  ~Descriptor() { ::close(fd); }
 };
 
 }  // namespace
 
 MappedFile::MappedFile(const std::filesystem::path& path) {
   // O_NONBLOCK: a pipe is refused below instead of waited for.
-  const int number = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (number < 0) fail();
-  const Descriptor file{number};
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) fail();
+  const Descriptor file{fd};
   struct stat status {};
-  if (::fstat(number, &status) != 0) fail();
+  if (::fstat(fd, &status) != 0) fail();
   if (!S_ISREG(status.st_mode)) throw Error("not a regular file");
   if (status.st_size == 0) return;  // nothing to map
   const auto size = static_cast<std::size_t>(status.st_size);
-  void* memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, number, 0);
+  void* memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
   if (memory == MAP_FAILED) fail();
   ::madvise(memory, size, MADV_WILLNEED);  // advice only: it may be refused
   bytes_ = {static_cast<const char*>(memory), size};

@@ -12,7 +12,7 @@ std::size_t ObjMeshBuilder::Hash::operator()(const ObjCorner& corner) const {
 
 std::uint32_t ObjMeshBuilder::vertex_of(const ObjCorner& corner, const ObjVertices& vertices) {
   const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
-  const auto [place, is_new] = vertex_of_.try_emplace(corner, next);
+  const auto [entry, is_new] = vertex_of_.try_emplace(corner, next);
   if (is_new) {
     has_uvs_ |= corner.uv != obj_none;
     has_normals_ |= corner.normal != obj_none;
@@ -25,7 +25,7 @@ std::uint32_t ObjMeshBuilder::vertex_of(const ObjCorner& corner, const ObjVertic
     mesh_.normals.push_back(corner.normal == obj_none ? Vec3(0.0f)
                                                       : vertices.normals[corner.normal]);
   }
-  return place->second;
+  return entry->second;
 }
 
 void ObjMeshBuilder::add_face(const std::vector<ObjCorner>& corners, const ObjVertices& vertices) {

@@ -134,13 +134,13 @@ class ObjLines {
 
 /// Takes the next line off the front of `text`; a \ at its end continues it, which `joined` then
 /// holds. Adds the lines taken to `number`.
-std::string_view next_line(std::string_view& text, std::string& joined, std::size_t& number) {
+std::string_view next_line(std::string_view& text, std::string& joined, std::size_t& line_number) {
   joined.clear();
   for (;;) {
     const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
-    ++number;
+    ++line_number;
     const bool continued = line.ends_with('\\') && !text.empty();
     if (!continued && joined.empty()) return line;
     joined.append(continued ? line.substr(0, line.size() - 1) : line).append(" ");
@@ -154,12 +154,12 @@ void parse_obj(std::string_view file, ObjSink& sink) {
   ObjLines lines(sink);
   std::string joined;
   file = without_byte_order_mark(file);
-  for (std::size_t number = 0; !file.empty();) {
-    const std::string_view line = next_line(file, joined, number);
+  for (std::size_t line_number = 0; !file.empty();) {
+    const std::string_view line = next_line(file, joined, line_number);
     try {
       lines.read(line);
     } catch (const Error& error) {
-      throw Error(fmt::format("line {}: {}", number, error.what()));
+      throw Error(fmt::format("line {}: {}", line_number, error.what()));
     }
   }
 }

@@ -77,8 +77,8 @@ std::uint32_t TextureStore::add_plain(const Texture& texture) {
   return static_cast<std::uint32_t>(equal - textures_.begin());
 }
 
-std::uint32_t TextureStore::add_alpha_of(std::uint32_t number) {
-  Texture alpha = textures_[number];
+std::uint32_t TextureStore::add_alpha_of(std::uint32_t texture_index) {
+  Texture alpha = textures_[texture_index];
   if (alpha.kind != TextureKind::image || alpha.format == TextureFormat::rgb32f) return no_texture;
   const std::size_t end = alpha.offset + std::size_t{4} * alpha.width * alpha.height;
   bool is_opaque = true;
@@ -91,8 +91,8 @@ std::uint32_t TextureStore::add_alpha_of(std::uint32_t number) {
   return add_plain(alpha);
 }
 
-bool TextureStore::is_normal_map(std::uint32_t number) const {
-  const Texture& texture = textures_[number];
+bool TextureStore::is_normal_map(std::uint32_t texture_index) const {
+  const Texture& texture = textures_[texture_index];
   double sum[3] = {};
   for (std::uint32_t y = 0; y < texture.height; ++y) {
     for (std::uint32_t x = 0; x < texture.width; ++x) {

@@ -36,11 +36,11 @@ class TextureStore {
 
   /// The alpha of texture `number`, an image, as a texture that shares its texels; no_texture where
   /// it has none or is 1 everywhere.
-  std::uint32_t add_alpha_of(std::uint32_t number);
+  std::uint32_t add_alpha_of(std::uint32_t texture_index);
 
   /// Whether the image of texture `number`, as linear numbers, looks like normals and not like
   /// heights: they are grey, normals are blue.
-  bool is_normal_map(std::uint32_t number) const;
+  bool is_normal_map(std::uint32_t texture_index) const;
 
   /// A texture without texels, such as a checkerboard.
   std::uint32_t add_plain(const Texture& texture);

@@ -54,8 +54,8 @@ std::uint32_t VertexColors::number_of(std::uint32_t& texture) {
   return texture;
 }
 
-VertexColors::Use VertexColors::use_of(std::uint32_t number) const {
-  const MaterialDescription& material = scene_.materials[number];
+VertexColors::Use VertexColors::use_of(std::uint32_t material_index) const {
+  const MaterialDescription& material = scene_.materials[material_index];
   Use use;
   const auto note = [&](std::uint32_t texture) {
     if (texture == no_texture) return;
@@ -77,8 +77,8 @@ VertexColors::Use VertexColors::use_of(std::uint32_t number) const {
 }
 
 /// The number of a copy with the change to the material and to what it is made of.
-std::uint32_t VertexColors::changed(std::uint32_t number, const Change& change) {
-  MaterialDescription material = scene_.materials[number];
+std::uint32_t VertexColors::changed(std::uint32_t material_index, const Change& change) {
+  MaterialDescription material = scene_.materials[material_index];
   if (material.node != MaterialNode::none) {
     const bool same = material.children[0] == material.children[1];
     material.children[0] = changed(material.children[0], change);

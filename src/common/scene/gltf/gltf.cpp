@@ -73,7 +73,7 @@ void add_meshes(File& file, const std::vector<PlacedNode>& nodes, const LoadOpti
     std::vector<Mesh> meshes;
     for (PrimitiveMesh& primitive : read_primitives(file, index)) {
       const std::string place = fmt::format("meshes[{}]", index);
-      primitive.mesh.material = materials.number(primitive.material, place);
+      primitive.mesh.material = materials.material_index(primitive.material, place);
       colors.tint(primitive.mesh, materials.is_unlit(primitive.material), file.describe(place));
       meshes.push_back(std::move(primitive.mesh));
     }

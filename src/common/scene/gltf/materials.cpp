@@ -40,7 +40,7 @@ float extension_number(const tinygltf::Material& source, const char* extension, 
 
 }  // namespace
 
-std::uint32_t Materials::number(int index, const std::string& place) {
+std::uint32_t Materials::material_index(int index, const std::string& place) {
   const auto known = numbers_.find(index);
   if (known != numbers_.end()) return known->second;
   std::uint32_t result;

@@ -17,7 +17,7 @@ class Materials {
 
   /// The scene's number of material `index` of the file, -1: the default material. `place` is that
   /// of the reference.
-  std::uint32_t number(int index, const std::string& place);
+  std::uint32_t material_index(int index, const std::string& place);
 
   /// Whether material `index`, which has a number, is its base colour's light
   /// (KHR_materials_unlit).

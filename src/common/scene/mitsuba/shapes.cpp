@@ -23,8 +23,8 @@ const std::map<std::string_view, Adder>& adders() {
 
 /// The group that a shapegroup becomes where an instance first asks for it.
 std::uint32_t group_of(Context& context, const Object& shapegroup) {
-  const auto number = static_cast<std::uint32_t>(context.groups.size() + 1);
-  const auto [entry, is_new] = context.groups.try_emplace(&shapegroup, number);
+  const auto group_index = static_cast<std::uint32_t>(context.groups.size() + 1);
+  const auto [entry, is_new] = context.groups.try_emplace(&shapegroup, group_index);
   const std::uint32_t group = entry->second;
   if (is_new) {
     for (const Object* shape : shapegroup.children("shape")) add_shape(context, *shape, group);
@@ -43,33 +43,33 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
     fail(shape.element(), "instance: expected a <ref> to a shape of type 'shapegroup'");
   }
   const Affine to_world = shape.transform("to_world");
-  const std::uint32_t number = group_of(context, *shapegroup);
-  const auto is_of_group = [&](const Mesh& mesh) { return mesh.group == number; };
+  const std::uint32_t group_index = group_of(context, *shapegroup);
+  const auto is_of_group = [&](const Mesh& mesh) { return mesh.group == group_index; };
   if (std::ranges::any_of(context.scene.meshes, is_of_group)) {
-    context.scene.instances.push_back({number, to_world});
+    context.scene.instances.push_back({group_index, to_world});
   }
 }
 
 /// Whether shading asks where on the surface a point lies.
-bool is_textured(const SceneData& scene, std::uint32_t number) {
-  const MaterialDescription& material = scene.materials[number];
+bool is_textured(const SceneData& scene, std::uint32_t material_index) {
+  const MaterialDescription& material = scene.materials[material_index];
   if (material.is_textured() || uses_tangent(material)) return true;
   return material.node != MaterialNode::none &&
          (is_textured(scene, material.children[0]) || is_textured(scene, material.children[1]));
 }
 
 /// Whether it asks in which directions texture coordinates grow.
-bool needs_tangents(const SceneData& scene, std::uint32_t number) {
-  const MaterialDescription& material = scene.materials[number];
+bool needs_tangents(const SceneData& scene, std::uint32_t material_index) {
+  const MaterialDescription& material = scene.materials[material_index];
   if (material.node == MaterialNode::none) return uses_tangent(material);
   return material.node >= MaterialNode::normal_map || needs_tangents(scene, material.children[0]) ||
          needs_tangents(scene, material.children[1]);
 }
 
-bool needs_mesh(const Context& context, std::uint32_t number) {
-  const MaterialDescription& material = context.scene.materials[number];
+bool needs_mesh(const Context& context, std::uint32_t material_index) {
+  const MaterialDescription& material = context.scene.materials[material_index];
   return !material.opacity.is_opaque() || material.emission.texture != no_texture ||
-         context.colors.are_in(number);
+         context.colors.are_in(material_index);
 }
 
 }  // namespace

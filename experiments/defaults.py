@@ -49,7 +49,7 @@ def conclude(rows, _arguments):
 
 
 EXPERIMENT = Experiment(
-    "by_itself", __doc__.splitlines()[0], configurations,
+    "defaults", __doc__.splitlines()[0], configurations,
     Plot("bars", "Each mode by its defaults"), add_arguments=add_arguments,
     conclude=conclude, table=("mpaths_per_s", "used_accel"))
 
