@@ -320,7 +320,7 @@ class Report(unittest.TestCase):
                                                text.index("Which block size?")])
             answer = " ".join(answer.split())
             self.assertIn(f"{winner[0].upper()}{winner[1:]}: room.", answer)
-            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} by.itself")
+            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} defaults")
 
     def test_metropolis_is_judged_at_equal_samples(self):
         good, bad, unclear = (7.5, 8.0, 9.0), (0.1, 0.2, 0.3), (1.5, 2.0, 2.5)
