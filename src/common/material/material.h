@@ -20,7 +20,7 @@
 
 namespace pt {
 
-/// Every BSDF, once. Its place is its MaterialKind.
+/// Every BSDF, once. Its index is its MaterialKind.
 using Bsdfs =
     TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward, Conductor,
              RoughDielectric, ThinDielectric, Principled, PrincipledThin, CompensatedConductor>;
@@ -43,7 +43,10 @@ struct alignas(16) Parameter {
   std::uint32_t texture = no_texture;
 };
 
-/// Nothing shines.
+/// The first parameter of all BSDFs: their colour (albedo, tint, base colour).
+inline constexpr int color_parameter = 0;
+
+/// Nothing emits.
 inline constexpr std::uint32_t no_emission = 0xffffffffu;
 
 /// What a material does that is no BSDF itself but is made of other materials: see
