@@ -74,7 +74,7 @@ void compact_cpu(TagPass pass, const CompactionRequest& request) {
         },
         sum);
   } else {
-    // A prefix sum over ranges gives each range its place, so the order is kept.
+    // A prefix sum over ranges gives each range its offset, so the order is kept.
     total = tbb::parallel_scan(
         all, Counts{},
         [&](const Range& range, const Counts& before, bool final) {

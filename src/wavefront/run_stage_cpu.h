@@ -36,7 +36,7 @@ class RangeAppender {
   std::array<std::array<std::uint32_t, range_max>, queue_count> slots_;
 };
 
-/// The slot in place `i` of the stage's input; false: it does not wait for the stage.
+/// The slot at index `i` of the stage's input; false: it does not wait for the stage.
 template <class Stage>
 bool finds_slot(const StageQueues& queues, std::uint32_t i, std::uint32_t& slot) {
   slot = queues.input == StageInput::queue ? queues.begin()[i] : i;

@@ -9,7 +9,7 @@
 
 namespace pt {
 
-/// Whose streams have no state: numbers can be drawn before they are asked for.
+/// Sources whose streams have no state: numbers can be drawn in advance.
 template <class Source>
 concept StatelessSource = !requires(const Source& source) {
   source.states;

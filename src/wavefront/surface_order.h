@@ -26,7 +26,7 @@ struct SurfaceOrder {
   std::uint32_t* ordered = nullptr;  ///< [capacity of the queue]
   // For ranges; null: within tiles
   KindRanges* ranges = nullptr;   ///< counts and places are 0 before
-  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each place
+  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each entry
 };
 
 /// That of the surface that the slot's path has met; 0 for a miss, which waits among the surfaces

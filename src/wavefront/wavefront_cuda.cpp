@@ -20,8 +20,8 @@ namespace {
 // once.
 constexpr std::uint64_t pool_size_for_passes = std::uint64_t{1} << 20;
 
-// A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
-// ray find empty queues.
+// An iteration of the graph's loop costs more than a kernel: a few waves share one. Those after the
+// last ray find empty queues.
 constexpr int waves_per_iteration = 2;
 
 constexpr double mib = 1024.0 * 1024.0;

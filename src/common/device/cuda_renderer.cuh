@@ -177,7 +177,7 @@ class CudaRenderer : public FilmRenderer {
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
   ChainRun* chain_run_ = nullptr;
   bool chains_go_on_ = false;
-  std::uint32_t chain_steps_ = 0;  ///< that each chain has taken where none goes on by itself
+  std::uint32_t chain_steps_ = 0;  ///< that each chain has taken, where chains are not asynchronous
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
   std::unique_ptr<CounterSession> counters_;           ///< while they are read

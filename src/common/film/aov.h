@@ -1,5 +1,5 @@
 // AOVs (arbitrary output variables): what an EXR holds of a pixel besides its colour. Each is a
-// type in one list; its layer, its option and its place in the film follow from that.
+// type in one list; its layer, its option and its plane of the film follow from that.
 //
 // A type has
 //   static constexpr const char* name      of the layer and for --aov
@@ -84,7 +84,7 @@ struct Rays {
 
 }  // namespace aov
 
-/// Every AOV, once. Its place is its bit in Options::aovs.
+/// Every AOV, once. Its index is its bit in Options::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
                       aov::Uv, aov::Primitive, aov::Instance, aov::MaterialNumber, aov::Variance,
                       aov::Samples, aov::Bounces, aov::Rays>;

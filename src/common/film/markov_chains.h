@@ -32,7 +32,8 @@ PT_HD ChainTally operator+(const ChainTally& a, const ChainTally& b) {
           a.small_accepted + b.small_accepted};
 }
 
-/// What chains have done. Each has one of a few places to count in, so that threads seldom meet.
+/// What chains have done. The counters exist in several copies, so that threads seldom contend for
+/// one.
 struct ChainCounts {
   static constexpr std::uint32_t copies = 1024;
   PathTally paths;
@@ -86,7 +87,7 @@ struct ChainStep {
   std::uint32_t blocks = 0;  ///< of random numbers that are stored at most
 };
 
-/// Chains that go on by themselves: each traces and mutates until it has taken `last` steps since
+/// Asynchronous chains: each traces and mutates until it has taken `last` steps since
 /// its start, and waits for no other.
 struct ChainRun {
   ChainArrays arrays;
@@ -94,7 +95,7 @@ struct ChainRun {
   std::uint32_t last = 0;
 };
 
-/// Blocks of random numbers of which a path of so many rays may have asked.
+/// The most blocks of random numbers that a path of so many rays may have drawn.
 PT_HD std::uint32_t used_blocks(std::uint32_t rays) { return 2 * rays + 2; }
 
 /// Adds radiance to a pixel.
@@ -109,7 +110,7 @@ PT_HD void splat(const ChainArrays& arrays, const ChainStep& step, std::uint32_t
   }
 }
 
-/// The target of a path that was traced; 0 for one that is no number.
+/// The target of a path that was traced; 0 for NaN.
 PT_HD float target_of(const Sample& sample) {
   return is_finite(sample.radiance) ? chain_target(sample.radiance) : 0.0f;
 }
@@ -129,7 +130,7 @@ PT_HD void splat_bootstrap(const ChainArrays& arrays, const ChainStep& step,
 PT_HD void move_chain(const ChainArrays& arrays, const Chains& chains, const Proposal& proposal,
                       std::uint32_t blocks, std::uint32_t chain, const Color& radiance,
                       float target, std::uint32_t pixel) {
-  // A block's place is the chain's, whoever's path it was: a bootstrap path has another number.
+  // Blocks are stored at the chain's index: a bootstrap path's own index differs.
   for (std::uint32_t block = 0; block < blocks; ++block) {
     arrays.accepted[std::uint64_t{block} * chains.count + chain] =
         chains.draw(proposal.path, proposal.iteration, block);

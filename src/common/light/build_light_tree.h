@@ -11,7 +11,7 @@
 
 namespace pt {
 
-/// What is known of some lights together: where they are, where they shine, how much.
+/// Bounds of some lights together: of position, direction and intensity (pbrt-v4, section 12.6.3).
 struct LightBounds {
   Bounds box;
   Vec3 axis{0, 0, 1};      ///< of the cone of normals
@@ -20,7 +20,7 @@ struct LightBounds {
   float intensity = 0.0f;  ///< see LightNode
 };
 
-/// None for a light without place (directional) and for one that gives nothing.
+/// None for a light without position (directional) and for one that emits nothing.
 std::optional<LightBounds> bounds_of(const Light& light);
 
 /// The memory behind a LightTree.
@@ -31,7 +31,8 @@ struct LightTreeData {
 };
 
 /// Over all lights that have bounds, split by the surface area orientation heuristic. Without
-/// pairs where there is no such light; where there is one alone, with one pair that nobody visits.
+/// pairs where there is no such light; where there is one alone, with one pair that is never
+/// visited.
 LightTreeData build_light_tree(const std::vector<Light>& lights);
 
 }  // namespace pt

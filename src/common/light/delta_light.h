@@ -1,4 +1,5 @@
-// Lights without extent: no ray ever meets them, so they are sampled only, with weight 1.
+// Delta lights (pbrt-v4, sections 12.1 to 12.3): no ray can hit them, so that light sampling alone
+// finds them, with MIS weight 1.
 #pragma once
 
 #include "common/light/light_sample.h"
@@ -6,7 +7,7 @@
 
 namespace pt {
 
-/// What a spot light gives between its inner and its outer angle.
+/// The falloff of a spot light's intensity between its inner and its outer angle.
 enum class SpotFalloff : std::uint32_t {
   smooth,         ///< pbrt's: smoothstep of the cosine
   linear_angle,   ///< Mitsuba's: linear in the angle
@@ -14,8 +15,8 @@ enum class SpotFalloff : std::uint32_t {
 };
 
 /// Every kind of light but the environment; the delta lights come last, the sun before them. A
-/// turned triangle has its last two vertices exchanged: it belongs to an instance that mirrors, and
-/// mirroring would turn the side that shines away.
+/// flipped triangle has its last two vertices exchanged: its instance's transformation mirrors,
+/// which would otherwise flip the emitting side.
 enum class LightKind : std::uint8_t {
   triangle,
   flipped_triangle,
@@ -36,19 +37,19 @@ PT_HD bool is_delta(LightKind kind) { return kind >= LightKind::point; }
 struct DeltaLight {
   LightKind kind = LightKind::point;
   Vec3 position{0.0f};       ///< point, spot: world space
-  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
-  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
+  Vec3 direction{0, 0, -1};  ///< spot, directional: away from the light, unit length
+  Color intensity{1.0f};     ///< point, spot: W / sr; directional: W / m^2 across the rays
   float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
   float cos_outer = -1.0f;   ///< none beyond this one,
   SpotFalloff falloff = SpotFalloff::smooth;  ///< in between
-  Vec3 right{1, 0, 0};  ///< where the picture's u grows; projector: over the tangent of half its
-                        ///< angle; spot: of unit length
+  Vec3 right{1, 0, 0};  ///< direction of the picture's u; projector: of length 1 / tan(fov / 2);
+                        ///< spot: of unit length
   float aspect = 1.0f;  ///< width over height; negative where the map to the world mirrors
   std::uint32_t texture = no_texture;  ///< the picture; projector: of intensity / cos^3 about the
                                        ///< axis; spot: multiplies the intensity
 };
 
-/// Between 0 and 1: the share of its intensity that a spot light sends at an angle to its axis.
+/// The falloff, in [0, 1], of a spot light in a direction whose angle to the axis has this cosine.
 PT_HD float spot_share(const DeltaLight& light, float cosine) {
   if (cosine >= light.cos_inner) return 1.0f;
   if (cosine <= light.cos_outer) return 0.0f;
@@ -63,10 +64,10 @@ PT_HD float spot_share(const DeltaLight& light, float cosine) {
 struct DeltaLightSample {
   Vec3 wi = Vec3(0.0f);            ///< unit vector to the light
   Vec3 end = Vec3(0.0f);           ///< of a shadow ray, relative to its origin
-  Color irradiance = Color(0.0f);  ///< across wi: what is reflected is this times f times |cos|
+  Color irradiance = Color(0.0f);  ///< W / m^2 across wi; times f |cos|: the reflected radiance
 };
 
-/// There is nothing to choose. Black at the light's own position.
+/// Deterministic. Black at the light's own position.
 PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& from) {
   if (light.kind == LightKind::directional) {
     return {-light.direction, -beyond_scene * light.direction, light.intensity};
@@ -83,9 +84,8 @@ PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& f
   return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
 }
 
-/// W of the whole light for choosing among lights; of a directional one over a disk of
-/// `scene_radius`. A spot's is pbrt's estimate: the cone of the mean of both angles'
-/// cosines.
+/// Power in W, for light selection; of a directional light through a disk of `scene_radius`. A
+/// spot's is estimated as in pbrt-v4, section 12.2.1: a cone with the mean of both angles' cosines.
 PT_HD Color delta_light_power(const DeltaLight& light, float scene_radius) {
   switch (light.kind) {
     case LightKind::point:

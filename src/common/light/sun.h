@@ -12,7 +12,7 @@ struct Sun {
   Vec3 direction{0, 0, 1};     ///< to it, of unit length
   float one_minus_cos = 0.0f;  ///< of the angle under which its radius is seen; 0: no sun
   Color radiance = Color(0.0f);
-  std::uint32_t light = 0;  ///< its number among the lights
+  std::uint32_t light = 0;  ///< its index among the lights
 };
 
 PT_HD float sun_pdf(float one_minus_cos) { return 0.5f * inverse_pi / one_minus_cos; }

@@ -1,6 +1,6 @@
 // Reconstruction filters by importance sampling (Ernst, Stamminger and Greiner, Filter Importance
-// Sampling, 2006): a sample belongs to one pixel, and its place is drawn with the density |f| of
-// the filter. So nothing is added to neighbours, and the film stays without order.
+// Sampling, 2006): a sample belongs to one pixel, and its position is drawn with the density |f|
+// of the filter. So nothing is added to neighbours, and the film stays without order.
 #pragma once
 
 #include "common/math/vec.h"
@@ -29,7 +29,7 @@ struct PixelFilter {
   /// From the pixel's lower edge, in pixels; u in [0, 1).
   PT_HD float offset(float u) const { return has_table == 0 ? u : 0.5f + from_centre(u); }
 
-  /// (offset(x), offset(y)), past whose table a box branches: for small kernels, as lean Philox.
+  /// (offset(x), offset(y)), past whose table a box branches: for specialised kernels (random.h).
   PT_HD Vec2 offsets(float x, float y) const {
     for (bool look_up = has_table != 0; look_up; look_up = is_never()) {
       x = offset(x);

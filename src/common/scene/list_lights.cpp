@@ -153,7 +153,7 @@ class Lister {
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
                                     emission.texture_mean);
-      // What is not there does not shine: met by chance.
+      // Emission is scaled by opacity: such emitters are hit by BSDF sampling alone.
       if (!scene_.materials[mesh.material].opacity.is_opaque()) light.weight = 0.0f;
       light.triangle =
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
