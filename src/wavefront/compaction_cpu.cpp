@@ -32,7 +32,7 @@ Counts sum(Counts a, const Counts& b) {
   return a;
 }
 
-// Writes the range's slots to their queues, from the given places on.
+// Writes the range's slots to their queues, from the given indices on.
 void gather(const CompactionRequest& request, const Range& range, Counts index) {
   for (std::uint32_t slot = range.begin(); slot < range.end(); ++slot) {
     for (int c = 0; c < request.queues_wanted; ++c) {

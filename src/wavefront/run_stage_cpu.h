@@ -11,7 +11,7 @@
 
 namespace pt {
 
-/// Collects what a range of slots sends on, then reserves the places in each queue with one atomic
+/// Collects what a range of slots sends on, then reserves the entries of each queue with one atomic
 /// addition.
 class RangeAppender {
  public:

@@ -2,7 +2,7 @@
 //
 // The tags are divided into tiles, one for each block. A thread compares 32 tags at once and keeps
 // the bits that match; the block adds up its bits, publishes the sums, and waits for those of all
-// tiles before its own: together they are the places at which its slots begin. Then each warp
+// tiles before its own: together they are the indices at which its slots begin. Then each warp
 // writes its slots independently, through shared memory, so that the stores are wide and coalesced.
 // It is the scan by decoupled look-back (Merrill and Garland 2016, 'Single-pass Parallel Prefix
 // Scan with Decoupled Look-back') without the prefixes that tiles publish there: tiles are as large
@@ -51,7 +51,7 @@ __device__ inline void load_tags(const CompactionRequest& request, std::uint32_t
   }
 }
 
-/// The slots of a row in shared memory, and up to 3 places before and behind them.
+/// The slots of a row in shared memory, and up to 3 elements before and behind them.
 struct alignas(16) RowStage {
   std::uint16_t slots[row_slots + 8];
 };

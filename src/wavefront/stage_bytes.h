@@ -36,7 +36,7 @@ struct WaveLayout {
   bool appends = true;       ///< stages append to queues, else they write tags
   bool queues_free = false;  ///< free slots are queued
   bool all_lights = false;   ///< Lighting::full: a miss needs the whole ray
-  bool fused = false;        ///< one kernel traces and shades: parts.lights asks for samples alone
+  bool fused = false;        ///< one kernel traces and shades: parts.lights concerns samples alone
   bool persistent = false;   ///< persistent warps trace the rays, and route_hits sends them on
   bool shades_by_kind = false;
 };

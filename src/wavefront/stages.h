@@ -254,7 +254,7 @@ struct ShadeSurface {
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr int block_max = streams ? streaming_block_max : shading_block_max<Traits>;
-  /// The only BSDF that it knows; null: it knows several.
+  /// The only BSDF that it shades; null: several.
   static constexpr const char* kind =
       Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;

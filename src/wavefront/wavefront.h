@@ -197,7 +197,7 @@ void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
   execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
-/// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can
+/// Surfaces by kernels for one kind of BSDF each, and by one for all where only shading can
 /// tell the kind. `surfaces`: their ordered queue.
 template <class Shading, class Source, class Executor>
 void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,

@@ -47,7 +47,7 @@ class CudaRenderer : public FilmRenderer {
 
   /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
   virtual bool lets_chains_go_on() const { return true; }
-  /// Null: the batch is of paths. Else, in the device's memory, of chains that go on by themselves
+  /// Null: the batch is of paths. Else, in the device's memory, of asynchronous chains
   /// (continue_chain); so it is from prepare_batch on.
   const ChainRun* chains() const { return chains_go_on_ ? chain_run_ : nullptr; }
 

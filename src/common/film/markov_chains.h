@@ -52,7 +52,7 @@ struct ChainArrays {
   ChainState* states = nullptr;
   ChainSplat* unsplatted = nullptr;
   SplatSum* sums = nullptr;       ///< [pixel of the window][channel]
-  ChainCounts* counts = nullptr;  ///< [ChainCounts::places]
+  ChainCounts* counts = nullptr;  ///< [ChainCounts::copies]
   Bootstrap bootstrap;
 
   /// make(pointer's type, count) for each.
@@ -205,8 +205,8 @@ PT_HD void step_chain(const ChainArrays& arrays, const ChainStep& step, std::uin
   store_wide(&arrays.proposals[chain], proposal);
 }
 
-/// Lets a chain take the step that its traced path asks for, if there is one, and says whether it
-/// has a next path to trace. `samples`: [chain], of no rays where no path has been traced, which
+/// Lets a chain take the step that its traced path proposes, if there is one, and returns whether
+/// it has a next path to trace. `samples`: [chain], of no rays where no path has been traced, which
 /// they are when a run begins and again when it ends.
 PT_HD bool continue_chain(const ChainRun& run, Sample* samples, std::uint32_t chain) {
   const Sample sample = load_wide(&samples[chain]);

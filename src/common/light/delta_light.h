@@ -79,7 +79,7 @@ PT_HD DeltaLightSample sample_delta_light(const DeltaLight& light, const Vec3& f
   const Vec3 wi = inverse_distance * to_light;
   const float share =
       light.kind == LightKind::spot ? spot_share(light, -dot(light.direction, wi)) : 1.0f;
-  // A light on a surface shines in front of it: its position has been rounded.
+  // A light on a surface illuminates the side in front of it, though its position is rounded.
   const float error = 4.0f * half_ulp * max_abs(light.position) * inverse_distance + light_rounding;
   return {wi, fmaxf(1.0f - error, 0.5f) * to_light, light.intensity * (share / distance2)};
 }

@@ -46,7 +46,7 @@ struct alignas(16) Light {
            ///< Sun::one_minus_cos
   std::uint32_t triangle;  ///< its id, where it has texture coordinates, else no_texture;
                            ///< projector: the bits of its aspect; spot with a picture: pack_roll()
-  Color radiance;          ///< or intensity, or irradiance, as the kind has it
+  Color radiance;  ///< W / (m^2 sr); delta lights: intensity, W / sr, or irradiance, W / m^2
   std::uint32_t emission_texture;
 
   PT_HD bool is_delta() const { return pt::is_delta(kind); }
@@ -75,8 +75,8 @@ PT_HD Projection project(const Light& light, const Vec3& direction) {
   return {{u, v}, inside ? 1.0f / (cosine * cosine * cosine) : 0.0f};
 }
 
-/// How a spot's picture is turned about the axis: the angle of `right` in the axis' frame, in turns
-/// from 0 to 1, less 1 where the picture is mirrored.
+/// The rotation of a spot's picture about the axis: the angle of `right` in the axis' frame, in
+/// turns from 0 to 1, less 1 where the picture is mirrored.
 inline std::uint32_t pack_roll(const DeltaLight& spot) {
   const Frame frame = make_frame(spot.direction);
   const float angle =

@@ -65,7 +65,7 @@ enum class MaterialNode : std::uint8_t {
 /// those of all materials.
 struct alignas(16) Material {
   static constexpr std::uint8_t one_sided = 1;  ///< black when seen from behind
-  static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): lights are not asked
+  static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): no light sampling
   static constexpr std::uint8_t textured = 4;   ///< some parameter, or the emission
   static constexpr std::uint8_t tangents = 8;   ///< needs a tangent along which u grows
   static constexpr std::uint8_t nested = 16;    ///< no BSDF, but a MaterialNode

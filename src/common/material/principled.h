@@ -172,7 +172,7 @@ struct Principled {
     if (!view.inside) {
       if (opaque() > 0.0f) {
         PrincipledBase below = base;
-        // Sheen knows of metal but not of glass.
+        // Sheen is scaled by 1 - metallic but not by 1 - spec_trans.
         below.color *= opaque(), below.sheen *= 1.0f - metallic;
         f = add_scaled(f, i.z, below.evaluate(o.z, i.z, cos_o));
         pdf = fused_multiply_add(choice.diffuse * inverse_pi, i.z, pdf);

@@ -31,7 +31,7 @@ inline bool is_philox(const SamplerSource& source) {
   return source.sampler.kind == SamplerKind::independent && source.chains == nullptr;
 }
 
-/// In place of a source: both blocks of numbers of a ray, drawn in advance for several paths;
+/// Used as a source: both blocks of numbers of a ray, drawn in advance for several paths;
 /// those of path `index` are returned.
 struct DrawnSource {
   const DrawnBlock* scatter;

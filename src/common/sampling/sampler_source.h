@@ -1,4 +1,4 @@
-// Numbers that a sampler places: each sample of a pixel on its own, or all of them together.
+// The samplers' random numbers: samples of a pixel are independent, stratified or low-discrepancy.
 #pragma once
 
 #include "common/sampling/chains.h"
@@ -20,7 +20,7 @@ inline Sampler make_sampler(SamplerKind kind, std::uint32_t samples) {
 }
 
 /// Stateless, as PhiloxSource, whose numbers these are when they are independent. All threads take
-/// the same branch. Samples that know of each other need 128 bits that are a pixel's and a block's.
+/// the same branch. Stratified and Sobol samples need 128 bits that are a pixel's and a block's.
 /// With chains a path is what one of them proposes: then the stream's `pixel` and `sample` are its
 /// Proposal's `path` and `iteration`.
 struct SamplerSource {

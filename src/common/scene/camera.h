@@ -28,7 +28,7 @@ struct CameraParameters {
                                  ///< square image would see
   float near_clip = 0.0f;  ///< camera rays meet nothing in front of the plane at this distance
   float far_clip = infinite_distance;  ///< nor behind this one
-  bool hides_emitters = false;         ///< camera rays pass through lamps and see no environment
+  bool hides_emitters = false;         ///< camera rays pass through emitters and see no environment
 };
 
 /// Whether camera rays do not meet all that other rays would.

@@ -48,7 +48,7 @@ class Lister {
 
  private:
   /// On a GPU a tree's descents can take as long as all other shading
-  /// (results/log/2026-11-material-cost.md), which few lamps are not worth.
+  /// (results/log/2026-11-material-cost.md), which does not pay for few emitters.
   bool wants_tree() const {
     constexpr std::size_t few_emitters = 16;
     return selection_ == LightSelection::tree ||
@@ -65,7 +65,7 @@ class Lister {
     }
     data_.table_first = static_cast<std::uint32_t>(first);
     data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
-    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
+    // Lights of no weight are never sampled, but a ray may hit them and need their probability.
     if (total > 0) data_.selection = build_alias_table(weights);
   }
 
@@ -77,14 +77,14 @@ class Lister {
                                                   : 0.5f;
   }
 
-  /// The environment, what else has no place, and the tree: as often each.
+  /// The environment, lights without position, and the tree: equally likely.
   void share_with_tree() {
     const bool has_table = !data_.selection.empty(), has_map = scene_.environment.width > 0;
     data_.table_probability = has_table ? 0.5f : 0.0f;
     data_.environment_probability = !has_map ? 0.0f : has_table ? 1.0f / 3.0f : 0.5f;
   }
 
-  /// The lights from `first` on are one lamp.
+  /// The lights from `first` on are one emitter.
   void finish_emitter(std::size_t first) {
     double total = 0;
     for (std::size_t i = first; i < data_.lights.size(); ++i) total += data_.lights[i].weight;
@@ -100,13 +100,13 @@ class Lister {
     return !is_black(scene_.materials[mesh.material].emission.radiance);
   }
 
-  /// A mesh that shines.
+  /// A mesh that emits.
   struct EmissiveMesh {
     const Mesh* mesh;
     std::uint32_t first_triangle;  ///< counted through all meshes
   };
 
-  /// Triangles that shine are numbered through the meshes of a group.
+  /// Emissive triangles are numbered through the meshes of a group.
   void list_area_lights() {
     std::map<std::uint32_t, std::uint32_t> ranks;  // by group
     std::uint32_t first_triangle = 0;

@@ -17,15 +17,15 @@ struct DrawnSteps {
   PT_HD Vec4 light() const { return light_numbers; }
   /// Takes what the surface emits, or returns it for Scattering::emitted.
   PT_HD Color emit(const Color& emitted) const { return emitted; }
-  /// Whether aim() wants to know, before the BSDF does, which way a shadow ray would go. Of
-  /// Scattering::shadow only the radiance is then set.
+  /// Whether aim() is to be called before the BSDF is evaluated, with the shadow ray's direction.
+  /// Of Scattering::shadow only the radiance is then set.
   static constexpr bool aims = false;
   PT_HD void aim(const ShadowRay&) const {}
 };
 
 /// Streams results to a sink (path_step.h), to shorten live ranges. It has besides
 ///   void aim(const PathState&, const ShadowRay&)  the way of a shadow ray that may be cast
-/// Source: one whose streams have no state. `samples` knows a path's name.
+/// Source: one whose streams have no state. `samples` gives a path's id.
 template <class Source, class Samples, class Sink>
 struct StreamedSteps {
   const Source& source;

@@ -22,7 +22,7 @@ namespace pt {
 
 namespace {
 
-/// A group's tree by itself: its root and its slots come first.
+/// The tree of one group: its root and its slots come first.
 struct BuiltGroup {
   Bounds bounds;
   std::vector<Bvh2Node> bvh2;  ///< one of the two, or none where every triangle is tested
