@@ -6,17 +6,17 @@
 
 namespace pt {
 
-/// Whether the scene has nothing that the paper's have not.
+/// Whether the scene has only what the paper's scenes have.
 bool has_primitives_only(const SceneData& scene);
 
-/// Whether the lean kernels of the paper's scenes can render it as the options say; else those of
-/// all other scenes do, which have more ways to sample.
+/// Whether the kernels specialised for the paper's scenes can render it with these options; else
+/// the general ones do, which have more sampling strategies.
 bool has_specialized_kernels(const SceneData& scene, const Options& options);
 
 /// Throws Error when the options ask for what this scene cannot have.
 void check_scene_options(const Options& options, const SceneData& scene);
 
-/// More threads in a block would leave too few registers to a megakernel whose warps vote.
+/// More threads in a block would leave too few registers for phase voting.
 inline constexpr int phase_voting_threads_max = 256;
 
 /// Whether the options suit it (megakernel/trace_paths_voting.cuh): warps fetch paths, and blocks
@@ -37,17 +37,17 @@ inline bool is_toggled(const Options& options) {
   return options.rng != RngKind::philox || options.branching != Branching::divergent;
 }
 
-/// Whether a megakernel whose blocks sort suits the options if nobody asks for it: it has blocks of
-/// its own (megakernel/trace_paths_sorting.cuh).
+/// Whether the block-local wavefront suits the options without --kernel: it has a block size of its
+/// own (megakernel/trace_paths_sorting.cuh).
 inline bool may_sort(const Options& options) {
   constexpr BlockSize usual;
   return options.work == Work::persistent && options.block.x == usual.x &&
          options.block.y == usual.y;
 }
 
-/// The megakernel on CUDA that suits scenes of triangles alone if nobody chooses one: blocks that
-/// sort; with other blocks warps that vote where there is one kind of BSDF and no mask, and loops
-/// else (results/ has the measurements).
+/// The megakernel on CUDA for scenes of triangles alone without --kernel: the block-local
+/// wavefront; with another --block phase voting where there is one kind of BSDF and no mask, and
+/// the loop elsewhere (results/ has the measurements).
 MegakernelKind automatic_kernel(const SceneData& scene, const Options& options);
 
 }  // namespace pt
