@@ -29,7 +29,7 @@ class ThreadWork {
     const std::uint32_t y = blockIdx.y * blockDim.y + threadIdx.y;
     if (x >= division.width || y >= division.height) return;
     const bool one = division.work == Work::sample;
-    next_ = batch.number_of(x, y, one ? blockIdx.z : 0);
+    next_ = batch.index_of(x, y, one ? blockIdx.z : 0);
     end_ = one ? next_ + 1 : batch.path_count;
   }
 

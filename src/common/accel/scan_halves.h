@@ -20,7 +20,7 @@ PT_HD std::uint32_t groups_of_chunk(std::uint32_t first, std::uint32_t count) {
 /// A bit of a chunk's candidates belongs to this sphere of the chunk. A chunk of n groups has its
 /// first n spheres in the highest byte, one of each group, from the highest bit on, the next n in
 /// the byte below: sphere (3 - byte) n + 7 - bit of the byte.
-PT_HD std::uint32_t half_number(std::uint32_t bit, std::uint32_t groups) {
+PT_HD std::uint32_t half_sphere_index(std::uint32_t bit, std::uint32_t groups) {
   return (bit >> 3) * (half_groups - groups) + (3 * groups + 7 - bit);
 }
 

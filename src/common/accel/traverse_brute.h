@@ -33,17 +33,17 @@ PT_HD std::uint32_t sphere_candidates(const Sphere* spheres, First first, std::u
   return ~missed;
 }
 
-/// Calls visit(distance, primitive) for the candidates until it returns true. `number_of(bit)`: the
+/// Calls visit(distance, primitive) for the candidates until it returns true. `index_of(bit)`: the
 /// sphere of a bit.
-template <class NumberOf, class Visit>
+template <class IndexOf, class Visit>
 PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t candidates,
-                              const Ray& ray, NumberOf&& number_of, Visit&& visit) {
+                              const Ray& ray, IndexOf&& index_of, Visit&& visit) {
   while (candidates != 0) {
     lanes_of(ray).count(LanePoint::primitive);
     const std::uint32_t bit = highest_bit(candidates);
     candidates &= ~(1u << bit);
     // A ray that is NaN has fillers for candidates, too, and meets nothing, whatever is tested.
-    const std::uint32_t primitive = min_integer(number_of(bit), primitives.sphere_count - 1);
+    const std::uint32_t primitive = min_integer(index_of(bit), primitives.sphere_count - 1);
     if (visit(sphere_distance(load_wide(&primitives.spheres[primitive]), ray), primitive)) {
       return true;
     }
@@ -85,7 +85,9 @@ PT_HD bool for_each_half_sphere(const Primitives& primitives, const Ray& ray, Vi
     const std::uint32_t groups = groups_of_chunk(first, count);
     return resolve_candidates(
         primitives, half_candidates(primitives.halves, first, count, halves), ray,
-        [&](std::uint32_t bit) { return first * HalfSpheres::count + half_number(bit, groups); },
+        [&](std::uint32_t bit) {
+          return first * HalfSpheres::count + half_sphere_index(bit, groups);
+        },
         visit);
   });
 }

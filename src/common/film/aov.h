@@ -5,10 +5,11 @@
 //   static constexpr const char* name      of the layer and for --aov
 //   static constexpr const char* channels  a letter each: the layer's channels are name.X
 //   of(x), callable on the device unless x is a PixelStatistics, where x is one of
-//     FirstHit -> Vec3, Vec2 or float  what the camera ray finds: the film has the mean over all
-//                                      samples, filtered as radiance is; 0 where it finds nothing
-//     FirstHit -> std::uint32_t        a number: that of the first sample, for a mean says nothing
-//     PixelStatistics -> float         what the film knows of the pixel's samples
+//     FirstHit -> Vec3, Vec2 or float  the first hit: the film has the mean over all samples,
+//     filtered
+//                                      as radiance is; 0 where the camera ray misses
+//     FirstHit -> std::uint32_t        an index: that of the first sample, since means are useless
+//     PixelStatistics -> float         statistics of the pixel's samples
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace pt {
 
-/// What a pixel's sums say when the render has ended.
+/// Statistics of a pixel after the render.
 struct PixelStatistics {
   double samples = 0;   ///< the finite ones
   double variance = 0;  ///< of the pixel's value, estimated (pixel_statistics.h); luminance
@@ -61,7 +62,7 @@ struct Instance {
   static constexpr const char *name = "instance", *channels = "I";
   static PT_HD std::uint32_t of(const FirstHit& hit) { return hit.instance; }
 };
-struct MaterialNumber {
+struct MaterialIndex {
   static constexpr const char *name = "material", *channels = "I";
   static PT_HD std::uint32_t of(const FirstHit& hit) { return hit.material; }
 };
@@ -86,7 +87,7 @@ struct Rays {
 
 /// Every AOV, once. Its index is its bit in Options::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
-                      aov::Uv, aov::Primitive, aov::Instance, aov::MaterialNumber, aov::Variance,
+                      aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
                       aov::Samples, aov::Bounces, aov::Rays>;
 static_assert(Aovs::size <= 32);
 

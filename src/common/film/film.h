@@ -10,8 +10,8 @@ namespace pt {
 
 /// One finished path.
 struct alignas(16) Sample {
-  Color radiance = Color(0.0f);
-  std::uint32_t rays = 0;  ///< closest-hit rays, shadow rays << 16
+  Color radiance = Color(0.0f);  ///< W / (m^2 sr)
+  std::uint32_t rays = 0;        ///< closest-hit rays, shadow rays << 16
 };
 
 /// A rectangle of an image's pixels.
@@ -69,8 +69,8 @@ struct SampleBuffer {
     return {corner + pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, path_index};
   }
 
-  /// The path of this index in the batch.
-  PT_HD std::uint32_t number_of(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
+  /// The index of the path of a sample of the batch at pixel (x, y) of the window.
+  PT_HD std::uint32_t index_of(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
     return sample * pixel_count.divisor() + y * width.divisor() + x;
   }
 
@@ -88,7 +88,7 @@ struct FilmPixel {
 
 inline constexpr int path_length_bins = 128;  ///< the last one also counts all longer paths
 
-/// What the samples say of the work that was done.
+/// Counts of the work that the samples took.
 struct PathTally {
   std::uint64_t rays = 0;
   std::uint64_t shadow_rays = 0;

@@ -8,13 +8,13 @@
 
 namespace pt {
 
-/// The path at which a chain is.
+/// A chain's current state, a path.
 struct alignas(16) ChainState {
-  Color radiance = Color(0.0f);
-  float target = 0.0f;
+  Color radiance = Color(0.0f);  ///< W / (m^2 sr)
+  float target = 0.0f;           ///< its luminance, see target_of
 };
 
-/// Where on the image a chain is, and what it has not yet added there.
+/// The pixel of a chain's state, and the weight that is not yet added to it.
 struct alignas(16) ChainSplat {
   double weight = 0.0;  ///< per radiance of its state
   std::uint32_t pixel = 0;
@@ -32,8 +32,8 @@ PT_HD ChainTally operator+(const ChainTally& a, const ChainTally& b) {
           a.small_accepted + b.small_accepted};
 }
 
-/// What chains have done. The counters exist in several copies, so that threads seldom contend for
-/// one.
+/// Counts of the chains' work. The counters exist in several copies, so that threads seldom contend
+/// for one.
 struct ChainCounts {
   static constexpr std::uint32_t copies = 1024;
   PathTally paths;
@@ -74,7 +74,7 @@ struct ChainArrays {
   }
 };
 
-/// What chains do with the paths that have been traced.
+/// The step that chains take with the paths that have been traced.
 struct ChainStep {
   enum class Kind : std::uint8_t {
     start,   ///< begin at them

@@ -30,7 +30,7 @@ PT_HD Vec2 sphere_uv(const Vec3& local) {
           fused_multiply_add(-inverse_pi, from_zenith, 1.0f)};
 }
 
-/// The derivatives of the point by u and by v, on a sphere of this radius (pbrt-v4, section 6.2.3).
+/// The derivatives of the point by u and by v, on a sphere of this radius (pbrt-v4, section 6.2.2).
 PT_HD Vec3 sphere_dp_du(const SphereFrame& frame, const Vec3& local, float radius) {
   const float scale = 2.0f * pi * radius;
   return frame.world({-scale * local.y, scale * local.x, 0.0f});

@@ -1,4 +1,4 @@
-// Delta lights (pbrt-v4, sections 12.1 to 12.3): no ray can hit them, so that light sampling alone
+// Delta lights (pbrt-v4, sections 12.2 and 12.3): no ray can hit them, so that light sampling alone
 // finds them, with MIS weight 1.
 #pragma once
 

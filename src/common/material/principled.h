@@ -133,7 +133,7 @@ struct Principled {
     return (view.inside ? 1.0f : glass()) * (1.0f - fresnel);
   }
 
-  /// The specular lobe's reflectance (Burley 2015, section 5).
+  /// The specular lobe's reflectance.
   PT_HD Color reflectance(const View& view, float cosine, float fresnel) const {
     if (view.inside) return Color(glass() * fresnel);
     const float weight = schlick_weight(cosine, eta);

@@ -40,7 +40,7 @@ PT_HD Microfacets principled_facets(float roughness, float anisotropic) {
   return {fmaxf(divide(alpha, aspect), 0.001f), fmaxf(alpha * aspect, 0.001f), false};
 }
 
-/// The diffuse base with its sheen: Burley 2012, sections 5.3 and 5.4.
+/// The diffuse base with its sheen: Burley 2012, section 5.3.
 struct PrincipledBase {
   Color color;      ///< base colour, in [0, 1]
   float roughness;  ///< in [0, 1]

@@ -11,7 +11,7 @@ namespace pt {
 
 struct Sampler {
   SamplerKind kind = SamplerKind::independent;
-  std::uint32_t samples = 1;  ///< of a pixel, for which a grid is made
+  std::uint32_t samples = 1;  ///< per pixel, for the grid of strata
   StrataGrid grid;
 };
 
@@ -60,8 +60,8 @@ struct SamplerSource {
   PT_HD void close(const PathId&, const Stream&) const {}
 };
 
-/// Where a path begins whose name says `pixel` and whose block 0 is `u`: there, but for a chain's
-/// path, whose numbers say it themselves.
+/// Where a path of pixel `pixel` and block 0 `u` begins: there, but a chain's path where its
+/// numbers place it on the image.
 template <class Stream>
 PT_HD PixelPoint pixel_point(const Stream&, std::uint32_t pixel, const Vec4& u) {
   return {pixel, u};

@@ -1,4 +1,4 @@
-// The surface interaction at a hit: point, normals, derivatives, material (pbrt-v4, section 10.1).
+// The surface interaction at a hit: point, normals, derivatives, material (pbrt-v4, section 3.11).
 #pragma once
 
 #include "common/accel/triangle_query.h"

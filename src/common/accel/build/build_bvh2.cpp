@@ -14,7 +14,7 @@ namespace {
 constexpr TreeCosts primitive_costs = {1.0f, 0.5f, leaf_size_max};
 
 // Sorts `order` by kind, keeping each kind's sequence, and renumbers the leaves.
-void number_by_kind(Bvh2& tree, std::uint32_t first_of_second_kind) {
+void order_by_kind(Bvh2& tree, std::uint32_t first_of_second_kind) {
   const auto is_first = [&](std::uint32_t primitive) { return primitive < first_of_second_kind; };
   std::vector<std::uint32_t> new_index(tree.order.size()), sorted(tree.order.size());
   std::uint32_t first = 0;
@@ -40,7 +40,7 @@ Bvh2 build_bvh2(std::span<const Bounds> bounds, std::uint32_t first_of_second_ki
         return {bounds[i].min - padding, bounds[i].max + padding};
       });
   Bvh2 tree = merge_leaves(std::move(binary), primitive_costs, first_of_second_kind);
-  number_by_kind(tree, first_of_second_kind);
+  order_by_kind(tree, first_of_second_kind);
   return tree;
 }
 

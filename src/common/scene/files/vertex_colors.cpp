@@ -46,7 +46,7 @@ void VertexColors::report_mean(const std::string& place) {
                   "are not supported: their mean is used");
 }
 
-std::uint32_t VertexColors::number_of(std::uint32_t& texture) {
+std::uint32_t VertexColors::texture_index_of(std::uint32_t& texture) {
   if (texture == none) {
     texture = static_cast<std::uint32_t>(scene_.textures.size());
     scene_.textures.emplace_back();  // without texels until finish()

@@ -24,8 +24,8 @@ class VertexColors {
 
   /// Textures that stand for the colours of whatever mesh has them, in any parameter of a material.
   /// White where a mesh has none, which is reported.
-  std::uint32_t by_vertex() { return number_of(vertex_); }
-  std::uint32_t by_face() { return number_of(face_); }
+  std::uint32_t by_vertex() { return texture_index_of(vertex_); }
+  std::uint32_t by_face() { return texture_index_of(face_); }
 
   /// Multiplies the first parameter of the mesh's material, or what it emits, by the colours of the
   /// mesh's vertices. Other meshes keep the material. `place` is for a warning.
@@ -52,7 +52,7 @@ class VertexColors {
   using Change = std::function<void(MaterialDescription&)>;
 
   void report_mean(const std::string& place);
-  std::uint32_t number_of(std::uint32_t& texture);
+  std::uint32_t texture_index_of(std::uint32_t& texture);
   Use use_of(std::uint32_t material) const;
   std::uint32_t changed(std::uint32_t material, const Change& change);
   void report_lack(const char* attribute, bool lacks);
