@@ -17,9 +17,15 @@ def csv_text(rows):
     return text.getvalue()
 
 
+def renamed(column):
+    """The column's name in this schema version: stage sort_hits was renamed in version 11."""
+    return column.replace("sort_hits_", "route_hits_", 1) if column.startswith("sort_hits_") else column
+
+
 def read_rows(path):
     with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+        return [{renamed(column): value for column, value in row.items()}
+                for row in csv.DictReader(file)]
 
 
 def read_facts(path):

@@ -5,6 +5,7 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+OLD_NAMES = {"by_itself": "defaults"}  # of tables, in the release before
 CONFIDENCE = "confidence interval"
 RANGE = "fastest to slowest repeat"
 
@@ -119,12 +120,18 @@ def give_ray_sets_a_plot(table):
                            "y_label": "time of the rays [ms]", "log_y": False}
 
 
+def renamed(column):
+    """The column's name in this schema version: stage sort_hits was renamed in version 11."""
+    return column.replace("sort_hits_", "route_hits_", 1) if column.startswith("sort_hits_") else column
+
+
 def read_table(path):
     path = Path(path)
     with open(path, newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file)
-        rows = [{key: value or "" for key, value in row.items() if key} for row in reader]
-        columns = list(reader.fieldnames or [])
+        rows = [{renamed(key): value or "" for key, value in row.items() if key}
+                for row in reader]
+        columns = [renamed(column) for column in reader.fieldnames or []]
     facts = {}
     description = path.with_suffix(".json")
     if description.is_file():
@@ -132,7 +139,7 @@ def read_table(path):
             facts = json.loads(description.read_text(encoding="utf-8"))
         except ValueError as error:
             raise ValueError(f"{description}: not JSON: {error}") from error
-    table = Table(path.stem, columns, rows, facts)
+    table = Table(OLD_NAMES.get(path.stem, path.stem), columns, rows, facts)
     if facts and not table.plot and {"ray_file", "time_ms", "accel"} <= set(columns):
         give_ray_sets_a_plot(table)
     return table
@@ -154,7 +161,8 @@ def read_device(folder):
     folder = Path(folder)
     if not folder.is_dir():
         raise ValueError(f"{folder}: no such folder; a folder of results/ was expected")
-    tables = {path.stem: read_table(path) for path in sorted(folder.glob("*.csv"))}
+    # Sorted, so that `defaults` comes after its old name and replaces it.
+    tables = {table.name: table for table in map(read_table, sorted(folder.glob("*.csv")))}
     if not tables:
         raise ValueError(f"{folder}: no tables; *.csv of the experiments were expected")
     names = [table.facts["device"]["name"] for table in tables.values()

@@ -15,7 +15,7 @@ namespace {
 template <class Cancelled>
 class PathRange {
  public:
-  /// Every `step`-th path of [first, end), or chain where they go on by themselves.
+  /// Every `step`-th path of [first, end), or chain where chains are asynchronous.
   PathRange(const ChainRun* chains, const SampleBuffer& batch, std::uint32_t first,
             std::uint32_t end, std::uint32_t step, const Cancelled& cancelled)
       : chains_(chains),

@@ -19,7 +19,7 @@ class MegakernelCuda : public CudaRenderer {
                          const Source& source, const SampleBuffer& batch);
 
  protected:
-  /// To ask each thread whether it follows a chain cost all renders 4 to 11 % (results/).
+  /// A branch in each thread on whether it follows a chain cost all renders 4 to 11 % (results/).
   bool runs_chains_async() const override { return false; }
   void trace_batch(const SampleBuffer& batch) override;
 

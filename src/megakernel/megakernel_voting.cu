@@ -1,4 +1,4 @@
-// Wide trees of triangles alone, traced by warps that vote (trace_paths_voting.cuh).
+// Wide trees of triangles alone, by warp-level phase voting (trace_paths_voting.cuh).
 #include "megakernel/megakernel_cuda.h"
 #include "megakernel/megakernel_kernel.cuh"
 #include "megakernel/trace_paths_voting.cuh"

@@ -31,7 +31,7 @@ class PathQuery : public ClosestTriangle {
   bool is_shadow_;
 };
 
-/// The same where masks are asked, by the ray's key (transport/mask.h).
+/// The same with masks, which depend on the ray's key (transport/mask.h).
 class MaskedPathQuery : public PathQuery {
  public:
   static constexpr bool has_masks = true;

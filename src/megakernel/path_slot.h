@@ -15,12 +15,12 @@ struct alignas(128) PathSlot {
   };
 
   PathRecord origin;            ///< of the ray; density of the BSDF
-  PathRecord direction;         ///< of the ray; number of the path
+  PathRecord direction;         ///< of the ray; index of the path
   PathRecord throughput;        ///< beta; rays and shadow rays
   PathRecord radiance;          ///< so far; the receiver
   PathRecord shadow_origin;     ///< of the shadow ray; distance
   PathRecord shadow_direction;  ///< of the shadow ray
-  PathRecord shadow_radiance;   ///< what arrives if the ray is free
+  PathRecord shadow_radiance;   ///< contribution if the ray is not occluded
   StoredHit hit;                ///< of the ray
 
   /// All but its radiance.

@@ -7,12 +7,12 @@
 namespace pt {
 
 /// Traces paths until `work` has no more. A thread whose path ends takes the next one at once and
-/// does not wait for the other paths of its warp, so the loop turns once per ray, not per path:
-/// each turn draws the numbers that decide the ray, then makes it (at the camera or at the last
+/// does not wait for the other paths of its warp, so there is one iteration per ray, not per
+/// path: it draws the numbers that decide the ray, then makes it (at the camera or at the last
 /// hit), then traces it. The parts that every thread needs, the draw and the intersection, are
 /// executed together whatever each path's length.
 ///
-/// `Work` gives paths away: `bool next(std::uint32_t& number, bool wanted)` is called by all
+/// `Work` hands out paths: `bool next(std::uint32_t& path_index, bool wanted)` is called by all
 /// threads of a warp together; where `wanted`, it names a new path or returns false; elsewhere it
 /// returns true. `bool any(bool)` is true when the argument is true for any thread of the warp.
 template <class Traits, Branching branching, class Source, class Work>

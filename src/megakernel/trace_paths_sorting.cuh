@@ -1,6 +1,7 @@
-// The megakernel's body for many kinds of BSDFs: a wavefront inside a block.
+// The block-local wavefront, the megakernel's body for many kinds of BSDFs (--kernel sort): a
+// wavefront (Laine, Karras and Aila 2013) inside a thread block.
 //
-// Warps that vote (trace_paths_voting.cuh) shade what happens to wait in them, surfaces of several
+// Phase voting (trace_paths_voting.cuh) shades the paths that wait in a warp, surfaces of several
 // kinds by code that each warp fetches for itself. Here a block owns several paths for each of its
 // threads and takes all of them through the same phases, a barrier between each and the next:
 //
@@ -10,9 +11,9 @@
 //   shade   in this order: threads side by side execute the same code, and so do all warps at about
 //           the same time, which share what is in the instruction cache
 //
-// A phase of tracing does not wait for its longest rays: their lanes go on in the next one. A path
-// meets the same functions in the same order as in the loop (trace_path.h), so its radiance is the
-// same, bit for bit.
+// A phase of tracing does not wait for its longest rays: their traversal is suspended and resumed
+// in the next one. A path goes through the same functions in the same order as in the loop
+// (trace_path.h), so its radiance is the same, bit for bit.
 #pragma once
 
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
@@ -28,7 +29,7 @@ namespace pt {
 
 struct BlockWavefrontTuning {
   static constexpr int slots_most = 12;     ///< of a thread; fewer where a block's memory is small
-  static constexpr int suspended_max = 12;  ///< lanes of 32 for whose rays a phase does not wait
+  static constexpr int suspended_max = 12;  ///< lanes of a warp that a phase may suspend
 };
 
 /// How blocks share the paths of a batch.
@@ -43,7 +44,7 @@ template <class Traits>
 using BlockWavefrontLane =
     CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>;
 
-/// What a block shares, in shared memory: of `places` only those that it has slots for.
+/// What a block shares, in shared memory: of `slots` as many as the block has.
 template <class Lane, int threads>
 struct BlockWavefrontMemory {
   static constexpr int class_count = kind_count + 1;  ///< misses come first
@@ -58,12 +59,12 @@ struct BlockWavefrontMemory {
   };
   /// And its shadow ray.
   enum class Shadow : std::uint8_t {
-    none,  ///< there is none, or it was in vain
+    none,  ///< there is none, or it was occluded
     ray,   ///< is traced
-    free,  ///< has met nothing: what it brings is to be added
+    free,  ///< not occluded: its radiance is to be added
   };
 
-  /// What a slot waits for, and a place in each list.
+  /// What a slot waits for, and one entry of each list.
   struct SlotState {
     std::uint16_t rays[2];  ///< to be traced: see BlockRays
     std::uint16_t ordered;  ///< slots to be shaded, by kind
@@ -95,7 +96,7 @@ struct BlockWavefrontMemory {
   __device__ Shadow& shadow(std::uint32_t slot) { return slots[slot].shadow; }
 };
 
-/// Reserves a place at the end of a list where `wanted`. By whole warps.
+/// Reserves an entry at the end of a list where `wanted`, and returns its index. By whole warps.
 __device__ inline std::uint32_t take_end(std::uint32_t& end, bool wanted) {
   const unsigned votes = __ballot_sync(0xffffffffu, wanted);
   if (votes == 0) return 0;
@@ -105,7 +106,7 @@ __device__ inline std::uint32_t take_end(std::uint32_t& end, bool wanted) {
   return __shfl_sync(0xffffffffu, first, 0) + __popc(votes & ((1u << lane) - 1));
 }
 
-/// The block's rays for PersistentTracer, by name: twice the slot, and one more for the shadow ray.
+/// The block's rays for PersistentTracer. A ray's id is twice its slot; of a shadow ray one more.
 template <class Traits, class Memory>
 struct BlockRays {
   using Query = typename BlockWavefrontLane<Traits>::Query;
@@ -122,7 +123,7 @@ struct BlockRays {
     const PathSlot& slot = slots[ray_id / 2];
     float distance = infinite_distance;
     const Ray ray = is_shadow(ray_id) ? slot.load_shadow_ray(distance) : slot.load_ray();
-    float key = 0.0f;  // in the place of t_min, which is 0
+    float key = 0.0f;  // instead of t_min, which is 0
     if constexpr (Traits::has_masks) key = __uint_as_float(key_of(ray_id));
     return {ray.origin, key, ray.direction, distance};
   }
@@ -182,8 +183,7 @@ struct BlockRays {
   }
 };
 
-/// Of a lane, where it is in the tree and what it has met, while its block does other things: in
-/// its stack's memory, beyond the stack.
+/// With room for a lane's suspended traversal, its state and hit, beyond the stack.
 inline constexpr int block_wavefront_stack_size =
     bvh_depth_max + CwbvhLane<PathQuery, true>::suspended_size + 1;
 
@@ -216,7 +216,7 @@ struct SlotSink {
 };
 
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
-/// are opened anew for each draw.
+/// are opened again for each draw.
 template <class Traits, class Source, class Memory>
 class BlockWavefront {
  public:
@@ -291,7 +291,7 @@ class BlockWavefront {
   }
 
   /// By one thread: as many paths as slots are free, or as one block may take at once. When there
-  /// are no more, nobody asks for slots that are left.
+  /// are no more, the remaining slots stay free.
   __device__ void take_paths() {
     const std::uint32_t count = min(memory_.free_end, paths_.at_once), all = samples_.path_count;
     const std::uint32_t first = count > 0 ? atomicAdd(paths_.next, count) : all;
@@ -316,8 +316,8 @@ class BlockWavefront {
     slot.store_radiance(Color(0.0f), path);
   }
 
-  /// What the block's rays meet. With many rays lanes pause when none are left but theirs; these
-  /// are fewer than all that are traced, so that some end in each phase.
+  /// The hits of the block's rays. If there are many, the last ones of each warp are suspended;
+  /// fewer than all that are traced, so that some end in each phase.
   __device__ __forceinline__ void trace() {
     const int suspended_max =
         memory_.ray_count > blockDim.x ? BlockWavefrontTuning::suspended_max : 0;
@@ -358,8 +358,8 @@ class BlockWavefront {
     __syncwarp();
   }
 
-  /// Whom it awaits: 0 for a miss, else the kind of the surface's BSDF and one; below 0 for those
-  /// whose rays have not ended.
+  /// The slot's sort key: 0 for a miss, else one more than the kind of the surface's BSDF; below 0
+  /// while a ray of the path is not finished.
   __device__ int class_of(std::uint32_t slot) const {
     const Path path = memory_.path(slot);
     if (path <= Path::ray || memory_.shadow(slot) == Shadow::ray) return -1;

@@ -1,10 +1,12 @@
-// The megakernel's body for wide trees: a warp votes on what its lanes do next.
+// Warp-level phase voting, the megakernel's body for wide trees (--kernel vote): a warp votes on
+// whether its lanes step down the tree, test leaves or are shaded next (as the `if-if` traversal of
+// Aila and Laine 2009, with shading as a further phase).
 //
-// In trace_path.h a warp waits in every turn for the longest of 32 traversals. Here a lane is a
-// machine: it steps down the tree or tests a leaf until its ray ends, and then waits to be shaded.
-// The warp leaves the traversal when enough lanes wait, shades these together, which begins their
-// shadow rays, their next rays or new paths, and goes on with all. A path meets the same functions
-// in the same order as in the loop, so its radiance is the same, bit for bit.
+// In trace_path.h a warp waits in every iteration for the longest of 32 traversals. Here a lane
+// steps down the tree or tests a leaf until its ray ends, and then waits to be shaded. The warp
+// leaves the traversal when enough lanes wait, shades these together, which begins their shadow
+// rays, their next rays or new paths, and resumes all. A path goes through the same functions in
+// the same order as in the loop, so its radiance is the same, bit for bit.
 #pragma once
 
 #include "common/accel/trace_cuda/choose_turn.cuh"
@@ -25,20 +27,19 @@ struct PhaseVotingTuning {
 /// shading need all registers. Each lane sees its own alone.
 struct PhaseVotingWarp {
   PreparedRays rays, shadow_rays;
-  float4 direction[32];          ///< of the ray; the path's number
+  float4 direction[32];          ///< of the ray; the path's index
   float4 throughput[32];         ///< beta; rays and shadow rays
   float4 radiance[32];           ///< so far; the receiver
-  float shadow_radiance[3][32];  ///< to be added if the shadow ray is free
+  float shadow_radiance[3][32];  ///< to be added if the shadow ray is not occluded
   float bsdf_pdf[32];
 };
 
-/// Of a lane, where it is in the tree and what it has met, while others are shaded: in its stack's
-/// memory, beyond the stack.
+/// With room for a lane's suspended traversal, its state and hit, beyond the stack.
 inline constexpr int phase_voting_stack_size =
     bvh_depth_max + CwbvhLane<PathQuery>::suspended_size + 1;
 
 /// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
-/// opened anew for each draw; Work: see trace_path.h.
+/// opened again for each draw; Work: see trace_path.h.
 template <class Traits, class Source, class Work>
 class PhaseVotingTracer {
  public:
@@ -187,7 +188,7 @@ class PhaseVotingTracer {
     }
     const bool works = waits && state_ != State::idle;
     if (works) continue_path(path, radiance, ray, hit);
-    begin_next_ray();
+    resume_traversal();
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
     ray_.set_ray(prepared);
@@ -200,13 +201,13 @@ class PhaseVotingTracer {
     volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
     met.x = __float_as_uint(ray_.query().t_max()), met.y = ray_.query().result().primitive;
   }
-  __device__ void begin_next_ray() {
+  __device__ void resume_traversal() {
     const volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
     const float t = __uint_as_float(met.x);
     ray_.resume(suspended_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
   }
 
-  /// A path begins at the camera or goes on from a surface.
+  /// A path begins at the camera or continues from a surface.
   __device__ __forceinline__ void continue_path(PathState path, Color radiance, Ray ray,
                                                 const Hit& hit) {
     lanes_of(scene_).at(path.rays).count(LanePoint::iteration);

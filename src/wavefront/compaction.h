@@ -5,7 +5,7 @@
 //           (CUB's DeviceSelect or, for two, DevicePartition on CUDA; a parallel scan on the CPU)
 //   scan    the same; on CUDA by one kernel that compares many tags at once (scan_tags.cuh)
 //   atomic  no pass: a stage that has finished a slot appends it to its next queue, a block of
-//           threads reserving its places with one atomic addition; the order is that of arrival
+//           threads reserving its entries with one atomic addition; the order is that of arrival
 //   none    no queues: stages look at every slot's tag; a pass only counts
 //
 // Contract of all: a queue holds exactly the slots that wait for its stage, each once, and its

@@ -32,7 +32,7 @@ Counts sum(Counts a, const Counts& b) {
   return a;
 }
 
-// Writes the range's slots to their queues, from the given places on.
+// Writes the range's slots to their queues, from the given indices on.
 void gather(const CompactionRequest& request, const Range& range, Counts index) {
   for (std::uint32_t slot = range.begin(); slot < range.end(); ++slot) {
     for (int c = 0; c < request.queues_wanted; ++c) {
@@ -74,7 +74,7 @@ void compact_cpu(TagPass pass, const CompactionRequest& request) {
         },
         sum);
   } else {
-    // A prefix sum over ranges gives each range its place, so the order is kept.
+    // A prefix sum over ranges gives each range its offset, so the order is kept.
     total = tbb::parallel_scan(
         all, Counts{},
         [&](const Range& range, const Counts& before, bool final) {

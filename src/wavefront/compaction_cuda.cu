@@ -16,7 +16,7 @@ namespace {
 
 constexpr int block_threads = 256;
 
-/// CUB's question for each slot. Being asked about slot 0 is also how the clock learns that the
+/// CUB's predicate for each slot. Its call for slot 0 also tells the clock that the
 /// compaction has begun: CUB's kernels are not ours to change.
 struct HasTag {
   const StageId* tags;

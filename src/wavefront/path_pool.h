@@ -41,20 +41,20 @@ struct PathPool {
   Strides strides;
   // Of slot 0; at(field, slot) is another's, half_at(field, slot) that of a ray's two records.
   PathRecord* origin = nullptr;      ///< ray origin, density of the BSDF
-  PathRecord* direction = nullptr;   ///< ray direction, number of the path | new_path
+  PathRecord* direction = nullptr;   ///< ray direction, index of the path | new_path
   PathRecord* throughput = nullptr;  ///< beta, rays | shadow rays << 16
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
-  Receiver* receiver = nullptr;           ///< only where a tree of lights asks for it
+  Receiver* receiver = nullptr;           ///< only for a light tree
   // Only in scenes with lights:
   PathRecord* shadow_origin = nullptr;     ///< ray origin, distance
-  PathRecord* shadow_direction = nullptr;  ///< ray direction, number of the path
-  PathRecord* shadow_radiance = nullptr;   ///< what arrives if the ray is free, rays of the path
+  PathRecord* shadow_direction = nullptr;  ///< ray direction, index of the path
+  PathRecord* shadow_radiance = nullptr;   ///< contribution if not occluded, rays of the path
   // Only with compaction over tags; arrays in both layouts, since a pass reads them alone:
   StageId* tag = nullptr;
   StageId* shadow_tag = nullptr;  ///< shadow, or free_slot: no shadow ray waits
 
-  static constexpr std::uint32_t new_path = 0x80000000u;  ///< numbers are below 2^31
+  static constexpr std::uint32_t new_path = 0x80000000u;  ///< indices are below 2^31
 
   /// What a pool for these scenes has: `tags` for compaction over tags.
   struct Parts {
@@ -164,7 +164,7 @@ struct PathPool {
     return lanes;
   }
 
-  /// The path's number and rays alone.
+  /// The path's index and its count of rays alone.
   PT_HD PathState load_path_id(std::uint32_t slot) const {
     PathState path;
     path.index = half_at(direction, slot)->w;
@@ -197,7 +197,7 @@ struct PathPool {
                                    const PathState& path) const {
     store_wide(at(shadow_radiance, slot), pack(radiance, path.rays));
   }
-  /// Of the path when it asked.
+  /// Of the path when it cast the shadow ray.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w;
   }
@@ -230,7 +230,7 @@ struct PathPool {
     if (parts.tags && parts.lights) function(shadow_tag);
   }
 
-  /// Where a T may lie behind `end` bytes, which it then counts among.
+  /// The offset of a T behind `end` bytes; `end` then includes it.
   template <class T>
   static std::uint32_t next_offset(std::uint32_t& end) {
     constexpr std::uint32_t alignment = alignof(T);

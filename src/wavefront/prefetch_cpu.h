@@ -1,5 +1,5 @@
-// What shading reads at places that depend on chance, asked of memory for paths whose turn comes
-// later. In three steps: what one asks for says where the next one's lies.
+// Prefetches of what shading reads at random addresses, for paths that are shaded later. In three
+// steps: each needs what the step before has prefetched.
 #pragma once
 
 #include "common/sampling/alias_table.h"
@@ -27,7 +27,7 @@ inline const Triangle* triangle_of(const Scene& scene, const Hit& hit) {
   return &scene.triangles.triangles[hit.primitive - primitives];
 }
 
-/// Whether these numbers ask the environment for light; nearly always right.
+/// Whether these numbers sample the environment; nearly always right.
 inline bool asks_environment(const Scene& scene, const Vec4& light) {
   return light.z < scene.light_selector.environment_probability;
 }
@@ -52,7 +52,7 @@ inline void prefetch_attributes(const Scene& scene, const Hit& hit, const Vec4& 
   if (env.height > 1) prefetch(&env.texels[cell.index + env.width]);
 }
 
-/// Where about a ray meets a triangle, as weights of v1 and v2.
+/// Approximately where a ray hits a triangle, as weights of v1 and v2.
 inline Vec2 rough_barycentric(const Ray& ray, float t, const Triangle& triangle) {
   const Vec3 edge1 = triangle.v1 - triangle.v0, edge2 = triangle.v2 - triangle.v0;
   const Vec3 p = ray.origin + t * ray.direction - triangle.v0;

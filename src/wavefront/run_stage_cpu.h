@@ -11,7 +11,7 @@
 
 namespace pt {
 
-/// Collects what a range of slots sends on, then reserves the places in each queue with one atomic
+/// Collects what a range of slots sends on, then reserves the entries of each queue with one atomic
 /// addition.
 class RangeAppender {
  public:
@@ -36,7 +36,7 @@ class RangeAppender {
   std::array<std::array<std::uint32_t, range_max>, queue_count> slots_;
 };
 
-/// The slot in place `i` of the stage's input; false: it does not wait for the stage.
+/// The slot at index `i` of the stage's input; false: it does not wait for the stage.
 template <class Stage>
 bool finds_slot(const StageQueues& queues, std::uint32_t i, std::uint32_t& slot) {
   slot = queues.input == StageInput::queue ? queues.begin()[i] : i;

@@ -2,11 +2,12 @@
 //
 // The tags are divided into tiles, one for each block. A thread compares 32 tags at once and keeps
 // the bits that match; the block adds up its bits, publishes the sums, and waits for those of all
-// tiles before its own: together they are the places at which its slots begin. Then each warp
-// writes its slots by itself, through shared memory, so that the stores are wide and coalesced. It
-// is the scan by decoupled look-back (Merrill and Garland 2016, 'Single-pass Parallel Prefix Scan
-// with Decoupled Look-back') without the prefixes that tiles publish there: tiles are as large as
-// the items allow, hence few, and nobody waits for more than the tiles that read at the same time.
+// tiles before its own: together they are the indices at which its slots begin. Then each warp
+// writes its slots independently, through shared memory, so that the stores are wide and coalesced.
+// It is the scan by decoupled look-back (Merrill and Garland 2016, 'Single-pass Parallel Prefix
+// Scan with Decoupled Look-back') without the prefixes that tiles publish there: tiles are as large
+// as the items allow, hence few, and a block waits for no more than the tiles that read at the same
+// time.
 #pragma once
 
 #include "common/device/stage_stamp.cuh"
@@ -50,12 +51,12 @@ __device__ inline void load_tags(const CompactionRequest& request, std::uint32_t
   }
 }
 
-/// The slots of a row in shared memory, and up to 3 places before and behind them.
+/// The slots of a row in shared memory, and up to 3 elements before and behind them.
 struct alignas(16) RowStage {
   std::uint16_t slots[row_slots + 8];
 };
 
-/// Writes the row's slots whose bits are set, the lowest to queue[place], and returns how many they
+/// Writes the row's slots whose bits are set, the lowest to queue[index], and returns how many they
 /// are. `first`: slot of the first lane's bit 0. All threads of the warp together.
 __device__ inline std::uint32_t write_row(std::uint32_t* queue, std::uint32_t index,
                                           std::uint32_t first, std::uint32_t mask,
@@ -136,7 +137,8 @@ __global__ void __launch_bounds__(scan_threads)
   bit = shared_bit;
   if (warp == 0) {
     const TagCounts of_tile = warp_sum(lane < warps ? counts_of_warp[lane] : 0);
-    if (lane == 0) tiles[tile] = of_tile | bit;  // one word: nobody sees the bit without the counts
+    if (lane == 0)
+      tiles[tile] = of_tile | bit;  // one word: the bit is never seen without the counts
   }
 
   TagCounts before = 0;

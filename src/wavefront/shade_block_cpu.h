@@ -1,5 +1,5 @@
 // Surfaces over blocks of slots: the numbers of a block's paths are drawn together and what they
-// read is asked of memory, then the stage shades each slot as it does alone.
+// read is prefetched, then the stage shades each slot as it does alone.
 #pragma once
 
 #include "common/accel/traverse_triangles.h"
@@ -9,7 +9,7 @@
 
 namespace pt {
 
-/// Whose streams have no state: numbers can be drawn before they are asked for.
+/// Sources whose streams have no state: numbers can be drawn in advance.
 template <class Source>
 concept StatelessSource = !requires(const Source& source) {
   source.states;

@@ -1,5 +1,5 @@
 // What the stages of a wave have to move by the layout of their data: each record of the path pool,
-// each place in a queue and each sample that a stage reads or writes, once. The scene, random
+// each entry of a queue and each sample that a stage reads or writes, once. The scene, random
 // states and the film are not among it. The hardware moves more where a warp's slots are not side
 // by side, for it moves sectors of 32 bytes; results/ has the comparison.
 #pragma once
@@ -19,7 +19,7 @@ struct WaveFlow {
   double generated = 0;  ///< new paths
   double rays = 0;       ///< all paths in flight, the new ones included
   double misses = 0, surfaces = 0;
-  double shadows = 0;                      ///< surfaces that asked a light
+  double shadows = 0;                      ///< surfaces that sampled a light
   double continued = 0;                    ///< paths that are in flight in the next wave
   double finished = 0;                     ///< paths that were followed to their ends after it
   std::array<double, kind_count> kinds{};  ///< [MaterialKind] of the surfaces, where ordered
@@ -36,7 +36,7 @@ struct WaveLayout {
   bool appends = true;       ///< stages append to queues, else they write tags
   bool queues_free = false;  ///< free slots are queued
   bool all_lights = false;   ///< Lighting::full: a miss needs the whole ray
-  bool fused = false;        ///< one kernel traces and shades: parts.lights asks for samples alone
+  bool fused = false;        ///< one kernel traces and shades: parts.lights concerns samples alone
   bool persistent = false;   ///< persistent warps trace the rays, and route_hits sends them on
   bool shades_by_kind = false;
 };

@@ -13,7 +13,7 @@ template <int streams>
 class BlockAppender {
  public:
   struct Shared {
-    std::uint32_t index[2][streams][32];  // [turn][stream][warp]: votes, then places
+    std::uint32_t index[2][streams][32];  // [buffer][stream][warp]: counts, then indices
   };
 
   __device__ explicit BlockAppender(Shared& shared)

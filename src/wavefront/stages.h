@@ -1,5 +1,5 @@
-// The stages of the wavefront: each loads a slot, calls one transport function, stores, and says
-// which stage the path waits for next. How it gets there is not its affair.
+// The stages of the wavefront: each loads a slot, calls one transport function, stores, and returns
+// the stage for which the path waits next. Compaction does the rest (compaction.h).
 #pragma once
 
 #include "common/film/markov_chains.h"
@@ -10,7 +10,7 @@
 
 namespace pt {
 
-/// What a stage says of a slot that it has finished.
+/// What a stage returns for a slot that it has finished.
 struct Next {
   StageId to;           ///< what the slot waits for
   bool shadow = false;  ///< a shadow ray of it waits, too
@@ -40,8 +40,8 @@ PT_HD StageId id_of(const Stage& stage) {
   }
 }
 
-/// Most threads of a block on CUDA. Many kinds of lights and materials want registers more than
-/// they want threads (results/ has the measurement): with 512 they get 128.
+/// Most threads of a block on CUDA. Shading many kinds of lights and materials needs registers more
+/// than occupancy (results/ has the measurement): with 512 they get 128.
 template <class Traits>
 inline constexpr int shading_block_max = Traits::lighting == Lighting::full ? 512 : 1024;
 
@@ -55,7 +55,7 @@ inline constexpr SphereAccess sphere_access =
         ? SphereAccess::scan
         : SphereAccess::once;
 
-/// What the stages that begin and shade paths need. `rank` in their calls is the place of the slot
+/// What the stages that begin and shade paths need. `rank` in their calls is the index of the slot
 /// in the stage's queue.
 template <class Source>
 struct StageContext {
@@ -63,9 +63,9 @@ struct StageContext {
   SampleBuffer samples;
   Source source;
   WaveCounters* counters;
-  std::uint32_t* ray_queue;  ///< null: there are no queues, and no slot has a place in one
+  std::uint32_t* ray_queue;  ///< null: there are no queues
   PathLimits limits;
-  const ChainRun* chains = nullptr;  ///< that go on by themselves: free slots are theirs
+  const ChainRun* chains = nullptr;  ///< asynchronous chains, to which free slots belong
 };
 
 /// The camera ray of a path in a free slot.
@@ -86,8 +86,8 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
   sum = add_rounded(sum, radiance);
 }
 
-/// The sink (transport/path_step.h) of all stages: keeps a path in its slot of the pool, and what
-/// it brings in its sample. Without lights nothing is added before a path ends, and its sample need
+/// The sink (transport/path_step.h) of all stages: keeps a path in its slot of the pool, and its
+/// radiance in its sample. Without lights nothing is added before a path ends, and its sample need
 /// not be read. `streams`: takes results as shading finds them (StreamedSteps), to shorten live
 /// ranges.
 template <bool streams = false>
@@ -149,10 +149,9 @@ struct GeneratePaths {
   }
 };
 
-/// In place of GeneratePaths where Markov chains go on by themselves: a slot follows a chain from
-/// path to path, and when that has taken all of its steps the next of its chains, which are those
-/// whose number differs from the slot's by multiples of `all_slots`. Slots whose chains are done
-/// wait for nothing.
+/// Instead of GeneratePaths for asynchronous Markov chains: a slot follows a chain from path to
+/// path, and when that has taken all of its steps the next of its chains, whose indices differ from
+/// the slot's by multiples of `all_slots`. Slots whose chains are done wait for nothing.
 template <class Source>
 struct ContinueChains {
   static constexpr StageId id = StageId::mutate;
@@ -210,8 +209,8 @@ struct IntersectRays : PathRays {
   }
 };
 
-/// Sends each path whose ray has been traced to the stage that shades it: for tracers that store
-/// the hits and do no more (trace_rays in wavefront.h).
+/// Routes each path whose ray has been traced to the stage that shades its hit or miss: for tracers
+/// that store hits only (trace_rays in wavefront.h).
 struct RouteHits {
   static constexpr StageId id = StageId::route_hits;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -255,7 +254,7 @@ struct ShadeSurface {
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr int block_max = streams ? streaming_block_max : shading_block_max<Traits>;
-  /// The only BSDF that it knows; null: it knows several.
+  /// The only BSDF that it shades; null: several.
   static constexpr const char* kind =
       Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
@@ -287,14 +286,13 @@ struct ShadeSurface {
   }
 };
 
-/// Questions to lights, likewise.
+/// Shadow rays, likewise.
 struct ShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   PathPool pool;
   SampleBuffer samples;
 
-  /// `number`: the path's.
   PT_HD Next finish(std::uint32_t path_index, const ShadowRay& shadow, bool is_occluded) const {
     if (!is_occluded) add_radiance(samples, path_index, shadow.radiance);
     return {free_slot};
@@ -332,7 +330,7 @@ struct FollowPaths {
   StageContext<Source> context;
   StageId as;                 ///< bounce or finish
   std::uint32_t rays_max;     ///< that a path gets here, at least 1
-  bool starts_paths = false;  ///< in free slots, so that nobody stores their first rays
+  bool starts_paths = false;  ///< in free slots: their first rays are never stored
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;

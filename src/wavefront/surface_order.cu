@@ -1,5 +1,5 @@
 // The counting sort of the surfaces on CUDA: one kernel for tiles; for ranges one that counts and
-// one that puts them in their places.
+// one that scatters them.
 #include "common/device/bind_scene.cuh"
 #include "common/device/counting_sort.cuh"
 #include "common/device/stage_stamp.cuh"
@@ -18,7 +18,7 @@ __global__ void __launch_bounds__(tile_block, 2)
     order_tiles(const __grid_constant__ Scene scene, const __grid_constant__ SurfaceOrder order,
                 StageClock* clock) {
   __shared__ std::uint32_t counts[kind_count], next[kind_count];
-  __shared__ std::int8_t kinds[order_tile];  // of its places, below 0 behind the queue's end
+  __shared__ std::int8_t kinds[order_tile];  // of its entries, below 0 behind the queue's end
   stamp_first_thread(clock, StageId::order_surfaces);
   const std::uint32_t count = *order.count;
   for (std::uint32_t tile = blockIdx.x * order_tile; tile < count; tile += gridDim.x * order_tile) {
@@ -26,7 +26,7 @@ __global__ void __launch_bounds__(tile_block, 2)
     if (threadIdx.x < kind_count) counts[threadIdx.x] = 0;
     __syncthreads();
     const std::uint32_t in_tile = min(count - tile, order_tile);
-    const std::uint32_t end = (in_tile + 31) / 32 * 32;  // whole warps take places
+    const std::uint32_t end = (in_tile + 31) / 32 * 32;  // by whole warps
     for (std::uint32_t i = threadIdx.x; i < end; i += tile_block) {
       int kind = -1;
       if (i < in_tile) kind = surface_kind(scene, order.pool, order.slots[tile + i]);

@@ -1,7 +1,7 @@
 // The surfaces that wait to be shaded, ordered by the kind of their BSDFs: a counting sort of their
 // queue. Threads side by side then execute the same code (after Laine et al. 2013, 'Megakernels
 // Considered Harmful', section 4). One kernel for all kinds needs no more than an order within
-// tiles of the queue, and what was near in the queue stays near in memory. A kernel that knows one
+// tiles of the queue, and what was near in the queue stays near in memory. A kernel for one
 // kind needs all of its surfaces in one range.
 //
 // Contract: the ordered queue holds the same slots as the queue, either range by range (KindRanges)
@@ -25,8 +25,8 @@ struct SurfaceOrder {
   const std::uint32_t* count = nullptr;
   std::uint32_t* ordered = nullptr;  ///< [capacity of the queue]
   // For ranges; null: within tiles
-  KindRanges* ranges = nullptr;   ///< counts and places are 0 before
-  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each place
+  KindRanges* ranges = nullptr;   ///< counts and indices are 0 before
+  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each entry
 };
 
 /// That of the surface that the slot's path has met; 0 for a miss, which waits among the surfaces

@@ -67,7 +67,7 @@ void order_in_ranges(const Scene& scene, const SurfaceOrder& order) {
     order.ranges->first[k] = first;
     first += counts[k];
   }
-  // A prefix sum over ranges gives each range its places, so the order within a kind is kept.
+  // A prefix sum over ranges gives each range its offsets, so the order within a kind is kept.
   tbb::parallel_scan(
       all, Counts{},
       [&](const Range& range, Counts before, bool final) {

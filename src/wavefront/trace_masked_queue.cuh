@@ -25,7 +25,7 @@ template <class Rays>
 struct MaskedRays : Rays {
   using Query = QueryWithKey<typename Rays::Query>;
   Scene scene;
-  SampleBuffer names;  ///< which tells a path's name by its number
+  SampleBuffer names;  ///< gives a path's id by its index
 
   __device__ std::uint32_t fetch(unsigned lane, ReservedRays& reserved, RayRecord& record,
                                  int& count) const {

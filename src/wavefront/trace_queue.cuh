@@ -10,11 +10,11 @@
 
 namespace pt {
 
-/// What both kinds of rays share: a number is a place in the stage's queue.
+/// What both kinds of rays share: `ray_index` is an index into the stage's queue.
 struct QueuedRays {
   PathPool pool;
   StageQueues queues;
-  std::uint32_t* next;  ///< of the queue's places: handed out so far
+  std::uint32_t* next;  ///< rays of the queue that are handed out so far
   PT_LANE_COUNTER;      ///< the scene's
 
   __device__ std::uint32_t slot(std::uint32_t ray_index) const { return queues.slots[ray_index]; }
@@ -50,7 +50,7 @@ struct QueuedPaths {
     return rays.pool.path_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
-  /// For masks. `path_key` gives a path's key by its number.
+  /// For masks. `path_key` gives a path's key by its index.
   template <class PathKey>
   __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
     const PathState path = rays.pool.load_path_id(slot);
@@ -58,7 +58,7 @@ struct QueuedPaths {
   }
 };
 
-/// Questions to lights; what arrives is added to the path's sample.
+/// Shadow rays; their contribution is added to the path's sample.
 struct QueuedShadowRays {
   using Query = AnyTriangle;
   QueuedRays rays;

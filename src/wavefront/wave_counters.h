@@ -1,4 +1,4 @@
-// The numbers of a wave, in the device's memory: between two waves nobody asks the host.
+// The counts of a wave, in the device's memory: the host is not needed between two waves.
 #pragma once
 
 #include "common/material/material.h"
@@ -17,12 +17,12 @@ struct KindRanges {
 struct WaveCounters {
   std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; a pass may use the one behind
   std::uint32_t live;                      ///< paths in flight when the wave begins
-  std::uint32_t first_ray;                 ///< place of the first of them in the queue of rays
+  std::uint32_t first_ray;                 ///< index of the first of them in the queue of rays
   std::uint32_t next_first_ray;            ///< likewise of those that the wave sends on
   std::uint32_t generate;                  ///< paths that it starts, in the first free slots
   std::uint32_t intersect;                 ///< rays that it traces: live + generate
   std::uint32_t finish;                    ///< paths left over when the waves end
-  std::uint32_t first_path;                ///< number of the first path that it starts
+  std::uint32_t first_path;                ///< index of the first path that it starts
   std::uint32_t next_path;                 ///< paths started so far
   std::uint32_t ticket;                    ///< paths handed out where no queue ranks the free slots
   std::uint32_t traced;                    ///< rays handed out to persistent warps
@@ -52,7 +52,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   c.intersect = 0;
   c.ticket = 0;
   c.traced = c.shadow_traced = 0;
-  if (remaining == 0) free = 0;  // nobody waits for what is there
+  if (remaining == 0) free = 0;  // free slots stay free
   if (remaining == 0 && c.live <= finish_paths) {
     c.finish = c.live;
     return false;

@@ -23,11 +23,11 @@ struct StageQueues {
   StageInput input = StageInput::queue;
   bool appends = true;  ///< finished slots are appended to queues; else their tags are written
   const std::uint32_t* slots = nullptr;  ///< with StageInput::queue, *count of it,
-  const std::uint32_t* first = nullptr;  ///< from this place on; null: from 0
+  const std::uint32_t* first = nullptr;  ///< from this index on; null: from 0
   const std::uint32_t* count = nullptr;
   StageId* tags = nullptr;                ///< these two where slots have tags
   StageId* shadow_tags = nullptr;         ///< only with lights
-  std::uint32_t* next[queue_count] = {};  ///< where slots are appended; null: nobody waits there
+  std::uint32_t* next[queue_count] = {};  ///< where slots are appended; null: not used
   std::uint32_t* waiting = nullptr;       ///< [queue_count] ends of the queues
 
   /// The slots of StageInput::queue.
@@ -61,11 +61,11 @@ struct WaveBuffers {
            (shades_by_kind ? sizeof *kind_of_entry : 0);
   }
 
-  /// Fused stages send paths on while they read the queue of rays: they fill one half of it and
-  /// read the other in turns. Where the second begins; 0: there is one.
+  /// Fused stages send paths on while they read the queue of rays: they fill one half of it while
+  /// they read the other, alternately. Where the second begins; 0: there is one.
   std::uint32_t half_ring() const { return fused && compaction.appends ? pool.slot_count : 0; }
 
-  /// Calls function(queue, places) for each that this render needs.
+  /// Calls function(queue, capacity) for each that this render needs.
   template <class Function>
   void for_each_queue(bool has_lights, Function&& function) {
     for (const StageInfo& stage : stage_table) {
@@ -150,8 +150,8 @@ struct WaveBuffers {
 //   trace_queue(queues, samples)          does so: the next hit of each path is stored
 //   trace_shadow_queue(queues, samples)   likewise: light that arrives is added
 
-/// What every ray meets. Where warps persist they trace the whole queue and store the hits, and a
-/// light stage sends the paths on; a thread per ray does both at once.
+/// The closest hit of every ray. Persistent warps trace the whole queue and store the hits, and a
+/// short stage, route_hits, sends the paths on; a thread per ray does both at once.
 template <class Traits, class Executor>
 void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples,
                 bool parts_misses) {
@@ -166,7 +166,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   execute.run(IntersectRays<RayTraits<Traits>>{{b.pool, parts_misses}, samples}, rays);
 }
 
-/// Which light arrives, likewise.
+/// The shadow rays, likewise.
 template <class Traits, class Executor>
 void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
   const StageQueues rays =
@@ -187,7 +187,7 @@ void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
   execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
-/// Surfaces by kernels that know one kind of BSDF each, and by one for all where only shading can
+/// Surfaces by kernels for one kind of BSDF each, and by one for all where only shading can
 /// tell the kind. `surfaces`: their ordered queue.
 template <class Shading, class Source, class Executor>
 void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
@@ -224,7 +224,7 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
 }
 
 /// Markov chains whose paths have ended take their steps and begin the next ones, which wait for
-/// rays as those that go on do.
+/// rays as continuing ones do.
 template <class Source, class Executor>
 void continue_chains(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   constexpr StageId id = StageId::mutate;
@@ -292,7 +292,7 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
 template <class Traits, class Source, class Executor>
 void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   StageQueues paths = b.stage_queues(StageId::finish, &b.counters->finish, b.pool.tag);
-  for (std::uint32_t*& next : paths.next) next = nullptr;  // nobody comes after it
+  for (std::uint32_t*& next : paths.next) next = nullptr;  // no stage follows
   constexpr std::uint32_t to_the_end = ~0u;
   execute.run(FollowPaths<Traits, Source>{context, StageId::finish, to_the_end}, paths);
 }

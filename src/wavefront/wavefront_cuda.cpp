@@ -12,7 +12,7 @@
 namespace pt {
 namespace {
 
-// A turn of the graph's loop costs more than a kernel: a few waves share one. Those after the last
+// An iteration of the graph's loop costs more than a kernel: a few waves share one. Those after the last
 // ray find empty queues.
 constexpr int waves_per_iteration = 2;
 

@@ -204,6 +204,8 @@ TEST(CommandLine, StageBlocksForAllOrByName) {
                                                               : 256;
     EXPECT_EQ(some[static_cast<std::size_t>(stage.id)], expected) << stage.name;
   }
+  const auto renamed = parse_options("--stage-block sort_hits=64").stage_block;
+  EXPECT_EQ(renamed, parse_options("--stage-block route_hits=64").stage_block);
   const auto both = parse_options("--stage-block 32,shadow=64").stage_block;
   for (const StageInfo& stage : stage_table) {
     EXPECT_EQ(both[static_cast<std::size_t>(stage.id)], stage.id == StageId::shadow ? 64 : 32);

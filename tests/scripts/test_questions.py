@@ -34,6 +34,15 @@ def option(configuration, name):
     return tokens[tokens.index(name) + 1] if name in tokens else None
 
 
+class Tables(unittest.TestCase):
+    def test_columns_of_the_release_before_have_their_new_names(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "old.csv")
+            path.write_text("name,sort_hits_ms_median,sort_hits_launches\na,1.5,2\n", encoding="utf-8")
+            self.assertEqual(experiment("table").read_rows(path), [
+                {"name": "a", "route_hits_ms_median": "1.5", "route_hits_launches": "2"}])
+
+
 class Sentences(unittest.TestCase):
     def setUp(self):
         self.sentences = experiment("sentences")

@@ -322,6 +322,15 @@ class Report(unittest.TestCase):
             self.assertIn(f"{winner[0].upper()}{winner[1:]}: room.", answer)
             self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} defaults")
 
+    def test_names_of_the_release_before_are_read(self):
+        row = {**toggle("room", "megakernel", 1, 2, 3), "sort_hits_ms_median": "4"}
+        write(self.folder, "by_itself", [row], facts("by_itself", TOGGLES))
+        table = read_device(self.folder).tables["defaults"]
+        self.assertEqual(interval(table.rows[0], "route_hits_ms").middle, 4)
+        self.assertIn("route_hits_ms_median", table.columns)
+        write(self.folder, "defaults", [], facts("defaults", TOGGLES))
+        self.assertEqual(read_device(self.folder).tables["defaults"].rows, [])
+
     def test_metropolis_is_judged_at_equal_samples(self):
         good, bad, unclear = (7.5, 8.0, 9.0), (0.1, 0.2, 0.3), (1.5, 2.0, 2.5)
         for gains, expected in (((good, good), "confirmed"), ((good, bad), "depends"),

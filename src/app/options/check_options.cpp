@@ -118,7 +118,7 @@ void refuse_with_stages(const Options& options, const std::string& name, Stages 
                           to_string(expected)));
 }
 
-/// What one of both ways to divide a wave into kernels does not know.
+/// Options that one of --stages split and fused does not support.
 void check_stages(const Options& options, const GivenOptions& given) {
   if (options.stages != Stages::fused) {
     if (given.contains("wave-rays")) refuse_with_stages(options, "wave-rays", Stages::fused);

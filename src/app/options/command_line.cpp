@@ -18,7 +18,7 @@ namespace pt {
 namespace {
 
 constexpr const char* program_text =
-    "ptexp renders one image in several ways, so that the ways can be compared.\n"
+    "ptexp renders an image by several execution strategies, to compare their speed.\n"
     "`ptexp --mode wavefront --spp 50` renders the paper's scene to image.exr.";
 constexpr const char* compare_text =
     "Prints RMSE, relMSE, FLIP, the largest difference, how many pixels differ.\n"
@@ -28,7 +28,7 @@ constexpr const char* trace_text =
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
 constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* compact_text =
-    "Measures the wavefront's compaction strategies by themselves, beside a copy.\n"
+    "Measures the wavefront's compaction strategies alone, and a copy for comparison.\n"
     "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"

@@ -38,13 +38,13 @@ std::vector<SubcommandOption<CompactCommand>> compact_options() {
   using C = CompactCommand;
   using S = const std::string&;
   return {
-      {"items", "N,... [1M,4M,16M]", "Slots, of which some wait; K and M mean 2^10 and 2^20",
+      {"items", "N,... [1M,4M,16M]", "Number of slots; K and M mean 2^10 and 2^20",
        [](C& c, S v) { c.items = parse_list(v, [](S one) { return parse_items("items", one); }); }},
-      {"density", "A,... [0.1,0.5,0.9]", "Part of the slots that waits, 0 to 1",
+      {"density", "A,... [0.1,0.5,0.9]", "Fraction of the slots that wait, 0 to 1",
        [](C& c, S v) { c.densities = parse_list(v, parse_density); }},
-      {"run", "N [1]", "So many neighbours wait or do not wait together",
+      {"run", "N [1]", "Length of runs of slots that wait, or do not, together",
        [](C& c, S v) { c.run_length = parse_items("run", v); }},
-      {"queues", "N,... [1,2]", "Queues of a pass: 1, 2",
+      {"queues", "N,... [1,2]", "Queues that a pass fills: 1, 2",
        [](C& c, S v) {
          c.queues = parse_list(v, [](S one) {
            return static_cast<int>(parse_integer("queues", one, 1, measured_queues_max));
@@ -53,13 +53,13 @@ std::vector<SubcommandOption<CompactCommand>> compact_options() {
       {"strategy", "NAME,... [cub,scan,atomic,none]",
        "cub, scan, atomic, none, as --compaction has them",
        [](C& c, S v) { c.strategies = parse_list(v, parse_strategy); }},
-      {"cache", "cold|warm [cold]", "cold: passes take memory in turn; warm: all have the same",
+      {"cache", "cold|warm [cold]", "cold: passes cycle through uncached memory; warm: reuse it",
        [](C& c, S v) { c.runs.cold = parse_cold(v); }},
       {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
        [](C& c, S v) { c.device = parse_device("device", v); }},
-      {"repeat", "N [10]", "Measured times, each of many passes",
+      {"repeat", "N [10]", "Measured runs, each of many passes",
        [](C& c, S v) { c.runs.repeat = parse_runs("repeat", v, 1); }},
-      {"warmup", "N [3]", "Times before, not measured",
+      {"warmup", "N [3]", "Warm-up runs, not measured",
        [](C& c, S v) { c.runs.warmup = parse_runs("warmup", v, 0); }},
       {"csv", "FILE", "Appends a row for each measurement", [](C& c, S v) { c.csv = v; }},
       {"quiet", nullptr, "Prints nothing but errors", [](C& c, S) { c.quiet = true; }},

@@ -68,50 +68,49 @@ void add_image(std::vector<OptionEntry>& list) {
       .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
       .add(choice("integrator", &Options::integrator),
-           "path: path tracing, each path on its own; mlt: Metropolis light\n"
-           "transport, paths that are mutations of each other\n"
-           "(docs/design/metropolis.md)")
+           "path: path tracing; mlt: Metropolis light transport, Markov\n"
+           "chains of mutated paths (docs/design/metropolis.md)")
       .add(integer("max-depth", &Options::max_depth, 1, 65535),
-           "Most rays of a path, the camera ray included")
+           "Longest path, in rays, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
-           "Russian roulette decides on paths of so many rays or more;\n0: never")
+           "Russian roulette may end paths of this many rays or more;\n0: never")
       .add(custom(
                "nee", OptionForm::text, "on|off",
                [](Options& o, const std::string& s) { o.nee = parse_switch("nee", s); },
                [](const Options& o) { return o.nee ? "on" : "off"; }),
-           "Next-event estimation: a light is sampled at each surface;\n"
-           "off: paths find the lights by chance")
+           "Next-event estimation: surfaces sample a light and cast a\n"
+           "shadow ray; off: BSDF samples alone hit emitters")
       .add(choice("light-selection", &Options::light_selection),
-           "Which light is sampled: uniform; by power; or tree, by the\n"
-           "estimated contribution at the shading point; auto: the tree\n"
-           "for more than 16 lights, else by power; uniform in scenes of\n"
-           "quads and spheres alone")
+           "Probability of a light: uniform, proportional to its power, or\n"
+           "to its estimated contribution at the shading point, by a light\n"
+           "tree; auto: uniform in scenes of quads and spheres alone, else\n"
+           "tree with more than 16 emitters, power with fewer")
       .add(choice("mis", &Options::mis),
-           "Weights of light samples and BSDF samples: the power or the\n"
-           "balance heuristic; none: emitters that can be sampled count\n"
-           "only after a delta bounce")
+           "Multiple importance sampling of light and BSDF samples: weights\n"
+           "by the power or the balance heuristic; none: emitters that can\n"
+           "be sampled count only after a delta bounce")
       .add(choice("sampling", &Options::sampling),
-           "Directions of paths at surfaces: uniform or cosine-weighted\n"
-           "hemisphere, or BSDF sampling")
+           "How directions are sampled at surfaces: uniform or cosine-\n"
+           "weighted over the hemisphere, or by the BSDF")
       .add(choice("sampler", &Options::sampler),
-           "A pixel's samples: independent, in the cells of a grid, or\n"
-           "scrambled Sobol points (best if --spp is a power of two)")
+           "A pixel's samples: independent, stratified, or Owen-scrambled\n"
+           "Sobol points (best if --spp is a power of two)")
       .add(custom(
                "multiple-scattering", OptionForm::text, "on|off",
                [](Options& o, const std::string& s) {
                  o.multiple_scattering = parse_switch("multiple-scattering", s);
                },
                [](const Options& o) { return o.multiple_scattering ? "on" : "off"; }),
-           "Rough conductors reflect light between their facets, which\n"
-           "is lost otherwise. Rough dielectrics, plastics and principled\n"
-           "materials are as they are without it")
+           "Multiple scattering between the microfacets of rough\n"
+           "conductors, whose energy is lost otherwise. Other materials\n"
+           "do not change")
       .add(custom(
                "seed", OptionForm::number, "N",
                [](Options& o, const std::string& s) {
                  o.seed = parse_integer("seed", s, 0, UINT64_MAX);
                },
                [](const Options& o) { return std::to_string(o.seed); }),
-           "Of the random numbers, 64 bits; another seed, other noise")
+           "Seed of the random numbers, 64 bits")
       .add(text("output", "FILE", &Options::output),
            "Image to write: .exr (linear float), .png (8-bit sRGB) or\n.ppm (8-bit, gamma 2)", "-o")
       .add(custom(
@@ -119,27 +118,26 @@ void add_image(std::vector<OptionEntry>& list) {
                [](Options& o, const std::string& s) { o.exposure = parse_exposure("exposure", s); },
                [](const Options& o) { return exposure_text(o.exposure); }),
            "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
-           "is a middle grey. By default 0, but auto for a .png of a file\n"
-           "in photometric units or without lights. An .exr is linear")
+           "is middle grey. Default: 0; auto for the .png of a scene file\n"
+           "in photometric units or without lights. No effect on .exr")
       .add(custom(
                "crop", OptionForm::text, "X0,Y0,X1,Y1",
                [](Options& o, const std::string& s) { o.crop = parse_crop("crop", s); },
                [](const Options& o) { return crop_text(o.crop); }),
-           "Renders the pixels from X0,Y0 (upper left) up to X1,Y1, both\n"
-           "excluded: the same as in the whole image. An .exr keeps\n"
-           "their place, in its data window")
+           "Renders the pixels with X0 <= x < X1 and Y0 <= y < Y1 (0,0 is\n"
+           "the upper left), equal to those of the whole image. The data\n"
+           "window of an .exr has their position")
       .add(custom(
                "filter", OptionForm::text, "KIND[:A[:B]]",
                [](Options& o, const std::string& s) { o.filter = parse_filter("filter", s); },
                [](const Options& o) { return filter_text(o.filter); }),
            in_lines("Reconstruction filter: " + filter_forms(", ") +
-                    ". By default the scene file's, else a box of one pixel"))
+                    "; lengths in pixels. Default: the scene file's, else a box of one pixel"))
       .add(custom(
                "aov", OptionForm::text, "NAME,...",
                [](Options& o, const std::string& s) { o.aovs = parse_aovs("aov", s); },
                [](const Options& o) { return aovs_text(o.aovs); }),
-           in_lines("Layers of the .exr besides the image, of what camera rays meet and of the "
-                    "samples: " +
+           in_lines("Further layers of the .exr, of the first hit and of the samples: " +
                     aov_names(", ")));
 }
 
@@ -166,38 +164,38 @@ OptionEntry size_or_auto(const std::string& name, std::uint64_t Options::*field,
 void add_metropolis(std::vector<OptionEntry>& list) {
   Group(list, "Metropolis light transport (--integrator mlt; --spp is the mutations per pixel)")
       .add(size_or_auto("chains", &Options::chains, "chains", 1 << 27),
-           "Markov chains, each a path in flight; auto: enough to fill the\n"
-           "device. Another number, other noise")
+           "Number of Markov chains, one path in flight each; auto: enough\n"
+           "to fill the device. It changes the noise")
       .add(number("large-step-probability", "P", &Options::large_step_probability,
                   "a number above 0, at most 1", [](float x) { return x > 0 && x <= 1; }),
-           "Share of large steps, mutations that draw all numbers again")
+           "Probability of a large step, an independent path")
       .add(number("mutation-size", "SIZE", &Options::mutation_size, "a number above 0, at most 0.5",
                   [](float x) { return x > 0 && x <= 0.5f; }),
-           "The largest step of a random number by other mutations; the\n"
+           "Largest change of a random number by a small step; the\n"
            "smallest is a sixteenth of it")
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
-           "Paths before the chains, at which these begin; auto: twice the\n"
-           "mutations, from 2^20 to 2^30 on CUDA, 2^17 to 2^25 on the CPU,\n"
-           "or half of --time-limit");
+           "Bootstrap paths, from which the chains' first states are\n"
+           "drawn; auto: twice the mutations, within 2^20 to 2^30 on CUDA\n"
+           "and 2^17 to 2^25 on the CPU, or half of --time-limit");
 }
 
 void add_stops(std::vector<OptionEntry>& list) {
   Group(list, "Stops (the first that is reached ends the render; without --spp they alone do)")
       .add(number("time-limit", "SECONDS", &Options::time_limit, "seconds above 0",
                   [](float x) { return x > 0; }),
-           "Seconds of rendering, the scene's preparation left out")
+           "Seconds of rendering, without scene preparation")
       .add(number("target-error", "X", &Options::target_error, "a number above 0",
                   [](float x) { return x > 0; }),
-           "Relative standard error of the image: root of the mean\n"
-           "variance of its pixels by their mean, of luminance");
+           "Relative standard error of the image: square root of the\n"
+           "pixels' mean variance, over their mean, of luminance");
 }
 
 void add_scene(std::vector<OptionEntry>& list) {
   Group(list, "Scene")
       .add(text("scene", "NAME|FILE", &Options::scene),
-           "A scene named by --list-scenes, or a file: Mitsuba .xml,\n"
-           ".gltf, .glb, .obj, .ply. A file's size, spp, depth and\n"
-           "camera hold where no option says otherwise")
+           "A scene of --list-scenes, or a file: Mitsuba .xml, .gltf,\n"
+           ".glb, .obj, .ply. Options override a file's size, spp, depth\n"
+           "and camera")
       .add(custom(
                "define", OptionForm::list, "NAME=VALUE",
                [](Options& o, const std::string& s) {
@@ -209,18 +207,18 @@ void add_scene(std::vector<OptionEntry>& list) {
                "strict", OptionForm::flag, "",
                [](Options& o, const std::string&) { o.strict = true; },
                [](const Options& o) { return o.strict ? "on" : "off"; }),
-           "What a file asks for and ptexp lacks is an error, not a\nwarning")
+           "Unsupported features of a scene file are errors, not warnings")
       .add(integer("spheres", &Options::spheres, 0, max_spheres),
            "Random spheres of the scene 'spheres', besides the ground")
       .add(choice("create-world", &Options::create_world),
-           "Who makes a random scene: the host, or a CUDA kernel that\n"
-           "makes the same one")
+           "Where a random scene is made: on the host or by a CUDA kernel;\n"
+           "the scene is the same")
       .only(parallel, cuda, "device");
 }
 
 void add_camera(std::vector<OptionEntry>& list) {
   Group(list, "Camera (in scene units; by default the scene's own)")
-      .add(vector("look-from", &CameraOverrides::look_from), "Where the camera is; also X,Y,Z")
+      .add(vector("look-from", &CameraOverrides::look_from), "Position of the camera; also X,Y,Z")
       .add(vector("look-at", &CameraOverrides::look_at), "The point in the image's centre")
       .add(vector("up", &CameraOverrides::up), "The direction that is up in the image")
       .add(number("fov", "DEGREES", &CameraOverrides::vertical_fov_degrees,
@@ -229,17 +227,17 @@ void add_camera(std::vector<OptionEntry>& list) {
            "Vertical field of view, between 0 and 180 degrees")
       .add(number("aperture", "LENGTH", &CameraOverrides::aperture, "a length of 0 or more",
                   [](float x) { return x >= 0; }),
-           "Diameter of the lens; 0 is a pinhole, all in focus")
+           "Diameter of the lens; 0: pinhole camera")
       .add(number("focus-distance", "LENGTH", &CameraOverrides::focus_distance, "a length above 0",
                   [](float x) { return x > 0; }),
-           "From the lens to the plane in focus");
+           "Distance from the lens to the plane in focus");
 }
 
 void add_execution(std::vector<OptionEntry>& list) {
   Group(list, "Execution (how the image is made, not what it shows)")
       .add(choice("mode", &Options::mode),
-           "serial: one CPU thread, one path at a time.\n"
-           "megakernel: one thread follows whole paths.\n"
+           "serial: one CPU thread, one path after the other.\n"
+           "megakernel: each thread traces whole paths.\n"
            "wavefront: one kernel per stage over a pool of paths")
       .add(custom(
                "device", OptionForm::text, "auto|cpu|cuda[:N]",
@@ -251,41 +249,41 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
       .only(parallel, cpu)
       .add(choice("accel", &Options::accel),
-           "How a ray finds its hit: by testing every primitive, through\n"
-           "a binary BVH, a compressed 8-wide one (triangles only), or\n"
-           "Embree (CPU, triangles only); auto: what suits the scene")
+           "Acceleration structure: none (every primitive is tested), a\n"
+           "binary BVH, a compressed 8-wide BVH (triangles only), or\n"
+           "Embree's (CPU, triangles only); auto: by scene and device")
       .add(choice("builder", &Options::builder),
-           "Who builds trees over triangles: binned SAH or spatial\n"
-           "splits on the CPU (auto: either, the first improved by\n"
-           "reinsertion), LBVH or H-PLOC on the GPU; trees over\n"
-           "instances and over spheres are always the CPU's")
+           "Builder of BVHs over triangles: binned SAH or SBVH on the CPU,\n"
+           "LBVH or H-PLOC on the GPU; auto: SBVH or SAH improved by\n"
+           "reinsertion. BVHs over instances and spheres are always built\n"
+           "on the CPU")
       .add(choice("work", &Options::work),
-           "megakernel: what a thread renders: a pixel, a sample of a\n"
-           "pixel, or whatever it fetches from a common counter")
+           "megakernel: work of a thread: a pixel, a sample, or samples\n"
+           "that it fetches from a global counter (persistent threads)")
       .only(megakernel, any_device)
       .add(custom(
                "block", OptionForm::text, "WxH",
                [](Options& o, const std::string& s) { o.block = parse_block("block", s); },
                [](const Options& o) { return block_text(o.block); }),
-           "megakernel on CUDA: threads of a block, at most 1,024")
+           "megakernel on CUDA: thread block, at most 1,024 threads")
       .only(megakernel, cuda)
       .add(choice("kernel-set", &Options::kernel_set),
            "lean: for the paper's spheres, quads and materials alone, with\n"
            "the default ways to sample; general: for every scene; auto:\n"
            "lean where it can")
       .add(choice("kernel", &Options::kernel),
-           "megakernel on CUDA: a loop in which each turn traces a ray of\n"
-           "every lane to its end; warps that vote on what to do next:\n"
-           "steps down a wide tree, tests of triangles, or shading; or\n"
-           "blocks that sort their paths by material; auto: in scenes\n"
-           "of triangles alone sort, with another --block vote if there\n"
-           "is one kind of BSDF; loop elsewhere")
+           "megakernel on CUDA. loop: each iteration traces one ray per\n"
+           "lane to its end. vote: warp-level phase voting between\n"
+           "traversal, triangle tests and shading. sort: block-local\n"
+           "wavefront that sorts paths by BSDF. auto: sort in scenes of\n"
+           "triangles alone; vote there if --block is given and all BSDFs\n"
+           "are of one kind; else loop")
       .only(megakernel, cuda)
       .add(compaction_entry(),
-           "wavefront: how the paths that wait for a stage are gathered:\n"
-           "cub: a selection in order; scan: the same by a kernel of\n"
-           "ours; atomic: appended in any order; none: not at all, every\n"
-           "stage visits the whole pool")
+           "wavefront: compaction of the paths that wait for a stage.\n"
+           "cub: CUB's ordered selection; scan: the same by our own\n"
+           "kernel; atomic: unordered appends; none: every stage visits\n"
+           "the whole pool")
       .only(wavefront, any_device)
       .add(custom(
                "pool-size", OptionForm::number, "N|auto",
@@ -295,16 +293,17 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) {
                  return o.pool_size == 0 ? "auto" : std::to_string(o.pool_size);
                }),
-           "wavefront: paths in flight; K and M mean 2^10 and 2^20")
+           "wavefront: slots of the pool, the most paths in flight; K and\nM mean 2^10 and 2^20")
       .only(wavefront, any_device)
       .add(choice("layout", &Options::layout),
-           "wavefront: a path's state in arrays by field (soa), with both\n"
-           "records of a ray side by side (sectors), or all (aos)")
+           "wavefront: the pool's memory layout: structure of arrays, the\n"
+           "same with a ray's two records in one 32-byte sector, or array\n"
+           "of structures")
       .only(wavefront, any_device)
       .add(choice("shade", &Options::shade),
-           "wavefront: surfaces are shaded by one kernel for all kinds of\n"
-           "BSDFs (uber), or over ranges of a sorted queue kind by kind,\n"
-           "on CUDA by a kernel for each (material); auto: by one")
+           "wavefront: uber: one kernel shades all surfaces; material:\n"
+           "they are sorted by BSDF and shaded one BSDF after the other,\n"
+           "on CUDA by a kernel for each; auto: uber")
       .only(wavefront, any_device)
       .add(choice("order-surfaces", &Options::order_surfaces),
            "wavefront: the queue of surfaces is sorted by the kind of BSDF;\n"
@@ -312,14 +311,14 @@ void add_execution(std::vector<OptionEntry>& list) {
            "the kinds are many or long")
       .only(wavefront, any_device)
       .add(choice("stages", &Options::stages),
-           "wavefront: tracing and shading are stages of their own, or\n"
-           "one kernel does both and no hit is stored; auto: one where\n"
-           "rays are cheap, in scenes that --accel brute traces, of\n"
-           "spheres and quads")
+           "wavefront: split: a stage traces and others shade; fused: one\n"
+           "kernel does both and no hit is stored; auto: fused where\n"
+           "rays are cheap, in scenes of spheres and quads with --accel\n"
+           "brute")
       .only(wavefront, any_device)
       .add(integer("wave-rays", &Options::wave_rays, 1, 65535),
-           "wavefront with --stages fused: rays that a path gets in each\n"
-           "wave; as many as --max-depth: nearly the megakernel")
+           "wavefront with --stages fused: rays per path and wave; with\n"
+           "--max-depth rays it is nearly the megakernel")
       .only(wavefront, any_device)
       .add(custom(
                "regenerate", OptionForm::text, "on|off",
@@ -336,9 +335,9 @@ void add_execution(std::vector<OptionEntry>& list) {
                  o.persistent = parse_switch("persistent", s);
                },
                [](const Options& o) { return o.persistent ? "on" : "off"; }),
-           "wavefront on CUDA: warps that persist trace the appended\n"
-           "queues of rays through a wide tree, in scenes without spheres;\n"
-           "off: a thread per ray")
+           "wavefront on CUDA: persistent threads trace appended ray\n"
+           "queues through a wide BVH, in scenes without spheres; off: a\n"
+           "thread per ray")
       .only(wavefront, cuda)
       .add(custom(
                "finish-paths", OptionForm::number, "N|auto",
@@ -348,9 +347,9 @@ void add_execution(std::vector<OptionEntry>& list) {
                [](const Options& o) {
                  return o.finish_paths ? std::to_string(*o.finish_paths) : "auto";
                }),
-           "wavefront: when no sample is left to start and so many paths\n"
-           "are still alive, a thread follows each to its end; 0: waves\n"
-           "to the last ray; auto: the fewer the dearer a path is")
+           "wavefront: when no sample is left to start and at most this\n"
+           "many paths are alive, a thread traces each to its end; 0:\n"
+           "waves to the last ray; auto: fewer where paths cost more")
       .only(wavefront, any_device)
       .add(choice("schedule", &Options::schedule),
            "wavefront: the host launches every stage, or one CUDA graph\n"
@@ -373,18 +372,19 @@ void add_execution(std::vector<OptionEntry>& list) {
 void add_toggles(std::vector<OptionEntry>& list) {
   Group(list, "The paper's toggles (of these xorwow alone changes the image)")
       .add(choice("scene-memory", &Options::scene_memory),
-           "CUDA: where kernels read the spheres from; constant: the\n"
-           "constant bank, refused when they do not fit")
+           "CUDA: memory from which kernels read the spheres; constant\n"
+           "memory is refused if they do not fit")
       .only(parallel, cuda, "shared")
       .only(parallel, cuda, "constant")
       .add(choice("branching", &Options::branching),
-           "reduced: a miss is shaded as a surface that reflects\n"
-           "nothing, so that hits and misses share one branch; on CUDA\n"
-           "by brute force and with neither xorwow nor other memory")
+           "reduced: a miss is shaded as a surface that reflects nothing,\n"
+           "so that hits and misses share one branch; on CUDA only with\n"
+           "--accel brute, --rng philox and global memory")
       .only(parallel, any_device, "reduced")
       .add(choice("rng", &Options::rng),
-           "philox: stateless. xorwow: a state kept per path, set up by\n"
-           "render_init as in the paper; on CUDA by brute force alone");
+           "philox: counter-based. xorwow: a stored state per path,\n"
+           "initialised by render_init as in the paper; on CUDA only with\n"
+           "--accel brute");
 }
 
 void add_measurement(std::vector<OptionEntry>& list) {

@@ -44,6 +44,8 @@ template <NamedEnum E>
 E parse_name(const std::string& name, const std::string& text) {
   for (const EnumName<E>& entry : enum_names<E>)
     if (entry.name == text) return entry.value;
+  for (const EnumName<E>& entry : old_enum_names<E>)
+    if (entry.name == text) return entry.value;
   refuse_value(name, text, "expected one of " + joined_names<E>(", "));
 }
 

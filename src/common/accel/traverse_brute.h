@@ -33,7 +33,7 @@ PT_HD std::uint32_t sphere_candidates(const Sphere* spheres, First first, std::u
   return ~missed;
 }
 
-/// Calls visit(distance, primitive) for the candidates until it returns true. `number_of(bit)`: the
+/// Calls visit(distance, primitive) for the candidates until it returns true. `index_of(bit)`: the
 /// sphere of a bit.
 template <class IndexOf, class Visit>
 PT_HD bool resolve_candidates(const Primitives& primitives, std::uint32_t candidates,

@@ -38,8 +38,8 @@ PT_HD CwbvhRay make_cwbvh_ray(const Ray& ray) {
 
 /// How much nearer the planes of a node's grid count where the ray enters, and farther where it
 /// leaves, relative to the distance of the grid's origin: more than the rounding of this distance.
-/// That of a plane's place in the grid is in cwbvh_grid_tolerance, the triangle test's error in the
-/// comparison.
+/// That of a plane's coordinate in the grid is in cwbvh_grid_tolerance, the triangle test's error
+/// in the comparison.
 inline constexpr float cwbvh_origin_tolerance = 8.0f * half_ulp;
 
 /// The distances of a node's grid planes along one axis: q * step + near for the planes where the
@@ -116,7 +116,7 @@ PT_HD CwbvhGroup leaf_group(const CwbvhNode& node, std::uint32_t hits) {
   return {node.triangle_base, (hits & mask) | mask << 8 | node.pair_mask() << 16 | 1u << 31};
 }
 
-/// Takes the nearest child out of a group of inner ones; its place among the nodes.
+/// Takes the nearest child out of a group of inner ones; its index among the nodes.
 PT_HD std::uint32_t take_child(CwbvhGroup& group, std::uint32_t octant) {
   const std::uint32_t nearest = group.bits & (0u - group.bits);
   group.bits ^= nearest;

@@ -15,7 +15,7 @@ struct MetTriangle {
 };
 
 /// The closest hit with t_min < t < t_max. Of several at the same t the one of the lowest triangle
-/// number wins, then of the lowest instance number, so that the answer does not depend on the order
+/// index wins, then of the lowest instance index, so that the result does not depend on the order
 /// in which a structure finds them.
 class ClosestTriangle {
  public:

@@ -20,9 +20,9 @@ struct alignas(16) InstanceRecord {
   std::uint32_t padding[2] = {};
 };
 
-/// A view, passed to kernels by value. All groups share the arrays; child and slot numbers are
+/// A view, passed to kernels by value. All groups share the arrays; child and slot indices are
 /// absolute. With instances, `root` is the root of a tree whose leaves hold instances instead of
-/// triangles (places in `instances`), those of wide trees one each; without, the root of the one
+/// triangles (indices into `instances`), those of wide trees one each; without, the root of the one
 /// tree of triangles.
 struct TriangleTree : TreeNodes<NodesPointer> {
   const Triangle* triangles = nullptr;  ///< [slot]

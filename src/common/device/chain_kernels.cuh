@@ -1,5 +1,5 @@
 // The kernels around the paths of Markov chains: of their bootstrap, of their start and end, and of
-// steps that all chains take together, where none goes on by itself. A thread per path, chain or
+// steps that all chains take together, where they are not asynchronous. A thread per path, chain or
 // group; blocks of at most 1024. Seen from C++, a kernel is the function that launches it.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace pt {
 __global__ void propose_bootstrap(Proposal* proposals, std::uint32_t first, std::uint32_t count,
                                   StageClock* clock);
 
-/// Counts the paths of the batch, and keeps their targets: `targets` is the first one's place.
+/// Counts the paths of the batch, and keeps their targets: `targets` points to the first one's.
 __global__ void keep_targets(float* targets, const __grid_constant__ SampleBuffer batch,
                              PathTally* tally, StageClock* clock);
 

@@ -18,7 +18,7 @@ struct Peers {
   }
 };
 
-/// Adds the warp's threads of each kind to `next` and returns this one's place: what next[kind] was
+/// Adds the warp's threads of each kind to `next` and returns this one's index: what next[kind] was
 /// before, and the peers before it. Called by whole warps.
 __device__ inline std::uint32_t reserve_indices(std::uint32_t* next, int kind) {
   const Peers peers(kind);

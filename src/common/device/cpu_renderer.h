@@ -58,7 +58,7 @@ class CpuRenderer : public FilmRenderer {
 
   /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
   virtual bool runs_chains_async() const { return true; }
-  /// Null: the batch is of paths. Else it is of chains that go on by themselves (continue_chain).
+  /// Null: the batch is of paths. Else it is of asynchronous chains (continue_chain).
   const ChainRun* chains() const { return chains_are_async_ ? &chain_run_ : nullptr; }
 
   /// Whether the batch is to be abandoned: no path more needs to be traced.

@@ -47,7 +47,7 @@ class CudaRenderer : public FilmRenderer {
 
   /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
   virtual bool runs_chains_async() const { return true; }
-  /// Null: the batch is of paths. Else, in the device's memory, of chains that go on by themselves
+  /// Null: the batch is of paths. Else, in the device's memory, of asynchronous chains
   /// (continue_chain); so it is from prepare_batch on.
   const ChainRun* chains() const { return chains_are_async_ ? chain_run_ : nullptr; }
 
@@ -174,7 +174,7 @@ class CudaRenderer : public FilmRenderer {
   ChainArrays chain_arrays_;  ///< null without --integrator mlt
   ChainRun* chain_run_ = nullptr;
   bool chains_are_async_ = false;
-  std::uint32_t chain_steps_ = 0;  ///< that each chain has taken where none goes on by itself
+  std::uint32_t chain_steps_ = 0;  ///< that each chain has taken, where chains are not asynchronous
   CurandState* states_ = nullptr;
   StageClock* clock_ = nullptr;
   std::unique_ptr<CounterSession> counters_;           ///< while they are read

@@ -421,8 +421,8 @@ void CudaRenderer::accumulate(const SampleBuffer& batch) {
   }
 }
 
-// CUDA loads a kernel when it is first asked for, which takes longer than most of them run. A batch
-// of a few pixels asks for all that the render will.
+// CUDA loads a kernel at its first use, which takes longer than most of them run. A batch
+// of a few pixels loads all that the render will use.
 void CudaRenderer::load_kernels() {
   const Stopwatch watch;
   // Set-up filled memory on the default stream, for which stream_ does not wait.

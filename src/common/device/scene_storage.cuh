@@ -1,4 +1,5 @@
-// Where the spheres lie while a kernel tests them: the paper's question about shared memory.
+// The memory from which a kernel reads the spheres: global, shared or constant (the paper
+// compares).
 #pragma once
 
 #include <cuda_runtime_api.h>

@@ -1,4 +1,4 @@
-// The memory that the program may still take, and the question for it before it is taken: where
+// The memory that the program may still take, and the check of it before it is taken: where
 // memory is overcommitted an allocation succeeds, and the process is killed later.
 #pragma once
 

@@ -1,14 +1,15 @@
 // AOVs (arbitrary output variables): what an EXR holds of a pixel besides its colour. Each is a
-// type in one list; its layer, its option and its place in the film follow from that.
+// type in one list; its layer, its option and its plane of the film follow from that.
 //
 // A type has
 //   static constexpr const char* name      of the layer and for --aov
 //   static constexpr const char* channels  a letter each: the layer's channels are name.X
 //   of(x), callable on the device unless x is a PixelStatistics, where x is one of
-//     FirstHit -> Vec3, Vec2 or float  what the camera ray finds: the film has the mean over all
-//                                      samples, filtered as radiance is; 0 where it finds nothing
-//     FirstHit -> std::uint32_t        a number: that of the first sample, for a mean says nothing
-//     PixelStatistics -> float         what the film knows of the pixel's samples
+//     FirstHit -> Vec3, Vec2 or float  the first hit: the film has the mean over all samples,
+//     filtered
+//                                      as radiance is; 0 where the camera ray misses
+//     FirstHit -> std::uint32_t        an index: that of the first sample, since means are useless
+//     PixelStatistics -> float         statistics of the pixel's samples
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace pt {
 
-/// What a pixel's sums say when the render has ended.
+/// Statistics of a pixel after the render.
 struct PixelStatistics {
   double samples = 0;   ///< the finite ones
   double variance = 0;  ///< of the pixel's value, estimated (pixel_statistics.h); luminance
@@ -84,7 +85,7 @@ struct Rays {
 
 }  // namespace aov
 
-/// Every AOV, once. Its place is its bit in Options::aovs.
+/// Every AOV, once. Its index is its bit in Options::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
                       aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
                       aov::Samples, aov::Bounces, aov::Rays>;

@@ -51,8 +51,8 @@ PT_HD TargetSum sum_group(const Bootstrap& bootstrap, std::uint32_t group, std::
   return result;
 }
 
-/// Where chains begin: on the sum of the first `paths` targets, at equal distances from a place of
-/// its first part (systematic resampling; Kitagawa 1996).
+/// Where chains begin: on the sum of the first `paths` targets, at equal distances from a position
+/// of its first part (systematic resampling; Kitagawa 1996).
 struct ChainPositions {
   std::uint32_t paths = 1;
   std::uint32_t chains = 1;
@@ -65,7 +65,7 @@ struct ChainPositions {
   }
 };
 
-/// The path with light at which the sum of the targets exceeds the chain's place.
+/// The path with light at which the sum of the targets exceeds the chain's position.
 PT_HD std::uint32_t start_of(const Bootstrap& bootstrap, const ChainPositions& positions,
                              std::uint32_t chain) {
   const double position = positions.of_chain(chain);

@@ -1,5 +1,5 @@
 // From samples to pixels, in an order that no mode can change: each sample's radiance has its
-// own place in the batch's sample buffer, and a pixel adds its samples one after the other.
+// own element of the batch's sample buffer, and a pixel adds its samples one after the other.
 #pragma once
 
 #include "common/math/fast_divide.h"
@@ -10,8 +10,8 @@ namespace pt {
 
 /// One finished path.
 struct alignas(16) Sample {
-  Color radiance = Color(0.0f);
-  std::uint32_t rays = 0;  ///< closest-hit rays, shadow rays << 16
+  Color radiance = Color(0.0f);  ///< W / (m^2 sr)
+  std::uint32_t rays = 0;        ///< closest-hit rays, shadow rays << 16
 };
 
 /// A rectangle of an image's pixels.
@@ -36,8 +36,8 @@ struct Window {
   }
 };
 
-/// The samples of one batch: [sample in the batch][y][x] of a window's pixels. A path's number is
-/// its place here; its name (PathId) and so its random numbers are the image's, whatever the
+/// The samples of one batch: [sample in the batch][y][x] of a window's pixels. A path's index is
+/// that of its sample here; its PathId and so its random numbers are the image's, whatever the
 /// window.
 struct SampleBuffer {
   Sample* samples = nullptr;
@@ -69,7 +69,7 @@ struct SampleBuffer {
     return {corner + pack_pixel(pixel - y * width.divisor(), y), first_sample + sample, path_index};
   }
 
-  /// The path of a sample of the batch, at this place in the window.
+  /// The index of the path of a sample of the batch at pixel (x, y) of the window.
   PT_HD std::uint32_t index_of(std::uint32_t x, std::uint32_t y, std::uint32_t sample) const {
     return sample * pixel_count.divisor() + y * width.divisor() + x;
   }
@@ -88,7 +88,7 @@ struct FilmPixel {
 
 inline constexpr int path_length_bins = 128;  ///< the last one also counts all longer paths
 
-/// What the samples say of the work that was done.
+/// Counts of the work that the samples took.
 struct PathTally {
   std::uint64_t rays = 0;
   std::uint64_t shadow_rays = 0;
@@ -118,7 +118,7 @@ PT_HD bool count_sample(const Sample& sample, PathTally& tally, Count&& count) {
   return finite;
 }
 
-/// What a film sums of a pixel beyond its radiance, where somebody asks for it.
+/// What a film sums of a pixel beyond its radiance, where an option needs it.
 struct PixelMoments {
   double luminance_squares = 0;  ///< of the finite samples
   std::uint64_t rays = 0;        ///< of all samples, as are the shadow rays
@@ -131,7 +131,7 @@ class RadianceSum {
  public:
   PT_HD RadianceSum(FilmPixel* film, std::uint32_t pixel) : stored_(film + pixel), sum_(*stored_) {}
 
-  /// `number` counts the samples of the batch; `is_finite` is what the tally says of it.
+  /// `sample_index` counts the samples of the batch; `is_finite` is what the tally says of it.
   PT_HD void add(const Sample& sample, std::uint32_t /*sample_index*/, bool is_finite) {
     if (!is_finite) return;
     for (int c = 0; c < 3; ++c) sum_.sum[c] += sample.radiance[c];

@@ -39,9 +39,9 @@ struct Film : FilmSums {
 /// Every pixel of an image, without samples.
 Film blank_film(int width, int height);
 
-/// Copies the pixels of `part` to their place in `film`, which has no samples of them, and adds the
-/// counts. Throws Error unless they lie in its window and both have the same samples (an empty film
-/// takes any).
+/// Copies the pixels of `part` to their position in `film`, which has no samples of them, and adds
+/// the counts. Throws Error unless they lie in its window and both have the same samples (an empty
+/// film takes any).
 void merge(Film& film, const Film& part);
 
 PathTally operator+(PathTally a, const PathTally& b);

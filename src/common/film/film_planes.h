@@ -40,8 +40,8 @@ struct FilmView {
   std::uint32_t first_sample = 0;  ///< of the film
 };
 
-/// A pixel's sums of all kinds but features (see RadianceSum). The sign of a sample is found anew
-/// from the numbers that placed it, so that no path has to carry it.
+/// A pixel's sums of all kinds but features (see RadianceSum). The sign of a sample is computed
+/// again from its random numbers, so that no path has to carry it.
 template <class Source>
 class PixelPlanes {
  public:

@@ -8,13 +8,13 @@
 
 namespace pt {
 
-/// The path at which a chain is.
+/// A chain's current state, a path.
 struct alignas(16) ChainState {
-  Color radiance = Color(0.0f);
-  float target = 0.0f;
+  Color radiance = Color(0.0f);  ///< W / (m^2 sr)
+  float target = 0.0f;           ///< its luminance, see target_of
 };
 
-/// Where on the image a chain is, and what it has not yet added there.
+/// The pixel of a chain's state, and the weight that is not yet added to it.
 struct alignas(16) ChainSplat {
   double weight = 0.0;  ///< per radiance of its state
   std::uint32_t pixel = 0;
@@ -32,7 +32,8 @@ PT_HD ChainTally operator+(const ChainTally& a, const ChainTally& b) {
           a.small_accepted + b.small_accepted};
 }
 
-/// What chains have done. Each has one of a few places to count in, so that threads seldom meet.
+/// Counts of the chains' work. The counters exist in several copies, so that threads seldom contend
+/// for one.
 struct ChainCounts {
   static constexpr std::uint32_t copies = 1024;
   PathTally paths;
@@ -51,7 +52,7 @@ struct ChainArrays {
   ChainState* states = nullptr;
   ChainSplat* unsplatted = nullptr;
   SplatSum* sums = nullptr;       ///< [pixel of the window][channel]
-  ChainCounts* counts = nullptr;  ///< [ChainCounts::places]
+  ChainCounts* counts = nullptr;  ///< [ChainCounts::copies]
   Bootstrap bootstrap;
 
   /// make(pointer's type, count) for each.
@@ -73,7 +74,7 @@ struct ChainArrays {
   }
 };
 
-/// What chains do with the paths that have been traced.
+/// The step that chains take with the paths that have been traced.
 struct ChainStep {
   enum class Kind : std::uint8_t {
     start,   ///< begin at them
@@ -86,7 +87,7 @@ struct ChainStep {
   std::uint32_t blocks = 0;  ///< of random numbers that are stored at most
 };
 
-/// Chains that go on by themselves: each traces and mutates until it has taken `last` steps since
+/// Asynchronous chains: each traces and mutates until it has taken `last` steps since
 /// its start, and waits for no other.
 struct ChainRun {
   ChainArrays arrays;
@@ -94,7 +95,7 @@ struct ChainRun {
   std::uint32_t last = 0;
 };
 
-/// Blocks of random numbers of which a path of so many rays may have asked.
+/// The most blocks of random numbers that a path of so many rays may have drawn.
 PT_HD std::uint32_t used_blocks(std::uint32_t rays) { return 2 * rays + 2; }
 
 /// Adds radiance to a pixel.
@@ -109,7 +110,7 @@ PT_HD void splat(const ChainArrays& arrays, const ChainStep& step, std::uint32_t
   }
 }
 
-/// The target of a path that was traced; 0 for one that is no number.
+/// The target of a path that was traced; 0 for NaN.
 PT_HD float target_of(const Sample& sample) {
   return is_finite(sample.radiance) ? chain_target(sample.radiance) : 0.0f;
 }
@@ -129,7 +130,7 @@ PT_HD void splat_bootstrap(const ChainArrays& arrays, const ChainStep& step,
 PT_HD void move_chain(const ChainArrays& arrays, const Chains& chains, const Proposal& proposal,
                       std::uint32_t blocks, std::uint32_t chain, const Color& radiance,
                       float target, std::uint32_t pixel) {
-  // A block's place is the chain's, whoever's path it was: a bootstrap path has another number.
+  // Blocks are stored at the chain's index: a bootstrap path's own index differs.
   for (std::uint32_t block = 0; block < blocks; ++block) {
     arrays.accepted[std::uint64_t{block} * chains.count + chain] =
         chains.draw(proposal.path, proposal.iteration, block);
@@ -204,8 +205,8 @@ PT_HD void step_chain(const ChainArrays& arrays, const ChainStep& step, std::uin
   store_wide(&arrays.proposals[chain], proposal);
 }
 
-/// Lets a chain take the step that its traced path asks for, if there is one, and says whether it
-/// has a next path to trace. `samples`: [chain], of no rays where no path has been traced, which
+/// Lets a chain take the step that its traced path proposes, if there is one, and returns whether
+/// it has a next path to trace. `samples`: [chain], of no rays where no path has been traced, which
 /// they are when a run begins and again when it ends.
 PT_HD bool continue_chain(const ChainRun& run, Sample* samples, std::uint32_t chain) {
   const Sample sample = load_wide(&samples[chain]);

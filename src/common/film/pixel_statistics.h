@@ -1,4 +1,4 @@
-// From a pixel's sums to its value and to how far that is from the truth.
+// A pixel's value, and an estimate of its error, from its sums.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace pt {
 
-/// What the mean of the positive and the mean of the negative samples count in a pixel
+/// The weights of the mean of the positive and the mean of the negative samples of a pixel
 /// (PixelFilter). Each mean is without bias whatever the number of its samples, and so is the
 /// pixel; but where one sign has no sample the other stands alone, which with few samples blurs
 /// the filter. A constant stays a constant.
@@ -23,7 +23,7 @@ class PixelReader {
               std::uint64_t pixel_count)
       : sums_(sums), plan_(plan), filter_(filter), count_(pixel_count) {}
 
-  /// Radiance; black where there is no sample.
+  /// Radiance, W / (m^2 sr); black where there is no sample.
   std::array<double, 3> value(std::uint64_t pixel) const;
   /// `samples`: of each pixel, the non-finite ones included. The variance of the pixel's luminance
   /// is that of a mean, s^2 / n with s^2 = (sum y^2 - (sum y)^2 / n) / (n - 1), added up over the
@@ -31,7 +31,7 @@ class PixelReader {
   PixelStatistics statistics(std::uint64_t pixel, std::uint64_t samples) const;
   /// Of a plane of features (1: the first channel), as `value` is of radiance.
   double feature(std::uint64_t pixel, std::uint32_t plane) const;
-  /// The number that the film's first sample found.
+  /// An AOV that is an index: that of the pixel's first sample.
   std::uint32_t number(std::uint64_t pixel, std::uint32_t plane) const;
 
  private:

@@ -1,4 +1,4 @@
-// What shading asks of a triangle beyond its corners.
+// What shading needs of a triangle besides its vertices.
 #pragma once
 
 #include "common/geometry/mesh.h"
@@ -7,7 +7,7 @@ namespace pt {
 
 /// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of
 /// memory. Vertices that triangles share are repeated. Their own arrays would be half as large, but
-/// a hit would read 15 words from seven places, and their numbers before that.
+/// a hit would read 15 words from seven addresses, and their indices before that.
 struct alignas(64) CornerAttributes {
   Vec3 normal[3] = {Vec3(0.0f), Vec3(0.0f), Vec3(0.0f)};  ///< unit length, or the mesh has none
   Vec2 uv[3] = {Vec2(0.0f), Vec2(0.0f), Vec2(0.0f)};

@@ -12,7 +12,7 @@ struct Quad {
   Vec3 edge_a, edge_b;
   Vec3 dual_a, dual_b;
   Vec3 normal;
-  float area;
+  float area;  ///< scene units squared
 };
 
 /// `edge_a` and `edge_b` must not be parallel.
@@ -24,7 +24,7 @@ PT_HD Quad make_quad(const Vec3& corner, const Vec3& edge_a, const Vec3& edge_b)
           n / area, area};
 }
 
-/// How far beyond its edges a quad is met: two that share an edge must leave no gap between them.
+/// How far beyond its edges a quad is hit: two that share an edge must leave no gap between them.
 inline constexpr float quad_margin = 16.0f * half_ulp;
 
 /// Distance along the ray, or a value <= 0 when it misses.

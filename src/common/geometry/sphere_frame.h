@@ -1,4 +1,4 @@
-// How a sphere is turned, for what looks different from its sides: textures, and inward normals.
+// The orientation of a sphere, where it matters: textures, and inward normals.
 #pragma once
 
 #include "common/math/vec.h"
@@ -10,14 +10,14 @@ struct alignas(16) SphereFrame {
   Vec3 x = Vec3(1, 0, 0), y = Vec3(0, 1, 0), z = Vec3(0, 0, 1);
   float side = 1.0f;  ///< -1: its normals point inward
 
-  /// The place at an outward normal in the sphere's own axes.
+  /// The point at an outward normal in the sphere's own axes.
   PT_HD Vec3 local(const Vec3& normal) const {
     return {dot(normal, x), dot(normal, y), dot(normal, z)};
   }
   PT_HD Vec3 world(const Vec3& v) const { return weighted_sum(v, x, y, z); }
 };
 
-/// How far a local place is from the axis z.
+/// The distance of a local point from the axis z.
 PT_HD float distance_from_axis(const Vec3& local) {
   return square_root(fused_multiply_add(local.x, local.x, multiply_rounded(local.y, local.y)));
 }
@@ -30,7 +30,7 @@ PT_HD Vec2 sphere_uv(const Vec3& local) {
           fused_multiply_add(-inverse_pi, from_zenith, 1.0f)};
 }
 
-/// What the place gains by u and by v, on a sphere of this radius.
+/// The derivatives of the point by u and by v, on a sphere of this radius (pbrt-v4, section 6.2.2).
 PT_HD Vec3 sphere_dp_du(const SphereFrame& frame, const Vec3& local, float radius) {
   const float scale = 2.0f * pi * radius;
   return frame.world({-scale * local.y, scale * local.x, 0.0f});

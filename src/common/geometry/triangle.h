@@ -17,7 +17,7 @@
 
 namespace pt {
 
-/// A triangle as traversal reads it: three 16-byte loads. Places in the array are called slots;
+/// A triangle as traversal reads it: three 16-byte loads. Elements of the array are called slots;
 /// leaves of an acceleration structure are runs of slots, and spatial splits may put a triangle
 /// into several.
 struct alignas(16) Triangle {
@@ -33,7 +33,7 @@ struct alignas(16) Triangle {
 struct TriangleAttributes {
   static constexpr std::uint32_t normals = 1;  ///< by vertex: smooth shading
   static constexpr std::uint32_t uvs = 2;      ///< texture coordinates by vertex
-  static constexpr std::uint32_t masked = 4;   ///< of its material only a part is there
+  static constexpr std::uint32_t masked = 4;   ///< its material has an opacity below 1
 };
 
 PT_HD Bounds triangle_bounds(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -101,7 +101,7 @@ PT_HD TriangleRay make_triangle_ray(const Vec3& origin, const Vec3& direction) {
   return ray;
 }
 
-/// Where a ray meets a triangle's plane inside of it: barycentric coordinates b0 + b1 + b2 = 1.
+/// The hit of a ray and a triangle: barycentric coordinates b0 + b1 + b2 = 1.
 struct TriangleHit {
   float t;  ///< NaN: none
   float b1, b2;

@@ -11,7 +11,7 @@ constexpr double middle_grey = 0.18;
 constexpr double bright_share = 0.01;
 constexpr float display_range = 1000.0f;
 
-/// Of the pixels that shine, ascending.
+/// Of the pixels that are not black, ascending.
 std::vector<float> luminances(const Image& image) {
   std::vector<float> values;
   for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {

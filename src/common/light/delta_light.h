@@ -1,4 +1,5 @@
-// Lights without extent: no ray ever meets them, so they are sampled only, with weight 1.
+// Delta lights (pbrt-v4, sections 12.2 and 12.3): no ray can hit them, so that light sampling alone
+// finds them, with MIS weight 1.
 #pragma once
 
 #include "common/light/light_kind.h"
@@ -7,7 +8,7 @@
 
 namespace pt {
 
-/// What a spot light gives between its inner and its outer angle.
+/// The falloff of a spot light's intensity between its inner and its outer angle.
 enum class SpotFalloff : std::uint32_t {
   smooth,         ///< pbrt's: smoothstep of the cosine
   linear_angle,   ///< Mitsuba's: linear in the angle
@@ -17,13 +18,13 @@ enum class SpotFalloff : std::uint32_t {
 struct DeltaLight {
   LightKind kind = LightKind::point;
   Vec3 position{0.0f};       ///< point, spot: world space
-  Vec3 direction{0, 0, -1};  ///< spot, directional: the way the light goes, unit length
-  Color intensity{1.0f};     ///< point, spot: W / sr; directional: irradiance across the rays
+  Vec3 direction{0, 0, -1};  ///< spot, directional: away from the light, unit length
+  Color intensity{1.0f};     ///< point, spot: W / sr; directional: W / m^2 across the rays
   float cos_inner = 1.0f;    ///< spot: full intensity within this angle,
   float cos_outer = -1.0f;   ///< none beyond this one,
   SpotFalloff falloff = SpotFalloff::smooth;  ///< in between
-  Vec3 right{1, 0, 0};  ///< where the picture's u grows; projector: over the tangent of half its
-                        ///< angle; spot: of unit length
+  Vec3 right{1, 0, 0};  ///< direction of the picture's u; projector: of length 1 / tan(fov / 2);
+                        ///< spot: of unit length
   float aspect = 1.0f;  ///< width over height; negative where the map to the world mirrors
   std::uint32_t texture = no_texture;  ///< the picture; projector: of intensity / cos^3 about the
                                        ///< axis; spot: multiplies the intensity

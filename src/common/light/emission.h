@@ -1,4 +1,4 @@
-// What a surface that shines emits: the light's own record, which a material only names.
+// What an emissive surface emits: a record of its own, which a material refers to.
 #pragma once
 
 #include "common/math/vec.h"
@@ -8,9 +8,9 @@ namespace pt {
 
 /// 32 bytes: two loads.
 struct alignas(16) Emission {
-  Color radiance = Color(0.0f);        ///< on the side to which the normal points
+  Color radiance = Color(0.0f);        ///< W / (m^2 sr), on the side to which the normal points
   std::uint32_t texture = no_texture;  ///< multiplies it
-  float texture_mean = 1.0f;           ///< its luminance, by which lights are chosen
+  float texture_mean = 1.0f;           ///< the texture's mean luminance, for light selection
 };
 
 }  // namespace pt

@@ -40,10 +40,9 @@ struct alignas(16) Light {
   Vec3 c;  ///< triangle: the edge to the third vertex; spot: cosines of both angles,
            ///< falloff; projector: see DeltaLight::right; sphere: square of the radius; sun: see
            ///< Sun::one_minus_cos
-  std::uint32_t
-      triangle;    ///< its id, where it has texture coordinates, else no_texture;
-                   ///< projector: the bits of its aspect; spot with a picture: SpotLight::roll
-  Color radiance;  ///< or intensity, or irradiance, as the kind has it
+  std::uint32_t triangle;  ///< its id, where it has texture coordinates, else no_texture;
+                           ///< projector: the bits of its aspect; spot with a picture: pack_roll()
+  Color radiance;  ///< W / (m^2 sr); delta lights: intensity, W / sr, or irradiance, W / m^2
   std::uint32_t emission_texture;
 
   PT_HD LightError error() const {

@@ -1,12 +1,12 @@
 // What sampling a light gives, and where a ray to it has to end.
 //
-// All of it is as seen from the place where a ray would begin that the BSDF sends (spawn_origin),
-// not from the surface's own point: that place lies off the surface by its error bound, which far
+// All of it is as seen from the origin of a ray that BSDF sampling would spawn (spawn_origin), not
+// from the surface's own point: that origin lies off the surface by its error bound, which far
 // from the origin of the scene is no longer small. Then light sampling and BSDF sampling estimate
 // one and the same integral, wi and density included.
 //
 // Only the shadow ray's end differs from the sampled point: it lies off the light, on the side to
-// which the light shines, by all that may be rounded between the two (pbrt-v4, section 6.8.6). So
+// which the light emits, by all that may be rounded between the two (pbrt-v4, section 6.8.6). So
 // the ray cannot meet the light itself, and meets whatever lies below it by more than that.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace pt {
 
 struct LightSample {
   Vec3 wi = Vec3(0.0f);   ///< unit vector to the sampled point
-  float pdf = 0.0f;       ///< per solid angle; 0: nothing to be gained
+  float pdf = 0.0f;       ///< per solid angle; 0: no contribution
   Vec3 end = Vec3(0.0f);  ///< of a shadow ray, relative to its origin
 };
 
@@ -37,7 +37,7 @@ struct PlainLight {
 
 /// How far the sampled point and the surface that a ray meets may be apart across the surface.
 struct LightError {
-  float absolute = 0.0f;  ///< of the light's own size and place
+  float absolute = 0.0f;  ///< of the light's own size and position
   float relative = 0.0f;  ///< times the distance
 
   PT_HD float bound(float distance) const {

@@ -1,4 +1,4 @@
-// Which light is asked, and how likely that was.
+// Light selection: which light is sampled, and its probability (pbrt-v4, section 12.6).
 #pragma once
 
 #include "common/light/light.h"
@@ -16,14 +16,14 @@ struct LightChoice {
   float pmf = 0.0f;  ///< probability of this choice
 };
 
-/// A view. Without a tree the place does not matter: a light is chosen with a probability
-/// proportional to its weight. With a tree, lights that have a place are chosen by what they can do
-/// for the receiver, and `table` has the others, which all together get a fixed probability. So
-/// does the environment, whose power depends on the size of the scene more than on what it does.
+/// A view. Without a tree the shading point does not matter: a light is chosen with a probability
+/// proportional to its weight. With a tree, lights that have a position are chosen by their
+/// estimated contribution at the shading point, and `table` has the others, which together get a
+/// fixed probability. So does the environment, whose power depends mostly on the size of the scene.
 struct LightSelector {
   const Light* lights = nullptr;
   const AliasEntry* table = nullptr;  ///< [light - table_first]
-  std::uint32_t table_first = 0;      ///< with a tree: lights from here on have no place
+  std::uint32_t table_first = 0;      ///< with a tree: lights from here on have no position
   LightTree tree;
   std::uint32_t count = 0;  ///< of the table
   float total_weight = 0.0f;
@@ -32,8 +32,9 @@ struct LightSelector {
 
   PT_HD bool has_tree() const { return table_probability < 1.0f; }
 
-  /// For light that arrives at `point`; u uniform in [0, 1)^2. The one number that decides about
-  /// the environment is used again for the light, together with the other: 47 bits are left.
+  /// For light that arrives at `point`; u uniform in [0, 1)^2. The component that
+  /// chooses between environment and lights is used again, with the other, to choose the light: 47
+  /// bits are left.
   PT_HD LightChoice sample(const Vec3& point, Receiver receiver, float u0, float u1) const {
     if (has_tree()) return sample_with_tree(point, receiver, u0, u1);
     const float p = environment_probability;
@@ -52,7 +53,7 @@ struct LightSelector {
     return tree_probability() * light_tree_pmf(tree, LightReceiver(point, receiver), trail);
   }
 
-  /// As pmf(), for a light without place, whoever asks it.
+  /// As pmf(), for a light without position, at any shading point.
   PT_HD float distant_pmf(std::uint32_t light) const {
     return table_probability * listed_pmf(light);
   }
@@ -81,8 +82,8 @@ struct LightSelector {
   }
 };
 
-/// A view: which light a surface that shines is. That of a triangle is the first one of its
-/// instance (InstanceRecord::number; 0 in a scene without instances) plus its rank in the
+/// A view: the index of the light that an emissive primitive is. That of a triangle is the first
+/// one of its instance (InstanceRecord::index; 0 in a scene without instances) plus its rank in the
 /// instance's group.
 struct LightMap {
   const std::uint32_t* first = nullptr;    ///< [instance]

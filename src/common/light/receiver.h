@@ -1,5 +1,6 @@
 // The surface for which a light is chosen, as far as the choice depends on it, in 4 bytes: a path
-// brings it along to the lamp that it meets, so that the same choice can be asked for afterwards.
+// brings it along to the emitter that it hits, so that the probability of the same choice can be
+// computed afterwards.
 #pragma once
 
 #include "common/math/vec.h"

@@ -19,18 +19,18 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
                  : TrianglePoint{u0 - 0.5f * u1, 0.5f * u1};
 }
 
-/// What samples a triangle: its area, or where it uses_solid_angle_sampling large the solid angle
-/// under which it is seen. A function of the triangle and of who sees it, so that it can be asked
-/// for afterwards.
+/// How a triangle is sampled: by area or, where it covers much of the view, by solid angle
+/// (pbrt-v4, section 6.5.4). The choice depends on the triangle and the reference point alone, so
+/// that pdf() can repeat it.
 struct TriangleSampler {
-  Vec3 v0;  ///< relative to who sees it
+  Vec3 v0;  ///< relative to the reference point, in world space
   Vec3 edge1, edge2;
   Vec3 normal;  ///< cross(edge1, edge2), whose length is twice the area
 
   PT_HD TriangleSampler(const Vec3& relative_v0, const Vec3& e1, const Vec3& e2)
       : v0(relative_v0), edge1(e1), edge2(e2), normal(cross_rounded(e1, e2)) {}
 
-  /// Area over the square of the distance above 1/10: beyond, densities differ little over it.
+  /// Whether area / distance^2 is above 1/10: below, the density per area differs little from it.
   PT_HD bool uses_solid_angle_sampling() const {
     const Vec3 middle = add_scaled(v0, 1.0f / 3.0f, edge1 + edge2);
     const float distance2 = dot(middle, middle);
@@ -39,8 +39,8 @@ struct TriangleSampler {
 
   PT_HD SphericalTriangle seen() const { return {v0, v0 + edge1, v0 + edge2, normal}; }
 
-  /// Below, a triangle seen from its edge, directions are rounded too much. (False as well for one
-  /// whose corner is where it is seen from.)
+  /// False for smaller ones, of a triangle seen edge-on, in which directions are rounded too much,
+  /// and where the reference point is a corner.
   static PT_HD bool has_solid_angle(const SphericalTriangle& seen) {
     return seen.solid_angle > 1e-3f;
   }
@@ -80,8 +80,8 @@ struct TriangleLightSample {
   TrianglePoint point = {0.0f, 0.0f};  ///< where, for a textured emission
 };
 
-/// A point of the triangle v0, v0 + edge1, v0 + edge2, which shines to the side to which
-/// cross(edge1, edge2) points; no density from behind.
+/// A point of the triangle v0, v0 + edge1, v0 + edge2, which emits on the side to which
+/// cross(edge1, edge2) points; density 0 from behind.
 PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, const Vec3& edge2,
                                           const LightError& error, const Vec3& from, float u0,
                                           float u1) {

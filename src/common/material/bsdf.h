@@ -3,7 +3,8 @@
 //
 // A BSDF is a small value:
 //   static constexpr const char* name      what it is called in messages and statistics
-//   static constexpr int parameter_count   of its material's parameters, below parameters_max
+//   struct Index                           the indices of its material's parameters, with ranges
+//   static constexpr int parameter_count   Index::count, at most parameters_max
 //   static Bsdf make(const Parameters& p)  from p.color(i) and p.scalar(i), textures included
 //   static constexpr std::uint8_t lobes    of Lobe: all that sample() may return, but where it
 //                                          is_delta(), which sides alone
@@ -33,7 +34,7 @@ struct BsdfSample {
   float pdf = 0.0f;            ///< per solid angle; meaningless for a delta lobe
   std::uint8_t lobe = 0;       ///< of Lobe, one side and one kind
   float eta = 1.0f;            ///< index of refraction beyond over before; 1 for reflection
-  float outside = 1.0f;        ///< weight times this is what Russian roulette goes by
+  float outside = 1.0f;        ///< undoes the 1 / eta^2 of radiance inside, for Russian roulette
 
   PT_HD bool is_delta() const { return (lobe & Lobe::delta) != 0; }
 };

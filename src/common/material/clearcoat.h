@@ -7,8 +7,9 @@
 namespace pt {
 
 struct Clearcoat {
-  float alpha2;
+  float alpha2;  ///< roughness squared
 
+  /// `gloss` in [0, 1]: roughness from 0.1 to 0.001.
   PT_HD static Clearcoat make(float gloss) {
     const float alpha = fused_multiply_add(gloss, 0.001f - 0.1f, 0.1f);
     return {alpha * alpha};

@@ -10,7 +10,19 @@ namespace pt {
 
 struct Conductor {
   static constexpr const char* name = "conductor";
-  static constexpr int parameter_count = 6;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      tint,         ///< in [0, 1]; 1 for real metals
+      eta,          ///< real part of the relative index of refraction, per channel
+      k,            ///< imaginary part, the absorption
+      alpha_x,      ///< roughness along the tangent, >= 0
+      alpha_y,      ///< roughness along the bitangent, >= 0
+      is_beckmann,  ///< 0: GGX, else Beckmann
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
 
   Color tint;              ///< multiplies what is reflected; white for real metals
@@ -20,12 +32,16 @@ struct Conductor {
 
   template <class Parameters>
   PT_HD static Conductor make(const Parameters& p) {
-    return {p.color(0), p.color(1), p.color(2), p.scalar(3), p.scalar(4), p.scalar(5) != 0.0f};
+    return {p.color(Index::tint),     p.color(Index::eta),
+            p.color(Index::k),        p.scalar(Index::alpha_x),
+            p.scalar(Index::alpha_y), p.scalar(Index::is_beckmann) != 0.0f};
   }
 
   template <class Parameter>
   static bool uses_tangent(const Parameter* p) {
-    return p[3].value != p[4].value || p[3].texture != p[4].texture;
+    const auto& x = p[Index::alpha_x];
+    const auto& y = p[Index::alpha_y];
+    return x.value != y.value || x.texture != y.texture;
   }
 
   PT_HD bool is_delta() const { return alpha_x <= 0.0f && alpha_y <= 0.0f; }

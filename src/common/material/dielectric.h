@@ -8,7 +8,15 @@ namespace pt {
 
 struct Dielectric {
   static constexpr const char* name = "dielectric";
-  static constexpr int parameter_count = 2;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      tint,  ///< in [0, 1]
+      eta,   ///< relative index of refraction, > 0
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
 
   Color tint;  ///< multiplies what passes or is reflected; white for real glass
@@ -16,7 +24,7 @@ struct Dielectric {
 
   template <class Parameters>
   PT_HD static Dielectric make(const Parameters& p) {
-    return {p.color(0), p.scalar(1)};
+    return {p.color(Index::tint), p.scalar(Index::eta)};
   }
 
   PT_HD bool is_delta() const { return true; }

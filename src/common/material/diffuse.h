@@ -1,4 +1,4 @@
-// Lambertian reflection, on both sides.
+// Lambertian reflection, on both sides (pbrt-v4, section 9.2).
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -8,14 +8,21 @@ namespace pt {
 
 struct Diffuse {
   static constexpr const char* name = "diffuse";
-  static constexpr int parameter_count = 1;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      albedo,  ///< reflectance, in [0, 1]
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse;
 
-  Color albedo;
+  Color albedo;  ///< f = albedo / pi
 
   template <class Parameters>
   PT_HD static Diffuse make(const Parameters& p) {
-    return {p.color(0)};
+    return {p.color(Index::albedo)};
   }
 
   PT_HD bool is_delta() const { return false; }

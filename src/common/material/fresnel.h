@@ -1,4 +1,5 @@
-// Reflection at smooth boundaries of dielectrics and conductors, of unpolarised light.
+// Fresnel equations for unpolarised light at smooth dielectrics and conductors (pbrt-v4,
+// sections 9.3.5 and 9.3.6).
 #pragma once
 
 #include "common/math/vec.h"

@@ -20,7 +20,7 @@
 
 namespace pt {
 
-/// Every BSDF, once. Its place is its MaterialKind.
+/// Every BSDF, once. Its index is its MaterialKind.
 using Bsdfs =
     TypeList<Diffuse, Metal, Dielectric, OrenNayar, Plastic, RoughPlastic, Phong, Ward, Conductor,
              RoughDielectric, ThinDielectric, Principled, PrincipledThin, CompensatedConductor>;
@@ -43,7 +43,10 @@ struct alignas(16) Parameter {
   std::uint32_t texture = no_texture;
 };
 
-/// Nothing shines.
+/// The first parameter of all BSDFs: their colour (albedo, tint, base colour).
+inline constexpr int color_parameter = 0;
+
+/// Nothing emits.
 inline constexpr std::uint32_t no_emission = 0xffffffffu;
 
 /// What a material does that is no BSDF itself but is made of other materials: see
@@ -62,7 +65,7 @@ enum class MaterialNode : std::uint8_t {
 /// those of all materials.
 struct alignas(16) Material {
   static constexpr std::uint8_t one_sided = 1;  ///< black when seen from behind
-  static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): lights are not asked
+  static constexpr std::uint8_t delta = 2;      ///< Bsdf::is_delta(): no light sampling
   static constexpr std::uint8_t textured = 4;   ///< some parameter, or the emission
   static constexpr std::uint8_t tangents = 8;   ///< needs a tangent along which u grows
   static constexpr std::uint8_t nested = 16;    ///< no BSDF, but a MaterialNode

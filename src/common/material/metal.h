@@ -10,7 +10,15 @@ namespace pt {
 
 struct Metal {
   static constexpr const char* name = "metal";
-  static constexpr int parameter_count = 2;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      albedo,  ///< reflectance, in [0, 1]
+      fuzz,    ///< radius of the ball, in [0, 1]
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
 
   Color albedo;
@@ -18,7 +26,7 @@ struct Metal {
 
   template <class Parameters>
   PT_HD static Metal make(const Parameters& p) {
-    return {p.color(0), p.scalar(1)};
+    return {p.color(Index::albedo), p.scalar(Index::fuzz)};
   }
 
   PT_HD bool is_delta() const { return fuzz == 0.0f; }

@@ -1,17 +1,18 @@
-// How much of a surface is there: what a mask lets through passes as if nothing were.
+// Stochastic opacity of a surface: a ray that a mask lets through continues as if it was not there.
 #pragma once
 
 #include "common/texture/texture.h"
 
 namespace pt {
 
-/// 16 bytes: one load. offset + scale * the texture's luminance, at most 1, is the probability that
-/// a ray meets the surface; with a cutoff it meets what is at least that.
+/// 16 bytes: one load. The opacity, offset + scale * the texture's luminance, at most 1, is the
+/// probability that a ray hits the surface; with a cutoff the ray hits it where the opacity is at
+/// least the cutoff.
 struct alignas(16) Opacity {
   float offset = 1.0f;
   float scale = 0.0f;
   std::uint32_t texture = no_texture;
-  float cutoff = 0.0f;  ///< 0: none; light_hidden: none, and camera rays do not meet it
+  float cutoff = 0.0f;  ///< 0: none; light_hidden: none, and camera rays do not hit it
 
   static constexpr float light_hidden = -1.0f;
 

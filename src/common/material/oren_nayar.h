@@ -10,15 +10,23 @@ namespace pt {
 
 struct OrenNayar {
   static constexpr const char* name = "oren-nayar";
-  static constexpr int parameter_count = 2;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      albedo,  ///< the facets' reflectance, in [0, 1]
+      sigma,   ///< standard deviation of the facets' angle, radians, >= 0
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse;
 
   Color albedo;  ///< of the facets
-  float sigma;   ///< standard deviation of their angle, in radians; 0: Lambertian
+  float sigma;   ///< standard deviation of their angle, radians; 0: Lambertian
 
   template <class Parameters>
   PT_HD static OrenNayar make(const Parameters& p) {
-    return {p.color(0), p.scalar(1)};
+    return {p.color(Index::albedo), p.scalar(Index::sigma)};
   }
 
   PT_HD bool is_delta() const { return false; }

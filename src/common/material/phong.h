@@ -10,7 +10,16 @@ namespace pt {
 
 struct Phong {
   static constexpr const char* name = "phong";
-  static constexpr int parameter_count = 3;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      diffuse,   ///< reflectance, in [0, 1]
+      specular,  ///< reflectance, in [0, 1]
+      exponent,  ///< >= 0
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
 
   TwoLobes two;
@@ -18,7 +27,8 @@ struct Phong {
 
   template <class Parameters>
   PT_HD static Phong make(const Parameters& p) {
-    return {TwoLobes::make(p.color(0), p.color(1)), fmaxf(p.scalar(2), 0.0f)};
+    return {TwoLobes::make(p.color(Index::diffuse), p.color(Index::specular)),
+            fmaxf(p.scalar(Index::exponent), 0.0f)};
   }
 
   PT_HD bool is_delta() const { return false; }

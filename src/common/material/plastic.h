@@ -11,14 +11,17 @@ namespace pt {
 
 /// The body under a coat, and how both share the samples.
 struct CoatedBody {
-  Color diffuse, specular;
-  /// x: index of refraction inside over outside; y and z: the coat's reflectance for diffuse light
-  /// from inside, y where the way to and fro does not colour the light, else z; the other one is 0.
+  Color diffuse;   ///< the body's reflectance, in [0, 1]
+  Color specular;  ///< multiplies what the coat reflects, in [0, 1]
+  /// x: index of refraction inside over outside, > 0; y and z: the coat's internal reflectance for
+  /// diffuse light. It is y where internal reflections do not colour the light (`nonlinear` is off
+  /// in Mitsuba), else z; the other one is 0.
   Color coat;
 
   PT_HD float eta() const { return coat.x; }
 
-  /// What of `entered`, the light that gets in times the part that gets out, leaves the body.
+  /// f of the body, with `entered` the transmittance of the coat on the way in times that on the
+  /// way out, times the cosine over pi.
   PT_HD Color leaving(float entered) const {
     const float scale = divide(entered, coat.x * coat.x);
     const auto channel = [&](float d) {
@@ -37,14 +40,23 @@ struct CoatedBody {
 
 struct Plastic {
   static constexpr const char* name = "plastic";
-  static constexpr int parameter_count = 3;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      diffuse,   ///< the body's reflectance, in [0, 1]
+      specular,  ///< multiplies what the coat reflects, in [0, 1]
+      coat,      ///< see CoatedBody::coat
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::delta;
 
   CoatedBody body;
 
   template <class Parameters>
   PT_HD static Plastic make(const Parameters& p) {
-    return {{p.color(0), p.color(1), p.color(2)}};
+    return {{p.color(Index::diffuse), p.color(Index::specular), p.color(Index::coat)}};
   }
 
   PT_HD bool is_delta() const { return false; }

@@ -1,6 +1,7 @@
-// The principled BSDF as Mitsuba 3 has it (see principled_lobes.h): a diffuse base, a specular lobe
-// that metals colour and glass lets through, and a coat. Not quite conserving energy, and the
-// choice of lobes is ours.
+// The principled BSDF with the parameters and lobes of Mitsuba 3's `principled` (Burley 2012 and
+// 2015, see principled_lobes.h): a diffuse base with sheen, a specular lobe that reflects as a
+// metal or as a dielectric or transmits as glass, and a clearcoat. As the original, it does not
+// conserve energy exactly. The probabilities with which lobes are sampled differ from Mitsuba's.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -11,30 +12,48 @@ namespace pt {
 
 struct Principled {
   static constexpr const char* name = "principled";
-  static constexpr int parameter_count = 12;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      base_color,       ///< in [0, 1]
+      roughness,        ///< in [0, 1]; alpha = roughness^2
+      metallic,         ///< in [0, 1]: dielectric to metal
+      spec_trans,       ///< in [0, 1]: opaque to glass
+      eta,              ///< index of refraction inside over outside, > 0
+      anisotropic,      ///< in [0, 1]: facets stretched along the tangent
+      spec_tint,        ///< in [0, 1]: white to coloured highlights of dielectrics
+      sheen,            ///< >= 0: scale of the grazing lobe of cloth
+      sheen_tint,       ///< in [0, 1]: white to coloured
+      flatness,         ///< in [0, 1]: diffuse to fake subsurface scattering
+      clearcoat,        ///< >= 0: scale of the second lobe, of which 0.25 is used
+      clearcoat_gloss,  ///< in [0, 1]: alpha 0.1 to 0.001
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes =
       Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
 
   PrincipledBase base;
-  float metallic, spec_trans;
-  float eta;  ///< index of refraction inside over outside, > 0
-  float anisotropic, spec_tint, clearcoat, clearcoat_gloss;
+  // Units and ranges: see Index.
+  float metallic, spec_trans, eta, anisotropic, spec_tint, clearcoat, clearcoat_gloss;
 
   template <class Parameters>
   PT_HD static Principled make(const Parameters& p) {
-    return {{p.color(0), p.scalar(1), p.scalar(9), p.scalar(7), p.scalar(8)},
-            p.scalar(2),
-            p.scalar(3),
-            p.scalar(4),
-            p.scalar(5),
-            p.scalar(6),
-            p.scalar(10),
-            p.scalar(11)};
+    return {{p.color(Index::base_color), p.scalar(Index::roughness), p.scalar(Index::flatness),
+             p.scalar(Index::sheen), p.scalar(Index::sheen_tint)},
+            p.scalar(Index::metallic),
+            p.scalar(Index::spec_trans),
+            p.scalar(Index::eta),
+            p.scalar(Index::anisotropic),
+            p.scalar(Index::spec_tint),
+            p.scalar(Index::clearcoat),
+            p.scalar(Index::clearcoat_gloss)};
   }
 
   template <class Parameter>
   static bool uses_tangent(const Parameter* p) {
-    return !is_black(p[5].value);
+    return !is_black(p[Index::anisotropic].value);
   }
 
   PT_HD bool is_delta() const { return false; }
@@ -79,10 +98,10 @@ struct Principled {
   }
 
  private:
-  /// From where it is seen: turned so that the viewer is above.
+  /// The viewer's side: mirrored so that the viewer is above the surface.
   struct View {
     float side;
-    bool inside;  ///< of glass; what lets nothing through has the same on both sides
+    bool inside;  ///< of glass; opaque materials are the same on both sides
     float eta;    ///< beyond over before
   };
 
@@ -109,7 +128,7 @@ struct Principled {
     return {diffuse * scale, coat * scale, specular * scale};
   }
 
-  /// The part of the specular lobe's rays that passes.
+  /// The probability that a sample of the specular lobe is transmitted.
   PT_HD float passing(const View& view, float fresnel) const {
     return (view.inside ? 1.0f : glass()) * (1.0f - fresnel);
   }
@@ -153,7 +172,7 @@ struct Principled {
     if (!view.inside) {
       if (opaque() > 0.0f) {
         PrincipledBase below = base;
-        // Sheen knows of metal but not of glass.
+        // Sheen is scaled by 1 - metallic but not by 1 - spec_trans.
         below.color *= opaque(), below.sheen *= 1.0f - metallic;
         f = add_scaled(f, i.z, below.evaluate(o.z, i.z, cos_o));
         pdf = fused_multiply_add(choice.diffuse * inverse_pi, i.z, pdf);

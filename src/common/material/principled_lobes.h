@@ -14,7 +14,7 @@ PT_HD Color hue(const Color& c) {
   return luminance > 0.0f ? divide(c, luminance) : Color(1.0f);
 }
 
-/// (1 - cosine)^5, by which Schlick's reflectance goes from that at normal incidence to 1.
+/// (1 - cosine)^5: Schlick's interpolation from the reflectance at normal incidence to 1.
 PT_HD float schlick_weight(float cosine) {
   const float m = fminf(fmaxf(1.0f - cosine, 0.0f), 1.0f);
   return m * m * (m * m) * m;
@@ -40,10 +40,12 @@ PT_HD Microfacets principled_facets(float roughness, float anisotropic) {
   return {fmaxf(divide(alpha, aspect), 0.001f), fmaxf(alpha * aspect, 0.001f), false};
 }
 
-/// What lies below the specular lobe.
+/// The diffuse base with its sheen: Burley 2012, section 5.3.
 struct PrincipledBase {
-  Color color;
-  float roughness, flatness, sheen, sheen_tint;
+  Color color;      ///< base colour, in [0, 1]
+  float roughness;  ///< in [0, 1]
+  float flatness;   ///< in [0, 1]: weight of the fake subsurface scattering
+  float sheen, sheen_tint;
 
   /// f of diffuse, retro-reflection and sheen, with the fake subsurface scattering of Hanrahan
   /// and Krueger; cos_d is that of the half vector and either direction.
@@ -61,7 +63,7 @@ struct PrincipledBase {
                       inverse_pi * interpolate(diffuse, subsurface, flatness), color);
   }
 
-  /// About what it reflects, to choose lobes by; 0 only where it reflects nothing.
+  /// Estimated reflectance, for the choice of lobes; 0 only where it reflects nothing.
   PT_HD float albedo() const { return fmaxf(max_abs(color), sheen); }
 };
 

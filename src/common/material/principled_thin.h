@@ -1,5 +1,6 @@
-// The principled BSDF of a sheet without an inside, as Mitsuba 3 has it (see principled_lobes.h):
-// the same on both sides; what passes is not deflected but spread.
+// The principled BSDF of a thin sheet, a single surface, with the parameters and lobes of Mitsuba
+// 3's `principledthin` (Burley 2015, see principled_lobes.h): the same on both sides; transmitted
+// light is blurred by the roughness but not refracted.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -9,7 +10,23 @@ namespace pt {
 
 struct PrincipledThin {
   static constexpr const char* name = "thin principled";
-  static constexpr int parameter_count = 10;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      base_color,   ///< in [0, 1]
+      roughness,    ///< in [0, 1]; alpha = roughness^2
+      spec_trans,   ///< in [0, 1]: opaque to clear
+      eta,          ///< index of refraction of the sheet over that outside, > 0
+      anisotropic,  ///< in [0, 1]: facets stretched along the tangent
+      spec_tint,    ///< in [0, 1]: white to coloured highlights
+      sheen,        ///< >= 0: scale of the grazing lobe of cloth
+      sheen_tint,   ///< in [0, 1]: white to coloured
+      flatness,     ///< in [0, 1]: diffuse to fake subsurface scattering
+      diff_trans,   ///< in [0, 2]: 1 is half reflected, half transmitted
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes =
       Lobe::reflection | Lobe::transmission | Lobe::diffuse | Lobe::glossy;
 
@@ -17,21 +34,22 @@ struct PrincipledThin {
   float spec_trans;
   float eta;  ///< index of refraction of the sheet over that of what is outside, > 0
   float anisotropic, spec_tint;
-  float diff_trans;  ///< the part of the diffuse light that passes, in [0, 2]
+  float diff_trans;  ///< transmitted part of the diffuse light, in [0, 1]: half the parameter
 
   template <class Parameters>
   PT_HD static PrincipledThin make(const Parameters& p) {
-    return {{p.color(0), p.scalar(1), p.scalar(8), p.scalar(6), p.scalar(7)},
-            p.scalar(2),
-            p.scalar(3),
-            p.scalar(4),
-            p.scalar(5),
-            0.5f * p.scalar(9)};
+    return {{p.color(Index::base_color), p.scalar(Index::roughness), p.scalar(Index::flatness),
+             p.scalar(Index::sheen), p.scalar(Index::sheen_tint)},
+            p.scalar(Index::spec_trans),
+            p.scalar(Index::eta),
+            p.scalar(Index::anisotropic),
+            p.scalar(Index::spec_tint),
+            0.5f * p.scalar(Index::diff_trans)};
   }
 
   template <class Parameter>
   static bool uses_tangent(const Parameter* p) {
-    return !is_black(p[4].value);
+    return !is_black(p[Index::anisotropic].value);
   }
 
   PT_HD bool is_delta() const { return false; }

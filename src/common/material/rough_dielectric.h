@@ -11,7 +11,19 @@ namespace pt {
 
 struct RoughDielectric {
   static constexpr const char* name = "rough dielectric";
-  static constexpr int parameter_count = 6;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      reflected,    ///< tint of reflected light, in [0, 1]
+      passed,       ///< tint of transmitted light, in [0, 1]
+      eta,          ///< relative index of refraction, > 0
+      alpha_x,      ///< roughness along the tangent, >= 0
+      alpha_y,      ///< roughness along the bitangent, >= 0
+      is_beckmann,  ///< 0: GGX, else Beckmann
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission | Lobe::glossy;
 
   Color reflected, passed;  ///< tints; white for real glass
@@ -21,12 +33,16 @@ struct RoughDielectric {
 
   template <class Parameters>
   PT_HD static RoughDielectric make(const Parameters& p) {
-    return {p.color(0), p.color(1), p.scalar(2), p.scalar(3), p.scalar(4), p.scalar(5) != 0.0f};
+    return {p.color(Index::reflected), p.color(Index::passed),
+            p.scalar(Index::eta),      p.scalar(Index::alpha_x),
+            p.scalar(Index::alpha_y),  p.scalar(Index::is_beckmann) != 0.0f};
   }
 
   template <class Parameter>
   static bool uses_tangent(const Parameter* p) {
-    return p[3].value != p[4].value || p[3].texture != p[4].texture;
+    const auto& x = p[Index::alpha_x];
+    const auto& y = p[Index::alpha_y];
+    return x.value != y.value || x.texture != y.texture;
   }
 
   /// Without a change of index nothing is bent, whatever the facets.

@@ -11,7 +11,21 @@ namespace pt {
 
 struct RoughPlastic {
   static constexpr const char* name = "rough plastic";
-  static constexpr int parameter_count = 8;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      diffuse,          ///< the body's reflectance, in [0, 1]
+      specular,         ///< multiplies what the coat reflects, in [0, 1]
+      alpha,            ///< roughness of the coat, >= 0
+      coat,             ///< see CoatedBody::coat
+      transmittance_0,  ///< nine coefficients of transmittance(), the constant first
+      transmittance_1,
+      transmittance_2,
+      is_beckmann,  ///< 0: GGX, else Beckmann
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
   static constexpr int terms = 9;
 
@@ -21,10 +35,11 @@ struct RoughPlastic {
 
   template <class Parameters>
   PT_HD static RoughPlastic make(const Parameters& p) {
-    const Color a = p.color(4), b = p.color(5), c = p.color(6);
-    const float alpha = p.scalar(2);
-    return {{p.color(0), p.color(1), p.color(3)},
-            Microfacets::make(alpha, alpha, p.scalar(7) != 0.0f),
+    const Color a = p.color(Index::transmittance_0), b = p.color(Index::transmittance_1);
+    const Color c = p.color(Index::transmittance_2);
+    const float alpha = p.scalar(Index::alpha);
+    return {{p.color(Index::diffuse), p.color(Index::specular), p.color(Index::coat)},
+            Microfacets::make(alpha, alpha, p.scalar(Index::is_beckmann) != 0.0f),
             {a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z}};
   }
 

@@ -1,5 +1,5 @@
-// A pane of smooth glass: light goes to and fro within it, leaves it undeflected or is reflected,
-// and the pane has no inside of its own.
+// A thin pane of smooth glass, a single surface: light is reflected or leaves undeflected, after
+// any number of internal reflections (pbrt-v4, section 9.5.1).
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -9,7 +9,16 @@ namespace pt {
 
 struct ThinDielectric {
   static constexpr const char* name = "thin dielectric";
-  static constexpr int parameter_count = 3;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      reflected,  ///< tint of reflected light, in [0, 1]
+      passed,     ///< tint of transmitted light, in [0, 1]
+      eta,        ///< relative index of refraction, > 0
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
 
   Color reflected, passed;  ///< tints; white for real glass
@@ -17,7 +26,7 @@ struct ThinDielectric {
 
   template <class Parameters>
   PT_HD static ThinDielectric make(const Parameters& p) {
-    return {p.color(0), p.color(1), p.scalar(2)};
+    return {p.color(Index::reflected), p.color(Index::passed), p.scalar(Index::eta)};
   }
 
   PT_HD bool is_delta() const { return true; }

@@ -9,7 +9,17 @@ namespace pt {
 
 struct Ward {
   static constexpr const char* name = "ward";
-  static constexpr int parameter_count = 4;
+  /// Indices of the material's parameters.
+  struct Index {
+    enum : int {
+      diffuse,   ///< reflectance, in [0, 1]
+      specular,  ///< reflectance, in [0, 1]
+      alpha_x,   ///< roughness along the tangent, >= 0
+      alpha_y,   ///< roughness along the bitangent, >= 0
+      count
+    };
+  };
+  static constexpr int parameter_count = Index::count;
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::diffuse | Lobe::glossy;
 
   TwoLobes two;
@@ -18,13 +28,15 @@ struct Ward {
   template <class Parameters>
   PT_HD static Ward make(const Parameters& p) {
     constexpr float alpha_min = 1e-4f;
-    return {TwoLobes::make(p.color(0), p.color(1)), fmaxf(p.scalar(2), alpha_min),
-            fmaxf(p.scalar(3), alpha_min)};
+    return {TwoLobes::make(p.color(Index::diffuse), p.color(Index::specular)),
+            fmaxf(p.scalar(Index::alpha_x), alpha_min), fmaxf(p.scalar(Index::alpha_y), alpha_min)};
   }
 
   template <class Parameter>
   static bool uses_tangent(const Parameter* p) {
-    return p[2].value != p[3].value || p[2].texture != p[3].texture;
+    const auto& x = p[Index::alpha_x];
+    const auto& y = p[Index::alpha_y];
+    return x.value != y.value || x.texture != y.texture;
   }
 
   PT_HD bool is_delta() const { return false; }

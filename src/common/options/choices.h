@@ -9,7 +9,7 @@ namespace pt {
 /// Where the numbers of a path come from that depend on (seed, pixel, sample, block) alone.
 enum class SamplerKind : std::uint8_t { independent, stratified, sobol };
 
-/// How a surface chooses the direction in which a path goes on.
+/// How the direction in which a path continues is sampled.
 enum class DirectionSampling : std::uint8_t { uniform, cosine, bsdf };
 
 /// How light sampling and direction sampling are combined.

@@ -139,6 +139,14 @@ inline constexpr auto enum_names<StageId> = [] {
   }
   return names;
 }();
+
+/// Names of the release before, which the command line still takes.
+template <typename E>
+inline constexpr std::array<EnumName<E>, 0> old_enum_names{};
+template <>
+inline constexpr auto old_enum_names<StageId> =
+    std::to_array<EnumName<StageId>>({{StageId::route_hits, "sort_hits"}});
+
 template <>
 inline constexpr auto enum_names<DeviceChoice::Kind> =
     std::to_array<EnumName<DeviceChoice::Kind>>({{DeviceChoice::Kind::automatic, "auto"},

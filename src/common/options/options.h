@@ -96,7 +96,7 @@ struct Options {
   int spp = 50;        ///< samples per pixel, >= 1
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
-  bool nee = true;     ///< next-event estimation: ask the lights
+  bool nee = true;     ///< next-event estimation: light sampling
   LightSelection light_selection = LightSelection::automatic;
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;

@@ -1,6 +1,6 @@
 // How full warps are, counted by the code that they run: at chosen points, how many lanes are there
 // together. Only in a build with PTEXP_DIVERGENCE (docs/statistics.md); in others a LaneCounter has
-// no members, nobody has one, and all that is done with them is nothing.
+// no members and no code.
 #pragma once
 
 #include <iterator>

@@ -87,8 +87,8 @@ PT_HD void store_wide(T* p, const T& value) {
 #endif
 }
 
-/// x, which the compiler takes for a new value: what it made of x before it makes again, instead of
-/// keeping it in registers that other things need meanwhile.
+/// An optimisation barrier: returns x, which the compiler takes for an unknown value. So it
+/// computes again what it has computed from x before, instead of keeping that in registers.
 PT_HD float optimization_barrier(float x) {
 #ifdef __CUDA_ARCH__
   asm volatile("" : "+f"(x));
@@ -360,7 +360,7 @@ PT_HD bool is_never() {
 
 PT_HD std::uint32_t min_integer(std::uint32_t a, std::uint32_t b) { return a < b ? a : b; }
 
-/// The place of the highest bit that is set; x is not 0.
+/// The index of the highest bit that is set; x is not 0.
 PT_HD std::uint32_t highest_bit(std::uint32_t x) {
 #ifdef __CUDA_ARCH__
   std::uint32_t bit;

@@ -17,7 +17,7 @@ enum class RayKind {
 std::uint64_t ray_bytes_max(RayKind kind, int size);
 
 /// Of a prepared scene, by pixels in Morton order of an image of `size` x `size`, a power of two.
-/// Paths that end before are left out. In their place, more paths are followed through each pixel:
+/// Paths that end before are left out. Instead, more paths are followed through each pixel:
 /// for diffuse rays until there are size^2, or the whole image finds none; for RayKind::bounce 64
 /// of them. `bounces` is for the latter. Throws Error where there is no such ray.
 RaySet generate_rays(RayKind kind, const SceneData& scene, int size, int bounces = 0);

@@ -22,8 +22,8 @@ inline RayKindSizes scale_ray_kinds(const Bounds& bounds) {
   return {5e-6f * diagonal, 0.05f * diagonal};
 }
 
-/// Follows paths through a scene with these Traits. A pixel's number is its place in Morton order;
-/// `sample` tells the paths of a pixel apart.
+/// Follows paths through a scene with these Traits. A pixel's index is its position in Morton
+/// order; `sample` tells the paths of a pixel apart.
 template <class Traits>
 class RayPaths {
  public:

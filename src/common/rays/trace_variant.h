@@ -8,7 +8,7 @@ enum class TraceVariant {
                ///< threads for other trees
   threads,     ///< a thread for every ray
   persistent,  ///< warps that take new rays when lanes are idle
-  beam,        ///< 32 coherent rays together; rays that are not go by themselves
+  beam,        ///< 32 coherent rays together; incoherent ones singly
 };
 
 }  // namespace pt

@@ -36,7 +36,7 @@ class FilmRenderer : public Renderer, protected ChainDevice {
 
   bool has_chains() const { return options_.integrator == IntegratorKind::mlt; }
   const ChainPlan& chain_plan() const { return chain_plan_; }
-  /// Calls make(pointer's place, count) for each array of the chains.
+  /// Calls make(pointer to set, count) for each array of the chains.
   template <class Make>
   void make_chain_arrays(ChainArrays& arrays, Make&& make) const {
     arrays.for_each_array(chain_plan_.chains, batch_paths_, chain_plan_.bootstrap,

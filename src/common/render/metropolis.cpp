@@ -139,7 +139,7 @@ std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& default
   const std::uint64_t fitting =
       free_bytes / 8 / Bootstrap::bytes_per_group * Bootstrap::group_paths;
   const std::uint64_t most = std::max(std::min(defaults.bootstrap_most, fitting), least);
-  // Nobody knows how many mutations there will be.
+  // The number of mutations is not known in advance.
   return o.time_limit > 0 ? most : std::clamp(2 * mutations_of(pixels, o.spp), least, most);
 }
 

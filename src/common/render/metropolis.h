@@ -42,7 +42,7 @@ struct ChainSums {
   ChainTally steps;
   PathTally paths;
 
-  /// Adds what chains have counted: ChainCounts::places of them.
+  /// Adds what chains have counted: ChainCounts::copies of them.
   void add(const ChainCounts* counts);
 };
 

@@ -20,7 +20,7 @@ class StopClock {
   int next(int done) const;
   /// `done` is one of these numbers: 16, and then a quarter more each time.
   bool wants_error(int done) const;
-  /// Asked after a batch. RunEnd::samples: go on.
+  /// To be called after a batch. RunEnd::samples: continue.
   RunEnd ends(int done, std::optional<double> error) const;
   /// The samples that there will be in all, for a progress bar.
   std::uint64_t expected(std::uint64_t done, std::uint64_t total,

@@ -24,7 +24,7 @@ struct AliasSample {
 };
 
 /// Decides between entry `index` and its alias by `u` in [0, 1). An entry of weight zero has
-/// threshold 0 and is never the answer.
+/// threshold 0 and is never returned.
 PT_HD AliasSample resolve_alias(const AliasEntry* entries, std::uint32_t index, float u) {
   const AliasEntry entry = entries[index];
   const float t = entry.threshold;
@@ -34,7 +34,7 @@ PT_HD AliasSample resolve_alias(const AliasEntry* entries, std::uint32_t index, 
 }
 
 /// Of at most a few thousand entries, as one float of 24 random bits has to name the entry and the
-/// place in it.
+/// position in it.
 PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, float u) {
   const float scaled = u * static_cast<float>(count);
   const auto floor = static_cast<std::uint32_t>(scaled);
@@ -44,7 +44,7 @@ PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, f
 }
 
 /// Of up to 2^32 - 1 entries, from the 48 random bits of two floats that are multiples of 2^-24 in
-/// [0, 1); the place in the entry keeps 24 of them.
+/// [0, 1); the position in the entry keeps 24 of them.
 PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, float u0, float u1) {
   const auto high = static_cast<std::uint64_t>(u0 * 16777216.0f) * count;
   const auto low = static_cast<std::uint64_t>(u1 * 16777216.0f) * count;

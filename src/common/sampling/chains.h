@@ -1,5 +1,5 @@
 // The random numbers of a path that a Markov chain proposes (docs/design/metropolis.md): those of
-// the chain's state, mutated, as far as that path asked for them, and fresh ones beyond.
+// the chain's state, mutated, as far as that path drew them, and fresh ones beyond.
 #pragma once
 
 #include "common/sampling/mutation.h"
@@ -9,7 +9,7 @@ namespace pt {
 
 /// What the next path of a chain draws; 16 bytes, one load.
 struct alignas(16) Proposal {
-  std::uint32_t path = 0;       ///< the chain's number; of a bootstrap path, its own
+  std::uint32_t path = 0;       ///< the chain's index; of a bootstrap path, its own
   std::uint32_t iteration = 0;  ///< of the chain, from 1; bootstrap_iteration: no chain's
   std::uint32_t blocks = 0;     ///< of random numbers that the chain's state has stored
   std::uint32_t is_large = 0;   ///< all numbers are fresh
@@ -33,7 +33,7 @@ struct ChainWindow {
   std::uint32_t x = 0, y = 0, width = 1, height = 1;
 
   /// The first two numbers of block 0 are a point of the window: a pixel, and what is left over
-  /// for the place in it, with the bits that a float has for both.
+  /// for the position in it, within the precision of a float.
   PT_HD PixelPoint point_of(const Vec4& u) const {
     const float along_x = multiply_rounded(u.x, static_cast<float>(width));
     const float along_y = multiply_rounded(u.y, static_cast<float>(height));
@@ -44,7 +44,7 @@ struct ChainWindow {
              fminf(along_y - static_cast<float>(row), one_minus_ulp), u.z, u.w}};
   }
 
-  /// Of a pixel in the window: its place, row by row.
+  /// The index of a pixel in the window, row by row.
   PT_HD std::uint32_t index_of(std::uint32_t pixel) const {
     return ((pixel >> 16) - y) * width + ((pixel & 0xffffu) - x);
   }
@@ -56,7 +56,7 @@ struct ChainWindow {
 /// What a path needs of all chains to draw its numbers. Lies in the device's memory, so that a
 /// source of numbers is one pointer larger and no more.
 struct Chains {
-  const Proposal* proposals = nullptr;  ///< [number of the path in the batch]
+  const Proposal* proposals = nullptr;  ///< [index of the path in the batch]
   const Vec4* accepted = nullptr;       ///< [block][chain]: the states' numbers
   std::uint64_t seed = 0;
   std::uint32_t count = 0;

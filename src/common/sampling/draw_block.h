@@ -1,5 +1,5 @@
-// The random numbers of many paths at once, before they are asked for: eight by AVX2, where the
-// processor has it, for which they would take turns otherwise. On the CPU alone.
+// The random numbers of many paths at once, in advance: eight at a time by AVX2, where the
+// processor has it. On the CPU alone.
 #pragma once
 
 #include "common/sampling/sampler_source.h"
@@ -31,8 +31,8 @@ inline bool is_philox(const SamplerSource& source) {
   return source.sampler.kind == SamplerKind::independent && source.chains == nullptr;
 }
 
-/// In place of a source: both blocks of numbers of a ray, drawn before for several paths, of which
-/// the one at `place` asks.
+/// Used as a source: both blocks of numbers of a ray, drawn in advance for several paths;
+/// those of path `index` are returned.
 struct DrawnSource {
   const DrawnBlock* scatter;
   const DrawnBlock* light;

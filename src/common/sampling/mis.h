@@ -1,5 +1,4 @@
-// Multiple importance sampling (Veach 1997, section 9.2): a light and a direction of the BSDF are
-// two ways to the same lamp, one sample of each.
+// Multiple importance sampling (Veach 1997, section 9.2) of one light sample and one BSDF sample.
 #pragma once
 
 #include "common/options/choices.h"
@@ -22,15 +21,15 @@ PT_HD float balance_heuristic(float chosen, float other) {
   return divide(1.0f, 1.0f + divide(other, chosen));
 }
 
-/// Of light that a sampled light sends, where `direction` is the density with which the path's own
-/// direction could have found it. With MisHeuristic::none light sampling alone finds lamps.
+/// The weight of a light sample, where `direction` is the density of BSDF sampling for the same
+/// direction. MisHeuristic::none: 1, since light sampling alone counts.
 PT_HD float light_weight(MisHeuristic heuristic, float light, float direction) {
   if (heuristic == MisHeuristic::power) return power_heuristic(light, direction);
   return heuristic == MisHeuristic::balance ? balance_heuristic(light, direction) : 1.0f;
 }
 
-/// Of a lamp that a path met, where `light` is the density with which light sampling could have
-/// found it; `direction` is infinite where lights were not asked.
+/// The weight of emission that a BSDF sample hit, where `light` is the density of light sampling
+/// for the same direction; `direction` is infinite where lights were not sampled.
 PT_HD float direction_weight(MisHeuristic heuristic, float direction, float light) {
   if (heuristic == MisHeuristic::power) return power_heuristic(direction, light);
   if (heuristic == MisHeuristic::balance) return balance_heuristic(direction, light);

@@ -13,8 +13,8 @@ struct Uint4 {
 /// Ten rounds over a 128-bit counter with a 64-bit key. cuRAND's
 /// curand_init(seed, subsequence, offset) followed by curand4() gives
 /// philox4x32_10({offset/4 lo, offset/4 hi, subsequence lo, hi}, seed lo, seed hi).
-/// `lean`: by fewer instructions on CUDA, for kernels that draw numbers often; in large ones ptxas
-/// then allocates registers worse.
+/// `specialized`: fewer instructions on CUDA, for the specialised kernels, which draw often; in
+/// large ones ptxas would allocate registers worse.
 template <bool specialized = false>
 PT_HD Uint4 philox4x32_10(Uint4 counter, std::uint32_t key0, std::uint32_t key1) {
   PT_UNROLL(10)

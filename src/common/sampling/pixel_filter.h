@@ -1,6 +1,6 @@
 // Reconstruction filters by importance sampling (Ernst, Stamminger and Greiner, Filter Importance
-// Sampling, 2006): a sample belongs to one pixel, and its place is drawn with the density |f| of
-// the filter. So nothing is added to neighbours, and the film stays without order.
+// Sampling, 2006): a sample belongs to one pixel, and its position is drawn with the density |f|
+// of the filter. So nothing is added to neighbours, and the film stays without order.
 #pragma once
 
 #include "common/math/vec.h"
@@ -29,7 +29,7 @@ struct PixelFilter {
   /// From the pixel's lower edge, in pixels; u in [0, 1).
   PT_HD float offset(float u) const { return has_table == 0 ? u : 0.5f + from_centre(u); }
 
-  /// (offset(x), offset(y)), past whose table a box branches: for small kernels, as lean Philox.
+  /// (offset(x), offset(y)), past whose table a box branches: for specialised kernels (random.h).
   PT_HD Vec2 offsets(float x, float y) const {
     for (bool look_up = has_table != 0; look_up; look_up = is_never()) {
       x = offset(x);
@@ -38,13 +38,13 @@ struct PixelFilter {
     return {x, y};
   }
 
-  /// Whether the sample that these two numbers place is of a negative part.
+  /// Whether the filter is negative at the sample of these two numbers.
   PT_HD bool is_negative(float u0, float u1) const {
     return ((changes_within(u0) ^ changes_within(u1)) & 1u) != 0;
   }
 
  private:
-  // In an operation that is fused everywhere: the place of a sample is the same in all kernels.
+  // In an operation that is fused everywhere: a sample's position is the same in all kernels.
   PT_HD float from_centre(float u) const {
     const float v = 2.0f * u - 1.0f;
     const float scaled = fabsf(v) * static_cast<float>(cells);
@@ -54,7 +54,7 @@ struct PixelFilter {
     return v < 0.0f ? -x : x;
   }
 
-  // By the number itself, not by the place that a cell of the table gives it: so each sign has the
+  // By the number itself, not by the position from the table: so each sign has the
   // samples that it should have, and those of a cell with both signs are a little displaced.
   PT_HD std::uint32_t changes_within(float u) const {
     std::uint32_t count = 0;

@@ -1,6 +1,6 @@
 // Where a path's random numbers come from. Drawn four at a time, Philox's natural unit: block 2k
-// decides where the path goes after its k-th ray (k = 0: the camera ray), block 2k+1 which light it
-// asks. The numbers depend on (seed, pixel, sample, block) and on nothing else.
+// decides where the path goes after its k-th ray (k = 0: the camera ray), block 2k+1 which light is
+// sampled. The numbers depend on (seed, pixel, sample, block) and on nothing else.
 #pragma once
 
 #include "common/math/vec.h"
@@ -13,7 +13,7 @@ namespace pt {
 PT_HD std::uint32_t scatter_block(std::uint32_t rays_traced) { return 2 * rays_traced; }
 PT_HD std::uint32_t light_block(std::uint32_t rays_traced) { return 2 * rays_traced + 1; }
 
-/// Names a path. `index` is its place in the batch's sample buffer.
+/// Identifies a path. `index` is that of its sample in the batch's sample buffer.
 struct PathId {
   std::uint32_t pixel;   ///< x | y << 16
   std::uint32_t sample;  ///< counted from the image's first sample
@@ -25,7 +25,7 @@ struct PhiloxSource {
   std::uint64_t seed;
 
   struct Stream {
-    static constexpr bool is_specialized = true;  ///< of the paper's kernels, whose code is small
+    static constexpr bool is_specialized = true;  ///< for kernels of the paper's scenes
     std::uint64_t seed;
     std::uint32_t pixel, sample;
 

@@ -1,4 +1,4 @@
-// Numbers that a sampler places: each sample of a pixel on its own, or all of them together.
+// The samplers' random numbers: samples of a pixel are independent, stratified or low-discrepancy.
 #pragma once
 
 #include "common/options/choices.h"
@@ -11,7 +11,7 @@ namespace pt {
 
 struct Sampler {
   SamplerKind kind = SamplerKind::independent;
-  std::uint32_t samples = 1;  ///< of a pixel, for which a grid is made
+  std::uint32_t samples = 1;  ///< per pixel, for the grid of strata
   StrataGrid grid;
 };
 
@@ -20,7 +20,7 @@ inline Sampler make_sampler(SamplerKind kind, std::uint32_t samples) {
 }
 
 /// Stateless, as PhiloxSource, whose numbers these are when they are independent. All threads take
-/// the same branch. Samples that know of each other need 128 bits that are a pixel's and a block's.
+/// the same branch. Stratified and Sobol samples need 128 bits that are a pixel's and a block's.
 /// With chains a path is what one of them proposes: then the stream's `pixel` and `sample` are its
 /// Proposal's `path` and `iteration`.
 struct SamplerSource {
@@ -60,8 +60,8 @@ struct SamplerSource {
   PT_HD void close(const PathId&, const Stream&) const {}
 };
 
-/// Where a path begins whose name says `pixel` and whose block 0 is `u`: there, but for a chain's
-/// path, whose numbers say it themselves.
+/// Where a path of pixel `pixel` and block 0 `u` begins: there, but a chain's path where its
+/// numbers place it on the image.
 template <class Stream>
 PT_HD PixelPoint pixel_point(const Stream&, std::uint32_t pixel, const Vec4& u) {
   return {pixel, u};

@@ -33,7 +33,7 @@ PT_HD std::uint32_t pascal_sum(std::uint32_t index) {
 /// A scrambled pair of the sequence that `seeds` name: a shuffle and two scrambles.
 PT_HD Vec2 sobol_pair(std::uint32_t sample, std::uint32_t shuffle, std::uint32_t scramble0,
                       std::uint32_t scramble1) {
-  // Scrambling the index, too, orders aligned runs of 2^m points anew and keeps each one whole.
+  // Scrambling the index, too, permutes aligned runs of 2^m points and keeps each one whole.
   const std::uint32_t index = reverse_bits(permute_upwards(reverse_bits(sample), shuffle));
   const std::uint32_t x = reverse_bits(permute_upwards(index, scramble0));
   const std::uint32_t y = reverse_bits(permute_upwards(pascal_sum(index), scramble1));

@@ -28,7 +28,7 @@ PT_HD float srgb_to_linear(std::uint32_t byte) {
   return fused_multiply_add(sum, c, 0.0008551938226446509f);
 }
 
-/// The one number of a texture where one is asked for: its luminance, as Mitsuba has it.
+/// The scalar value of a texture: its luminance, as in Mitsuba.
 PT_HD float grey_of(const Color& c) { return dot(c, Vec3(0.212671f, 0.715160f, 0.072169f)); }
 
 /// A coordinate brought into [0, 1]; one that is not a number becomes 0.
@@ -129,7 +129,7 @@ PT_HD Color sample_texture(const Texture& texture, const std::byte* texels, cons
   return multiply_rounded(sample_image(texture, texels, mapped), texture.color0);
 }
 
-/// The same of any of the scene's textures, by its number. What a checkerboard names has its own
+/// The same of any of the scene's textures, by its index. What a checkerboard names has its own
 /// map of the surface's coordinates, as in Mitsuba.
 PT_HD Color sample_texture(const Texture* textures, std::uint32_t texture_index,
                            const std::byte* texels, const Vec2& uv) {

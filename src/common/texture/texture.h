@@ -32,9 +32,9 @@ struct alignas(16) Texture {
   // (u, v) of the surface to (u, v) of the texture
   float u_row[3] = {1, 0, 0};
   float v_row[3] = {0, 1, 0};
-  Color color0 = Color(1.0f);  ///< image: multiplies; checkerboard: the square at (0, 0)
+  Color color0 = Color(1.0f);  ///< image: factor; checkerboard: of the square at (0, 0)
   Color color1 = Color(0.0f);  ///< checkerboard: the others
-  /// Checkerboard: the numbers of earlier textures that the colours multiply.
+  /// Checkerboard: the indices of earlier textures that the colours multiply.
   std::uint32_t nested[2] = {no_texture, no_texture};
   std::uint32_t number = 0;  ///< its own, in a prepared scene
 };

@@ -1,5 +1,5 @@
-// What a camera ray finds where it meets the scene first: what AOVs are made of. It costs paths
-// nothing, for it is a pass of its own over their camera rays.
+// The first hit of a camera ray, from which AOVs are computed. It costs paths nothing: it is a pass
+// of its own over their camera rays.
 #pragma once
 
 #include "common/math/frame.h"

@@ -5,8 +5,8 @@
 
 namespace pt {
 
-/// Traces one ray of a path, shades what it meets, and adds to the path's radiance. Returns whether
-/// the path goes on: `ray` is then its next one. `path_key` is mask_key().
+/// Traces one ray of a path, shades its hit, and adds to the path's radiance. Returns whether
+/// the path continues: `ray` is then its next one. `path_key` is mask_key().
 template <class Traits, class Stream>
 PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
                       const PathLimits& limits, Stream& random, std::uint32_t path_key) {

@@ -1,4 +1,4 @@
-// Step 2: what does the ray meet?
+// Step 2: the ray's closest hit.
 #pragma once
 
 #include "common/accel/traverse_brute.h"
@@ -9,12 +9,11 @@
 
 namespace pt {
 
-/// A question to a light: does anything lie between, and if not, what arrives?
+/// A shadow ray, and what it contributes if it is not occluded.
 struct ShadowRay {
   Ray ray;
   float distance = 0.0f;
-  Color radiance =
-      Color(0.0f);  ///< added to the pixel's sample if the ray is free; black: no question
+  Color radiance = Color(0.0f);  ///< added to the sample if not occluded; black: no shadow ray
 };
 
 /// Spheres and quads, in a scene that has nothing else or besides its triangles.
@@ -40,7 +39,7 @@ PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
 PT_HD Hit closest_primitive_in_view(const Scene& scene, Ray ray, const ViewInterval& view,
                                     std::uint32_t ray_key) {
   const bool is_limited = is_limited_camera_ray(scene, ray_key);
-  // From the near plane on: of a sphere that it cuts the ray meets the far side.
+  // From the near plane on: of a sphere that it cuts the ray hits the far side.
   if (view.near > 0.0f) ray.origin += view.near * ray.direction;
   Hit hit;
   hit.t = view.near > 0.0f ? view.far - view.near : view.far;

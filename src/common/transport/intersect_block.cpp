@@ -31,7 +31,7 @@ bool has_block(const BlockTraits& traits, const Scene& scene) {
   return scene.triangles.instance_count == 0 && has_lanes && !scene.camera.is_limited;
 }
 
-// As MaskedQuery asks, of the ray's own hit.
+// As MaskedQuery does, of the ray's own hit.
 bool mask_hides_block_ray(const void* scene_of_block, const RayBlock& rays, std::uint32_t i,
                           std::uint32_t slot) {
   const Scene& scene = *static_cast<const Scene*>(scene_of_block);

@@ -1,4 +1,4 @@
-// Step 2 of many paths at once, for the CPU: what do the rays of a block meet? The same, bit for
+// Step 2 of many paths at once, for the CPU: the hits of a block of rays. The same, bit for
 // bit, as intersect.h finds for one ray after the other.
 #pragma once
 

@@ -1,9 +1,9 @@
-// Masks: whether a ray meets a triangle of which only a part is there.
+// Masks: stochastic opacity. Whether a ray hits a triangle whose opacity is below 1.
 //
-// The answer is the same whenever it is asked about one ray and one triangle: it depends on the
-// path's name, the number of the ray in the path, the triangle and its instance, through a hash,
-// and not on the ray's floats. So traversal may meet the triangle in any order, modes agree, and
-// over many paths a mask of opacity a lets 1 - a of them through, independently of other triangles.
+// The decision is a function of the ray and the triangle: a hash of the path's id, the index of the
+// ray in the path, the triangle and its instance, and not of the ray's floats. So traversal may
+// test the triangle in any order, modes agree, and over many paths a mask of opacity a lets 1 - a
+// of them through, independently of other triangles.
 #pragma once
 
 #include "common/accel/triangle_query.h"
@@ -41,8 +41,8 @@ PT_HD std::uint32_t shadow_ray_key(std::uint32_t path_key, std::uint32_t rays_tr
   return combine_hash(path_key, 2 * rays_traced + 1);
 }
 
-/// The same in a scene whose camera rays do not meet all that other rays would: there the last bit
-/// tells them from others.
+/// The same in a scene with surfaces that camera rays do not hit: there the last bit marks camera
+/// rays.
 PT_HD std::uint32_t next_ray_key(const Scene& scene, std::uint32_t path_key,
                                  std::uint32_t rays_traced) {
   const std::uint32_t key = next_ray_key(path_key, rays_traced);
@@ -63,7 +63,7 @@ PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& u
   return fused_multiply_add(opacity.scale, grey_of(c), opacity.offset);
 }
 
-/// What MaskedQuery asks about triangles.
+/// What MaskedQuery needs of triangles.
 struct MaskTest {
   const Scene& scene;
   std::uint32_t ray_key;

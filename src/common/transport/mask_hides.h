@@ -1,4 +1,4 @@
-// Masks as persistent warps ask them.
+// Masks as persistent warps evaluate them.
 #pragma once
 
 #include "common/transport/mask.h"

@@ -12,14 +12,14 @@ PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 struct PathState {
   Color beta = Color(1.0f);  ///< throughput: product of f |cos| / pdf so far
-  std::uint32_t index = 0;   ///< the path's place in the batch: tells its pixel and sample
+  std::uint32_t index = 0;   ///< of the path in the batch: gives its pixel and sample
   std::uint16_t rays = 0;    ///< traced so far, the camera ray included
   std::uint16_t shadow_rays = 0;
   float bsdf_pdf = delta_distribution;  ///< density that chose the current ray, for MIS
 
-  Receiver receiver;  ///< where the current ray begins; kept only where lights are chosen by it
+  Receiver receiver;  ///< where the current ray begins; only where light selection depends on it
 
-  static constexpr float delta_distribution = HUGE_VALF;  ///< no light sampling could have found it
+  static constexpr float delta_distribution = HUGE_VALF;  ///< not found by light sampling
 
   PT_HD std::uint32_t packed_rays() const { return rays | std::uint32_t{shadow_rays} << 16; }
 };

@@ -1,5 +1,5 @@
 // The contract of an integrator: what a path is worth where it leaves the scene, and what a surface
-// does with it. The modes call nothing else of an integrator, so it does not know how it is run:
+// does with it. The modes call nothing else of an integrator, so it is independent of the mode:
 //   Color miss<lighting>(scene, direction, path, limits)   added to the sample; the path ends
 //   Scattering surface<Traits>(scene, ray, hit, path, limits, steps)
 //                                                          see shade_surface.h

@@ -1,4 +1,4 @@
-// When a path ends, and how it finds light.
+// When a path ends, and whether light sampling is used.
 #pragma once
 
 #include "common/math/vec.h"
@@ -19,12 +19,12 @@ struct PathLimits {
   }
 };
 
-/// Russian roulette (pbrt-v4, section 2.2.4): a dim path ends, black, or counts for those that did.
-/// `u` in [0, 1) decides. The probability to go on is not above 0.95, so that no path between
-/// perfect mirrors lives for ever. `outside` times beta is what it is judged by: in glass, what
-/// beta would be outside of it, known from the surface alone, so that a path need not keep it.
-/// (Where it meets something else in there, its chance is smaller than it might be, and the mean
-/// the same.)
+/// Russian roulette (pbrt-v4, section 2.2.4): a path of low throughput ends, or is weighted for
+/// those that did. `u` in [0, 1) decides. The probability to continue is at most 0.95, so that no
+/// path between perfect mirrors lives for ever. `outside` times beta is what it is judged by: in
+/// glass, what beta would be outside of it, known from the surface alone, so that a path need not
+/// keep it. (Where the path hits something else inside, the probability is smaller than needed; the
+/// mean is the same.)
 PT_HD void play_roulette(Color& beta, float u, float outside = 1.0f) {
   const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * outside, 0.95f);
   const float scale = u < survival ? divide(1.0f, survival) : 0.0f;

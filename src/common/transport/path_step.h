@@ -2,10 +2,10 @@
 // of it, and a *sink* is told what follows. A sink is where a schedule keeps a path between its
 // steps: registers, a lane's or a slot's memory in a block, a slot of the wavefront's pool.
 //
-//   void emit(const PathState&, const Color&)      joins the path's sample
-//   void cast(const PathState&, const ShadowRay&)  its radiance joins if the ray is not occluded
-//   void continue_path(const PathState&, const Ray&)       the path's next ray
-//   void end(const PathState&)                     there is none
+//   void emit(const PathState&, const Color&)         adds radiance to the path's sample
+//   void cast(const PathState&, const ShadowRay&)     adds its radiance if it is not occluded
+//   void continue_path(const PathState&, const Ray&)  the path's next ray
+//   void end(const PathState&)                        there is none
 // or, instead of both,
 //   void continue_path_if(bool, const PathState&, const Ray&)
 //

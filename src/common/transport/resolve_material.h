@@ -1,13 +1,13 @@
 // A material made of others becomes one BSDF: which one is chosen by the side of the surface and by
-// a random number, and maps turn the normal on the way. Light sampling and BSDF sampling then see
-// the same BSDF, so both remain estimates of its integral, and the mean over the choice is the
-// blend.
+// a random number, and normal and bump maps perturb the normal. Light sampling and BSDF sampling
+// then see the same BSDF, so both remain estimates of its integral, and the mean over the choice is
+// the blend.
 //
-// Maps do as Mitsuba 3's: a turned normal that the viewer would see from its other side leans the
-// other way instead (Schuessler et al. 2017, 'Microfacet-based normal mapping for robust Monte
-// Carlo path tracing'), a direction on different sides of the turned and the unturned normal
-// carries nothing, so that light does not leak through the surface, and one that nearly does is
-// shadowed (Conty Estevez et al. 2019, 'A microfacet-based shadowing function to solve the bump
+// Maps do as Mitsuba 3's: a perturbed normal that faces away from the viewer is tilted the other
+// way instead (Schuessler et al. 2017, 'Microfacet-based normal mapping for robust Monte
+// Carlo path tracing'), a direction on different sides of the perturbed and the original
+// normal carries nothing, so that light does not leak through the surface, and one that nearly does
+// is shadowed (Conty Estevez et al. 2019, 'A microfacet-based shadowing function to solve the bump
 // terminator problem').
 #pragma once
 
@@ -54,7 +54,7 @@ struct TurnedNormal {
   float roughness2;
 };
 
-/// Turns the shading normal by the surface's material, a map. `wo` points away from the surface.
+/// Perturbs the shading normal by the surface's material, a map. `wo` points away from the surface.
 /// Not inlined, and by value, since maps are few and their code is long.
 PT_NOINLINE inline TurnedNormal turned_normal(Surface surface, Parameter map,
                                               const Texture* textures, const std::byte* texels,
@@ -116,7 +116,7 @@ PT_HD void resolve_material(const Scene& scene, const Vec3& wo, float& u, Surfac
   }
 }
 
-/// How much a map lets through along `wi`, whose cosine about the turned normal is `cos_theta`.
+/// The shadowing of a map along `wi`, whose cosine about the perturbed normal is `cos_theta`.
 PT_HD float map_visibility(const Surface& surface, const Vec3& wi, float cos_theta) {
   if (surface.map_roughness2 < 0.0f) return 1.0f;  // no map
   const float base = dot(wi, surface.base_normal);

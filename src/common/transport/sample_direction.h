@@ -1,5 +1,5 @@
-// In which direction a path goes on: as the BSDF would have it, or, to see what that is worth, in a
-// direction that does not know it (--sampling).
+// The direction in which a path continues: by BSDF sampling or, for comparison, uniform or
+// cosine-weighted over the hemisphere (--sampling).
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -8,8 +8,9 @@
 
 namespace pt {
 
-/// Densities of directions that know only on which sides a BSDF scatters, and its mirrors: those
-/// cannot be found but by the BSDF, which gets half of the samples where it has other lobes, too.
+/// Densities of uniform or cosine-weighted directions on the sides on which the BSDF scatters.
+/// Delta lobes can be sampled by the BSDF alone, which gets half of the samples where there are
+/// other lobes, too.
 template <class Bsdf>
 struct PlainDirections {
   static constexpr bool transmits = (Bsdf::lobes & Lobe::transmission) != 0;
@@ -32,7 +33,7 @@ struct PlainDirections {
   }
 };
 
-/// A direction that does not know the BSDF. Not inlined, and by value: the code of a comparison
+/// A uniform or cosine-weighted direction. Not inlined, and by value: the code of a comparison
 /// that is seldom made, a second sample() and evaluate(), does not lie between that of every path.
 template <class Bsdf>
 PT_NOINLINE BsdfSample sample_plainly(Bsdf bsdf, DirectionSampling how, Vec3 wo, Vec3 u) {

@@ -1,4 +1,4 @@
-// One light is asked what it sends to a point, and how likely it was to be asked.
+// Light sampling (next-event estimation): a light, a point on it, and the density of both.
 #pragma once
 
 #include "common/light/lights.h"
@@ -74,13 +74,14 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver 
   return sample_selected_light(scene, from, receiver, u);
 }
 
-/// LightSelector::pmf, not inlined: few paths meet a lamp, and it is as long as sample().
+/// LightSelector::pmf, not inlined: few paths hit an emitter, and it is as long as sample().
 PT_NOINLINE inline float light_pmf_apart(LightSelector selector, Vec3 point, Receiver receiver,
                                          std::uint32_t light) {
   return selector.pmf(point, receiver, light);
 }
 
-/// The density with which sample_light would have found the lamp that a ray hit.
+/// The density per solid angle with which sample_light would have sampled the point of an emitter
+/// that a ray hit.
 template <class Traits>
 PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, const Hit& hit) {
   if constexpr (Traits::lighting == Lighting::emitters) {

@@ -22,7 +22,7 @@ struct Scattering {
   ShadowRay shadow;             ///< to be traced unless its radiance is black; see DrawnSteps::aims
 };
 
-/// For whom the lights are asked.
+/// The receiver for light selection.
 template <class Traits>
 PT_HD Receiver receiver_of(const Surface& surface, const Ray& ray) {
   if constexpr (Traits::lighting != Lighting::full) return {};
@@ -64,8 +64,8 @@ PT_HD ShadowRay spawn_shadow_ray(const SurfacePoint& point, const Vec3& from,
           radiance};
 }
 
-/// What a sampled light contributes directly (next-event estimation), given what the BSDF says of
-/// its direction.
+/// The contribution of a sampled light (next-event estimation), given the BSDF's value and density
+/// for its direction.
 PT_HD Color direct_radiance(const PathState& path, const IncidentLight& light,
                             const BsdfValue& value, MisHeuristic mis) {
   if (light.pdf <= 0.0f || is_black(value.f)) return Color(0.0f);
@@ -73,7 +73,7 @@ PT_HD Color direct_radiance(const PathState& path, const IncidentLight& light,
   return path.beta * value.f * light.radiance * divide(weight, light.pdf);
 }
 
-/// The same as a question to the light, which was sampled as seen from `from`.
+/// The same as a shadow ray to the light, which was sampled as seen from `from`.
 template <class Traits>
 PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const Vec3& from,
                           const IncidentLight& light, const BsdfValue& value, MisHeuristic mis) {
@@ -82,7 +82,7 @@ PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const V
                                   direct_radiance(path, light, value, mis));
 }
 
-/// Tells `steps` where the light's shadow ray goes; a light without one gives nothing.
+/// Tells `steps` where the light's shadow ray goes; a light without one does not contribute.
 template <class Traits, class Steps>
 PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& from,
                         IncidentLight& light) {
@@ -107,7 +107,8 @@ template <class Traits, class Steps>
 PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
                                const PathLimits& limits, const Steps& steps) {
   constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
-  // The paper's kernels stay lean: what they cannot do is done by the others (scene_options.h).
+  // The specialised kernels of the paper's scenes stay small: the others do the rest
+  // (scene_options.h).
   const MisHeuristic mis = full ? limits.mis : MisHeuristic::power;
   const DirectionSampling directions = full ? limits.directions : DirectionSampling::bsdf;
   lanes_of(ray).count(LanePoint::shade_surface);
@@ -152,7 +153,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     }
     next = sample_direction(bsdf, directions, wo, Vec3(scatter));
   });
-  // The same frame, made anew where registers are scarce.
+  // The same frame, computed again where registers are scarce.
   const Vec3 normal =
       has_lights ? optimization_barrier(surface.shading_normal) : surface.shading_normal;
   const Vec3 wi =

@@ -1,4 +1,4 @@
-// What a path finds at the surface that it met: where, how it is turned, of which material.
+// The surface interaction at a hit: point, normals, derivatives, material (pbrt-v4, section 3.11).
 #pragma once
 
 #include "common/accel/triangle_query.h"
@@ -14,20 +14,21 @@ struct Surface {
   std::uint32_t material_index;
   Material material;
   Vec2 uv = Vec2(0.0f);  ///< where the material is textured
-  // Lighting::full. Derivatives of the place where the material needs tangents; 0: there are none.
+  // Lighting::full. Derivatives of the point by u and v where the material needs tangents; 0: there
+  // are none.
   Vec3 dp_du = Vec3(0.0f), dp_dv = Vec3(0.0f);
-  Vec3 base_normal = Vec3(0.0f);  ///< the shading normal before a map turned it
+  Vec3 base_normal = Vec3(0.0f);  ///< the shading normal before a map perturbed it
   float map_roughness2 = -1.0f;   ///< see map_visibility; below 0: no map
 };
 
-/// c, multiplied by a texture of this number where there is one.
+/// c, multiplied by the texture of this index where there is one.
 PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, const Vec2& uv) {
   if (texture == no_texture) return c;
   return c * sample_texture(scene.textures, texture, scene.texels, uv);
 }
 
 /// The same, not inlined: a lookup's code is long, and there would be dozens of it. With one
-/// argument less than the table and a number, which callers would have to keep.
+/// argument less than the table and an index, which callers would have to keep.
 PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const std::byte* texels,
                                           Vec2 uv) {
   return c * sample_texture(texture - texture->texture_index, texture->texture_index, texels, uv);
@@ -98,7 +99,7 @@ PT_HD void set_derivatives(const Triangle& triangle, const CornerAttributes& cor
   surface.dp_dv = combine(-uv2.x, uv1.x);
 }
 
-/// Where a ray in the triangle's space, which hit it, meets it.
+/// The hit point of a ray in the triangle's space.
 PT_HD Vec3 barycentric_at(const Ray& local, const Triangle& triangle) {
   const TriangleHit inside = intersect_triangle(make_triangle_ray(local.origin, local.direction),
                                                 triangle.v0, triangle.v1, triangle.v2);

@@ -1,6 +1,6 @@
-// What shading a surface asks for and tells on its way. Registers are what limits it on a GPU: a
-// caller that has memory for a result is told of it as soon as it is known, and numbers are drawn
-// when they are needed, so that their live ranges are short.
+// Where shading a surface gets its random numbers and where it leaves its results. On a GPU
+// registers limit it: results are streamed to memory as soon as they are known, and numbers are
+// drawn when they are needed, so that live ranges are short.
 #pragma once
 
 #include "common/sampling/random.h"
@@ -12,20 +12,20 @@ namespace pt {
 struct DrawnSteps {
   Vec4 scatter_numbers, light_numbers;
 
-  /// The blocks of random numbers of the ray that hit (random.h), as often as they are asked for.
+  /// The blocks of random numbers of the ray that hit (random.h); may be called repeatedly.
   PT_HD Vec4 scatter() const { return scatter_numbers; }
   PT_HD Vec4 light() const { return light_numbers; }
   /// Takes what the surface emits, or returns it for Scattering::emitted.
   PT_HD Color emit(const Color& emitted) const { return emitted; }
-  /// Whether aim() wants to know, before the BSDF does, which way a shadow ray would go. Of
-  /// Scattering::shadow only the radiance is then set.
+  /// Whether aim() is to be called before the BSDF is evaluated, with the shadow ray's direction.
+  /// Of Scattering::shadow only the radiance is then set.
   static constexpr bool aims = false;
   PT_HD void aim(const ShadowRay&) const {}
 };
 
 /// Streams results to a sink (path_step.h), to shorten live ranges. It has besides
 ///   void aim(const PathState&, const ShadowRay&)  the way of a shadow ray that may be cast
-/// Source: one whose streams have no state. `samples` knows a path's name.
+/// Source: one whose streams have no state. `samples` gives a path's id.
 template <class Source, class Samples, class Sink>
 struct StreamedSteps {
   const Source& source;
@@ -43,8 +43,8 @@ struct StreamedSteps {
   PT_HD void aim(const ShadowRay& shadow) const { sink.aim(path, shadow); }
 
  private:
-  /// The block's number is hidden from the optimiser, which else would keep a block that it
-  /// recognises in registers.
+  /// An optimisation barrier hides the block's index from the compiler, which would otherwise keep
+  /// the numbers of an equal block in registers.
   PT_HD Vec4 draw(std::uint32_t block) const {
     auto stream = source.open(samples.id_of(path.index));
     return stream.draw(float_to_bits(optimization_barrier(bits_to_float(block))));

@@ -21,7 +21,7 @@ namespace pt {
 
 namespace {
 
-/// A group's tree by itself: its root and its slots come first.
+/// The tree of one group: its root and its slots come first.
 struct BuiltGroup {
   Bounds bounds;
   BuiltNodes nodes;     ///< `order`: slot -> the group's triangle

@@ -16,7 +16,7 @@ void check_instances(std::span<const Instance> instances);
 /// Group 0 and those of the instances, ascending, each once.
 std::vector<std::uint32_t> groups_in_use(std::span<const Instance> instances);
 
-/// The upper level by itself.
+/// The upper level alone.
 struct InstanceTree : TreeNodes<NodesVector> {  ///< the root comes first
   std::vector<InstanceRecord> instances;        ///< in the order of the leaves
 };

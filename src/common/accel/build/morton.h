@@ -55,7 +55,7 @@ PT_HD int count_leading_zeros_64(std::uint64_t x) {
 }
 
 /// How long a prefix the sorted neighbours i and i + 1 share, plus 1: 0 is left for the two ends of
-/// the sequence. Equal codes are told apart by their places, so that runs of them become balanced
+/// the sequence. Equal codes are told apart by their indices, so that runs of them become balanced
 /// trees. At most 64 + 32 + 1.
 PT_HD std::uint8_t neighbour_prefix(std::uint64_t code, std::uint64_t next, std::uint32_t i) {
   const int length =

@@ -15,7 +15,7 @@ PT_HD int lowest_bit(int x) { return 31 - count_leading_zeros(static_cast<std::u
 /// bits, then the distance in the order, then a bit that tells the two pairs apart that a cluster
 /// has at this distance. So every cluster has one best pair, and where all areas are equal (copies
 /// of one triangle) clusters pair up two by two instead of forming a chain.
-/// `lower` is the place of the member that comes first, 1 <= `distance` <= ploc_radius.
+/// `lower` is the index of the member that comes first, 1 <= `distance` <= ploc_radius.
 PT_HD std::uint32_t pair_rank(const Bounds& a, const Bounds& b, int lower, int distance) {
   Bounds both = a;
   both.grow(b);
@@ -26,7 +26,7 @@ PT_HD std::uint32_t pair_rank(const Bounds& a, const Bounds& b, int lower, int d
   return (bits & ~15u) | static_cast<std::uint32_t>((distance - 1) << 1 | side);
 }
 
-/// The other member of the pair that a cluster at `place` belongs to.
+/// The other member of the pair to which the cluster at `index` belongs.
 PT_HD int pair_partner(std::uint32_t rank, int index) {
   const int distance = static_cast<int>(rank >> 1 & 7u) + 1;
   const bool is_lower = (index >> lowest_bit(distance) & 1) == static_cast<int>(rank & 1u);

@@ -25,7 +25,7 @@ struct GroupTree {
 /// The arrays behind a TriangleTree. Without triangles all are empty, and every ray misses.
 struct TriangleTreeData : TreeNodes<NodesVector> {
   std::vector<Triangle> triangles;  ///< by slot
-  /// In the order of the top tree's leaves. The number of one is its place among the scene's; the
+  /// In the order of the top tree's leaves. The index of one is that among the scene's; the
   /// meshes of group 0, if there are any, get the number that comes after the last.
   std::vector<InstanceRecord> instances;
   std::uint32_t root = 0;

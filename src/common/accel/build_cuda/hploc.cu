@@ -7,10 +7,10 @@
 // the clusters that are left of both halves and merges neighbours until `kept` of them remain,
 // which it leaves for the node above.
 //
-// Unlike the paper's, nodes are not allocated by a counter: each cluster owns a free place, at
-// first its leaf's. A merged node takes the lower member's place, and the cluster keeps the other
-// one's. So the tree lies in memory in the same way whatever the order of the threads, close to the
-// leaves' order, and without an atomic operation.
+// Unlike the paper's, nodes are not allocated by a counter: each cluster owns a free element of the
+// node array, at first its leaf's. A merged node takes the lower member's, and the cluster keeps
+// the other one's. So the tree lies in memory in the same way whatever the order of the threads,
+// close to the leaves' order, and without an atomic operation.
 #include "common/accel/build/ploc_pair.h"
 #include "common/accel/build_cuda/costs.cuh"
 
@@ -117,7 +117,7 @@ __device__ void merge_range(const HierarchyJob& job, std::uint32_t first, std::u
   while (count > (is_whole ? 1 : kept)) count = merge_pairs<Costs>(job, clusters, count, lane);
   if (is_whole) {
     if (lane == 0) *job.root = clusters.cluster[0].ref;
-  } else if (lane < kept) {  // the range has more places than that
+  } else if (lane < kept) {  // the range has room for more than that
     job.pairs[first + lane] = pack(lane < count ? clusters.cluster[lane] : Cluster{nobody, 0});
   }
   __syncwarp();  // the clusters may be overwritten

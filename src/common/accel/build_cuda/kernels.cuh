@@ -57,7 +57,7 @@ std::uint64_t sort_scratch_bytes(std::uint32_t count, int morton_bits);
 void enqueue_sort(SortBuffers& buffers, std::uint32_t count, int morton_bits, void* scratch,
                   std::uint64_t scratch_bytes);
 
-/// prefixes[0..count]: of i - 1 and i; the ends are 0. Without `by_code` places alone count.
+/// prefixes[0..count]: of i - 1 and i; the ends are 0. Without `by_code` indices alone count.
 void enqueue_prefixes(const void* keys, std::uint32_t count, int morton_bits, bool by_code,
                       std::uint8_t* prefixes);
 
@@ -83,7 +83,7 @@ void enqueue_hploc(const HierarchyJob& job);
 struct CollapseCounters {
   unsigned long long allocated;  ///< nodes in the upper half, slots in the lower
   std::uint32_t depth;
-  std::uint32_t overflowed;  ///< more nodes than places
+  std::uint32_t overflowed;  ///< more nodes than allocated
 };
 
 struct CollapseJob {

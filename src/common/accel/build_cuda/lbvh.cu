@@ -13,7 +13,7 @@ __device__ unsigned long long pack(TreeRef ref, std::uint32_t end) {
   return static_cast<unsigned long long>(ref) << 32 | end;
 }
 
-// A node is found at the place of its split, between `split` and `split` + 1. Each thread climbs
+// A node is found at the position of its split, between `split` and `split` + 1. Each thread climbs
 // from its leaf; of two that meet at a node the first one ends.
 template <class Costs>
 __global__ void __launch_bounds__(block_size) climb(HierarchyJob job) {

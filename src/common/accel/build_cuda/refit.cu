@@ -1,5 +1,5 @@
 // Fits the boxes of finished trees to moved primitives: from the nodes that have leaves only, each
-// thread climbs; at a node with several inner children the last thread to arrive goes on.
+// thread climbs; at a node with several inner children the last thread to arrive continues.
 #include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/build_cuda/kernels.cuh"

@@ -5,7 +5,7 @@
 
 namespace pt::device_build {
 
-/// Device memory that grows when needed and is divided anew by each build.
+/// Device memory that grows when needed and is divided again by each build.
 class Scratch {
  public:
   Scratch() = default;

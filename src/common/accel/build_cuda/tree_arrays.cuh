@@ -8,7 +8,7 @@
 
 namespace pt {
 
-/// Triangles go straight to their final place, since their number is known. How many nodes a tree
+/// Triangles go straight to their final position, since their count is known. How many nodes a tree
 /// has is not: they are collected in blocks, of which there are few however many groups there are,
 /// and moved once.
 class TreeArrays {

@@ -1,4 +1,4 @@
-// Intel's Embree over the same triangles and instances: an independent answer to the same question.
+// Intel's Embree over the same triangles and instances: an independent reference for hits.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@ namespace pt {
 /// "3.13.5", or empty where ptexp was built without Embree.
 std::string embree_version();
 
-/// Embree's own tree in its robust mode. Hits name slots and places of instances as those of the
+/// Embree's own tree in its robust mode. Hits name slots and indices of instances as those of the
 /// traversals do, but of several hits at one distance any may be reported, and distances differ by
 /// rounding. Queries may come from several threads at once.
 class EmbreeTree {

@@ -1,7 +1,8 @@
 // The rays of a block on their ways through the wide tree, in turns: first each tests its next
 // node, then all triangles that their leaves hold are tested, eight pairs of a ray and a triangle
-// at once, then each ray chooses the node after that and asks memory for it. There is little to be
-// guessed wrong, and while one ray waits for memory others go on. `Isa` is the processor's:
+// at once, then each ray chooses the node after that and asks memory for it. Few
+// branches are mispredicted, and while one ray waits for memory others continue. `Isa` is the
+// processor's:
 //   Lanes                                    eight floats (lanes_avx2.h)
 //   meet_node(node, ray, octant)             as intersect_cwbvh_node
 //   list_triangles(node, hits, ray, pairs)   appends those of the leaves among `hits`
@@ -25,7 +26,7 @@ struct alignas(64) TurnRay {
   float inverse[4];  ///< the last one is 0
 };
 
-/// Rays and triangles that are to be tested, by their number in the block and their slot.
+/// Rays and triangles that are to be tested, by their index in the block and their slot.
 struct TrianglePairs {
   static constexpr std::uint32_t of_ray_max = cwbvh_width * cwbvh_leaf_max;
   static constexpr std::uint32_t size_max = RayBlock::size_max * of_ray_max;
@@ -110,7 +111,7 @@ PT_LANES std::uint32_t make_turn_ray(const Ray& ray, float t_max, TurnRay& resul
   return static_cast<std::uint32_t>(_mm_movemask_ps(d)) & 7u;
 }
 
-/// The three floats at p[i] + 4 * row of eight places i, by component, and what follows them.
+/// The three floats at p[i] + 4 * row of eight pointers, by component, and what follows them.
 template <class Isa>
 PT_LANES inline void load_eight(const float* const (&p)[8], int row, __m256 (&result)[4]) {
   __m256 r[4];
@@ -164,7 +165,7 @@ PT_LANES inline std::uint32_t meet_pairs(const TurnRay* rays, const Triangle* tr
 }
 
 /// What a block's rays look for: their nearest hits. offer() is told of a triangle that ray `i`
-/// meets at t <= t_max; true: the ray need not go on.
+/// meets at t <= t_max; true: the ray's traversal ends.
 struct ClosestOfBlock {
   HitBlock& hits;
 
@@ -272,7 +273,7 @@ class TurnsOfBlock {
 
   PT_LANES void choose_nodes() {
     const CwbvhNode* const nodes = tree_.cwbvh;
-    std::uint32_t count = 0;  // of those that go on
+    std::uint32_t count = 0;  // of those that continue
     for (std::uint32_t k = 0; k < count_; ++k) {
       const std::uint8_t i = going_[k];
       Way& way = ways_[i];

@@ -1,11 +1,11 @@
-// What a warp does next whose lanes want different things.
+// The phase that a warp executes next when its lanes are ready for different ones.
 #pragma once
 
 #include "common/platform/platform.h"
 
 namespace pt {
 
-/// Whether all go a step, of those that want a step or a test, which takes longer.
+/// Whether lanes step rather than test, which takes longer; the others of the warp wait.
 __device__ inline bool warp_steps(int stepping, int testing) { return stepping >= 2 * testing; }
 
 /// Likewise where there are instances, or where lanes speculate, of which some want both: a test

@@ -1,4 +1,4 @@
-// One lane's way through a compressed wide tree, a step or a leaf at a time, so that a warp can
+// One lane's traversal of a compressed wide tree, a step or a leaf at a time, so that a warp can
 // vote on what its lanes do together.
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace pt {
 
 /// Inner children that are left to visit: bits 0..7 their slots, 8..10 the ray's octant (so that
-/// bits 0..10 are the place in SlotOrder), 16..23 the node's inner_mask; 24..31 are anything.
+/// bits 0..10 are the index into SlotOrder), 16..23 the node's inner_mask; 24..31 are anything.
 struct SlotGroup {
   std::uint32_t base;
   std::uint32_t bits;
@@ -28,13 +28,13 @@ __device__ inline CwbvhGroup leaf_children(const CwbvhWords& node, std::uint32_t
   return {node.triangle_base(), __byte_perm(node.part[1].x, node.part[1].y, 0x0400) & ~misses};
 }
 
-/// A lane's traversal, which can stop between any two steps and go on later. Query: one with
-/// offer_nearer. The two triangles of a leaf are tested side by side.
+/// A lane's traversal, which can be suspended between any two steps and resumed later. Query: one
+/// with offer_nearer. The two triangles of a leaf are tested side by side.
 ///
-/// A lane that has found leaves tests them before it goes on: without knowing the hit it would
-/// visit nodes behind it. If speculative it does so all the same until it has found leaves of a
-/// second node, and can take part in whatever more of its warp's lanes want (Aila and Laine 2009,
-/// "Understanding the Efficiency of Ray Traversal on GPUs"); it begins at the root's children
+/// A lane that has found leaves tests them before it visits further nodes, which a hit could cull.
+/// A speculative one continues all the same until it has found leaves of a second node, and can
+/// take part in whatever more of its warp's lanes want (Aila and Laine 2009, "Understanding the
+/// Efficiency of Ray Traversal on GPUs"); it begins at the root's children
 /// (PreparedRays::meet_root). That pays where there are 72 registers.
 template <class QueryType, bool speculative = false>
 class CwbvhLane {
@@ -81,12 +81,12 @@ class CwbvhLane {
     triangle_ray_ = ray.triangles;
   }
 
-  /// So many places suspend() needs.
+  /// The size of the state that suspend() stores.
   static constexpr int suspended_size = speculative ? 4 : 3;
 
-  /// Puts away where the lane is in the tree, for code between two steps that needs all registers.
-  /// Volatile: else the compiler keeps the values in them all the same, or stores them whenever a
-  /// step changes them.
+  /// Stores the state of the traversal, so that code between two steps can use its registers.
+  /// Volatile: otherwise the compiler would keep the values in registers all the same, or store
+  /// them whenever a step changes them.
   __device__ void suspend(volatile uint2* state) const {
     state[0].x = nodes_.base;
     state[0].y = nodes_.bits;
@@ -159,8 +159,8 @@ class CwbvhLane {
     }
   }
 
-  /// What a mask hides was not met. One loop, so that lanes ask together, be it about their first
-  /// triangle or their second.
+  /// Drops hits that a mask hides. One loop, so that lanes evaluate masks together, be it about
+  /// their first triangle or their second.
   template <class Work>
   __device__ void drop_hidden(const Work& work, const CwbvhLeaf& leaf, bool ask_a, bool ask_b,
                               float& t_a, float& t_b) const {

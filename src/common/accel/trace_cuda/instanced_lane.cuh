@@ -84,7 +84,7 @@ class InstancedLane {
     if (!nodes_.has_slots()) pop();
   }
 
-  /// Goes to the root of the next instance, if the ray meets its box before the best hit.
+  /// Goes to the root of the next instance, if the ray hits its box before the best hit.
   __device__ void enter() {
     const std::uint32_t instance_index = take_first();
     const InstanceRecord instance = load_wide(&tree_.instances[instance_index]);
@@ -144,7 +144,7 @@ class InstancedLane {
     nodes_ = {top.x, top.y};
   }
 
-  /// The number of the child that comes first, which is taken out of the group.
+  /// The index of the first child, which is taken out of the group.
   __device__ std::uint32_t take_first() {
     const std::uint32_t bit = order_.first[nodes_.bits & 0x7ffu];
     nodes_.bits ^= bit;

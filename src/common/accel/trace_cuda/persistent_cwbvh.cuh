@@ -1,10 +1,11 @@
-// Persistent warps on a compressed wide tree, for rays that have nothing in common.
+// Persistent threads with dynamic fetch (Aila and Laine 2009) on a compressed wide tree, for
+// incoherent rays.
 //
 // Rays differ in how many nodes they visit; a warp that waited for the slowest of 32 would be idle
 // for most of its time. So a lane whose ray is done takes another one, as soon as `refill` lanes
 // are idle. And the warp does one thing at a time, whatever more of its lanes wait for: steps down
 // the tree or tests of leaves. All votes are explicit and by the whole warp: since Volta, threads
-// that part do not meet again by themselves.
+// that diverge do not reconverge without one.
 #pragma once
 
 #include "common/accel/ray_arrays.h"
@@ -14,14 +15,14 @@
 
 namespace pt {
 
-/// What a warp needs now and then, in shared memory: registers are short.
+/// What a warp needs rarely, in shared memory to save registers.
 template <class Lane>
 struct PersistentWarp {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   typename Lane::Rays rays;
   typename Lane::Memory lanes;
-  int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not handed out
+  int next_ray, ray_count;   ///< of `rays`: those from next_ray on are not yet handed out
   std::uint32_t ray_id[32];  ///< by lane: of the ray whose result is not written; none
   ReservedRays reserved;
 };
@@ -49,14 +50,14 @@ struct PersistentTuning {
 
 /// Traces what `work` hands out, one lane's view. Lane: CwbvhLane or InstancedLane. Work has
 ///   std::uint32_t fetch(unsigned lane, ReservedRays&, RayRecord&, int& count)  by the whole warp:
-///     up to 32 rays with successive numbers, one each for the first `count` lanes; returns the
-///     first's number; count 0: there is none left
-///   void finish(std::uint32_t number, const Query&)  by lanes whose ray is done
+///     up to 32 rays with successive indices, one each for the first `count` lanes; returns the
+///     first's index; count 0: there is none left
+///   void finish(std::uint32_t id, const Query&)  by lanes whose ray is done
 ///   bool hides(const Query&, std::uint32_t slot, const TriangleHit&)  where Query::has_masks: the
 ///     triangle's mask lets the ray through
-///   std::uint32_t name(std::uint32_t number)  if finish() and lanes() are to get that instead
-///   Query query(const PreparedRay&)  if not all of its rays ask the same
-///   LaneCounter lanes(std::uint32_t number)  if its rays' lanes are to be counted
+///   std::uint32_t id_of(std::uint32_t index)  if a ray's id is not its index
+///   Query query(const PreparedRay&)  if its rays have queries of several kinds
+///   LaneCounter lanes(std::uint32_t id)  if its rays' lanes are to be counted
 template <class Lane, class Work>
 class PersistentTracer {
  public:

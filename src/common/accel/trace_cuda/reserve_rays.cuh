@@ -15,9 +15,9 @@ PT_HD std::uint32_t reserved_batch(std::uint32_t left, std::uint32_t threads) {
   return share < least ? least : share > most ? most : share;
 }
 
-/// All threads of the warp call it together, and get up to 32 rays with successive numbers, one
-/// each for the first `count` lanes; the first one's number is returned. `next` counts the rays
-/// handed out, of `all`. By reserved.end the warp knows how many were left when it last asked.
+/// All threads of the warp call it together, and get up to 32 rays with successive indices, one
+/// each for the first `count` lanes; the first one's index is returned. `next` counts the rays
+/// handed out, of `all`. By reserved.end the warp knows how many were left at its last reservation.
 __device__ inline std::uint32_t reserve_rays(std::uint32_t* next, const std::uint32_t& all,
                                              unsigned lane, ReservedRays& reserved, int& count) {
   std::uint32_t first = reserved.next;

@@ -1,4 +1,4 @@
-// Light from infinitely far, looked up in a picture of all directions and chosen by its brightness.
+// Light from infinitely far: an environment map, sampled by its luminance (pbrt-v4, section 12.5).
 //
 // The picture is a map by latitude and longitude: in its own space the middle column's border is -z
 // and u grows towards +x. Columns are centred in their share of the turn, as texels are; rows reach
@@ -7,8 +7,9 @@
 //
 // Directions are chosen by cells: as wide as a column, from one row to the next. Density per solid
 // angle is constant over a cell, proportional to the mean luminance of its directions, so that
-// whatever shines can be chosen: the ratio of the two is at most 12 times that of their means.
-// Within a cell directions are uniform in solid angle, so no density is infinite at the poles.
+// every direction with light can be sampled: the ratio of the two is at most 12 times that of their
+// means. Within a cell directions are uniform in solid angle, so no density is infinite at the
+// poles.
 #pragma once
 
 #include <span>
@@ -39,7 +40,7 @@ struct Environment {
   PT_HD std::uint32_t bands() const { return height > 1 ? height - 1 : 1; }
 };
 
-/// A place in the map: cell (i, j) reaches from i to i + 1 and from j to j + 1.
+/// A position in the map: cell (i, j) reaches from i to i + 1 and from j to j + 1.
 struct MapPoint {
   float x, y;
 };
@@ -58,7 +59,7 @@ PT_HD MapPoint environment_point(const Environment& env, const Vec3& direction) 
       multiply_rounded(multiply_rounded(inverse_pi, from_zenith), static_cast<float>(env.bands()))};
 }
 
-/// The number of the cell that contains the point.
+/// The index of the cell that contains the point.
 PT_HD std::uint32_t environment_cell(const Environment& env, const MapPoint& point) {
   const auto column = static_cast<std::uint32_t>(fmaxf(point.x, 0.0f));
   const auto band = static_cast<std::uint32_t>(fmaxf(point.y, 0.0f));
@@ -66,7 +67,7 @@ PT_HD std::uint32_t environment_cell(const Environment& env, const MapPoint& poi
          (column < env.width ? column : env.width - 1);
 }
 
-/// Radiance at a place of the map, between four texels.
+/// Radiance, W / (m^2 sr), interpolated between four texels.
 PT_HD Color environment_lookup(const Environment& env, const MapPoint& point) {
   const float x = point.x - 0.5f, y = point.y;
   const float left = floorf(x), top = floorf(y);

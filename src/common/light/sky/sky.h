@@ -7,8 +7,8 @@ namespace pt {
 
 /// A vertical gradient, the paper's background; equal colours give a constant sky.
 struct Sky {
-  Color nadir = Color(0.0f);   ///< radiance from straight below
-  Color zenith = Color(0.0f);  ///< radiance from straight above
+  Color nadir = Color(0.0f);   ///< radiance from straight below, W / (m^2 sr)
+  Color zenith = Color(0.0f);  ///< radiance from straight above, W / (m^2 sr)
 };
 
 /// `direction` has unit length and points away from the scene.

@@ -1,4 +1,4 @@
-// The sun: a disk infinitely far away, of one radiance.
+// The sun: a disk infinitely far away, of uniform radiance.
 #pragma once
 
 #include "common/light/light_sample.h"
@@ -9,22 +9,24 @@ namespace pt {
 
 /// By value in the scene, for rays that leave it.
 struct Sun {
-  Vec3 direction{0, 0, 1};     ///< to it, of unit length
-  float one_minus_cos = 0.0f;  ///< of the angle under which its radius is seen; 0: no sun
-  Color radiance = Color(0.0f);
-  std::uint32_t light = 0;  ///< its number among the lights
+  Vec3 direction{0, 0, 1};       ///< to it, of unit length
+  float one_minus_cos = 0.0f;    ///< of the angle under which its radius is seen; 0: no sun
+  Color radiance = Color(0.0f);  ///< W / (m^2 sr)
+  std::uint32_t light = 0;       ///< its index among the lights
 };
 
+/// Density per solid angle of sample_sun: 1 / (2 pi (1 - cos)) (a uniform cone: pbrt-v4, section
+/// A.5.4).
 PT_HD float sun_pdf(float one_minus_cos) { return 0.5f * inverse_pi / one_minus_cos; }
 
-/// Whether it is seen in a direction of unit length. By a difference: of so small an angle a
-/// cosine knows little.
+/// Whether it is seen in a direction of unit length. By the chord: the cosine of so small an
+/// angle has few significant digits.
 PT_HD bool is_in_sun(const Sun& sun, const Vec3& direction) {
   const Vec3 apart = direction - sun.direction;
   return dot(apart, apart) < 2.0f * sun.one_minus_cos;
 }
 
-/// Uniform over the disk. `end` as of all that is infinitely far.
+/// Uniform over the disk's solid angle. The shadow ray ends beyond the scene.
 PT_HD LightSample sample_sun(const Vec3& direction, float one_minus_cos, float u0, float u1) {
   const float h = multiply_rounded(u0, one_minus_cos), sin_theta = fast_sqrt(h * (2.0f - h));
   const SinCos phi = sincos_2pi(u1);

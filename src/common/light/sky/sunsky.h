@@ -8,7 +8,7 @@
 
 namespace pt {
 
-/// Radiance of the sky for one place of the sun.
+/// Radiance of the sky, W / (m^2 sr), for one position of the sun.
 class SkyModel {
  public:
   /// `turbidity` from 1 to 10, `albedo` of the ground from 0 to 1, `elevation` of the sun from 0 to

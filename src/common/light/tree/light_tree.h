@@ -1,6 +1,6 @@
-// Choosing among many lights by what each can do for a place: a stochastic descent through a tree
-// of lights (Conty Estevez and Kulla 2018, 'Importance Sampling of Many Lights with Adaptive Tree
-// Splitting'; bounds of the cosines as in pbrt-v4, section 12.6.3).
+// Choosing among many lights by their estimated contribution at the shading point: a stochastic
+// descent through a tree of lights (Conty Estevez and Kulla 2018, 'Importance Sampling of Many
+// Lights with Adaptive Tree Splitting'; bounds of the cosines as in pbrt-v4, section 12.6.3).
 #pragma once
 
 #include "common/light/receiver.h"
@@ -8,7 +8,7 @@
 namespace pt {
 
 /// Some lights seen from afar, or one. 32 bytes: two loads. All bounds are rounded outwards, so
-/// that only what gives nothing has importance 0.
+/// that only lights without any contribution have importance 0.
 struct alignas(16) LightNode {
   Vec3 center;             ///< of a ball around them
   float radius;            ///< 0: a point
@@ -16,7 +16,7 @@ struct alignas(16) LightNode {
   std::uint32_t axis;      ///< packed: normals lie in a cone around it,
   std::uint16_t cos_cone;  ///< of this half angle, and light goes where the angle
   std::uint16_t cos_emission;  ///< to a normal is below this one; see pack_cosine
-  std::uint32_t child;         ///< its pair of children, or leaf | number of the light
+  std::uint32_t child;         ///< its pair of children, or leaf | index of the light
 
   static constexpr std::uint32_t leaf = 0x80000000u;
 };
@@ -43,7 +43,7 @@ PT_HD float cos_difference(float cos_a, float sin_a, float cos_b, float sin_b) {
   return cos_a > cos_b ? 1.0f : fused_multiply_add(sin_a, sin_b, multiply_rounded(cos_a, cos_b));
 }
 
-/// The place and the side of it for which lights are weighed.
+/// The shading point and its normal, for which lights are weighted.
 struct LightReceiver {
   Vec3 point;
   Vec3 normal;
@@ -59,15 +59,15 @@ struct LightReceiver {
 /// Two of them can be added.
 inline constexpr float importance_max = 1e37f;
 
-/// The cosines that lights of a ball may have are bounded by the best place in it and guessed by
-/// its middle. The bound alone makes large lights near by too important (measured: 1.3 times the
-/// variance in rooms), the guess alone is 0 for some that give light.
+/// The cosines that lights of a ball may have are bounded by the best point in it and estimated
+/// at its middle. The bound alone makes large lights near by too important (measured: 1.3 times the
+/// variance in rooms), the estimate alone is 0 for some that contribute.
 PT_HD float blend_cosine(float bound, float middle) {
   return fused_multiply_add(0.25f, bound, multiply_rounded(0.75f, fmaxf(middle, 0.0f)));
 }
 
-/// About the irradiance that the lights of a node give, if nothing lies between; never below 0. No
-/// branches: the two nodes of a pair are computed side by side.
+/// The importance of a node: an estimate of the irradiance by its lights without occlusion, >= 0
+/// (pbrt-v4, section 12.6.3). No branches: the two nodes of a pair are computed side by side.
 PT_HD float light_importance(const LightNode& node, const LightReceiver& receiver) {
   const Vec3 way = node.center - receiver.point;
   const float distance2 = dot(way, way), radius2 = multiply_rounded(node.radius, node.radius);
@@ -117,8 +117,8 @@ struct LightTree {
   static constexpr int depth_max = 31;
 };
 
-/// A part of [0, 2^64) and a place in it, relative to where it begins. Each choice narrows it, and
-/// nothing is rescaled: after a choice of probability p, 64 - log2(1 / p) bits are left.
+/// A part of [0, 2^64) and a position in it, relative to where it begins. Each choice narrows it,
+/// and nothing is rescaled: after a choice of probability p, 64 - log2(1 / p) bits are left.
 struct Interval {
   std::uint64_t width = ~std::uint64_t{0};
   std::uint64_t position;
@@ -128,7 +128,7 @@ struct Interval {
       : position(static_cast<std::uint64_t>(u0 * 16777216.0f) << 40 |
                  static_cast<std::uint64_t>(u1 * 16777216.0f) << 16) {}
 
-  /// The place, uniform in [0, 1): for a last choice.
+  /// The position, uniform in [0, 1): for a last choice.
   PT_HD float unit() const {
     return fminf(static_cast<float>(position) / static_cast<float>(width), one_minus_ulp);
   }

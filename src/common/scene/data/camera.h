@@ -11,7 +11,7 @@ namespace pt {
 /// square either. The others follow from the image's final size.
 enum class FovAxis { vertical, horizontal, diagonal, smaller, larger };
 
-/// What a user says of a camera: lengths in scene units.
+/// A camera as scenes and options describe it: lengths in scene units.
 struct CameraParameters {
   Vec3 look_from{0, 0, 1};
   Vec3 look_at{0, 0, 0};
@@ -26,12 +26,12 @@ struct CameraParameters {
   bool orthographic = false;     ///< parallel rays; neither angle of view nor lens
   Vec2 orthographic_size{1, 1};  ///< half the width of what is seen; half the height of what a
                                  ///< square image would see
-  float near_clip = 0.0f;  ///< camera rays meet nothing in front of the plane at this distance
+  float near_clip = 0.0f;        ///< camera rays hit nothing in front of the plane at this distance
   float far_clip = infinite_distance;  ///< nor behind this one
-  bool hides_emitters = false;         ///< camera rays pass through lamps and see no environment
+  bool hides_emitters = false;         ///< camera rays pass through emitters and see no environment
 };
 
-/// Whether camera rays do not meet all that other rays would.
+/// Whether camera rays ignore some surfaces that other rays hit.
 PT_HD bool is_limited(const CameraParameters& camera) {
   return camera.near_clip > 0.0f || camera.far_clip < infinite_distance || camera.hides_emitters;
 }
@@ -70,7 +70,7 @@ struct Camera {
   float near_clip = 0.0f, far_clip = infinite_distance;  ///< along the axis
   bool is_orthographic = false;
   bool hides_emitters = false;
-  bool is_limited = false;  ///< camera rays do not meet all that other rays would
+  bool is_limited = false;  ///< camera rays ignore some surfaces that other rays hit
 
   /// The part of a camera ray in which it may meet something.
   PT_HD ViewInterval view_of(const Vec3& direction) const {

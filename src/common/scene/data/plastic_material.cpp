@@ -25,9 +25,9 @@ double diffuse_reflectance(double eta) {
 
 MaterialDescription make_plastic(const Color& diffuse, const Color& specular, PlasticCoat coat) {
   MaterialDescription m = describe<Plastic>(diffuse);
-  m.parameters[1].value = specular;
+  m.parameters[Plastic::Index::specular].value = specular;
   const double inside = diffuse_reflectance(1.0 / static_cast<double>(coat.eta));
-  m.parameters[2].value = packed(coat, static_cast<float>(inside));
+  m.parameters[Plastic::Index::coat].value = packed(coat, static_cast<float>(inside));
   return m;
 }
 
@@ -36,13 +36,15 @@ MaterialDescription make_rough_plastic(const Color& diffuse, const Color& specul
   const RoughBoundary boundary = measure_rough_boundary(coat.eta, alpha, is_beckmann);
   const auto& t = boundary.transmittance;
   MaterialDescription m = describe<RoughPlastic>(diffuse);
-  m.parameters[1].value = specular;
-  m.parameters[2].value = Color(alpha);
-  m.parameters[3].value = packed(coat, boundary.internal_reflectance);
-  m.parameters[4].value = {t[0], t[1], t[2]};
-  m.parameters[5].value = {t[3], t[4], t[5]};
-  m.parameters[6].value = {t[6], t[7], t[8]};
-  m.parameters[7].value = Color(is_beckmann ? 1.0f : 0.0f);
+  using Index = RoughPlastic::Index;
+  Parameter* p = m.parameters;
+  p[Index::specular].value = specular;
+  p[Index::alpha].value = Color(alpha);
+  p[Index::coat].value = packed(coat, boundary.internal_reflectance);
+  p[Index::transmittance_0].value = {t[0], t[1], t[2]};
+  p[Index::transmittance_1].value = {t[3], t[4], t[5]};
+  p[Index::transmittance_2].value = {t[6], t[7], t[8]};
+  p[Index::is_beckmann].value = Color(is_beckmann ? 1.0f : 0.0f);
   return m;
 }
 

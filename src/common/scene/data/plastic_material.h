@@ -7,7 +7,7 @@ namespace pt {
 
 struct PlasticCoat {
   float eta = 1.49f;       ///< index of refraction inside over outside
-  bool nonlinear = false;  ///< the body colours light anew each time the coat sends it back
+  bool nonlinear = false;  ///< as in Mitsuba: the body colours each internal reflection
 };
 
 MaterialDescription make_plastic(const Color& diffuse, const Color& specular, PlasticCoat coat);

@@ -27,7 +27,7 @@ struct Scene {
   const Bvh2Node* bvh_nodes = nullptr;
   const Material* materials = nullptr;
   const Parameter* parameters = nullptr;             ///< see Material
-  const Emission* emissions = nullptr;               ///< of those that shine
+  const Emission* emissions = nullptr;               ///< of those that emit
   const std::uint32_t* material_of = nullptr;        ///< [primitive]
   const SphereFrame* sphere_frames = nullptr;        ///< [sphere]; null: no sphere needs one
   const std::uint32_t* primitive_numbers = nullptr;  ///< [primitive], as the scene's maker had it
@@ -51,7 +51,7 @@ struct Scene {
     return primitives.count() == 0 && triangles.instance_count == 0;
   }
   PT_HD Material material(std::uint32_t index) const { return load_wide(&materials[index]); }
-  /// `material` shines.
+  /// `material` emits.
   PT_HD Emission emission(const Material& material) const {
     return load_wide(&emissions[material.emission]);
   }
@@ -60,8 +60,8 @@ struct Scene {
 /// What rays can meet. `mixed`: triangles, instances of triangles, spheres.
 enum class Geometry { spheres_and_quads, triangles, mixed };
 
-/// What shines. `sky`: rays that leave the scene, alone; `emitters`: spheres and quads as well;
-/// `full`: lights of all kinds and an environment, with textures on all surfaces.
+/// The light sources. `sky`: rays that leave the scene, alone; `emitters`: spheres and quads as
+/// well; `full`: lights of all kinds and an environment, with textures on all surfaces.
 enum class Lighting { sky, emitters, full };
 
 /// What is known of a scene before its kernels are chosen: each combination is a kernel of its own.

@@ -23,9 +23,10 @@ namespace pt {
 /// Light from infinitely far: a picture of all directions, latitude by longitude.
 struct EnvironmentData {
   int width = 0, height = 0;  ///< 0: none
-  std::vector<Color> pixels;  ///< radiance, placed as environment.h tells: row 0 is the zenith (+y
-                              ///< before to_world), the middle of a row -z, u grows towards +x
-  Affine to_world;            ///< a rotation
+  std::vector<Color>
+      pixels;  ///< radiance, W / (m^2 sr), in the order of environment.h: row 0 is the zenith (+y
+               ///< before to_world), the middle of a row -z, u grows towards +x
+  Affine to_world;  ///< a rotation
 };
 
 /// What a scene file asks for where the command line does not.
@@ -44,7 +45,7 @@ struct LightListData {
   std::vector<AliasEntry> selection;
   LightTreeData tree;                               ///< empty unless lights are chosen by it
   std::size_t lamps = 0;                            ///< that give any light
-  std::uint32_t sun = 0;                            ///< its number
+  std::uint32_t sun = 0;                            ///< its index
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
   float total_weight = 0.0f;

@@ -80,8 +80,9 @@ std::uint32_t add_obj_material(const ObjMaterial& source, TextureStore& textures
     return map.empty() ? no_texture : textures.add_file(map);
   };
   MaterialDescription material = source.material;
-  material.parameters[0].texture = add(source.albedo_map);
-  if (material.kind == kind_of<Phong>) material.parameters[1].texture = add(source.specular_map);
+  material.parameters[color_parameter].texture = add(source.albedo_map);
+  if (material.kind == kind_of<Phong>)
+    material.parameters[Phong::Index::specular].texture = add(source.specular_map);
   material.emission.texture = add(source.emission_map);
   add_opacity_map(source.opacity_map, textures, material);
   return add_bumped(source, material, textures, scene);

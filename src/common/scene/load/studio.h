@@ -14,7 +14,7 @@ inline constexpr const char* studio_text = "a soft studio, bright behind and abo
 /// so does black.
 float studio_radiance(const Vec3& direction);
 
-/// Makes the studio the scene's environment, turned as its camera stands, and asks for a measured
+/// Makes the studio the scene's environment, rotated with the camera, and asks for a measured
 /// exposure.
 void add_studio(SceneData& scene);
 

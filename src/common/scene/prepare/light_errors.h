@@ -1,4 +1,4 @@
-// How far a triangle that shines may lie from where a ray meets it.
+// Bounds of the distance between an emissive triangle and the point at which a ray hits it.
 #pragma once
 
 #include "common/light/light_sample.h"

@@ -59,7 +59,7 @@ class Lister {
     }
     data_.table_first = static_cast<std::uint32_t>(first);
     data_.total_weight = total > 0 ? static_cast<float>(total) : 1.0f;  // a divisor
-    // Lights of no weight are never chosen, but a ray may meet them and ask how likely that was.
+    // Lights of no weight are never sampled, but a ray may hit them and need their probability.
     if (total > 0) data_.selection = build_alias_table(weights);
   }
 
@@ -71,14 +71,14 @@ class Lister {
                                                   : 0.5f;
   }
 
-  /// The environment, what else has no place, and the tree: as often each.
+  /// The environment, lights without position, and the tree: equally likely.
   void share_with_tree() {
     const bool has_table = !data_.selection.empty(), has_map = scene_.environment.width > 0;
     data_.table_probability = has_table ? 0.5f : 0.0f;
     data_.environment_probability = !has_map ? 0.0f : has_table ? 1.0f / 3.0f : 0.5f;
   }
 
-  /// The lights from `first` on are one lamp.
+  /// The lights from `first` on are one emitter.
   void finish_emitter(std::size_t first) {
     double total = 0;
     for (std::size_t i = first; i < data_.lights.size(); ++i) total += data_.lights[i].weight;
@@ -94,13 +94,13 @@ class Lister {
     return !is_black(scene_.materials[mesh.material].emission.radiance);
   }
 
-  /// A mesh that shines.
+  /// A mesh that emits.
   struct EmissiveMesh {
     const Mesh* mesh;
     std::uint32_t first_triangle;  ///< counted through all meshes
   };
 
-  /// Triangles that shine are numbered through the meshes of a group.
+  /// Emissive triangles are numbered through the meshes of a group.
   void list_area_lights() {
     std::map<std::uint32_t, std::uint32_t> ranks;  // by group
     std::uint32_t first_triangle = 0;
@@ -147,7 +147,7 @@ class Lister {
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
                                     emission.texture_mean);
-      // What is not there does not shine: met by chance.
+      // Emission is scaled by opacity: such emitters are hit by BSDF sampling alone.
       if (!scene_.materials[mesh.material].opacity.is_opaque()) light.weight = 0.0f;
       light.triangle =
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);

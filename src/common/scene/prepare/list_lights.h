@@ -6,11 +6,11 @@
 
 namespace pt {
 
-/// Triangles that emit (each instance's by itself, in world space), spheres, delta lights; those
-/// without a place come last. Weights are powers over pi, of directional lights that through the
-/// scene's bounding sphere; with `uniform` each lamp (a mesh, in one instance; a sphere; a delta
-/// light) weighs 1, which its triangles share by their power. Triangles are numbered through the
-/// meshes in their order. Throws Error for more than 2^24 of them.
+/// Triangles that emit (those of each instance separately, in world space), spheres, delta lights;
+/// those without a position come last. Weights are powers over pi, of directional lights that
+/// through the scene's bounding sphere; with `uniform` each emitter (a mesh, in one instance; a
+/// sphere; a delta light) weighs 1, which its triangles share by their power. Triangles are
+/// numbered through the meshes in their order. Throws Error for more than 2^24 of them.
 LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection);
 
 }  // namespace pt

@@ -11,7 +11,7 @@ void override_camera(CameraParameters& camera, const CameraOverrides& overrides)
 /// Throws Error naming the option that can mend it when the parameters describe no camera.
 void check_camera(const CameraParameters& camera);
 
-/// Takes away clip planes that cut nothing in an image of this size: rays that know none are
+/// Takes away clip planes that cut nothing in an image of this size: rays without any are
 /// faster.
 void drop_idle_clips(SceneData& scene, int width, int height);
 

@@ -18,7 +18,7 @@ bool is_masked(const SceneData& scene, const MaterialDescription& material);
 std::uint32_t kinds_of(const SceneData& scene);
 
 /// Fills material_records, parameters and emissions from the materials: the first parameters by
-/// material and then the others, emissions only of what shines, textures' means measured. With
+/// material and then the others, emissions only of emissive ones, textures' means measured. With
 /// `multiple_scattering` rough conductors become CompensatedConductors.
 void prepare_materials(SceneData& scene, bool multiple_scattering);
 

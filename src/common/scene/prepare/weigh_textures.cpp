@@ -43,7 +43,7 @@ void weigh_emission_textures(SceneData& scene) {
     const auto mean = static_cast<float>(
         mean_luminance(scene.textures.data(), emission.texture, scene.texels.data()));
     emission.texture_mean = std::isfinite(mean) ? mean : 1.0f;
-    if (emission.texture_mean == 0.0f) emission.radiance = Color(0.0f);  // nothing shines
+    if (emission.texture_mean == 0.0f) emission.radiance = Color(0.0f);  // a black texture
   }
 }
 

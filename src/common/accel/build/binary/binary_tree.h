@@ -14,13 +14,13 @@ namespace pt {
 inline constexpr std::uint32_t build_primitives_max = 1u << 28;
 
 /// Boxes are those of the primitives (of triangles hit_bounds), or of the parts that a spatial
-/// split cut off, or contain such. A leaf is one place of `order`. Nodes lie in depth-first order,
-/// so that those below a node follow it, the first child's before the second's; there may be unused
-/// ones in between.
+/// split cut off, or contain such. A leaf is one element of `order`. Nodes lie in depth-first
+/// order, so that those below a node follow it, the first child's before the second's; there may be
+/// unused ones in between.
 struct BinaryTree {
   std::unique_ptr<Bvh2Node[]> nodes;
   std::uint32_t node_capacity = 0;   ///< size of `nodes`
-  std::vector<std::uint32_t> order;  ///< place -> primitive
+  std::vector<std::uint32_t> order;  ///< leaf index -> primitive
   std::uint32_t root = 0;            ///< a node, or the leaf of the only primitive
   Bounds bounds;                     ///< of the root
 };

@@ -13,7 +13,7 @@ namespace pt {
 
 struct Bvh2 {
   std::vector<Bvh2Node> nodes;       ///< the root first
-  std::vector<std::uint32_t> order;  ///< leaves refer to places in it; it holds primitive numbers
+  std::vector<std::uint32_t> order;  ///< leaves refer to its elements, primitive indices
 };
 
 /// `bounds[i]` holds primitive i. Primitives below `first_of_second_kind` and the others never

@@ -26,7 +26,7 @@ class Builder {
   }
 
  private:
-  // A subtree of n references has n - 1 nodes, so each node's place is known beforehand and threads
+  // A subtree of n references has n - 1 nodes, so each node's index is known beforehand and threads
   // need not agree on anything.
   void build_node(const ReferenceRange& range, std::uint32_t index, int depth) {
     const RangeHalves halves = split(range, depth);

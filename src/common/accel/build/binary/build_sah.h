@@ -8,7 +8,7 @@
 
 namespace pt {
 
-/// A primitive's box by its number, from several threads at once.
+/// A primitive's box by its index, from several threads at once.
 using BoundsOf = std::function<Bounds(std::uint32_t)>;
 
 /// 1..build_primitives_max primitives, their coordinates within 1e12. The tree is no deeper than

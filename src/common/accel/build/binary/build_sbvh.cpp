@@ -38,7 +38,7 @@ class Builder {
   }
 
  private:
-  // A subtree has fewer nodes than room for references, so each node's place is known beforehand;
+  // A subtree has fewer nodes than room for references, so each node's index is known beforehand;
   // what is not used remains a gap.
   void build_node(const Segment& segment, std::uint32_t index, int depth) {
     const auto [left, right] = divide(segment, split(segment, depth));

@@ -14,7 +14,7 @@ namespace partition_detail {
 
 /// Runs of elements that lie on the wrong side.
 struct Runs {
-  std::vector<std::size_t> begin, before;  // by run: the first one's place, how many come earlier
+  std::vector<std::size_t> begin, before;  // by run: the first one's index, how many come earlier
   std::size_t total = 0;
 
   void add(std::size_t first, std::size_t last) {

@@ -170,7 +170,7 @@ class Reinserter {
     return true;
   }
 
-  /// The largest first; the root, which has no other place, is left out.
+  /// The largest first; the root, which cannot be moved, is left out.
   std::vector<std::uint32_t> largest_nodes() const {
     struct Sized {
       float area;
@@ -200,7 +200,7 @@ class Reinserter {
   // A subtree that is taken out saves its parent's area and what the ancestors above shrink by; put
   // beside a node it costs the area of the new parent and what that node's ancestors grow by. So
   // the search goes up, and from each ancestor (the pivot, which stays as it is) down the other
-  // side, as long as there may be a better place than the best.
+  // side, as long as there may be a better position than the best.
   Move find_best_move(std::uint32_t moved) const {
     const Bounds& box = nodes_[moved].bounds;
     const float area = box.half_area();

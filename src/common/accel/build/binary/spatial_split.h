@@ -10,7 +10,7 @@
 
 namespace pt {
 
-/// A triangle by its number, from several threads at once.
+/// A triangle by its index, from several threads at once.
 using TriangleOf = std::function<Triangle(std::uint32_t)>;
 
 struct SpatialSplit {

@@ -19,7 +19,7 @@ inline void move_references(CwbvhNode& node, std::uint32_t nodes, std::uint32_t 
 }
 
 /// Appends a tree whose root is its first node and whose slots begin at `first_slot` from now on;
-/// the root's place is returned.
+/// the root's index is returned.
 template <class Node>
 std::uint32_t append_nodes(std::vector<Node>& all, std::vector<Node>&& nodes,
                            std::uint32_t first_slot) {

@@ -14,7 +14,7 @@ struct WideChildren {
 
 namespace detail {
 
-// An array that stays in registers: places are found by comparing, not by addressing.
+// An array that stays in registers: elements are found by comparing, not by addressing.
 template <class T>
 PT_HD void set_at(T (&array)[cwbvh_width], int index, T value) {
   PT_UNROLL(8)

@@ -71,8 +71,8 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
                  "the scene");
     set_base(source, place, result);
     result.emission.radiance = result.color(0);
-    result.emission.texture = result.parameters[0].texture;
-    result.parameters[0] = {};
+    result.emission.texture = result.parameters[color_parameter].texture;
+    result.parameters[color_parameter] = {};
     return result;
   }
   const auto* glossiness = find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
@@ -82,7 +82,8 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
     set_metallic_roughness(source, place, result);
   }
   set_emission(source, place, result);
-  const bool passes = result.kind == kind_of<Principled> && !is_black(result.parameters[3].value);
+  const bool passes = result.kind == kind_of<Principled> &&
+                      !is_black(result.parameters[Principled::Index::spec_trans].value);
   result.one_sided = !passes && !source.doubleSided;
   return result;
 }
@@ -90,9 +91,9 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
 void Materials::set_base(const tinygltf::Material& source, const std::string& place,
                          MaterialDescription& result) {
   const auto& pbr = source.pbrMetallicRoughness;
-  result.parameters[0].value = clamped(to_color(pbr.baseColorFactor));
+  result.parameters[color_parameter].value = clamped(to_color(pbr.baseColorFactor));
   if (const TextureUse use = texture_use(pbr.baseColorTexture)) {
-    result.parameters[0].texture =
+    result.parameters[color_parameter].texture =
         textures_.add_color(use, place + ".pbrMetallicRoughness.baseColorTexture");
   }
 }
@@ -112,8 +113,8 @@ void Materials::set_metallic_roughness(const tinygltf::Material& source, const s
   const TextureUse use = texture_use(pbr.metallicRoughnessTexture);
   const std::string at = place + ".pbrMetallicRoughness.metallicRoughnessTexture";
   Parameter* p = result.parameters;
-  p[1] = number_of(unit(pbr.roughnessFactor), use, at, green);
-  p[2] = number_of(unit(pbr.metallicFactor), use, at, blue);
+  p[Principled::Index::roughness] = number_of(unit(pbr.roughnessFactor), use, at, green);
+  p[Principled::Index::metallic] = number_of(unit(pbr.metallicFactor), use, at, blue);
   set_transmission(source, place, result);
   set_index(source, place, result);
   set_sheen(source, place, result);
@@ -123,9 +124,10 @@ void Materials::set_metallic_roughness(const tinygltf::Material& source, const s
 void Materials::set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
                                         MaterialDescription& result) {
   file_.report(place, "KHR_materials_pbrSpecularGlossiness: diffuse in the diffuse colour is used");
-  result.parameters[0].value = clamped(Color(vector_or(source, "diffuseFactor", Vec4(1.0f))));
+  result.parameters[color_parameter].value =
+      clamped(Color(vector_or(source, "diffuseFactor", Vec4(1.0f))));
   if (const TextureUse use = texture_use(member(source, "diffuseTexture"))) {
-    result.parameters[0].texture = textures_.add_color(
+    result.parameters[color_parameter].texture = textures_.add_color(
         use, place + ".extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture");
   }
 }
@@ -137,7 +139,7 @@ void Materials::set_transmission(const tinygltf::Material& source, const std::st
   const float transmission = unit(number_or(*extension, "transmissionFactor", 0.0f));
   if (transmission == 0.0f) return;
   file_.report(place, "KHR_materials_transmission: solid glass is used");
-  result.parameters[3] =
+  result.parameters[Principled::Index::spec_trans] =
       number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
                 place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
   const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
@@ -154,7 +156,7 @@ void Materials::set_index(const tinygltf::Material& source, const std::string& p
   if (!std::isfinite(ior) || ior < 1.0f) {
     file_.fail(place + ".extensions.KHR_materials_ior.ior", fmt::format("{}: expected >= 1", ior));
   }
-  const bool passes = !is_black(result.parameters[3].value);
+  const bool passes = !is_black(result.parameters[Principled::Index::spec_trans].value);
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
     const Color tint = vector_or(*specular, "specularColorFactor", Color(1.0f));
     if (passes || texture_use(member(*specular, "specularTexture")) ||
@@ -168,7 +170,7 @@ void Materials::set_index(const tinygltf::Material& source, const std::string& p
     if (!passes) ior = (1.0f + root) / (1.0f - root);
   }
   // At 1 nothing would be reflected by metals, too, and nothing bent.
-  result.parameters[4].value = Color(std::max(ior, 1.001f));
+  result.parameters[Principled::Index::eta].value = Color(std::max(ior, 1.001f));
 }
 
 void Materials::set_sheen(const tinygltf::Material& source, const std::string& place,
@@ -180,7 +182,7 @@ void Materials::set_sheen(const tinygltf::Material& source, const std::string& p
   file_.report(place,
                "KHR_materials_sheen: that of the principled BSDF is used, white and without "
                "roughness");
-  result.parameters[7] =
+  result.parameters[Principled::Index::sheen] =
       number_of(max_abs(color), texture_use(member(*sheen, "sheenColorTexture")),
                 place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
 }
@@ -198,9 +200,10 @@ void Materials::set_clearcoat(const tinygltf::Material& source, const std::strin
   if (const TextureUse use = texture_use(member(*coat, "clearcoatRoughnessTexture"))) {
     roughness *= textures_.mean(use, at + "clearcoatRoughnessTexture").y;
   }
-  result.parameters[10] = number_of(factor, texture_use(member(*coat, "clearcoatTexture")),
-                                    at + "clearcoatTexture", red);
-  result.parameters[11].value = Color(unit((0.1f - roughness * roughness) / 0.099f));
+  result.parameters[Principled::Index::clearcoat] = number_of(
+      factor, texture_use(member(*coat, "clearcoatTexture")), at + "clearcoatTexture", red);
+  result.parameters[Principled::Index::clearcoat_gloss].value =
+      Color(unit((0.1f - roughness * roughness) / 0.099f));
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,

@@ -99,7 +99,7 @@ void VertexColors::tint(Mesh& mesh, bool emits, const std::string& place) {
     if (mean == Color(1.0f)) return;
     mesh.material = changed(mesh.material, [&](MaterialDescription& m) {
       if (emits) m.emission.radiance *= mean;
-      if (!emits && m.node == MaterialNode::none) m.parameters[0].value *= mean;
+      if (!emits && m.node == MaterialNode::none) m.parameters[color_parameter].value *= mean;
     });
     return;
   }
@@ -107,7 +107,7 @@ void VertexColors::tint(Mesh& mesh, bool emits, const std::string& place) {
   if (is_new) {
     const std::uint32_t texture = by_vertex();
     entry->second = changed(mesh.material, [&](MaterialDescription& m) {
-      (emits ? m.emission.texture : m.parameters[0].texture) = texture;
+      (emits ? m.emission.texture : m.parameters[color_parameter].texture) = texture;
     });
   }
   mesh.material = entry->second;

@@ -26,8 +26,8 @@ Surface read_dielectric(Context& context, const Object& bsdf) {
     surface.material = make_dielectric(passed.color, eta);
   } else {
     surface.material = describe_all<RoughDielectric>(0, 0, eta, 0, 0, 0);
-    surface.material.parameters[0] = parameter_of(reflected);
-    surface.material.parameters[1] = parameter_of(passed);
+    surface.material.parameters[RoughDielectric::Index::reflected] = parameter_of(reflected);
+    surface.material.parameters[RoughDielectric::Index::passed] = parameter_of(passed);
   }
   return surface;
 }
@@ -36,18 +36,22 @@ Surface read_rough_dielectric(Context& context, const Object& bsdf) {
   const Roughness roughness = read_roughness(context, bsdf);
   Surface surface;
   surface.material = describe_all<RoughDielectric>(0, 0, relative_ior(bsdf));
+  using Index = RoughDielectric::Index;
   Parameter* parameters = surface.material.parameters;
-  parameters[0] = parameter_of(tint(context, bsdf, "specular_reflectance"));
-  parameters[1] = parameter_of(tint(context, bsdf, "specular_transmittance"));
-  roughness.store(parameters + 3);
+  parameters[Index::reflected] = parameter_of(tint(context, bsdf, "specular_reflectance"));
+  parameters[Index::passed] = parameter_of(tint(context, bsdf, "specular_transmittance"));
+  roughness.store(parameters + Index::alpha_x);
   return surface;
 }
 
 Surface read_thin_dielectric(Context& context, const Object& bsdf) {
   Surface surface;
   surface.material = describe_all<ThinDielectric>(0, 0, relative_ior(bsdf));
-  surface.material.parameters[0] = parameter_of(tint(context, bsdf, "specular_reflectance"));
-  surface.material.parameters[1] = parameter_of(tint(context, bsdf, "specular_transmittance"));
+  using Index = ThinDielectric::Index;
+  surface.material.parameters[Index::reflected] =
+      parameter_of(tint(context, bsdf, "specular_reflectance"));
+  surface.material.parameters[Index::passed] =
+      parameter_of(tint(context, bsdf, "specular_transmittance"));
   return surface;
 }
 

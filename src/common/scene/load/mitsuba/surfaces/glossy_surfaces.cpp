@@ -7,15 +7,21 @@
 namespace pt::mitsuba {
 namespace {
 
-/// The first two parameters of all of them, on the side of the normal only.
+/// The second parameter of all of them.
+constexpr int specular_parameter = Plastic::Index::specular;
+static_assert(specular_parameter == RoughPlastic::Index::specular &&
+              specular_parameter == Phong::Index::specular &&
+              specular_parameter == Ward::Index::specular);
+
+/// Reads the first two parameters of all of them; they scatter on the side of the normal alone.
 Surface glossy_of(Context& context, const Object& bsdf, const MaterialDescription& material,
                   float specular) {
   Surface surface;
   surface.material = material;
   surface.material.one_sided = true;
-  surface.material.parameters[0] =
+  surface.material.parameters[color_parameter] =
       parameter_of(read_color_texture(context, bsdf, "diffuse_reflectance", Color(0.5f)));
-  surface.material.parameters[1] =
+  surface.material.parameters[specular_parameter] =
       parameter_of(read_color_texture(context, bsdf, "specular_reflectance", Color(specular)));
   return surface;
 }
@@ -44,14 +50,14 @@ Surface read_rough_plastic(Context& context, const Object& bsdf) {
                               make_rough_plastic(Color(0.0f), Color(0.0f), read_coat(bsdf),
                                                  alpha.color.x, roughness.is_beckmann),
                               1.0f);
-  surface.material.parameters[2].texture = alpha.texture;
+  surface.material.parameters[RoughPlastic::Index::alpha].texture = alpha.texture;
   return surface;
 }
 
 /// Of Mitsuba 0.x, as `ward`.
 Surface read_phong(Context& context, const Object& bsdf) {
   Surface surface = glossy_of(context, bsdf, describe_all<Phong>(), 0.2f);
-  surface.material.parameters[2] =
+  surface.material.parameters[Phong::Index::exponent] =
       parameter_of(read_number_texture(context, bsdf, "exponent", 30.0f));
   return surface;
 }
@@ -68,8 +74,8 @@ Surface read_ward(Context& context, const Object& bsdf) {
     const bool own = bsdf.find(axis) || bsdf.child_named(axis);
     return parameter_of(read_number_texture(context, bsdf, own ? axis : "alpha", 0.1f));
   };
-  surface.material.parameters[2] = alpha("alpha_u");
-  surface.material.parameters[3] = alpha("alpha_v");
+  surface.material.parameters[Ward::Index::alpha_x] = alpha("alpha_u");
+  surface.material.parameters[Ward::Index::alpha_y] = alpha("alpha_v");
   return surface;
 }
 

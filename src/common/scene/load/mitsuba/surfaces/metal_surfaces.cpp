@@ -69,9 +69,9 @@ void read_index(Context& context, const Object& bsdf, Parameter* eta_and_k) {
 Surface conductor_of(Context& context, const Object& bsdf) {
   Surface surface;
   surface.material = describe_all<Conductor>(0);
-  surface.material.parameters[0] =
+  surface.material.parameters[Conductor::Index::tint] =
       parameter_of(read_color_texture(context, bsdf, "specular_reflectance", Color(1.0f)));
-  read_index(context, bsdf, surface.material.parameters + 1);
+  read_index(context, bsdf, surface.material.parameters + Conductor::Index::eta);
   surface.material.one_sided = true;
   return surface;
 }
@@ -94,7 +94,7 @@ Surface read_conductor(Context& context, const Object& bsdf) { return conductor_
 
 Surface read_rough_conductor(Context& context, const Object& bsdf) {
   Surface surface = conductor_of(context, bsdf);
-  read_roughness(context, bsdf).store(surface.material.parameters + 3);
+  read_roughness(context, bsdf).store(surface.material.parameters + Conductor::Index::alpha_x);
   return surface;
 }
 

@@ -5,7 +5,7 @@ namespace pt::mitsuba {
 
 Surface diffuse_of(const ColorTexture& reflectance) {
   Surface surface;
-  surface.material.parameters[0] = {reflectance.color, reflectance.texture};
+  surface.material.parameters[Diffuse::Index::albedo] = {reflectance.color, reflectance.texture};
   surface.material.one_sided = true;
   return surface;
 }
@@ -22,7 +22,7 @@ Surface read_diffuse(Context& context, const Object& bsdf) {
 Surface read_rough_diffuse(Context& context, const Object& bsdf) {
   Surface surface = read_diffuse(context, bsdf);
   surface.material.kind = kind_of<OrenNayar>;
-  Parameter& sigma = surface.material.parameters[1];
+  Parameter& sigma = surface.material.parameters[OrenNayar::Index::sigma];
   sigma = parameter_of(read_number_texture(context, bsdf, "alpha", 0.2f));
   sigma.value *= std::sqrt(0.5f);
   bsdf.ignore({"use_fast_approx"});

@@ -43,19 +43,22 @@ bool is_zero(const Parameter& p) { return p.texture == no_texture && is_black(p.
 Surface read_principled(Context& context, const Object& bsdf) {
   const NumberReader read{context, bsdf};
   Surface surface;
-  surface.material = describe_all<Principled>(0, 0, 0, 0, read_eta(context, bsdf));
+  surface.material = describe_all<Principled>(0);
+  using Index = Principled::Index;
   Parameter* p = surface.material.parameters;
-  p[0] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
-  read(p[1], "roughness", 0.5f);
-  read(p[2], "metallic"), read(p[3], "spec_trans");
-  read(p[5], "anisotropic"), read(p[6], "spec_tint");
-  read(p[7], "sheen"), read(p[8], "sheen_tint"), read(p[9], "flatness");
-  read(p[10], "clearcoat"), read(p[11], "clearcoat_gloss");
+  p[Index::eta].value = Color(read_eta(context, bsdf));
+  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
+  read(p[Index::roughness], "roughness", 0.5f);
+  read(p[Index::metallic], "metallic"), read(p[Index::spec_trans], "spec_trans");
+  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
+  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
+  read(p[Index::flatness], "flatness");
+  read(p[Index::clearcoat], "clearcoat"), read(p[Index::clearcoat_gloss], "clearcoat_gloss");
   ignore_sampling_rates(bsdf);
-  const bool opaque = is_zero(p[3]);
+  const bool opaque = is_zero(p[Index::spec_trans]);
   surface.material.one_sided = opaque;
   // As Mitsuba: light that passes must be bent.
-  if (!opaque && p[4].value.x == 1.0f) p[4].value = Color(1.001f);
+  if (!opaque && p[Index::eta].value.x == 1.0f) p[Index::eta].value = Color(1.001f);
   return surface;
 }
 
@@ -63,13 +66,14 @@ Surface read_principled_thin(Context& context, const Object& bsdf) {
   const NumberReader read{context, bsdf};
   Surface surface;
   surface.material = describe_all<PrincipledThin>(0);
+  using Index = PrincipledThin::Index;
   Parameter* p = surface.material.parameters;
-  p[0] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
-  read(p[1], "roughness", 0.5f);
-  read(p[2], "spec_trans"), read(p[3], "eta", 1.5f);
-  read(p[4], "anisotropic"), read(p[5], "spec_tint");
-  read(p[6], "sheen"), read(p[7], "sheen_tint"), read(p[8], "flatness");
-  read(p[9], "diff_trans");
+  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
+  read(p[Index::roughness], "roughness", 0.5f);
+  read(p[Index::spec_trans], "spec_trans"), read(p[Index::eta], "eta", 1.5f);
+  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
+  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
+  read(p[Index::flatness], "flatness"), read(p[Index::diff_trans], "diff_trans");
   ignore_sampling_rates(bsdf);
   return surface;
 }
