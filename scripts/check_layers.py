@@ -4,7 +4,8 @@
 Usage: check_layers.py [SRC]     SRC is the repository's src/ folder unless given
 
 Prints FILE:LINE and the rule broken, and exits with 1, for every breach. The rules are the tables
-below; a new folder or a new permission is a line in one of them.
+below; a new folder or a new permission is a line in one of them. Where all are kept, folders are
+checked as well: none includes another one that includes it, over however many others.
 """
 import fnmatch
 import re
@@ -47,14 +48,13 @@ LAYERS = [
     # What options leave open is decided here, from facts of the scene and the device.
     ("plan", ["common/plan/*"], BUILDERS),
     ("image", ["common/image/*"], HOST),
-    ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     # Acceleration structures: what rays pass through, how it is built, and warps that persist.
     ("build_cuda", ["common/accel/build_cuda/*"], ["cuda", "build", *SCENE_PARTS, *HOST]),
     ("trace_cuda", ["common/accel/trace_cuda/*"], ["accel", *SHAPES]),
     ("embree", ["common/accel/embree/*"], ["build", "accel", *SHAPES, *HOST]),
     ("build", ["common/accel/build/*"], ["accel", *SHAPES, *HOST]),
-    ("choices", ["common/options/choices.h", "common/accel/accel.h"], ["platform"]),
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
+    ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
@@ -64,6 +64,8 @@ LAYERS = [
     ("cuda", ["common/cuda/*"], HOST),
     # Plain data that the user chooses and that is measured.
     ("options", ["common/options/*"], ["choices"]),
+    # What options choose from, for code that knows no options.
+    ("choices", ["common/choices/*"], ["platform"]),
     ("error", ["common/error/*"], []),
     ("platform", ["common/platform/*"], []),
 ]
@@ -198,6 +200,43 @@ def check_file(source, path):
             yield number, rule
 
 
+def folders_included(source, paths):
+    """{folder: {folder that it includes: (path, line number) of the first such include}}"""
+    graph = {}
+    for path in paths:
+        for number, line in logical_lines((source / path).read_text(encoding="utf-8")):
+            include = INCLUDE.match(line)
+            own = include and include.group(1) and own_path(source, include.group(1), path)
+            if own and (source / own).parent != (source / path).parent:
+                included = graph.setdefault(Path(path).parent.as_posix(), {})
+                included.setdefault(Path(own).parent.as_posix(), (path, number))
+    return graph
+
+
+def find_circle(graph):
+    """Folders of which each includes the next one and the last is the first, or None."""
+    done = set()
+
+    def search(folder, way):
+        if folder in way:
+            return [*way[way.index(folder):], folder]
+        if folder in done:
+            return None
+        done.add(folder)
+        circles = (search(included, [*way, folder]) for included in graph.get(folder, ()))
+        return next(filter(None, circles), None)
+    return next(filter(None, (search(folder, []) for folder in graph)), None)
+
+
+def check_circle(source, paths):
+    """Yields (path, line number, rule broken) where folders include each other in a circle."""
+    graph = folders_included(source, paths)
+    circle = find_circle(graph)
+    if circle:
+        yield (*graph[circle[-2]][circle[-1]],
+               f"folders include each other in a circle: {' -> '.join(circle)}")
+
+
 def main(arguments):
     if len(arguments) > 1 or arguments[:1] in (["-h"], ["--help"]):
         print(__doc__.strip())
@@ -210,6 +249,7 @@ def main(arguments):
         print(f"check_layers.py: no C++ or CUDA files below {source}", file=sys.stderr)
         return 2
     breaches = [(path, *breach) for path in paths for breach in check_file(source, path)]
+    breaches = breaches or list(check_circle(source, paths))
     for path, number, rule in breaches:
         print(f"{source.name}/{path}:{number}: {rule}")
     print(f"{len(paths)} files checked, {len(breaches)} breaches of the layers")

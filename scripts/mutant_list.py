@@ -21,7 +21,7 @@ HEADER = "common/mutant.h"
 CUDA_SUFFIXES = (".cu", ".cuh", "_cuda.cpp", "_cuda.h")
 # Device code that tests run on emulated blocks (tests/support/emulated_gpu.h).
 EMULATED = ("megakernel/trace_paths_sorting.cuh", "megakernel/path_query.cuh",
-            "common/device/counting_sort.cuh", "common/accel/trace_cuda/reserve_rays.cuh",
+            "common/device/cuda/counting_sort.cuh", "common/accel/trace_cuda/reserve_rays.cuh",
             "common/accel/trace_cuda/persistent_cwbvh.cuh")
 
 # Host code reads the environment once. Device code has a variable in each translation unit, which

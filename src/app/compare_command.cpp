@@ -7,9 +7,9 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_io.h"
-#include "common/image/compare.h"
-#include "common/image/difference_image.h"
-#include "common/image/flip/flip.h"
+#include "common/image/compare/compare.h"
+#include "common/image/compare/difference_image.h"
+#include "common/image/compare/flip.h"
 
 namespace pt {
 namespace {

@@ -13,7 +13,7 @@
 #include "wavefront/wavefront.h"
 
 #ifdef PTEXP_CUDA
-#include "common/device/create_world.h"
+#include "common/device/cuda/create_world.h"
 #endif
 
 namespace pt {

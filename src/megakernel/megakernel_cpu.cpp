@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "common/device/cpu_renderer.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "megakernel/megakernel.h"
 #include "megakernel/trace_path.h"
 

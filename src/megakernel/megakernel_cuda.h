@@ -3,7 +3,7 @@
 // sort are one each.
 #pragma once
 
-#include "common/device/cuda_renderer.cuh"
+#include "common/device/cuda/cuda_renderer.cuh"
 
 namespace pt {
 

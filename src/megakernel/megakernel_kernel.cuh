@@ -1,8 +1,8 @@
 // The megakernel itself, and the three ways of dividing the paths over its threads.
 #pragma once
 
-#include "common/device/bind_scene.cuh"
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/bind_scene.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "megakernel/trace_path.h"
 
 namespace pt {

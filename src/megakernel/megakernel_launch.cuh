@@ -1,7 +1,7 @@
 // Definition of MegakernelCuda::launch_megakernel, for the files that instantiate it.
 #pragma once
 
-#include "common/device/curand_state.cuh"
+#include "common/device/cuda/curand_state.cuh"
 #include "megakernel/megakernel_cuda.h"
 #include "megakernel/megakernel_kernel.cuh"
 

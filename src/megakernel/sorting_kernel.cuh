@@ -1,7 +1,7 @@
 // The megakernel whose blocks sort their paths, and its launch, for the files that instantiate it.
 #pragma once
 
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "megakernel/megakernel_cuda.h"
 #include "megakernel/trace_paths_sorting.cuh"
 

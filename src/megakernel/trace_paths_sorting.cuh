@@ -18,7 +18,7 @@
 
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
-#include "common/device/counting_sort.cuh"
+#include "common/device/cuda/counting_sort.cuh"
 #include "common/film/path_sample.h"
 #include "common/transport/mask_hides.h"
 #include "common/transport/path_step.h"

@@ -1,6 +1,6 @@
 #include "serial/serial.h"
 
-#include "common/device/cpu_renderer.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/transport/follow_path.h"
 
 namespace pt {

@@ -1,8 +1,8 @@
 // The kernel around a stage: threads take the slots of its queue in turn and send them on.
 #pragma once
 
-#include "common/device/bind_scene.cuh"
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/bind_scene.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "wavefront/wavefront.h"
 
 namespace pt {

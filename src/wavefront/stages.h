@@ -5,8 +5,8 @@
 #include "common/film/markov_chains.h"
 #include "common/options/options.h"
 #include "common/transport/follow_path.h"
-#include "wavefront/path_pool.h"
-#include "wavefront/wave_counters.h"
+#include "wavefront/pool/path_pool.h"
+#include "wavefront/pool/wave_counters.h"
 
 namespace pt {
 

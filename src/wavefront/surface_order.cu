@@ -1,8 +1,8 @@
 // The counting sort of the surfaces on CUDA: one kernel for tiles; for ranges one that counts and
 // one that scatters them.
-#include "common/device/bind_scene.cuh"
-#include "common/device/counting_sort.cuh"
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/bind_scene.cuh"
+#include "common/device/cuda/counting_sort.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "wavefront/wavefront_cuda.h"
 
 namespace pt {

@@ -10,8 +10,8 @@
 #pragma once
 
 #include "common/transport/surface.h"
-#include "wavefront/path_pool.h"
-#include "wavefront/wave_counters.h"
+#include "wavefront/pool/path_pool.h"
+#include "wavefront/pool/wave_counters.h"
 
 namespace pt {
 

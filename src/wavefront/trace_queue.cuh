@@ -5,7 +5,7 @@
 #include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "wavefront/wavefront.h"
 
 namespace pt {

@@ -5,7 +5,7 @@
 
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
-#include "wavefront/compaction.h"
+#include "wavefront/compaction/compaction.h"
 #include "wavefront/stages.h"
 #include "wavefront/surface_order.h"
 

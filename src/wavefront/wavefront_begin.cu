@@ -1,4 +1,4 @@
-#include "common/device/stage_stamp.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
 #include "wavefront/wavefront_cuda.h"
 
 namespace pt {

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "common/accel/trace_cpu/traverse_brute_block.h"
-#include "common/device/cpu_renderer.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/host_memory.h"
 #include "common/options/option_names.h"
 #include "common/scene/prepare/prepare_materials.h"

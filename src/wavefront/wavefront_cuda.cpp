@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/device/profiler_range.cuh"
+#include "common/device/cuda/profiler_range.cuh"
 #include "common/error/error.h"
 #include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {
 
-// An iteration of the graph's loop costs more than a kernel: a few waves share one. Those after the last
-// ray find empty queues.
+// An iteration of the graph's loop costs more than a kernel: a few waves share one. Those after the
+// last ray find empty queues.
 constexpr int waves_per_iteration = 2;
 
 constexpr double mib = 1024.0 * 1024.0;

@@ -1,9 +1,9 @@
 // The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
 #pragma once
 
-#include "common/device/cuda_renderer.cuh"
-#include "wavefront/compaction_cuda.h"
-#include "wavefront/stage_bytes.h"
+#include "common/device/cuda/cuda_renderer.cuh"
+#include "wavefront/compaction/compaction_cuda.h"
+#include "wavefront/pool/stage_bytes.h"
 #include "wavefront/wavefront.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // One wave as kernel launches: the Executor of run_wave on CUDA, for the files that instantiate it.
 #pragma once
 
-#include "common/device/curand_state.cuh"
+#include "common/device/cuda/curand_state.cuh"
 #include "wavefront/stage_kernel.cuh"
 #include "wavefront/wavefront_cuda.h"
 

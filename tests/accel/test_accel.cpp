@@ -2,10 +2,10 @@
 // number.
 #include <gtest/gtest.h>
 
+#include "accel/primitive_scenes.h"
 #include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
-#include "primitive_scenes.h"
 
 namespace pt {
 namespace {

@@ -1,12 +1,12 @@
 // What lanes test at once is what the plain loops find one ray after the other, bit for bit.
 #include <gtest/gtest.h>
 
+#include "accel/nasty_rays.h"
+#include "accel/primitive_scenes.h"
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/accel/traverse_brute.h"
-#include "nasty_rays.h"
-#include "primitive_scenes.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
 
 namespace pt {
 namespace {

@@ -2,10 +2,10 @@
 // triangles, in whole traversals. So the plain ones are tested wherever the others are.
 #include <gtest/gtest.h>
 
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/trace_cpu/traverse_cwbvh_avx2.h"
 #include "common/accel/traverse_triangles.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
 
 namespace pt {
 namespace {

@@ -1,11 +1,11 @@
 // Rays that take turns on their ways through the wide tree find what each finds alone, bit for bit.
 #include <gtest/gtest.h>
 
+#include "accel/nasty_rays.h"
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/trace_cpu/traverse_cwbvh_block.h"
 #include "common/accel/traverse_triangles.h"
-#include "nasty_rays.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
 
 namespace pt {
 namespace {

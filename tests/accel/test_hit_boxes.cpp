@@ -7,9 +7,9 @@
 #include "emulated_gpu.h"
 #include "common/accel/trace_cuda/cwbvh_step.cuh"
 // clang-format on
+#include "accel/hard_hits.h"
+#include "accel/tree_kinds.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
-#include "hard_hits.h"
-#include "tree_kinds.h"
 
 namespace pt {
 namespace {

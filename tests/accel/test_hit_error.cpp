@@ -5,9 +5,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "accel/hard_hits.h"
+#include "accel/tree_kinds.h"
 #include "common/rays/trace_rays.h"
-#include "hard_hits.h"
-#include "tree_kinds.h"
 
 namespace pt {
 namespace {

@@ -2,14 +2,14 @@
 #include <cstring>
 #include <filesystem>
 
+#include "accel/hard_hits.h"
+#include "accel/instance_crowds.h"
+#include "accel/instanced_meshes.h"
+#include "accel/tree_kinds.h"
 #include "common/rays/trace_rays.h"
 #include "cuda_test.h"
-#include "hard_hits.h"
-#include "instance_crowds.h"
-#include "instanced_meshes.h"
 #include "mode_cases.h"
 #include "shared_file.h"
-#include "tree_kinds.h"
 
 namespace pt {
 namespace {

@@ -2,8 +2,8 @@
 // beside the instance: then a box without a margin is missed by rays that its triangles meet.
 #include <gtest/gtest.h>
 
-#include "instance_crowds.h"
-#include "tree_kinds.h"
+#include "accel/instance_crowds.h"
+#include "accel/tree_kinds.h"
 
 namespace pt {
 namespace {

@@ -2,10 +2,10 @@
 // few are invented.
 #include <gtest/gtest.h>
 
+#include "accel/nasty_rays.h"
+#include "accel/primitive_scenes.h"
 #include "common/accel/traverse_brute.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "nasty_rays.h"
-#include "primitive_scenes.h"
 
 namespace pt {
 namespace {

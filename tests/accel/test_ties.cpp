@@ -2,8 +2,8 @@
 // without asking any structure, so that an error which all of them share is seen too.
 #include <gtest/gtest.h>
 
-#include "hard_hits.h"
-#include "tree_kinds.h"
+#include "accel/hard_hits.h"
+#include "accel/tree_kinds.h"
 
 namespace pt {
 namespace {

@@ -2,11 +2,11 @@
 // same triangle, the same instance.
 #include <gtest/gtest.h>
 
+#include "accel/triangle_trees.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/accel/traverse_triangles_brute.h"
 #include "common/accel/traverse_triangles_bvh2.h"
 #include "statistics.h"
-#include "triangle_trees.h"
 
 namespace pt {
 namespace {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/build/refit_triangle_tree.h"
 #include "common/accel/embree/embree_tree.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 #include "app/options/command_line.h"
 #include "app/trace_command.h"
 #include "common/options/option_names.h"
-#include "common/scene/builtin/generate_terrain.h"
+#include "common/scene/builtin/generated/generate_terrain.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "common/device/counter_session_cuda.h"
+#include "common/device/cuda/counter_session_cuda.h"
 #include "cuda_test.h"
 
 namespace pt {

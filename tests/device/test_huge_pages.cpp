@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "common/device/huge_pages.h"
+#include "common/device/cpu/huge_pages.h"
 
 namespace pt {
 namespace {

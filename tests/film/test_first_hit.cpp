@@ -1,8 +1,8 @@
 // What camera rays find, on a scene made by hand: of every layer the value is known at the place
 // that the layer `position` names, which lies on the object that the layers name.
 #include "film_cases.h"
-#include "nested_scenes.h"
 #include "render_serial.h"
+#include "scene/nested_scenes.h"
 
 namespace pt {
 namespace {

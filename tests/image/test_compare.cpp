@@ -5,7 +5,7 @@
 
 #include "app/compare_command.h"
 #include "common/image/codecs/image_io.h"
-#include "common/image/compare.h"
+#include "common/image/compare/compare.h"
 #include "temp_folder.h"
 
 namespace pt {

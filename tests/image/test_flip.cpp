@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "common/image/codecs/image_io.h"
-#include "common/image/difference_image.h"
-#include "common/image/flip/flip.h"
+#include "common/image/compare/difference_image.h"
+#include "common/image/compare/flip.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -6,7 +6,7 @@
 #include "common/image/codecs/image_io.h"
 #include "common/scene/load/files/images/texture_store.h"
 #include "common/texture/sample_texture.h"
-#include "mesh_bytes.h"
+#include "load/mesh_bytes.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "common/scene/load/files/images/image_files.h"
-#include "mesh_bytes.h"
+#include "load/mesh_bytes.h"
 #include "temp_folder.h"
 
 namespace pt {

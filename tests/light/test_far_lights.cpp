@@ -1,8 +1,8 @@
 // Light sampling far from the scene's origin and at every scale: no lamp shadows itself, what lies
 // just below a lamp does, and a path's chance of finding a lamp is the density that weighs it.
 #include "common/transport/shade_surface.h"
-#include "lamp_rooms.h"
 #include "render_serial.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

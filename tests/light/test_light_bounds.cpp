@@ -2,9 +2,9 @@
 // and the bounds of lamps, as geometry does.
 #include <gtest/gtest.h>
 
-#include "common/light/tree/build_light_tree.h"
+#include "common/light/build_light_tree.h"
 #include "common/transport/sample_light.h"
-#include "lamp_rooms.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

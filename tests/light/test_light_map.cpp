@@ -2,8 +2,8 @@
 // unequal sizes, the density that sampled a lamp is the one that weighs a path that finds it.
 #include "common/transport/intersect.h"
 #include "common/transport/sample_light.h"
-#include "lamp_rooms.h"
 #include "render_serial.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

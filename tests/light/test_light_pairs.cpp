@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "common/scene/prepare/prepare_scene.h"
-#include "direct_light.h"
 #include "render_serial.h"
+#include "scene/direct_light.h"
 
 namespace pt {
 namespace {

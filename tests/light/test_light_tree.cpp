@@ -3,8 +3,8 @@
 #include <set>
 
 #include "common/transport/sample_light.h"
-#include "lamp_rooms.h"
 #include "render_serial.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

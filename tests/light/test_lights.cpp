@@ -1,5 +1,5 @@
 // What holds of every light of the list, a new one included.
-#include "common/light/tree/build_light_tree.h"
+#include "common/light/build_light_tree.h"
 #include "common/transport/sample_light.h"
 #include "statistics.h"
 

@@ -1,7 +1,7 @@
 // Light that a shading normal lets through a surface: the shadow ray begins on the other side of it
 // than light sampling has assumed, and must end where it would have ended.
-#include "lamp_rooms.h"
 #include "render_serial.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

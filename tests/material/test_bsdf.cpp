@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "bsdf_cases.h"
+#include "material/bsdf_cases.h"
 #include "statistics.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 // both ways alike.
 #include <gtest/gtest.h>
 
-#include "bsdf_integral.h"
+#include "material/bsdf_integral.h"
 
 namespace pt {
 namespace {

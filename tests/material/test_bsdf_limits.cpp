@@ -2,7 +2,7 @@
 // equal directions, with the first and the last random numbers, and with no roughness.
 #include <gtest/gtest.h>
 
-#include "each_bsdf.h"
+#include "material/each_bsdf.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <bit>
 
-#include "bsdf_integral.h"
+#include "material/bsdf_integral.h"
 
 namespace pt {
 namespace {

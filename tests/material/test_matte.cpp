@@ -1,7 +1,7 @@
 // Oren-Nayar, Phong and Ward against their papers' formulas, in double precision and in angles.
 #include <gtest/gtest.h>
 
-#include "each_bsdf.h"
+#include "material/each_bsdf.h"
 
 namespace pt {
 namespace {

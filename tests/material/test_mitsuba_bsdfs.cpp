@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 #include "statistics.h"
 #include "test_data.h"
 

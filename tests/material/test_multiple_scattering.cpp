@@ -2,10 +2,10 @@
 // albedo with and without compensation, and a random walk on a microsurface.
 #include <gtest/gtest.h>
 
-#include "bsdf_integral.h"
 #include "common/scene/load/mitsuba/surfaces/conductors.h"
 #include "common/scene/prepare/prepare_materials.h"
-#include "microsurface_walk.h"
+#include "material/bsdf_integral.h"
+#include "material/microsurface_walk.h"
 
 namespace pt {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <set>
 
-#include "bsdf_cases.h"
 #include "common/error/error.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "common/transport/resolve_material.h"
-#include "nested_scenes.h"
+#include "material/bsdf_cases.h"
 #include "render_serial.h"
+#include "scene/nested_scenes.h"
 #include "statistics.h"
 
 namespace pt {

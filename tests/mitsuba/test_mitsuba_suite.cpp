@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "mitsuba_suite.h"
+#include "load/mitsuba_suite.h"
 #include "statistics.h"
 #include "temp_folder.h"
 #include "test_data.h"

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "common/device/counter_session_cuda.h"
+#include "common/device/cuda/counter_session_cuda.h"
 #include "cuda_test.h"
 #include "mode_cases.h"
 

@@ -1,8 +1,8 @@
 // Every BSDF, with and without masks: all modes of the CPU give one image, bit for bit.
 #include "common/scene/prepare/prepare_scene.h"
-#include "masked_room.h"
-#include "material_room.h"
 #include "mode_cases.h"
+#include "scene/masked_room.h"
+#include "scene/material_room.h"
 
 namespace pt {
 namespace {

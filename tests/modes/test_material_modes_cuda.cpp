@@ -1,13 +1,13 @@
 // Every BSDF, with and without masks, and lights of all kinds: on a GPU both modes give one image,
 // bit for bit, and one that is close to the CPU's.
-#include "common/image/compare.h"
+#include "common/image/compare/compare.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
-#include "lit_room.h"
-#include "masked_room.h"
-#include "material_room.h"
-#include "mixed_scene.h"
 #include "mode_cases.h"
+#include "scene/lit_room.h"
+#include "scene/masked_room.h"
+#include "scene/material_room.h"
+#include "scene/mixed_scene.h"
 
 namespace pt {
 namespace {

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "common/accel/build/check_builder.h"
-#include "common/device/create_world.h"
+#include "common/device/cuda/create_world.h"
 #include "common/error/error.h"
-#include "common/image/compare.h"
+#include "common/image/compare/compare.h"
 #include "cuda_test.h"
 #include "mode_cases.h"
 

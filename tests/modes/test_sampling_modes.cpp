@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "common/scene/prepare/prepare_scene.h"
-#include "lit_room.h"
 #include "mode_cases.h"
+#include "scene/lit_room.h"
 
 namespace pt {
 namespace {

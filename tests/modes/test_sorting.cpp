@@ -7,9 +7,9 @@
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
 #include "emulated_gpu.h"  // before device code
-#include "masked_room.h"
 #include "megakernel/trace_paths_sorting.cuh"
 #include "mode_cases.h"
+#include "scene/masked_room.h"
 
 namespace pt {
 namespace {

@@ -7,8 +7,8 @@
 #include "common/error/error.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
-#include "masked_room.h"
 #include "mode_cases.h"
+#include "scene/masked_room.h"
 
 namespace pt {
 namespace {

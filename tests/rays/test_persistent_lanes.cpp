@@ -8,8 +8,8 @@
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
 // clang-format on
+#include "accel/instanced_meshes.h"
 #include "common/accel/build/build_triangle_tree.h"
-#include "instanced_meshes.h"
 
 namespace pt {
 namespace {

@@ -5,14 +5,14 @@
 #include <cstring>
 #include <filesystem>
 
+#include "accel/instanced_meshes.h"
+#include "accel/terrain_rays.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/builtin/generate_terrain.h"
-#include "instanced_meshes.h"
+#include "common/scene/builtin/generated/generate_terrain.h"
 #include "shared_file.h"
 #include "temp_folder.h"
-#include "terrain_rays.h"
 
 namespace pt {
 namespace {

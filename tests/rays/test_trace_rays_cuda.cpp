@@ -1,12 +1,12 @@
 // Every way of tracing on the GPU finds what the CPU finds, however the rays lie.
+#include "accel/instanced_meshes.h"
+#include "accel/terrain_rays.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
 #include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/builtin/generate_terrain.h"
+#include "common/scene/builtin/generated/generate_terrain.h"
 #include "cuda_test.h"
-#include "instanced_meshes.h"
-#include "terrain_rays.h"
 
 namespace pt {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <iostream>
 
-#include "common/device/curand_state.cuh"
-#include "common/device/film_kernels.cuh"
+#include "common/device/cuda/curand_state.cuh"
+#include "common/device/cuda/film_kernels.cuh"
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "cuda_test.h"

@@ -6,7 +6,7 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/builtin/dial_materials.h"
 #include "common/scene/builtin/generate_dial.h"
-#include "each_bsdf.h"
+#include "material/each_bsdf.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -8,7 +8,7 @@
 
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "small_scenes.h"
+#include "scene/small_scenes.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -17,7 +17,7 @@ SOUND = {
     "serial/serial.cpp": '#include "common/transport/shade.h"\n',
     "megakernel/trace_path.h": '#include "common/transport/shade.h"\n',
     "wavefront/wavefront.h": '#include "common/transport/shade.h"\n',
-    "wavefront/compaction_cuda.cu": '#include <cub/cub.cuh>\n'
+    "wavefront/compaction/compaction_cuda.cu": '#include <cub/cub.cuh>\n'
                                     '#include "common/device/launch.cuh"\n',
     "common/platform/platform.h": "#ifdef __CUDACC__\n#include <cuda.h>\n#include <cuda_runtime.h>\n#endif\n",
     "common/error/error.h": "#include <string>\n",
@@ -79,6 +79,23 @@ class CheckLayers(unittest.TestCase):
         for name, below in reached.items():
             self.assertNotIn(name, below)
 
+    def test_a_row_includes_rows_below_it_alone(self):
+        names = [name for name, _, _ in check_layers.LAYERS]
+        for place, (name, _, may) in enumerate(check_layers.LAYERS):
+            if name not in check_layers.SCHEDULES:
+                self.assertLessEqual(set(may), set(names[place + 1:]), name)
+
+    def test_folders_do_not_include_each_other_in_a_circle(self):
+        tree = {"common/material/x.h": '#include "common/material/a/x.h"\n',
+                "common/material/a/x.h": '#include "common/material/b/x.h"\n',
+                "common/material/b/x.h": '\n#include "common/material/bsdf.h"\n'}
+        status, output = self.check(tree)
+        self.assertEqual((status, output.count("\n")), (1, 2), output)
+        self.assertIn("src/common/material/x.h:1: folders include each other in a circle: "
+                      "common/material/a -> common/material/b -> common/material -> "
+                      "common/material/a\n", output)
+        self.assert_sound({**tree, "common/material/b/x.h": ""})
+
     def test_the_table_keeps_physics_from_devices_and_schedules_apart(self):
         for name in check_layers.PHYSICS + check_layers.SCHEDULES:
             may = set(check_layers.allowed(name))
@@ -110,7 +127,7 @@ class CheckLayers(unittest.TestCase):
                                f"{lower} does not include {higher}")
 
     def test_physics_includes_no_device(self):
-        for layer in set(check_layers.PHYSICS) - {"choices"}:  # files of no folder
+        for layer in check_layers.PHYSICS:
             self.assert_breach(f"common/{FOLDERS.get(layer, layer)}/x.h",
                                '#include "common/device/devices.h"\n', 1,
                                f"{layer} does not include device")

@@ -3,8 +3,8 @@
 
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/weigh_textures.h"
-#include "lamp_rooms.h"
 #include "render_serial.h"
+#include "scene/lamp_rooms.h"
 #include "statistics.h"
 
 namespace pt {

@@ -1,14 +1,14 @@
 // Whatever a scene is made of, a block of rays meets what each of its rays meets alone.
 #include <gtest/gtest.h>
 
+#include "accel/nasty_rays.h"
+#include "accel/primitive_scenes.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/transport/intersect.h"
 #include "common/transport/intersect_block.h"
-#include "masked_room.h"
-#include "mixed_scene.h"
-#include "nasty_rays.h"
-#include "primitive_scenes.h"
-#include "small_scenes.h"
+#include "scene/masked_room.h"
+#include "scene/mixed_scene.h"
+#include "scene/small_scenes.h"
 
 namespace pt {
 namespace {

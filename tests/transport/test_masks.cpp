@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "common/error/error.h"
-#include "mixed_scene.h"
 #include "mode_cases.h"
-#include "nested_scenes.h"
 #include "render_serial.h"
+#include "scene/mixed_scene.h"
+#include "scene/nested_scenes.h"
 #include "statistics.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "render_serial.h"
-#include "small_scenes.h"
+#include "scene/small_scenes.h"
 #include "statistics.h"
 
 namespace pt {

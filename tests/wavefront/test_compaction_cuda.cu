@@ -2,7 +2,7 @@
 #include "compaction_cases.h"
 #include "cuda_test.h"
 #include "temp_folder.h"
-#include "wavefront/compaction_cuda.h"
+#include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/stage_kernel.cuh"
 
 namespace pt {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wavefront/measure_compaction.h"
+#include "wavefront/measure/measure_compaction.h"
 
 namespace pt {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "cuda_test.h"
-#include "wavefront/measure_compaction.h"
+#include "wavefront/measure/measure_compaction.h"
 
 namespace pt {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "wavefront/path_pool.h"
+#include "wavefront/pool/path_pool.h"
 
 namespace pt {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "app/make_renderer.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "wavefront/pool/stage_bytes.h"
 #include "wavefront/run_stage_cpu.h"
-#include "wavefront/stage_bytes.h"
 
 namespace pt {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "material_room.h"
+#include "scene/material_room.h"
 #include "statistics.h"
 #include "wavefront/surface_order.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/prepare/prepare_scene.h"
-#include "material_room.h"
+#include "scene/material_room.h"
 #include "wavefront/stages.h"
 
 namespace pt {

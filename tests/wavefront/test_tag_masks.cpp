@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "statistics.h"
-#include "wavefront/tag_masks.h"
+#include "wavefront/compaction/tag_masks.h"
 
 namespace pt {
 namespace {

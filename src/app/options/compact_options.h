@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/options/subcommand_option.h"
-#include "wavefront/measure_compaction.h"
+#include "wavefront/measure/measure_compaction.h"
 
 namespace pt {
 

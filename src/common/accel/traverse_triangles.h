@@ -1,10 +1,10 @@
 // Traversal of triangles in the structure that a type names.
 #pragma once
 
-#include "common/accel/accel.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/accel/traverse_triangles_brute.h"
 #include "common/accel/traverse_triangles_bvh2.h"
+#include "common/choices/accel.h"
 
 namespace pt {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/device/cpu_renderer.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 
 namespace pt {

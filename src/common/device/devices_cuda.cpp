@@ -1,8 +1,8 @@
 #include <cuda_runtime_api.h>
 #include <fmt/format.h>
 
+#include "common/device/cuda/read_properties.cuh"
 #include "common/device/devices.h"
-#include "common/device/read_properties.cuh"
 
 namespace pt {
 

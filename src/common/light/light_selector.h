@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/light/light.h"
-#include "common/light/tree/light_tree.h"
+#include "common/light/light_tree.h"
 #include "common/sampling/alias_table.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // A point that shines everywhere alike.
 #pragma once
 
-#include "common/light/tree/light_bounds.h"
+#include "common/light/light_bounds.h"
 
 namespace pt {
 

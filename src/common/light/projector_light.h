@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/light/tree/light_bounds.h"
+#include "common/light/light_bounds.h"
 
 namespace pt {
 

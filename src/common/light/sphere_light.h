@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/light/area_light.h"
-#include "common/light/tree/light_bounds.h"
+#include "common/light/light_bounds.h"
 
 namespace pt {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/light/tree/light_bounds.h"
+#include "common/light/light_bounds.h"
 #include "common/math/frame.h"
 #include "common/math/sincos.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/light/light.h"
-#include "common/light/sky/sun.h"
+#include "common/light/sun.h"
 
 namespace pt {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "common/light/area_light.h"
+#include "common/light/light_bounds.h"
 #include "common/light/spherical_triangle.h"
-#include "common/light/tree/light_bounds.h"
 
 namespace pt {
 

@@ -14,8 +14,8 @@
 //   BsdfSample sample(wo, u)               chooses wi; u uniform in [0, 1)^3
 //   BsdfValue evaluate(wo, wi)             f(wo, wi) |cos wi| and the density of sample() at once
 //
-// Adding one: a file here, its name in material.h's list, and a line in tests/support/bsdf_cases.h
-// with parameters for the tests, which iterate the list.
+// Adding one: a file here, its name in material.h's list, and a line in
+// tests/support/material/bsdf_cases.h with parameters for the tests, which iterate the list.
 #pragma once
 
 #include "common/math/vec.h"

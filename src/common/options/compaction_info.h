@@ -1,4 +1,4 @@
-// The compaction strategies, one line each. wavefront/compaction.h says what they do.
+// The compaction strategies, one line each. wavefront/compaction/compaction.h says what they do.
 #pragma once
 
 #include <string_view>

@@ -55,7 +55,8 @@ constexpr double value_of(const CounterValues& values, Counter counter) {
   return values[static_cast<std::size_t>(counter)];
 }
 
-/// What a stage has to move by the layout of its data (wavefront/stage_bytes.h); 0: not predicted.
+/// What a stage has to move by the layout of its data (wavefront/pool/stage_bytes.h); 0: not
+/// predicted.
 struct PredictedBytes {
   double read = 0, written = 0;
 };

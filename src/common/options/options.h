@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "common/accel/accel.h"
-#include "common/options/choices.h"
+#include "common/choices/accel.h"
+#include "common/choices/choices.h"
 #include "common/options/compaction_info.h"
 #include "common/options/stage_info.h"
 

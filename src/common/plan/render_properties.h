@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/accel/accel.h"
+#include "common/choices/accel.h"
 
 namespace pt {
 

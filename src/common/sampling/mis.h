@@ -1,7 +1,7 @@
 // Multiple importance sampling (Veach 1997, section 9.2) of one light sample and one BSDF sample.
 #pragma once
 
-#include "common/options/choices.h"
+#include "common/choices/choices.h"
 
 namespace pt {
 

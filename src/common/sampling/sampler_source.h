@@ -1,7 +1,7 @@
 // The samplers' random numbers: samples of a pixel are independent, stratified or low-discrepancy.
 #pragma once
 
-#include "common/options/choices.h"
+#include "common/choices/choices.h"
 #include "common/sampling/chains.h"
 #include "common/sampling/random.h"
 #include "common/sampling/sobol.h"

@@ -1,8 +1,8 @@
 // When a path ends, and whether light sampling is used.
 #pragma once
 
+#include "common/choices/choices.h"
 #include "common/math/vec.h"
-#include "common/options/choices.h"
 
 namespace pt {
 

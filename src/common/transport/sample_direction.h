@@ -2,8 +2,8 @@
 // cosine-weighted over the hemisphere (--sampling).
 #pragma once
 
+#include "common/choices/choices.h"
 #include "common/material/bsdf.h"
-#include "common/options/choices.h"
 #include "common/sampling/warp.h"
 
 namespace pt {

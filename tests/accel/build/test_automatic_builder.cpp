@@ -1,12 +1,12 @@
 // What the automatic builder takes, and what its predictor says.
 #include <gtest/gtest.h>
 
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/build/binary/overlap_share.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/tree_summary.h"
-#include "common/scene/builtin/generate_boxes.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
+#include "common/scene/builtin/generated/generate_boxes.h"
 
 namespace pt {
 namespace {

@@ -1,9 +1,9 @@
 // Trees built on the device hold everything and find what testing every triangle finds.
+#include "accel/device_tree.h"
 #include "common/accel/traverse_cwbvh.h"
 #include "common/accel/traverse_triangles_brute.h"
 #include "common/accel/traverse_triangles_bvh2.h"
 #include "common/error/error.h"
-#include "device_tree.h"
 
 namespace pt {
 namespace {

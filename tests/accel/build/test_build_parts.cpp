@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "build_cases.h"
+#include "accel/build_cases.h"
 #include "common/accel/build/morton.h"
 #include "common/accel/build/ploc_pair.h"
 #include "common/accel/build/wide/collapse_cwbvh.h"

@@ -1,10 +1,10 @@
 // How good the trees built on the device are, and how long they take.
 #include <cstdlib>
 
+#include "accel/device_tree.h"
 #include "common/accel/build/binary/build_sah.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/morton.h"
-#include "device_tree.h"
 
 namespace pt {
 namespace {

@@ -7,14 +7,14 @@
 #include <limits>
 #include <set>
 
-#include "check_tree.h"
+#include "accel/check_tree.h"
+#include "accel/instanced_meshes.h"
+#include "accel/tree_kinds.h"
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/tree_summary.h"
 #include "common/error/error.h"
-#include "instanced_meshes.h"
-#include "tree_kinds.h"
 
 namespace pt {
 namespace {

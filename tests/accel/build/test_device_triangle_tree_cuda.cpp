@@ -7,8 +7,8 @@
 #include "common/rays/trace_rays.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
-#include "mixed_scene.h"
 #include "mode_cases.h"
+#include "scene/mixed_scene.h"
 #include "temp_folder.h"
 
 namespace pt {

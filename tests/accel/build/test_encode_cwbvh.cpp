@@ -7,11 +7,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "check_tree.h"
+#include "accel/check_tree.h"
+#include "accel/triangle_meshes.h"
 #include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/geometry/triangle.h"
-#include "triangle_meshes.h"
 
 namespace pt {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <numeric>
 
+#include "accel/triangle_meshes.h"
 #include "common/accel/build/binary/build_sah.h"
 #include "common/accel/build/binary/reinsert_nodes.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "triangle_meshes.h"
 
 namespace pt {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/accel/build/binary/spatial_split.h"
-#include "triangle_rays.h"
+#include "accel/triangle_rays.h"
+#include "common/accel/build/split/spatial_split.h"
 
 namespace pt {
 namespace {

@@ -3,17 +3,17 @@
 // that gets worse changes no image, so no other test sees it.
 #include <gtest/gtest.h>
 
-#include "build_cases.h"
+#include "accel/build_cases.h"
+#include "accel/exact_sah.h"
+#include "accel/primitive_scenes.h"
+#include "accel/tree_kinds.h"
+#include "accel/triangle_rays.h"
 #include "common/accel/build/tree_summary.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
 #include "common/geometry/primitive_bounds.h"
-#include "common/scene/builtin/sphere_world.h"
-#include "exact_sah.h"
-#include "primitive_scenes.h"
-#include "tree_kinds.h"
-#include "triangle_rays.h"
+#include "common/scene/builtin/shapes/sphere_world.h"
 
 namespace pt {
 namespace {

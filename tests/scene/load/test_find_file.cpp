@@ -1,7 +1,7 @@
 // Files whose names differ from what other files call them in case only, of all formats.
 #include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 
 namespace pt {
 namespace {

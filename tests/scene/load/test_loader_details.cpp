@@ -7,8 +7,8 @@
 #include "app/report/report.h"
 #include "common/image/codecs/image_io.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "mesh_bytes.h"
-#include "mitsuba_scene.h"
+#include "load/mesh_bytes.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/load/files/studio.h"
 #include "common/scene/load/load_scene.h"
-#include "common/scene/load/studio.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 #include "render_serial.h"
 
 namespace pt {

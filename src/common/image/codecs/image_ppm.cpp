@@ -5,7 +5,7 @@
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/pnm_header.h"
 #include "common/image/codecs/rgba8.h"
-#include "common/image/tone_mapping.h"
+#include "common/image/codecs/tone_mapping.h"
 
 namespace pt {
 namespace {

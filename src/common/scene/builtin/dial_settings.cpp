@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "common/error/error.h"
-#include "common/scene/builtin/sphere_world.h"
+#include "common/scene/builtin/shapes/sphere_world.h"
 
 namespace pt {
 namespace {

@@ -1,8 +1,8 @@
 // A scene as the kernels see it: a plain view, passed by value. scene_data.h owns the memory.
 #pragma once
 
-#include "common/accel/accel.h"
 #include "common/accel/triangle_tree.h"
+#include "common/choices/accel.h"
 #include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
 #include "common/geometry/sphere_frame.h"
@@ -10,7 +10,7 @@
 #include "common/light/light_selector.h"
 #include "common/light/sky/environment.h"
 #include "common/light/sky/sky.h"
-#include "common/light/sky/sun.h"
+#include "common/light/sun.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
 #include "common/sampling/pixel_filter.h"

@@ -10,9 +10,9 @@
 #include "common/scene/load/files/images/texture_store.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/gltf.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
-#include "common/scene/load/studio.h"
 
 namespace pt {
 

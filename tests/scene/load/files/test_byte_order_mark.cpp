@@ -3,7 +3,7 @@
 
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 #include "temp_folder.h"
 
 namespace pt {

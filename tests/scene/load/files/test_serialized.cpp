@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "mesh_bytes.h"
+#include "load/mesh_bytes.h"
 #include "temp_folder.h"
 
 namespace pt {

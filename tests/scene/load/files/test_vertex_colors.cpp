@@ -7,8 +7,8 @@
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/load_scene.h"
 #include "common/texture/sample_texture.h"
-#include "gltf_files.h"
-#include "mesh_bytes.h"
+#include "load/gltf_files.h"
+#include "load/mesh_bytes.h"
 
 namespace pt {
 namespace {

@@ -1,6 +1,6 @@
 // The glTF loader: containers, accessors, meshes, nodes and instances.
 #include "common/scene/data/frame_scene.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 #include "shared_file.h"
 
 namespace pt {

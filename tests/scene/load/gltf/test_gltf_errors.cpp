@@ -1,5 +1,5 @@
 // The glTF loader: files that are malformed get one line, never a crash.
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 
 namespace pt {
 namespace {

@@ -1,6 +1,6 @@
 // The glTF loader: materials.
 #include "common/texture/sample_texture.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 
 namespace pt {
 namespace {

@@ -1,7 +1,7 @@
 // The glTF loader: rotations of nodes.
 #include <cmath>
 
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 
 namespace pt {
 namespace {

@@ -1,6 +1,6 @@
 // The glTF loader: lights and cameras.
 #include "common/light/spot_light.h"
-#include "gltf_files.h"
+#include "load/gltf_files.h"
 
 namespace pt {
 namespace {

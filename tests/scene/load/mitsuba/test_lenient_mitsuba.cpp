@@ -1,6 +1,6 @@
 // Mitsuba files with a trifle wrong: they load, with a warning.
 #include "common/scene/data/frame_scene.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/mask.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 #include "render_serial.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 
 #include "common/image/codecs/image_io.h"
 #include "common/texture/sample_texture.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 #include "shared_file.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/data/plastic_material.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

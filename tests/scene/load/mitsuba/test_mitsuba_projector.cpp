@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "common/light/tree/build_light_tree.h"
+#include "common/light/build_light_tree.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/transport/sample_light.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,7 @@
 #include "common/light/sky/environment.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "mitsuba_modes.h"
+#include "load/mitsuba_modes.h"
 #include "render_serial.h"
 
 namespace pt {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/data/camera.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

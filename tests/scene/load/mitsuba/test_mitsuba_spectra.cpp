@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

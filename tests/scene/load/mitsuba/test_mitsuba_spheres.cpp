@@ -5,7 +5,7 @@
 
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/first_hit.h"
-#include "mitsuba_modes.h"
+#include "load/mitsuba_modes.h"
 
 namespace pt {
 namespace {

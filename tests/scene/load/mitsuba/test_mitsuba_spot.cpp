@@ -4,7 +4,7 @@
 
 #include "common/scene/prepare/list_lights.h"
 #include "common/transport/sample_light.h"
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

@@ -1,7 +1,7 @@
 // Documents: variables, includes, references, dialects, integrators, errors.
 #include <gtest/gtest.h>
 
-#include "mitsuba_scene.h"
+#include "load/mitsuba_scene.h"
 
 namespace pt {
 namespace {

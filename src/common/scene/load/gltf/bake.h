@@ -3,7 +3,7 @@
 
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
-#include "common/scene/load/gltf/file.h"
+#include "common/scene/load/gltf/document/file.h"
 
 namespace pt::gltf {
 

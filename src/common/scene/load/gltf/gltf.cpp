@@ -5,14 +5,14 @@
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/bake.h"
 #include "common/scene/load/gltf/cameras.h"
+#include "common/scene/load/gltf/document/read_model.h"
 #include "common/scene/load/gltf/lights.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
-#include "common/scene/load/gltf/read_model.h"
-#include "common/scene/load/studio.h"
 
 namespace pt {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "common/scene/data/scene_data.h"
-#include "common/scene/load/load_options.h"
+#include "common/scene/load/files/load_options.h"
 
 namespace pt {
 

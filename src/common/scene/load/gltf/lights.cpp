@@ -1,6 +1,6 @@
 #include "common/scene/load/gltf/lights.h"
 
-#include "common/scene/load/gltf/values.h"
+#include "common/scene/load/gltf/document/values.h"
 
 namespace pt::gltf {
 

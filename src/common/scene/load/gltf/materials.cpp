@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/scene/load/gltf/values.h"
+#include "common/scene/load/gltf/document/values.h"
 
 namespace pt::gltf {
 

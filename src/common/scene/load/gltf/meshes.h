@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/geometry/mesh.h"
-#include "common/scene/load/gltf/file.h"
+#include "common/scene/load/gltf/document/file.h"
 
 namespace pt::gltf {
 

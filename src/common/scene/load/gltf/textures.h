@@ -7,7 +7,7 @@
 #include "common/math/vec.h"
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/images/texture_store.h"
-#include "common/scene/load/gltf/file.h"
+#include "common/scene/load/gltf/document/file.h"
 
 namespace pt::gltf {
 

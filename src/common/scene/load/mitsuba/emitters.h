@@ -1,7 +1,7 @@
 // <emitter>s that are not on a shape.
 #pragma once
 
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

@@ -1,7 +1,7 @@
 // <sensor>, with its film and sampler, and <integrator>: camera and defaults of a scene.
 #pragma once
 
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

@@ -6,7 +6,7 @@
 #include "common/error/error_context.h"
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/rgba8.h"
-#include "common/image/tone_mapping.h"
+#include "common/image/codecs/tone_mapping.h"
 #include "common/scene/load/files/mapped_file.h"
 
 namespace pt {

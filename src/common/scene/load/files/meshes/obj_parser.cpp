@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/error/error.h"
-#include "common/image/tone_mapping.h"
+#include "common/image/codecs/tone_mapping.h"
 #include "common/scene/load/files/meshes/text_number.h"
 
 namespace pt {

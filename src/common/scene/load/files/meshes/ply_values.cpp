@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/image/tone_mapping.h"
+#include "common/image/codecs/tone_mapping.h"
 #include "common/scene/load/files/meshes/ply_elements.h"
 #include "common/scene/load/files/meshes/text_number.h"
 

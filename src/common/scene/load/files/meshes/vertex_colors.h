@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "common/scene/data/scene_data.h"
-#include "common/scene/load/load_options.h"
+#include "common/scene/load/files/load_options.h"
 
 namespace pt {
 

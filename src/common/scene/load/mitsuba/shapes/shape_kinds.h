@@ -1,7 +1,7 @@
 // The kinds of shapes: each adds one to the scene.
 #pragma once
 
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

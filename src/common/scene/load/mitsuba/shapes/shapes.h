@@ -1,7 +1,7 @@
 // <shape>s to spheres, quads, meshes and instances.
 #pragma once
 
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

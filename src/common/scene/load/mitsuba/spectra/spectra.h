@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/math/vec.h"
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

@@ -1,7 +1,7 @@
 // Metals by name.
 #pragma once
 
-#include "common/scene/load/mitsuba/context.h"
+#include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/scene/load/load_options.h"
+#include "common/scene/load/files/load_options.h"
 
 namespace pt::mitsuba {
 

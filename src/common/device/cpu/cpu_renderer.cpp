@@ -1,0 +1,355 @@
+#include "common/device/cpu/cpu_renderer.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <span>
+
+#include "common/device/cpu/huge_pages.h"
+#include "common/error/host_memory.h"
+#include "common/film/develop.h"
+#include "common/scene/prepare/prepare_scene.h"
+#include "common/transport/mask.h"
+
+namespace pt {
+namespace {
+
+// Large enough to keep the threads busy; the first ones, whose rate is not known yet, small enough
+// for a quick answer to an interruption.
+constexpr std::uint64_t batch_paths_max = std::uint64_t{1} << 20;
+constexpr std::uint64_t first_paths = std::uint64_t{1} << 12;
+
+}  // namespace
+
+int cpu_threads(int wanted) {
+  using tbb::global_control;
+  const auto allowed =
+      static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+  const int most = std::max(1, std::min(allowed, tbb::info::default_concurrency()));
+  return wanted > 0 ? std::min(wanted, most) : most;
+}
+
+void StageTimer::add(const StageTime& time) {
+  for (StageTime& entry : stages_) {
+    if (entry.stage == time.stage) {
+      entry.time_ms += time.time_ms;
+      entry.launches += time.launches;
+      return;
+    }
+  }
+  stages_.push_back(time);
+}
+
+void StageTimer::add(const StageTimer& other, double share) {
+  for (const StageTime& entry : other.stages_) {
+    add({entry.stage, share * entry.time_ms, entry.launches});
+  }
+}
+
+namespace {
+
+Scene seeded_view(const SceneData& scene, const Options& options) {
+  Scene view = host_view(scene, options.width, options.height);
+  view.mask_seed = mask_seed(options.seed);
+  return view;
+}
+
+SceneTraits traits_by(SceneTraits traits, const ExecutionPlan& plan) {
+  traits.accel = plan.traversal;
+  return traits;
+}
+
+}  // namespace
+
+CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
+    : FilmRenderer(options, scene, cpu_properties(cpu_threads(threads))),
+      traits_(traits_by(scene.traits, execution_)),
+      scene_(seeded_view(scene, options)),
+      threads_(cpu_threads(threads)),
+      arena_(threads_),
+      primitive_count_(scene.primitive_count()) {
+  const auto start = std::chrono::steady_clock::now();
+  use_huge_pages(scene);
+  const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
+  // The image itself and its copy for writing come on top of the film.
+  constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
+  make_samples({"memory", free_host_memory(), plan_.bytes_per_pixel() + image_bytes,
+                sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
+               {}, [&](std::uint64_t paths) {
+                 sample_memory_.resize(paths);
+                 if (state_bytes > 0) states_.resize(paths);
+                 return sample_memory_.data();
+               });
+  const std::uint64_t pixels = image_window().pixel_count();
+  sums_.reset(plan_, pixels);
+  note_memory("film", pixels * plan_.bytes_per_pixel());
+  note_memory("samples", sample_memory_.size() * sizeof(Sample));
+  if (state_bytes > 0) note_memory("random states", states_.size() * state_bytes);
+  if (has_chains()) allocate_chains();
+  setup_ms_ =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
+  memory_.push_back({name, size_bytes});
+}
+
+Image CpuRenderer::image() { return develop_window(sums_); }
+
+void CpuRenderer::store_film(const Film& film) {
+  if (film.is_empty()) {
+    sums_.reset(plan_, film.window.pixel_count());
+  } else {
+    sums_ = film;
+  }
+  first_sample_ = film.first_sample;
+  tally_ = film.tally;
+}
+
+void CpuRenderer::begin_render(const Film& film) {
+  store_film(film);
+  timer_.reset();
+  waves_ = 0;
+}
+
+template <class Function>
+void CpuRenderer::time_in_arena(RenderRun& run, Function&& function) {
+  const auto start = std::chrono::steady_clock::now();
+  arena_.execute(function);
+  const std::chrono::duration<double, std::milli> elapsed =
+      std::chrono::steady_clock::now() - start;
+  run.kernel_ms += elapsed.count();
+}
+
+/// False: it was abandoned.
+bool CpuRenderer::trace_whole(const SampleBuffer& batch, const std::function<bool()>& cancel) {
+  cancel_ = &cancel;
+  trace_batch(batch);
+  const bool is_whole = !is_cancelled();
+  cancel_ = nullptr;
+  return is_whole;
+}
+
+bool CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
+                               const std::function<bool()>& cancel) {
+  bool is_whole = true;
+  time_in_arena(run, [&] {
+    is_whole = trace_whole(batch, cancel);
+    if (!is_whole) return;
+    if (plan_.feature_planes() > 0) {
+      timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
+    }
+    timer_.time("accumulate", [&] { accumulate(batch); });
+  });
+  return is_whole;
+}
+
+void CpuRenderer::end_render(RenderRun& run) {
+  run.stages = timer_.stages();
+  run.waves = waves_;
+}
+
+void CpuRenderer::read_film(Film& film) {
+  static_cast<FilmSums&>(film) = sums_;
+  film.tally = tally_;
+}
+
+void CpuRenderer::init_random_states(const SampleBuffer& batch) {
+  tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t i) {
+    xorwow_init(xorwow_seed(options_.seed, batch.id_of(i)), states_[i]);
+  });
+}
+
+FilmView CpuRenderer::film_view() {
+  return {sums_.pixels.data(),    plan_.moments ? sums_.moments.data() : nullptr,
+          sums_.features.data(),  plan_.aovs,
+          plan_.feature_planes(), plan_.two_signs,
+          first_sample_};
+}
+
+void CpuRenderer::accumulate(const SampleBuffer& batch) {
+  const FilmView film = film_view();
+  if (plan_.is_radiance_alone()) {
+    accumulate_with(batch, [&](std::uint32_t i) { return RadianceSum(film.pixels, i); });
+    return;
+  }
+  const SamplerSource source = sampler_source_of(options_);
+  accumulate_with(batch, [&](std::uint32_t i) {
+    return PixelPlanes<SamplerSource>(film, batch, scene_.filter, source, i);
+  });
+}
+
+template <class MakeSum>
+void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum) {
+  const tbb::blocked_range<std::uint32_t> pixels(0, batch.pixel_count.divisor(), 4096);
+  tally_ = tally_ + tbb::parallel_reduce(
+                        pixels, PathTally{},
+                        [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
+                          for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                            accumulate_pixel(make_sum(i), batch, i, sum,
+                                             [&](int bin) { ++sum.lengths[bin]; });
+                          }
+                          return sum;
+                        },
+                        [](const PathTally& a, const PathTally& b) { return a + b; });
+}
+
+void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
+  const FilmView film = film_view();
+  const SamplerSource source = sampler_source_of(options_);
+  dispatch_traits(CpuSceneKinds{}, traits_, IntegratorKind::path, [&](auto traits) {
+    tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
+      pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
+    });
+  });
+}
+
+void CpuRenderer::allocate_chains() {
+  std::uint64_t bytes = 0;
+  make_chain_arrays(chain_arrays_, [&]<class T>(T*& pointer, std::uint64_t count) {
+    // operator new aligns for all of them.
+    chain_memory_.emplace_back(count * sizeof(T));
+    pointer = reinterpret_cast<T*>(chain_memory_.back().data());
+    bytes += count * sizeof(T);
+  });
+  note_memory("chains", bytes);
+}
+
+void CpuRenderer::begin_chains(const ChainWindow& window) {
+  *chain_arrays_.chains = chains_view(chain_arrays_, window);
+  clear_chain_sums();
+}
+
+void CpuRenderer::clear_chain_sums() {
+  std::fill_n(chain_arrays_.counts, ChainCounts::copies, ChainCounts{});
+  std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
+}
+
+/// In parallel, within the time of the stage `mutate`.
+template <class Function>
+void CpuRenderer::for_each_path(std::uint32_t count, Function&& function) {
+  timer_.time(to_string(StageId::mutate), [&] {
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 64), [&](const auto& range) {
+      for (std::uint32_t i = range.begin(); i < range.end(); ++i) function(i);
+    });
+  });
+}
+
+bool CpuRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
+                                  const std::function<bool()>& cancel) {
+  const SampleBuffer batch = chain_batch(count);
+  bool is_whole = true;
+  time_in_arena(run, [&] {
+    for_each_path(count,
+                  [&](std::uint32_t i) { chain_arrays_.proposals[i] = bootstrap_path(first + i); });
+    is_whole = trace_whole(batch, cancel);
+    if (!is_whole) return;
+    for_each_path(count, [&](std::uint32_t i) {
+      chain_arrays_.bootstrap.targets[first + i] = target_of(batch.samples[i]);
+    });
+    count_paths(batch);
+  });
+  return is_whole;
+}
+
+void CpuRenderer::count_paths(const SampleBuffer& batch) {
+  const tbb::blocked_range<std::uint32_t> paths(0, batch.path_count, 4096);
+  tally_ =
+      tally_ + tbb::parallel_reduce(
+                   paths, PathTally{},
+                   [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
+                     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                       count_sample(batch.samples[i], sum, [&](int bin) { ++sum.lengths[bin]; });
+                     }
+                     return sum;
+                   },
+                   [](const PathTally& a, const PathTally& b) { return a + b; });
+}
+
+void CpuRenderer::splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) {
+  time_in_arena(run, [&] {
+    for_each_path(count, [&](std::uint32_t i) {
+      pt::splat_bootstrap(chain_arrays_, step, chain_arrays_.proposals[i], samples()[i]);
+    });
+  });
+}
+
+std::vector<TargetSum> CpuRenderer::sum_targets(std::uint32_t paths, RenderRun& run) {
+  const auto groups = static_cast<std::uint32_t>(Bootstrap::group_count(paths));
+  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
+  time_in_arena(run, [&] {
+    for_each_path(groups, [&](std::uint32_t group) {
+      bootstrap.groups[group] = sum_group(bootstrap, group, paths);
+    });
+  });
+  return {bootstrap.groups, bootstrap.groups + groups};
+}
+
+void CpuRenderer::start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) {
+  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
+  std::ranges::copy(starts.below, bootstrap.below);
+  time_in_arena(run, [&] {
+    for_each_path(starts.positions.chains, [&](std::uint32_t chain) {
+      chain_arrays_.proposals[chain] = bootstrap_path(start_of(bootstrap, starts.positions, chain));
+    });
+  });
+  run_chains(starts.positions.chains, step, run);
+}
+
+/// Traces a path of each chain, and the chain takes this step.
+void CpuRenderer::run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  const SampleBuffer batch = chain_batch(chains);
+  time_in_arena(run, [&] {
+    trace_batch(batch);
+    for_each_path(chains, [&](std::uint32_t chain) {
+      step_chain(chain_arrays_, step, chain, batch.samples[chain]);
+    });
+  });
+}
+
+void CpuRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
+                                RenderRun& run) {
+  if (!runs_chains_async()) {
+    while (chain_arrays_.proposals[0].iteration <= last) run_chains(chains, step, run);
+    return;
+  }
+  const SampleBuffer batch = chain_batch(chains);
+  chain_run_ = {chain_arrays_, step, last};
+  std::fill_n(samples(), chains, Sample{});
+  chains_are_async_ = true;
+  time_in_arena(run, [&] { trace_batch(batch); });
+  chains_are_async_ = false;
+}
+
+void CpuRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
+  time_in_arena(run, [&] {
+    for_each_path(chains, [&](std::uint32_t chain) { finish_chain(chain_arrays_, step, chain); });
+  });
+}
+
+ChainSums CpuRenderer::take_chain_sums() {
+  const std::uint64_t count = 3 * window().pixel_count();
+  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, {}, {}};
+  result.add(chain_arrays_.counts);
+  clear_chain_sums();
+  return result;
+}
+
+void CpuRenderer::describe(RenderReport& report) const {
+  report.device_kind = "cpu";
+  report.device_name = fmt::format("CPU, {} thread{}", threads_, threads_ == 1 ? "" : "s");
+  report.accel = accel_name(traits_.accel);
+  describe_plan(report);
+  report.pool_size = pool_size_;
+  report.primitives = primitive_count_;
+  report.setup_ms = setup_ms_;
+  report.counts = summarize(tally_);
+  report.memory = memory_;
+}
+
+}  // namespace pt

@@ -1,0 +1,41 @@
+#include "common/device/cuda/feature_kernels.cuh"
+#include "common/device/cuda/stage_stamp.cuh"
+
+namespace pt {
+namespace {
+
+template <class Traits>
+__global__ void find_features(const __grid_constant__ Scene scene,
+                              const __grid_constant__ FilmView film,
+                              const __grid_constant__ SampleBuffer batch, SamplerSource source,
+                              StageClock* clock) {
+  stamp_first_thread(clock, StageId::features);
+  const std::uint32_t pixel = blockIdx.x * blockDim.x + threadIdx.x;
+  if (pixel >= batch.pixel_count.divisor()) return;
+  accumulate_features<Traits>(film, batch, scene, source, pixel);
+}
+
+}  // namespace
+
+FeatureKernel feature_kernel(const SceneTraits& traits) {
+  // Features know no light, and are found once: few kernels serve all scenes.
+  const bool has_textures = traits.geometry != Geometry::spheres_and_quads;
+  SceneTraits needed = traits;
+  if (has_textures) {
+    needed.geometry = Geometry::mixed;
+  } else {
+    needed.lighting = Lighting::sky;
+  }
+  using Kinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>>;
+  FeatureKernel kernel = nullptr;
+  dispatch_traits(Kinds{}, needed, IntegratorKind::path,
+                  [&](auto kind) { kernel = find_features<decltype(kind)>; });
+  return kernel;
+}
+
+}  // namespace pt

@@ -1,0 +1,61 @@
+#include "common/image/codecs/tone_mapping.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/error/error.h"
+
+namespace pt {
+namespace {
+
+float encode_srgb(float linear) {
+  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+float decode_srgb(float encoded) {
+  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+float encode_gamma2(float linear) { return std::sqrt(linear); }
+
+float decode_gamma2(float encoded) { return encoded * encoded; }
+
+float clamp_unit(float value) {
+  if (!(value > 0)) return 0;  // NaN too
+  return value < 1 ? value : 1;
+}
+
+}  // namespace
+
+const TransferCurve srgb_curve{encode_srgb, decode_srgb};
+const TransferCurve gamma2_curve{encode_gamma2, decode_gamma2};
+
+std::string quantize(const Image& image, const ToneMapping& tone_mapping,
+                     const TransferCurve& curve) {
+  const float scale = std::exp2(tone_mapping.exposure);
+  std::string bytes(image.rgb.size(), '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const float encoded = curve.encode(clamp_unit(image.rgb[i] * scale));
+    bytes[i] = static_cast<char>(static_cast<unsigned char>(255 * encoded + 0.5f));
+  }
+  return bytes;
+}
+
+void dequantize(std::string_view samples, int max_value, const TransferCurve& curve, Image& image) {
+  std::vector<float> decoded(static_cast<std::size_t>(max_value) + 1);
+  for (std::size_t i = 0; i < decoded.size(); ++i) {
+    decoded[i] = curve.decode(static_cast<float>(i) / static_cast<float>(max_value));
+  }
+  const auto* bytes = reinterpret_cast<const unsigned char*>(samples.data());
+  const bool wide = sample_bytes(max_value) == 2;
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    const std::size_t sample = wide ? bytes[2 * i] * 256u + bytes[2 * i + 1] : bytes[i];
+    if (sample >= decoded.size()) {
+      throw Error(fmt::format("sample {} exceeds the file's maximum {}", sample, max_value));
+    }
+    image.rgb[i] = decoded[sample];
+  }
+}
+
+}  // namespace pt

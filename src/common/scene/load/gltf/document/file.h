@@ -1,0 +1,83 @@
+// A glTF file that is being loaded: its objects, and what is said of them.
+#pragma once
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <array>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/scene/load/files/load_options.h"
+
+namespace pt::gltf {
+
+/// Of formats of images: a texture that has only such an image is left out with a warning.
+inline constexpr std::array<std::string_view, 4> image_extensions = {
+    "EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"};
+
+/// The extensions that are understood; others are ignored, or an Error where the file needs them.
+inline constexpr std::array<std::string_view, 12> known_extensions = {
+    "KHR_lights_punctual",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform"};
+
+/// A place is a path of names and numbers such as meshes[3].primitives[0].
+[[noreturn]] inline void fail(const std::string& file, const std::string& place,
+                              const std::string& message) {
+  throw Error(fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", message));
+}
+
+class File {
+ public:
+  File(std::string name, tinygltf::Model objects, const LoadOptions& load_options)
+      : model(std::move(objects)), name_(std::move(name)), options_(load_options) {}
+
+  const tinygltf::Model model;
+
+  [[noreturn]] void fail(const std::string& place, const std::string& message) const {
+    gltf::fail(name_, place, message);
+  }
+
+  /// Reports what is ignored or replaced, and by what; the same message once, with its first place.
+  void report(const std::string& place, const std::string& message) {
+    if (!reported_.insert(message).second) return;
+    options_.report(fmt::format("{}: {}{}{}", name_, place, place.empty() ? "" : ": ", message));
+  }
+
+  /// A name for a part of the file.
+  std::string describe(const std::string& place) const { return name_ + ": " + place; }
+
+  /// Says what was chosen where the file leaves it open.
+  void note(const std::string& message) const {
+    if (options_.warn) options_.warn(fmt::format("{}: {}", name_, message));
+  }
+
+  /// objects[index]; an Error at `place` if there is no such object. `kind` is the array's name.
+  template <class T>
+  const T& at(const std::vector<T>& objects, int index, const char* kind,
+              const std::string& place) const {
+    if (index < 0 || static_cast<std::size_t>(index) >= objects.size()) {
+      fail(place, fmt::format("{}[{}] does not exist, there are {}", kind, index, objects.size()));
+    }
+    return objects[static_cast<std::size_t>(index)];
+  }
+
+ private:
+  std::string name_;
+  const LoadOptions& options_;
+  std::set<std::string> reported_;
+};
+
+}  // namespace pt::gltf

@@ -1,0 +1,167 @@
+#include "wavefront/pool/stage_bytes.h"
+
+#include <string_view>
+
+namespace pt {
+namespace {
+
+constexpr double record = sizeof(PathRecord), index = sizeof(std::uint32_t), tag = sizeof(StageId);
+constexpr double sample = sizeof(Sample), radiance = sizeof(Color);
+
+class Predictor {
+ public:
+  Predictor(const WaveFlow& flow, const WaveLayout& layout) : flow_(flow), layout_(layout) {}
+
+  PredictedBytes generate() const {
+    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    const double ray_index = layout_.has_queues ? index : 0;
+    const bool has_input = layout_.queues_free || !layout_.has_queues;
+    return {has_input ? find(flow_.generated) : 0,
+            flow_.generated * (2 * record + ray_index + sample_bytes + own_tag())};
+  }
+
+  PredictedBytes intersect() const {
+    const double n = flow_.rays, stored = layout_.persistent ? n : n - flow_.misses;
+    const double sent = layout_.persistent ? 0 : n * send();
+    return {find(n) + n * 2 * record, stored * hit() + sent};
+  }
+
+  PredictedBytes route_hits() const {
+    return {find(flow_.rays) + flow_.rays * sizeof(StoredHit), flow_.rays * send()};
+  }
+
+  PredictedBytes shade_miss() const {
+    const double n = flow_.misses;
+    // The direction alone, but where it shares a sector with the origin both move.
+    const bool whole = layout_.all_lights || layout_.parts.layout == PoolLayout::sectors;
+    const double ray = whole ? 2 * record : record;
+    return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
+  }
+
+  /// `n` of the surfaces.
+  PredictedBytes shade_surface(double n) const {
+    const double share = flow_.surfaces > 0 ? n / flow_.surfaces : 0;
+    const double alive = share * flow_.continued, ended = n - alive;
+    const double shadows = share * flow_.shadows;
+    return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
+            alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
+                shadows * (3 * record + (layout_.appends ? index : 0)) +
+                (layout_.parts.lights && !layout_.appends ? n * tag : 0)};
+  }
+
+  PredictedBytes shadow() const {
+    const double n = flow_.shadows;
+    return {find(n) + n * (3 * record + radiance), n * (radiance + own_tag())};
+  }
+
+  PredictedBytes bounce() const {
+    // The pool holds the whole batch, and its first wave begins all paths.
+    const bool starts = layout_.appends && !layout_.queues_free && flow_.generated > 0;
+    const double n = flow_.rays, alive = flow_.continued, ended = flow_.rays - alive;
+    const double loaded = 2 * record + old_path() + receiver() + before();
+    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    return {starts ? 0 : find(n) + n * loaded,
+            alive * (3 * record + receiver() + sample_bytes + send()) + ended * (sample + free())};
+  }
+
+  PredictedBytes finish() const {
+    const double n = flow_.finished;
+    return {find(n) + n * (3 * record + receiver() + before()), n * (sample + own_tag())};
+  }
+
+  PredictedBytes order_tiles() const {
+    return {flow_.surfaces * (index + hit()), flow_.surfaces * index};
+  }
+  PredictedBytes count_surfaces() const {
+    return {flow_.surfaces * (index + hit()), flow_.surfaces * sizeof(std::uint8_t)};
+  }
+  PredictedBytes place_surfaces() const {
+    return {flow_.surfaces * (sizeof(std::uint8_t) + index), flow_.surfaces * index};
+  }
+
+ private:
+  /// To find the `n` slots that wait.
+  double find(double n) const { return layout_.has_queues ? n * index : layout_.slots * tag; }
+  /// To send a slot on.
+  double send() const { return layout_.appends ? index : tag; }
+  /// To give a slot back.
+  double free() const {
+    if (!layout_.appends) return tag;
+    return layout_.queues_free ? index : 0;
+  }
+  /// Of stages that append nothing.
+  double own_tag() const { return layout_.appends ? 0 : tag; }
+  double hit() const {
+    return sizeof(StoredHit) + (layout_.parts.instances ? sizeof(std::uint32_t) : 0);
+  }
+  double receiver() const { return layout_.parts.receivers ? sizeof(Receiver) : 0; }
+  /// What has happened to a path; nothing has to a new one.
+  double old_path() const {
+    return flow_.rays > 0 ? record * (1 - flow_.generated / flow_.rays) : 0;
+  }
+  /// The radiance that lights have added.
+  double before() const { return layout_.parts.lights ? radiance : 0; }
+
+  const WaveFlow& flow_;
+  const WaveLayout& layout_;
+};
+
+/// The kernels besides shade_surface, by the names of the statistics.
+struct PredictedKernel {
+  std::string_view name;
+  PredictedBytes (Predictor::*bytes)() const;
+};
+constexpr PredictedKernel predicted_kernels[] = {
+    {stage_info(StageId::generate).name, &Predictor::generate},
+    {stage_info(StageId::intersect).name, &Predictor::intersect},
+    {stage_info(StageId::route_hits).name, &Predictor::route_hits},
+    {stage_info(StageId::shade_miss).name, &Predictor::shade_miss},
+    {stage_info(StageId::shadow).name, &Predictor::shadow},
+    {stage_info(StageId::bounce).name, &Predictor::bounce},
+    {stage_info(StageId::finish).name, &Predictor::finish},
+    {"order_tiles", &Predictor::order_tiles},
+    {"count_surfaces", &Predictor::count_surfaces},
+    {"place_surfaces", &Predictor::place_surfaces}};
+
+/// Surfaces that the kernel shades: those of its kind, or what is left.
+double surfaces_of(std::string_view kind, const WaveFlow& flow, const WaveLayout& layout) {
+  if (!layout.shades_by_kind) return flow.surfaces;
+  auto index = static_cast<std::size_t>(several_kinds);
+  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
+    if (kind == Bsdf::name) index = static_cast<std::size_t>(kind_of<Bsdf>);
+  });
+  return flow.kinds[index];
+}
+
+}  // namespace
+
+WaveFlow flow_of(const WaveCounters& counters) {
+  const auto waiting = [&](StageId id) { return counters.waiting[queue_index(id)]; };
+  WaveFlow flow;
+  flow.generated = counters.generate;
+  flow.rays = counters.intersect;
+  flow.misses = waiting(StageId::shade_miss);
+  flow.surfaces = waiting(StageId::shade_surface);
+  flow.shadows = waiting(StageId::shadow);
+  flow.finished = counters.finish;
+  for (int kind = 0; kind < kind_count; ++kind) {
+    flow.kinds[static_cast<std::size_t>(kind)] = counters.kinds.count[kind];
+  }
+  return flow;
+}
+
+PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
+                             const WaveLayout& layout) {
+  const Predictor predict(flow, layout);
+  const std::string stage = kernel.substr(0, kernel.find('/'));
+  const std::string kind = stage.size() < kernel.size() ? kernel.substr(stage.size() + 1) : "";
+  if (stage == stage_info(StageId::shade_surface).name) {
+    return predict.shade_surface(surfaces_of(kind, flow, layout));
+  }
+  for (const PredictedKernel& one : predicted_kernels) {
+    if (one.name == stage) return (predict.*one.bytes)();
+  }
+  return {};
+}
+
+}  // namespace pt
