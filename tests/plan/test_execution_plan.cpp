@@ -286,14 +286,14 @@ const std::vector<Row>& rows() {
        cpu(),
        {{"accel", "bvh2"}}},
       {"the host's waves", {{"schedule", "host"}}, mesh(), gpu(), {{"schedule", "host"}}},
-      {"few lamps",
+      {"few emitters",
        {},
-       changed(mesh(), [](auto& s) { s.lamps = 16; }),
+       changed(mesh(), [](auto& s) { s.emitters = 16; }),
        gpu(),
        {{"light-selection", "power"}}},
-      {"many lamps",
+      {"many emitters",
        {},
-       changed(mesh(), [](auto& s) { s.lamps = 17; }),
+       changed(mesh(), [](auto& s) { s.emitters = 17; }),
        gpu(),
        {{"light-selection", "tree"}}},
       {"what was built",
@@ -405,7 +405,7 @@ TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
 }
 
 SceneProperties lit(SceneProperties scene) {
-  scene.has_lamps = true;
+  scene.has_emitters = true;
   return scene;
 }
 

@@ -21,8 +21,8 @@ constexpr std::size_t scan_spheres_wavefront_max = 384, scan_spheres_megakernel_
 /// constants (traverse_brute.h). Beyond, 250 spheres take 5 % longer than in global memory, 1000
 /// 45 %.
 constexpr std::size_t constant_spheres_best = 64;
-/// On a GPU a tree's descents can take as long as all other shading, which few lamps are not worth.
-constexpr std::size_t few_lamps = 16;
+/// On a GPU a tree's descents can take as long as all other shading, which few emitters are not worth.
+constexpr std::size_t few_emitters = 16;
 // Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
 // the L2 cache.
 constexpr std::uint64_t pool_paths_for_passes = std::uint64_t{1} << 20;
@@ -44,7 +44,7 @@ class Planner {
     if (o_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
     if (o_.mode == Mode::wavefront) choose_waves();
-    if (!is_specialized() && scene_.lamps && o_.nee) choose_lights();
+    if (!is_specialized() && scene_.emitters && o_.nee) choose_lights();
     check_plan(plan_, o_, scene_, device_);
     return std::move(plan_);
   }
@@ -271,12 +271,12 @@ class Planner {
   }
 
   void choose_lights() {
-    const LightSelection selection = choose_light_selection(o_.light_selection, *scene_.lamps);
+    const LightSelection selection = choose_light_selection(o_.light_selection, *scene_.emitters);
     decide("light-selection", to_string(selection),
            o_.light_selection != LightSelection::automatic
                ? asked
-               : fmt::format("{} of at least {} lights that a tree pays for", *scene_.lamps,
-                             few_lamps + 1));
+               : fmt::format("{} of at least {} lights that a tree pays for", *scene_.emitters,
+                             few_emitters + 1));
   }
 
   const Options& o_;
@@ -287,9 +287,9 @@ class Planner {
 
 }  // namespace
 
-LightSelection choose_light_selection(LightSelection wanted, std::size_t lamps) {
+LightSelection choose_light_selection(LightSelection wanted, std::size_t emitters) {
   if (wanted != LightSelection::automatic) return wanted;
-  return lamps > few_lamps ? LightSelection::tree : LightSelection::power;
+  return emitters > few_emitters ? LightSelection::tree : LightSelection::power;
 }
 
 bool order_pays_for(std::uint32_t bsdf_kinds) {

@@ -32,8 +32,8 @@ struct ExecutionPlan {
 ExecutionPlan plan_execution(const Options& options, const SceneProperties& scene,
                              const DeviceProperties& device);
 
-/// How lights are chosen where there are so many lamps.
-LightSelection choose_light_selection(LightSelection wanted, std::size_t lamps);
+/// How lights are chosen where there are so many emitters.
+LightSelection choose_light_selection(LightSelection wanted, std::size_t emitters);
 
 /// Whether the surfaces of scenes with these kinds of BSDFs (SceneProperties) are shaded faster in
 /// order: where warps would meet many, or one that is much longer than the others. Kernels for each

@@ -110,7 +110,7 @@ void check_toggles(const ExecutionPlan& plan, const Options& o, const ScenePrope
     throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
   };
   if (plan.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
-  if (scene.has_lamps)
+  if (scene.has_emitters)
     refuse("surfaces that shine, as scene '" + scene.name + "' has", "a scene without");
   if (o.rng != RngKind::philox && o.branching != Branching::divergent)
     refuse("--branching reduced", "divergent");
@@ -127,7 +127,7 @@ void check_scene_memory(const ExecutionPlan& plan, const Options& o, const Scene
         fmt::format("--scene-memory {}: for kernels that scan the spheres and shade; expected "
                     "--accel brute, and --stages fused in waves, or global memory",
                     memory));
-  if (plan.scene_memory == SceneMemory::shared && scene.has_lamps)
+  if (plan.scene_memory == SceneMemory::shared && scene.has_emitters)
     throw Error(
         fmt::format("--scene-memory shared: has kernels for spheres under the sky alone; scene "
                     "'{}' has surfaces that shine, expected constant or global",

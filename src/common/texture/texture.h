@@ -36,7 +36,7 @@ struct alignas(16) Texture {
   Color color1 = Color(0.0f);  ///< checkerboard: the others
   /// Checkerboard: the indices of earlier textures that the colours multiply.
   std::uint32_t nested[2] = {no_texture, no_texture};
-  std::uint32_t number = 0;  ///< its own, in a prepared scene
+  std::uint32_t index = 0;  ///< its own, in a prepared scene
 };
 
 }  // namespace pt

@@ -31,7 +31,7 @@ PT_HD Color textured(const Scene& scene, const Color& c, std::uint32_t texture, 
 /// argument less than the table and an index, which callers would have to keep.
 PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const std::byte* texels,
                                           Vec2 uv) {
-  return c * sample_texture(texture - texture->texture_index, texture->texture_index, texels, uv);
+  return c * sample_texture(texture - texture->index, texture->index, texels, uv);
 }
 PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
                            const Vec2& uv) {

@@ -14,13 +14,14 @@ struct Look {
   int is_beckmann;
 };
 
-Look look_of(std::uint32_t index, std::uint32_t round) {
+Look look_of(std::uint32_t material_index, std::uint32_t round) {
   constexpr float roughness[] = {0.15f, 0.3f, 0.1f}, exponent[] = {20, 60, 8};
   constexpr float index[] = {1.5f, 1.4f, 1.6f};
   Look look{Color(1.0f), roughness[round % 3], exponent[round % 3], index[round % 3],
             static_cast<int>(round % 2)};
   for (int c = 0; c < 3; ++c) {  // turns by the golden ratio: neighbours differ most
-    const float turns = 0.618034f * static_cast<float>(index) + static_cast<float>(c) / 3.0f;
+    const float turns =
+        0.618034f * static_cast<float>(material_index) + static_cast<float>(c) / 3.0f;
     look.hue[c] += 0.12f * sincos_2pi(turns - std::floor(turns)).cos;
   }
   return look;

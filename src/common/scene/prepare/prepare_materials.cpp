@@ -121,7 +121,7 @@ std::uint32_t kinds_of(const SceneData& scene) {
 
 void prepare_materials(SceneData& scene, bool multiple_scattering) {
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
-    scene.textures[i].number = static_cast<std::uint32_t>(i);
+    scene.textures[i].index = static_cast<std::uint32_t>(i);
   }
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();

@@ -37,7 +37,7 @@ void prepare_scene(SceneData& scene, const Options& options, const DevicePropert
     prepare_primitives_only(scene, plan.accel);
   } else {
     prepare_triangles(scene, options, plan.accel);
-    scene.properties.lamps = scene.light_list.lamps;
+    scene.properties.emitters = scene.light_list.emitters;
   }
   scene.properties.structure = plan.accel;
   for (const Decision& d : plan.decisions) {

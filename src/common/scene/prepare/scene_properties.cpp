@@ -33,7 +33,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.instances = scene.instances.size();
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_masks = std::ranges::any_of(scene.materials, is_masked);
-  properties.has_lamps = std::ranges::any_of(
+  properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
   properties.limits_camera_rays = is_limited(scene.camera);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);

@@ -6,7 +6,7 @@
 namespace pt {
 
 /// Of a scene whose materials are prepared (prepare_materials.h). `structure`, `scan_bytes` and
-/// `lamps` are for prepare_scene() to fill in.
+/// `emitters` are for prepare_scene() to fill in.
 SceneProperties properties_of(const SceneData& scene);
 
 /// Whether the scene has nothing that the paper's have not.
