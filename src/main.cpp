@@ -11,6 +11,7 @@
 #include "app/options/command_line.h"
 #include "app/render_command.h"
 #include "app/standard_output.h"
+#include "app/trace_command.h"
 #include "common/device/devices.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
