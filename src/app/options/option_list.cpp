@@ -194,8 +194,8 @@ void add_scene(std::vector<OptionEntry>& list) {
   Group(list, "Scene")
       .add(text("scene", "NAME|FILE", &Options::scene),
            "A scene of --list-scenes, or a file: Mitsuba .xml, .gltf,\n"
-           ".glb, .obj, .ply. Options override a file's size, spp, depth\n"
-           "and camera")
+           ".glb, .pbrt (version 4), .obj, .ply. Options override a\n"
+           "file's size, spp, depth and camera")
       .add(custom(
                "define", OptionForm::list, "NAME=VALUE",
                [](Options& o, const std::string& s) {

@@ -13,6 +13,7 @@
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/gltf.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/pbrt/pbrt.h"
 
 namespace pt {
 
@@ -113,9 +114,10 @@ struct Format {
   SceneData (*load)(const std::filesystem::path&, const LoadOptions&);
 };
 
-constexpr std::array<Format, 5> formats = {{{".xml", load_mitsuba_xml},
+constexpr std::array<Format, 6> formats = {{{".xml", load_mitsuba_xml},
                                             {".gltf", load_gltf},
                                             {".glb", load_gltf},
+                                            {".pbrt", load_pbrt},
                                             {".obj", load_obj},
                                             {".ply", load_ply}}};
 

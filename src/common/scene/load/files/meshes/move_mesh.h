@@ -1,0 +1,18 @@
+// Meshes into other spaces, and inside out.
+#pragma once
+
+#include "common/geometry/mesh.h"
+#include "common/math/transform.h"
+
+namespace pt {
+
+/// Positions and normals; the winding stays as it is.
+void transform_mesh(Mesh& mesh, const Affine& map);
+
+/// Turns normals and winding.
+void turn_mesh(Mesh& mesh);
+
+/// Winds each triangle so that its geometric normal is on the side of its vertices' normals.
+void wind_by_normals(Mesh& mesh);
+
+}  // namespace pt

@@ -1,0 +1,39 @@
+#include "common/scene/load/pbrt/colors/context.h"
+
+#include <fmt/format.h>
+
+#include "common/scene/load/files/find_file.h"
+
+namespace pt::pbrt {
+namespace {
+
+std::string text_of(const Color& c) { return fmt::format("{} {} {}", c.x, c.y, c.z); }
+
+std::string key_of(const MaterialDescription& m) {
+  std::string key = fmt::format("{} {} {} {} {}", static_cast<int>(m.kind), m.one_sided,
+                                static_cast<int>(m.node), m.children[0], m.children[1]);
+  for (const pt::Parameter& p : m.parameters)
+    key += fmt::format(" {} {}", text_of(p.value), p.texture);
+  key += fmt::format(" {} {} {}", text_of(m.emission.radiance), m.emission.texture,
+                     m.emission.texture_mean);
+  return key + fmt::format(" {} {} {} {}", m.opacity.offset, m.opacity.scale, m.opacity.texture,
+                           m.opacity.cutoff);
+}
+
+}  // namespace
+
+std::uint32_t Context::add_material(const MaterialDescription& material) {
+  const auto [entry, is_new] = materials_.try_emplace(key_of(material), 0);
+  if (is_new) entry->second = scene.add_material(material);
+  return entry->second;
+}
+
+std::filesystem::path Context::resolve(const Place& place, const std::string& name) {
+  const auto warn = [&](const std::string& line) {
+    reporter.warn_once("case " + name, place, line);
+  };
+  const std::filesystem::path found = find_file(description.folder, name, warn);
+  return found.empty() ? description.folder / name : found;
+}
+
+}  // namespace pt::pbrt

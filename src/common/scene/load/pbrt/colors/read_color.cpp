@@ -1,0 +1,157 @@
+#include "common/scene/load/pbrt/colors/read_color.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/mitsuba/spectra/spectra.h"
+#include "common/scene/load/pbrt/colors/named_spectra.h"
+#include "common/scene/load/pbrt/syntax/source.h"
+
+namespace pt::pbrt {
+namespace {
+
+float luminance_of(const Color& c) { return dot(c, Color(0.2126f, 0.7152f, 0.0722f)); }
+
+Color of_luminance_one(const Parameter& parameter, const Color& color) {
+  const float y = luminance_of(color);
+  if (y > 0.0f && std::isfinite(y)) return color / y;
+  fail(parameter.place,
+       fmt::format("'{} {}' has no light that can be seen", parameter.type, parameter.name));
+}
+
+Color sampled(const Parameter& parameter, const std::vector<double>& numbers, Quantity quantity) {
+  if (numbers.size() % 2 != 0 || numbers.empty()) {
+    fail(parameter.place, fmt::format("'spectrum {}' has {} numbers; expected pairs of wavelength "
+                                      "(nm) and value",
+                                      parameter.name, numbers.size()));
+  }
+  mitsuba::Samples samples;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) {
+    if (i > 0 && !(numbers[i] > numbers[i - 2])) {
+      fail(parameter.place, "a spectrum whose wavelengths do not grow");
+    }
+    samples.emplace_back(numbers[i], numbers[i + 1]);
+  }
+  const bool emits = quantity == Quantity::illuminant;
+  const Color color = mitsuba::spectrum_to_rgb(
+      samples, emits ? mitsuba::Quantity::emission : mitsuba::Quantity::reflectance);
+  return emits ? of_luminance_one(parameter, color) : color;
+}
+
+/// Of a file of lines "wavelength value"; # begins a comment.
+std::vector<double> read_samples(Context& context, const Parameter& parameter) {
+  const auto path = context.resolve(parameter.place, parameter.strings[0]);
+  std::vector<double> numbers;
+  try {
+    const std::string content = read_source(path);
+    std::string_view rest = content;
+    while (!rest.empty()) {
+      std::string_view line = rest.substr(0, rest.find('\n'));
+      rest.remove_prefix(std::min(rest.size(), line.size() + 1));
+      line = line.substr(0, line.find('#'));
+      for (auto word = next_word(line); !word.empty(); word = next_word(line)) {
+        numbers.push_back(pt::parse_number(word));
+      }
+    }
+  } catch (const Error& error) {
+    fail(parameter.place, fmt::format("'{}' is no spectrum that is known by name and no file: {}",
+                                      path.string(), error.what()));
+  }
+  return numbers;
+}
+
+Color named(Context& context, const Parameter& parameter, Quantity quantity) {
+  const std::string& name = parameter.strings[0];
+  if (const auto illuminant = named_illuminant(name)) return *illuminant;
+  if (const auto metal = named_metal(name)) return *metal;
+  if (const auto glass = named_glass(name)) return Color(*glass);
+  return sampled(parameter, read_samples(context, parameter), quantity);
+}
+
+Color spectrum_of(Context& context, const Parameter& parameter, Quantity quantity) {
+  if (parameter.strings.size() > 1) fail(parameter.place, "a spectrum of more than one name");
+  if (!parameter.strings.empty()) return named(context, parameter, quantity);
+  return sampled(parameter, parameter.numbers, quantity);
+}
+
+Color color_of(Context& context, const Parameter& p, Quantity quantity) {
+  const auto check_count = [&](std::size_t count) {
+    if (p.numbers.size() == count) return;
+    fail(p.place, fmt::format("'{} {}' has {} numbers; expected {}", p.type, p.name,
+                              p.numbers.size(), count));
+  };
+  if (p.type == "spectrum") return spectrum_of(context, p, quantity);
+  if (p.type == "blackbody") {
+    check_count(1);
+    if (!(p.numbers[0] >= 100 && p.numbers[0] <= 1e6)) {
+      fail(p.place, fmt::format("blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]));
+    }
+    return of_luminance_one(p, mitsuba::blackbody_to_rgb(p.numbers[0]));
+  }
+  if (p.type == "rgb" || p.type == "color") {
+    check_count(3);
+    const Color color(p.numbers[0], p.numbers[1], p.numbers[2]);
+    for (int i = 0; i < 3; ++i) {
+      if (!(color[i] >= 0.0f))
+        fail(p.place, fmt::format("'rgb {}' with a negative number", p.name));
+    }
+    return to_srgb(color, p.space);
+  }
+  if (p.type == "float" || p.type == "integer") {
+    check_count(1);
+    context.reporter.warn_once("grey " + p.name, p.place,
+                               fmt::format("'{} {}' as a colour: grey is used; expected rgb, "
+                                           "spectrum or blackbody",
+                                           p.type, p.name));
+    return Color(static_cast<float>(p.numbers[0]));
+  }
+  fail(p.place, fmt::format("parameter '{}' is of type '{}'; expected rgb, spectrum or blackbody",
+                            p.name, p.type));
+}
+
+}  // namespace
+
+Color read_color(Context& context, const Parameter& parameter, Quantity quantity) {
+  Color color = color_of(context, parameter, quantity);
+  for (int i = 0; i < 3; ++i) {
+    if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) {
+      fail(parameter.place, fmt::format("'{} {}' has the component {}; expected one that is "
+                                        "finite and not negative",
+                                        parameter.type, parameter.name, color[i]));
+    }
+    if (quantity == Quantity::albedo && color[i] > 1.0f) {
+      context.reporter.warn_once("reflectance above 1", parameter.place,
+                                 fmt::format("'{} {}' above 1: 1 is used, for conservation of "
+                                             "energy",
+                                             parameter.type, parameter.name));
+      color[i] = 1.0f;
+    }
+  }
+  return color;
+}
+
+Color read_color(Context& context, const Parameters& parameters, std::string_view name,
+                 const Color& fallback, Quantity quantity) {
+  const Parameter* parameter = parameters.find(name);
+  return parameter ? read_color(context, *parameter, quantity) : fallback;
+}
+
+float read_index(Context& context, const Parameters& parameters, std::string_view name,
+                 float fallback) {
+  const Parameter* p = parameters.find(name, {"float", "integer", "spectrum"});
+  if (!p) return fallback;
+  const float index = p->type == "spectrum" ? mean(read_color(context, *p, Quantity::unbounded))
+                                            : parameters.number(name, fallback);
+  if (p->type == "spectrum") {
+    context.reporter.warn_once("dispersion", p->place,
+                               fmt::format("'spectrum {}': the index of refraction {} is used for "
+                                           "all wavelengths",
+                                           name, index));
+  }
+  if (index > 0.0f) return index;
+  fail(p->place, fmt::format("'{} {}' of {}; expected one above 0", p->type, name, index));
+}
+
+}  // namespace pt::pbrt

@@ -1,0 +1,53 @@
+// What a pbrt file says, before it is made a scene: things may be named before they are defined.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "common/math/transform.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
+
+namespace pt::pbrt {
+
+/// A directive with a type and parameters: a material, a texture, a light, ...
+struct Entity {
+  std::string type;
+  Parameters parameters;
+  Affine to_world;                      ///< the current transformation
+  ColorSpace space = ColorSpace::srgb;  ///< the current one
+};
+using EntityPointer = std::shared_ptr<const Entity>;
+
+/// One of its own, or by name; a null pointer is pbrt's default, diffuse.
+using MaterialReference = std::variant<EntityPointer, std::string>;
+
+struct ShapeEntity {
+  Entity shape;
+  MaterialReference material;
+  EntityPointer area_light;  ///< null: it is dark
+  bool reverse = false;      ///< ReverseOrientation
+  std::uint32_t group = 0;   ///< 0: the world; else of an object
+};
+
+struct InstanceEntity {
+  std::string name;
+  Place place;
+  Affine to_world;
+};
+
+struct Description {
+  std::filesystem::path folder;  ///< of the scene's own file
+  Place place;                   ///< its beginning
+  // Null: the file has none.
+  EntityPointer camera, film, sampler, integrator, filter;
+  std::vector<EntityPointer> lights;
+  std::map<std::string, EntityPointer> materials, float_textures, spectrum_textures;  ///< by name
+  std::vector<ShapeEntity> shapes;
+  std::map<std::string, std::uint32_t> groups;  ///< of objects, from 1
+  std::vector<InstanceEntity> instances;
+};
+
+}  // namespace pt::pbrt

@@ -1,0 +1,18 @@
+// What AttributeBegin remembers and AttributeEnd brings back.
+#pragma once
+
+#include "common/scene/load/pbrt/description/description.h"
+
+namespace pt::pbrt {
+
+struct GraphicsState {
+  Affine to_world;
+  bool moves_start = true;  ///< transformations apply at the beginning of the shutter's interval
+  bool reverse = false;
+  ColorSpace space = ColorSpace::srgb;
+  MaterialReference material;
+  EntityPointer area_light;
+  std::map<std::string, std::vector<Parameter>, std::less<>> attributes;  ///< by target
+};
+
+}  // namespace pt::pbrt

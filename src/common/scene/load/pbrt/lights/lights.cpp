@@ -1,0 +1,106 @@
+#include "common/scene/load/pbrt/lights/lights.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace pt::pbrt {
+namespace {
+
+float cosine(float degrees) { return std::cos(degrees * pi / 180.0f); }
+
+/// scale * `name`; where a `power` is given, that over `sphere`, the integral of the light's share
+/// over all directions, replaces the scale's unit.
+Color read_intensity(Context& context, const Entity& entity, const char* name, const char* power,
+                     float sphere) {
+  const Parameters& parameters = entity.parameters;
+  const Color white = to_srgb(Color(1.0f), entity.space);
+  const Color color = read_color(context, parameters, name, white, Quantity::illuminant);
+  const float all = parameters.number(power, 0.0f);
+  return read_light_scale(context, parameters) * (all > 0.0f ? all / sphere : 1.0f) * color;
+}
+
+void add_point(Context& context, const Entity& entity) {
+  DeltaLight light;
+  light.kind = LightKind::point;
+  light.intensity = read_intensity(context, entity, "I", "power", 4.0f * pi);
+  light.position = entity.to_world.point(entity.parameters.point("from", Vec3(0.0f)));
+  context.scene.delta_lights.push_back(light);
+}
+
+Vec3 read_direction(const Entity& entity, const Vec3& from) {
+  const Vec3 to = entity.parameters.point("to", Vec3(0, 0, 1));
+  const Vec3 direction = entity.to_world.vector(to - from);
+  const float length = glm::length(direction);
+  if (length > 0.0f && std::isfinite(length)) return direction / length;
+  fail(entity.parameters.place(),
+       fmt::format("{}: expected two different points 'from' and 'to'", entity.parameters.what()));
+}
+
+void add_spot(Context& context, const Entity& entity) {
+  const Parameters& parameters = entity.parameters;
+  const float cone = parameters.number("coneangle", 30.0f);
+  const float delta = parameters.number("conedeltaangle", 5.0f);
+  if (!(cone > 0.0f && cone <= 180.0f && delta >= 0.0f && delta <= cone)) {
+    fail(parameters.place(), fmt::format("spot: coneangle {} and conedeltaangle {}; expected "
+                                         "degrees with 0 <= conedeltaangle <= coneangle <= 180",
+                                         cone, delta));
+  }
+  DeltaLight light;
+  light.kind = LightKind::spot;
+  light.falloff = SpotFalloff::smooth;
+  light.cos_inner = cosine(cone - delta);
+  light.cos_outer = cosine(cone);
+  const float sphere =
+      2.0f * pi * ((1.0f - light.cos_inner) + 0.5f * (light.cos_inner - light.cos_outer));
+  light.intensity = read_intensity(context, entity, "I", "power", sphere);
+  const Vec3 from = parameters.point("from", Vec3(0.0f));
+  light.position = entity.to_world.point(from);
+  light.direction = read_direction(entity, from);
+  context.scene.delta_lights.push_back(light);
+}
+
+void add_distant(Context& context, const Entity& entity) {
+  DeltaLight light;
+  light.kind = LightKind::directional;
+  light.intensity = read_intensity(context, entity, "L", "illuminance", 1.0f);
+  light.direction = read_direction(entity, entity.parameters.point("from", Vec3(0.0f)));
+  context.scene.delta_lights.push_back(light);
+}
+
+using Adder = void (*)(Context&, const Entity&);
+
+const std::map<std::string_view, Adder>& adders() {
+  static const std::map<std::string_view, Adder> table = {{"point", add_point},
+                                                          {"spot", add_spot},
+                                                          {"distant", add_distant},
+                                                          {"infinite", add_infinite}};
+  return table;
+}
+
+}  // namespace
+
+float read_light_scale(const Context& context, const Parameters& parameters) {
+  const float scale = context.imaging_ratio * parameters.number("scale", 1.0f);
+  if (scale >= 0.0f && std::isfinite(scale)) return scale;
+  fail(parameters.place(), fmt::format("{}: a scale below 0", parameters.what()));
+}
+
+void add_lights(Context& context) {
+  for (const EntityPointer& entity : context.description.lights) {
+    const Parameters& parameters = entity->parameters;
+    const auto adder = adders().find(entity->type);
+    if (adder == adders().end()) {
+      context.reporter.warn_once("light " + entity->type, parameters.place(),
+                                 fmt::format("light '{}' is not supported: it is left out; "
+                                             "expected point, spot, distant or infinite",
+                                             entity->type));
+      continue;
+    }
+    adder->second(context, *entity);
+    parameters.report_unused(context.reporter);
+    context.lit = true;
+  }
+}
+
+}  // namespace pt::pbrt

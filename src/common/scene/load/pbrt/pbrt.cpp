@@ -1,0 +1,54 @@
+#include "common/scene/load/pbrt/pbrt.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/scene/data/frame_scene.h"
+#include "common/scene/load/files/studio.h"
+#include "common/scene/load/pbrt/description/read_description.h"
+#include "common/scene/load/pbrt/lights/lights.h"
+#include "common/scene/load/pbrt/shapes/shapes.h"
+#include "common/scene/load/pbrt/view/view.h"
+
+namespace pt {
+namespace {
+
+using pbrt::Context;
+using pbrt::Description;
+using pbrt::Reporter;
+
+/// What a viewer needs and the file does not bring.
+void complete(Context& context) {
+  SceneData& scene = context.scene;
+  const Description& description = context.description;
+  if (!description.camera) {
+    const Bounds bounds = scene_bounds(scene);
+    if (std::isfinite(glm::length(bounds.max - bounds.min)) && !bounds.is_empty()) {
+      scene.camera = frame_scene(scene);
+    }
+    context.reporter.note(description.place, "no Camera: one that frames the scene is used");
+  }
+  if (context.lit) return;
+  add_studio(scene);
+  const std::string text = fmt::format("no light that is supported: {} is used", studio_text);
+  if (description.lights.empty()) return context.reporter.note(description.place, text);
+  context.reporter.warn_once("dark", description.place, text);
+}
+
+}  // namespace
+
+SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& options) {
+  Reporter reporter(options);
+  const Description description = pbrt::read_description(path, reporter);
+  SceneData scene;
+  scene.name = path.stem().string();
+  Context context(scene, description, reporter);
+  pbrt::read_view(context);
+  pbrt::add_lights(context);
+  pbrt::add_shapes(context);
+  complete(context);
+  return scene;
+}
+
+}  // namespace pt

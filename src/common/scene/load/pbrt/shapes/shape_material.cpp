@@ -1,0 +1,116 @@
+#include "common/scene/load/pbrt/shapes/shape_material.h"
+
+#include <fmt/format.h>
+
+#include "common/scene/load/files/images/image_files.h"
+
+namespace pt::pbrt {
+namespace {
+
+/// Whether shading asks where on the surface a point lies.
+bool is_textured(const SceneData& scene, const MaterialDescription& material) {
+  if (material.is_textured() || material.opacity.texture != no_texture) return true;
+  if (material.node == MaterialNode::none) return uses_tangent(material);
+  return is_textured(scene, scene.materials[material.children[0]]) ||
+         is_textured(scene, scene.materials[material.children[1]]);
+}
+
+/// Whether it asks in which directions texture coordinates grow.
+bool needs_tangents(const SceneData& scene, const MaterialDescription& material) {
+  if (material.node == MaterialNode::none) return uses_tangent(material);
+  return material.node >= MaterialNode::normal_map ||
+         needs_tangents(scene, scene.materials[material.children[0]]) ||
+         needs_tangents(scene, scene.materials[material.children[1]]);
+}
+
+float mean_luminance(const Image& image) {
+  double sum = 0;
+  for (std::size_t i = 0; i + 2 < image.rgb.size(); i += 3) {
+    sum += 0.2126 * image.rgb[i] + 0.7152 * image.rgb[i + 1] + 0.0722 * image.rgb[i + 2];
+  }
+  return static_cast<float>(sum / (static_cast<double>(image.width) * image.height));
+}
+
+}  // namespace
+
+const Surface& ShapeMaterials::surface_of(const MaterialReference& reference) {
+  const auto found = surfaces_.find(reference);
+  if (found != surfaces_.end()) return found->second;
+  return surfaces_.emplace(reference, read_surface(context_, reference)).first->second;
+}
+
+/// The picture of an area light is looked up like a texture.
+const ShapeMaterials::AreaLight& ShapeMaterials::light_of(const Entity& entity) {
+  const auto [entry, is_new] = lights_.try_emplace(&entity);
+  AreaLight& light = entry->second;
+  if (!is_new) return light;
+  const Parameters& parameters = entity.parameters;
+  if (entity.type != "diffuse") {
+    context_.reporter.warn_once(
+        "area light " + entity.type, parameters.place(),
+        fmt::format("area light '{}' is not known: diffuse is used", entity.type));
+  }
+  const Color white = to_srgb(Color(1.0f), entity.space);
+  light.emission.radiance = context_.imaging_ratio * parameters.number("scale", 1.0f) *
+                            read_color(context_, parameters, "L", white, Quantity::illuminant);
+  light.two_sided = parameters.boolean("twosided", false);
+  light.power = parameters.number("power", 0.0f);
+  if (const Parameter* filename = parameters.find("filename", {"string"})) {
+    if (parameters.find("L")) fail(filename->place, "an area light of both 'L' and 'filename'");
+    const auto path = context_.resolve(filename->place, parameters.text("filename", ""));
+    try {
+      light.emission.texture = context_.textures.add_file(path);
+      if (light.power > 0.0f) light.mean = mean_luminance(read_radiance_image(path));
+    } catch (const Error& error) {
+      fail(filename->place, error.what());
+    }
+  }
+  parameters.report_unused(context_.reporter);
+  for (int i = 0; i < 3; ++i) {
+    if (!(light.emission.radiance[i] >= 0.0f)) fail(parameters.place(), "a light below 0");
+  }
+  return light;
+}
+
+void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) {
+  const Place& place = shape.shape.parameters.place();
+  if (shape.group != 0) {
+    context_.reporter.warn_once("instanced light", place,
+                                "an area light in an object is not supported: it is dark");
+    return;
+  }
+  if (result.invisible) {
+    context_.reporter.warn_once("invisible light", place,
+                                "a light of the material 'interface' is not supported: it is a "
+                                "black surface that emits");
+    result.material = make_diffuse(Color(0.0f));
+    result.invisible = false;
+  }
+  const AreaLight& light = light_of(*shape.area_light);
+  result.material.emission = light.emission;
+  result.emits = !is_black(light.emission.radiance);
+  result.two_sided = light.two_sided;
+  result.power = light.power;
+  result.light_mean = light.mean;
+  context_.lit = true;
+}
+
+ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
+  const Surface& surface = surface_of(shape.material);
+  ShapeMaterial result;
+  result.material = surface.material;
+  result.invisible = surface.invisible;
+  const ColorTexture alpha = read_number_texture(context_, shape.shape.parameters, "alpha", 1.0f);
+  if (!surface.invisible) {
+    result.material.opacity = alpha.is_constant()
+                                  ? constant_opacity(glm::clamp(alpha.color.x, 0.0f, 1.0f))
+                                  : textured_opacity(alpha.color.x, alpha.texture);
+    result.invisible = alpha.is_constant() && alpha.color.x <= 0.0f;
+  }
+  if (shape.area_light) add_light(shape, result);
+  result.textured = is_textured(context_.scene, result.material);
+  result.tangents = needs_tangents(context_.scene, result.material);
+  return result;
+}
+
+}  // namespace pt::pbrt

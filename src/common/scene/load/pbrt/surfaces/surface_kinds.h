@@ -1,0 +1,49 @@
+// The kinds of materials: each reads one.
+#pragma once
+
+#include "common/scene/load/pbrt/surfaces/surfaces.h"
+
+namespace pt::pbrt {
+
+using Reader = Surface (*)(Context&, const Parameters&);
+
+Surface read_diffuse(Context& context, const Parameters& parameters);
+Surface read_coated_diffuse(Context& context, const Parameters& parameters);
+Surface read_diffuse_transmission(Context& context, const Parameters& parameters);
+Surface read_conductor(Context& context, const Parameters& parameters);
+Surface read_coated_conductor(Context& context, const Parameters& parameters);
+Surface read_dielectric(Context& context, const Parameters& parameters);
+Surface read_thin_dielectric(Context& context, const Parameters& parameters);
+Surface read_subsurface(Context& context, const Parameters& parameters);
+Surface read_hair(Context& context, const Parameters& parameters);
+Surface read_measured(Context& context, const Parameters& parameters);
+Surface read_mix_material(Context& context, const Parameters& parameters);
+Surface read_interface(Context& context, const Parameters& parameters);
+
+/// What is between two surfaces, of which the second has this share; opacities and what is
+/// invisible are kept where that is possible.
+Surface blend(Context& context, const ColorTexture& weight, const Surface& first,
+              const Surface& second);
+
+/// The facets' alpha along u and v, as the three last parameters of Conductor and
+/// RoughDielectric: GGX.
+struct Roughness {
+  ColorTexture alpha_u, alpha_v;
+
+  /// Below this pbrt's surfaces are smooth.
+  static constexpr float smooth = 1e-3f;
+  bool is_smooth() const {
+    return alpha_u.is_constant() && alpha_v.is_constant() &&
+           std::max(alpha_u.color.x, alpha_v.color.x) < smooth;
+  }
+  void store(pt::Parameter* parameters) const;
+};
+
+/// Of the parameters `prefix` + roughness, uroughness and vroughness, remapped or not.
+Roughness read_roughness(Context& context, const Parameters& parameters,
+                         const std::string& prefix = {}, float fallback = 0.0f);
+
+/// Reports, once for the material's kind, that it is replaced `by` something.
+void report_replaced(Context& context, const Parameters& parameters, std::string_view by);
+
+}  // namespace pt::pbrt

@@ -1,0 +1,18 @@
+// Materials to the nearest of ours.
+#pragma once
+
+#include "common/scene/load/pbrt/textures/color_texture.h"
+
+namespace pt::pbrt {
+
+/// What a material becomes.
+struct Surface {
+  MaterialDescription material;
+  bool invisible = false;  ///< light passes as if nothing were there
+};
+
+/// Each replacement is reported once for its kind. Adding a material is adding a line to the table
+/// in surfaces.cpp.
+Surface read_surface(Context& context, const MaterialReference& reference);
+
+}  // namespace pt::pbrt

@@ -1,0 +1,156 @@
+#include "common/scene/load/pbrt/syntax/parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pt::pbrt {
+namespace {
+
+// Old files say point for point3, and so on.
+const Parameter* find_vector3(const Parameters& list, std::string_view name) {
+  return list.find(name, {"point3", "vector3", "normal", "point", "vector", "normal3"});
+}
+
+const Parameter& single(const Parameter& parameter, std::size_t count, std::size_t expected = 1) {
+  if (count == expected) return parameter;
+  fail(parameter.place, fmt::format("'{} {}' has {} values; expected {}", parameter.type,
+                                    parameter.name, count, expected));
+}
+
+void check_groups(const Parameter& parameter, std::size_t size) {
+  if (parameter.numbers.size() % size == 0) return;
+  fail(parameter.place,
+       fmt::format("'{} {}' has {} numbers; expected a multiple of {}", parameter.type,
+                   parameter.name, parameter.numbers.size(), size));
+}
+
+int whole(const Parameter& parameter, double number) {
+  constexpr double most = std::numeric_limits<int>::max();
+  if (number == std::floor(number) && std::abs(number) <= most) return static_cast<int>(number);
+  fail(parameter.place,
+       fmt::format("'{} {}': {}; expected an integer", parameter.type, parameter.name, number));
+}
+
+}  // namespace
+
+Parameters::Parameters(const Place& place, std::string what, std::vector<Parameter> own,
+                       const std::vector<Parameter>& inherited)
+    : place_(place), what_(std::move(what)), list_(std::move(own)), own_(list_.size()) {
+  list_.insert(list_.end(), inherited.begin(), inherited.end());
+}
+
+const Parameter* Parameters::find(std::string_view name) const {
+  asked_.emplace(name);
+  const auto found = std::ranges::find(list_, name, &Parameter::name);
+  return found == list_.end() ? nullptr : &*found;
+}
+
+const Parameter* Parameters::find(std::string_view name,
+                                  std::initializer_list<std::string_view> types) const {
+  const Parameter* parameter = find(name);
+  if (!parameter || std::ranges::find(types, parameter->type) != types.end()) return parameter;
+  fail(parameter->place, fmt::format("parameter '{}' of {} is of type '{}'; expected {}", name,
+                                     what_, parameter->type, fmt::join(types, " or ")));
+}
+
+bool Parameters::has(std::string_view name, std::string_view type) const {
+  const Parameter* parameter = find(name);
+  return parameter && parameter->type == type;
+}
+
+float Parameters::number(std::string_view name, float fallback) const {
+  const Parameter* p = find(name, {"float", "integer"});
+  return p ? static_cast<float>(single(*p, p->numbers.size()).numbers[0]) : fallback;
+}
+
+int Parameters::integer(std::string_view name, int fallback) const {
+  const Parameter* p = find(name, {"integer", "float"});
+  return p ? whole(*p, single(*p, p->numbers.size()).numbers[0]) : fallback;
+}
+
+bool Parameters::boolean(std::string_view name, bool fallback) const {
+  const Parameter* p = find(name, {"bool"});
+  if (!p) return fallback;
+  const std::string& word = single(*p, p->strings.size()).strings[0];
+  if (word == "true" || word == "false") return word == "true";
+  fail(p->place, fmt::format("'bool {}': '{}'; expected true or false", name, word));
+}
+
+std::string Parameters::text(std::string_view name, std::string_view fallback) const {
+  const Parameter* p = find(name, {"string"});
+  return p ? single(*p, p->strings.size()).strings[0] : std::string(fallback);
+}
+
+Vec3 Parameters::point(std::string_view name, const Vec3& fallback) const {
+  const Parameter* p = find_vector3(*this, name);
+  if (!p) return fallback;
+  const std::vector<double>& v = single(*p, p->numbers.size(), 3).numbers;
+  return {v[0], v[1], v[2]};
+}
+
+std::vector<float> Parameters::numbers(std::string_view name) const {
+  const Parameter* p = find(name, {"float", "integer"});
+  return p ? std::vector<float>(p->numbers.begin(), p->numbers.end()) : std::vector<float>();
+}
+
+std::vector<int> Parameters::integers(std::string_view name) const {
+  const Parameter* p = find(name, {"integer"});
+  std::vector<int> result;
+  if (!p) return result;
+  result.reserve(p->numbers.size());
+  for (const double number : p->numbers) result.push_back(whole(*p, number));
+  return result;
+}
+
+std::vector<std::string> Parameters::texts(std::string_view name) const {
+  const Parameter* p = find(name, {"string"});
+  return p ? p->strings : std::vector<std::string>();
+}
+
+std::vector<Vec3> Parameters::points(std::string_view name) const {
+  const Parameter* p = find_vector3(*this, name);
+  std::vector<Vec3> result;
+  if (!p) return result;
+  check_groups(*p, 3);
+  for (std::size_t i = 0; i < p->numbers.size(); i += 3) {
+    result.emplace_back(p->numbers[i], p->numbers[i + 1], p->numbers[i + 2]);
+  }
+  return result;
+}
+
+std::vector<Vec2> Parameters::points2(std::string_view name) const {
+  const Parameter* p = find(name, {"point2", "vector2", "float"});
+  std::vector<Vec2> result;
+  if (!p) return result;
+  check_groups(*p, 2);
+  for (std::size_t i = 0; i < p->numbers.size(); i += 2) {
+    result.emplace_back(p->numbers[i], p->numbers[i + 1]);
+  }
+  return result;
+}
+
+void Parameters::ignore(std::initializer_list<std::string_view> names) const {
+  for (const std::string_view name : names) asked_.emplace(name);
+}
+
+void Parameters::ignore_all() const {
+  for (const Parameter& parameter : list_) asked_.insert(parameter.name);
+}
+
+void Parameters::report_unused(Reporter& reporter) const {
+  for (std::size_t i = 0; i < own_; ++i) {
+    const Parameter& p = list_[i];
+    if (asked_.contains(p.name)) continue;
+    reporter.warn_once(fmt::format("unused {} {}", what_, p.name), p.place,
+                       fmt::format("parameter '{} {}' of {} is not supported and ignored; expected "
+                                   "one of {}",
+                                   p.type, p.name, what_, fmt::join(asked_, ", ")));
+  }
+}
+
+}  // namespace pt::pbrt

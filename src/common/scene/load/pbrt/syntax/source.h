@@ -1,0 +1,13 @@
+// The content of a file, compressed or not.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace pt::pbrt {
+
+/// All of a file; one that gzip has compressed, as its first bytes tell, is decompressed. Throws
+/// Error, without the file's name, where that cannot be.
+std::string read_source(const std::filesystem::path& path);
+
+}  // namespace pt::pbrt

@@ -1,0 +1,27 @@
+// The kinds of textures: each reads one.
+#pragma once
+
+#include "common/scene/load/pbrt/textures/color_texture.h"
+
+namespace pt::pbrt {
+
+/// What a texture is read for.
+struct TextureUse {
+  bool is_number;     ///< a float texture
+  Quantity quantity;  ///< of a spectrum texture
+};
+
+ColorTexture read_image_map(Context& context, const Entity& entity, const TextureUse& use);
+ColorTexture read_constant(Context& context, const Entity& entity, const TextureUse& use);
+ColorTexture read_scale(Context& context, const Entity& entity, const TextureUse& use);
+ColorTexture read_mix(Context& context, const Entity& entity, const TextureUse& use);
+ColorTexture read_checkerboard(Context& context, const Entity& entity, const TextureUse& use);
+
+/// A part of a texture, itself a texture or a value.
+ColorTexture read_part(Context& context, const Parameters& parameters, std::string_view name,
+                       float fallback, const TextureUse& use);
+
+/// uscale, vscale, udelta and vdelta; other mappings become these with a warning.
+void read_mapping(Context& context, const Parameters& parameters, Texture& texture);
+
+}  // namespace pt::pbrt
