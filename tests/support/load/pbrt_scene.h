@@ -1,0 +1,52 @@
+// For tests of the loader of pbrt's files: scenes as strings, warnings as a list.
+#pragma once
+
+#include <string>
+
+#include "common/scene/load/pbrt/pbrt.h"
+#include "load/mitsuba_scene.h"
+#include "temp_folder.h"
+
+namespace pt {
+
+inline LoadedScene load_pbrt_file(const std::string& path, LoadOptions options = {}) {
+  LoadedScene loaded;
+  options.warn = [&](const std::string& message) { loaded.warnings.push_back(message); };
+  loaded.scene = load_pbrt(path, options);
+  return loaded;
+}
+
+/// The scene of this text, in a folder that may hold files that it names.
+inline LoadedScene load_pbrt_text(const std::string& text, const LoadOptions& options = {}) {
+  const TempFolder folder;
+  write_text(folder.file("scene.pbrt"), text);
+  return load_pbrt_file(folder.file("scene.pbrt"), options);
+}
+
+/// A small camera and, after WorldBegin, these directives.
+inline std::string pbrt_world(const std::string& world, const std::string& before = {}) {
+  return "Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16\n"
+         "PixelFilter \"box\"\n" +
+         before + "\nCamera \"perspective\" \"float fov\" 90\nWorldBegin\n" + world + "\n";
+}
+
+/// Its scene, of which nothing is reported.
+inline SceneData load_pbrt_silently(const std::string& text) {
+  const LoadedScene loaded = load_pbrt_text(text);
+  EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();
+  return loaded.scene;
+}
+
+/// The message of the Error, without the folder; empty where there is none.
+inline std::string pbrt_error(const std::string& text, const LoadOptions& options = {}) {
+  try {
+    load_pbrt_text(text, options);
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    const std::size_t name = message.find("scene.pbrt");
+    return name == message.npos ? message : message.substr(name);
+  }
+  return {};
+}
+
+}  // namespace pt
