@@ -185,6 +185,36 @@ value="0.3"/><bsdf type="diffuse"/><bsdf type="mask"><bsdf type="principled"/></
 """]
 
 
+PBRT_START = b"""Scale -1 1 1 LookAt 0 1 5 0 0 0 0 1 0
+Camera "perspective" "float fov" 40 # a comment
+Film "rgb" "integer xresolution" 64 "integer yresolution" [ 32 ] "float iso" 200
+Sampler "halton" "integer pixelsamples" 4 PixelFilter "gaussian" Integrator "path"
+WorldBegin
+"""
+PBRT_PARTS = [b"""LightSource "infinite" "string filename" "a.hdr"
+Texture "t" "spectrum" "imagemap" "string filename" "a.png" "bool invert" true
+Texture "f" "float" "checkerboard" "float tex1" 0.5 Texture "s" "spectrum" "scale" "texture tex" "t"
+"texture scale" "f" Texture "m" "spectrum" "mix" "texture tex1" "t" "texture tex2" "s"
+MakeNamedMaterial "d" "string type" "diffuse" "texture reflectance" "m"
+MakeNamedMaterial "c" "string type" "coateddiffuse" "float roughness" 0.1
+Material "mix" "string materials" [ "d" "c" ] "float amount" 0.3
+AttributeBegin Translate 1 2 3 Rotate 30 0 1 0 Shape "sphere" "texture alpha" "f" AttributeEnd
+Shape "plymesh" "string filename" "a.ply" Include "b.pbrt" Import "b.pbrt"
+""", b"""AttributeBegin AreaLightSource "diffuse" "blackbody L" 4000 "bool twosided" true "float power" 9
+Shape "disk" ReverseOrientation Shape "cylinder" "float phimax" 90 AttributeEnd
+ObjectBegin "o" Shape "loopsubdiv" "integer levels" 1 "integer indices" [ 0 1 2 0 2 3 ]
+"point3 P" [ 0 0 0 1 0 0 1 1 0 0 1 1 ] ObjectEnd ConcatTransform [ 1 0 0 0 0 2 0 0 0 0 1 0 0 0 0 1 ]
+ObjectInstance "o" Material "conductor" "spectrum eta" "metal-Cu-eta" "rgb k" [ 1 2 3 ]
+Shape "bilinearmesh" "point3 P" [ 0 0 0 1 0 0 0 1 0 1 1 1 ]
+LightSource "spot" "point3 from" [ 0 1 0 ] LightSource "point" "spectrum I" [ 400 1 700 2 ]
+LightSource "distant" "float illuminance" 3 Attribute "shape" "float radius" 2
+Material "coatedconductor" Shape "sphere" Material "dielectric" "spectrum eta" "glass-BK7"
+Shape "sphere" "float zmin" -0.5 MediumInterface "a" "b" ColorSpace "rec2020" Material "interface"
+Material "diffusetransmission" Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 1 1 0 ]
+"integer indices" [ 0 1 2 ] "normal N" [ 0 0 1 0 0 1 0 0 1 ] "point2 uv" [ 0 0 1 0 1 1 ]
+"""]
+
+
 def gltf():
     vertices = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<3H", 0, 1, 2) + b"\0\0"
     image = png(2, 8, 3)
@@ -235,12 +265,14 @@ SEEDS = {
               b"P6 1 1 255\nabc", b"P5 1 1 65535\nab",
               b"PF 1 1 -1\n" + struct.pack("<3f", 1, 2, 3)],
     "mitsuba_xml": [XML_START + part + b"</scene>\n" for part in XML_PARTS],
+    "pbrt": [PBRT_START + part for part in PBRT_PARTS],
     "gltf": gltf(),
 }
 
 # Beside the scenes, under the names that they use.
 FILES = {"a.png": png(2, 8, 3), "a.hdr": hdr()[0], "a.obj": OBJ, "a.mtl": MTL, "a.ply": ply("ascii"),
          "a.serialized": serialized(4, False),
+         "b.pbrt": b'Translate 1 0 0 Shape "sphere" "float radius" 0.5\n',
          "b.xml": b'<scene version="3.0.0"><bsdf type="diffuse" id="other"/></scene>'}
 
 

@@ -24,14 +24,20 @@ Color mean_color(const SceneData& loaded, int spp = 16, int depth = 2) {
 
 /// A wall that fills the image, at a distance of 1, facing the camera at the origin.
 const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
+const std::string black = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n";
 const std::string white = "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n";
+
+/// Behind the camera: scenes need something.
+const std::string dot_behind =
+    " AttributeBegin Translate 0 0 -9 Shape \"sphere\" \"float radius\" .001 AttributeEnd ";
 
 float luminance_of(const Color& c) { return dot(c, Color(0.2126f, 0.7152f, 0.0722f)); }
 
 TEST(PbrtLights, AnRgbOfOneIsARadianceOfOne) {
-  expect_near(mean_color(load_pbrt_silently(pbrt_world("LightSource \"infinite\""))), Color(1.0f));
-  expect_near(mean_color(load_pbrt_silently(
-                  pbrt_world("LightSource \"infinite\" \"rgb L\" [.1 .2 .3] \"float scale\" 2"))),
+  expect_near(mean_color(load_pbrt_silently(pbrt_world("LightSource \"infinite\"" + dot_behind))),
+              Color(1.0f));
+  expect_near(mean_color(load_pbrt_silently(pbrt_world(
+                  "LightSource \"infinite\" \"rgb L\" [.1 .2 .3] \"float scale\" 2" + dot_behind))),
               {0.2f, 0.4f, 0.6f});
   expect_near(mean_color(load_pbrt_silently(pbrt_world(
                   "AreaLightSource \"diffuse\" \"rgb L\" [.1 .2 .3] \"float scale\" 2\n" + wall))),
@@ -43,7 +49,7 @@ TEST(PbrtLights, TheFilmsExposureMultipliesAll) {
     return mean_color(
         load_pbrt_silently("Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16 " +
                            film + " PixelFilter \"box\" Camera \"perspective\" " + camera +
-                           " WorldBegin LightSource \"infinite\""));
+                           " WorldBegin LightSource \"infinite\"" + dot_behind));
   };
   expect_near(color("\"float iso\" 250", ""), Color(2.5f));
   expect_near(color("\"float iso\" 400", "\"float shutteropen\" 0 \"float shutterclose\" 0.125"),
@@ -131,7 +137,7 @@ TEST(PbrtLights, PowerOfAnAreaLightIsSpreadOverItsShape) {
 
 /// Radiance seen by the camera, which looks along +z, of a lamp in its way.
 float seen(const std::string& lamp) {
-  return mean_color(load_pbrt_silently(pbrt_world(lamp)), 1).x;
+  return mean_color(load_pbrt_silently(pbrt_world(black + lamp)), 1).x;
 }
 
 TEST(PbrtLights, ASurfaceShinesToTheSideOfItsNormal) {

@@ -13,7 +13,7 @@ const std::string lit = "LightSource \"infinite\"\n";
 TEST(PbrtSyntax, WordsNeedNoSpaceAroundBracketsAndQuotes) {
   const SceneData scene = load_pbrt_silently(pbrt_world(
       lit +
-      "AttributeBegin # a comment \" [\n Translate 1 2 3Shape\"sphere\"\"float radius\"[.5]\n"
+      "AttributeBegin # a comment \" [\n Translate 1 2 3 Shape\"sphere\"\"float radius\"[.5]\n"
       "AttributeEnd"));
   ASSERT_EQ(scene.spheres.size(), 1u);
   expect_near(scene.spheres[0].center, {1, 2, 3});
@@ -56,7 +56,8 @@ TEST(PbrtSyntax, ErrorsNameLineAndColumn) {
                "scene.pbrt:2:20: 'rgb reflectance' with a negative number");
   expect_error("Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"",
                "scene.pbrt:2:20: there is no spectrum texture 't'");
-  expect_error("Include \"scene.pbrt\"", "scene.pbrt includes itself");
+  EXPECT_NE(pbrt_error(head + "Include \"scene.pbrt\"").find("scene.pbrt includes itself"),
+            std::string::npos);
   EXPECT_EQ(pbrt_error("Shape \"sphere\"").substr(0, 36), "scene.pbrt:1:1: Shape before WorldBe");
 }
 
@@ -68,7 +69,7 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
   EXPECT_EQ(loaded.count("parameter 'float radios' of Shape 'sphere' is not supported and ignored; "
                          "expected one of alpha, phimax, radius, zmax, zmin"),
             1);
-  EXPECT_EQ(loaded.count("scene.pbrt:6:16: "), 1);
+  EXPECT_EQ(loaded.count("scene.pbrt:7:16: "), 1);
   EXPECT_EQ(loaded.count("shape 'curve' is not supported: it is left out"), 1);
   EXPECT_EQ(loaded.count("light 'laser' is not supported"), 1);
   EXPECT_EQ(loaded.count("material 'cheese' is not known: diffuse grey is used"), 1);

@@ -55,28 +55,18 @@ Picture read_picture(const std::filesystem::path& path, const Place& place) {
   return picture;
 }
 
-/// The rotation in a map; `mirrored`: of x, before it.
-Affine rotation_of(const Affine& map, bool& mirrored) {
-  const Vec3 z = glm::normalize(map.vector({0, 0, 1})), up = map.vector({0, 1, 0});
-  const Vec3 y = glm::normalize(up - glm::dot(up, z) * z), x = glm::cross(y, z);
-  mirrored = map.determinant() < 0.0f;
-  Affine rotation;
-  for (int i = 0; i < 3; ++i) rotation.row[i] = {x[i], y[i], z[i], 0.0f};
-  return rotation;
-}
-
-/// Of the picture around a pixel of our map, whose space has the light's z as its y and the
-/// light's y as its -z.
-Color mean_around(const Picture& picture, bool mirrored, int width, int height, int x, int y) {
+/// Of the picture around a pixel of our map, which lies in the world as it is.
+Color mean_around(const Picture& picture, const Affine& to_light, const EnvironmentData& map, int x,
+                  int y) {
   Color sum(0.0f);
   for (int j = 0; j < samples; ++j) {
     const double row = y + (j + 0.5) / samples - 0.5;
-    const double theta = std::clamp(row / (height - 1), 0.0, 1.0) * double{pi};
+    const double theta = std::clamp(row / (map.height - 1), 0.0, 1.0) * double{pi};
     for (int i = 0; i < samples; ++i) {
-      const double phi = 2 * double{pi} * ((x + (i + 0.5) / samples) / width - 0.5);
-      const Vec3 d(std::sin(theta) * std::sin(phi), std::sin(theta) * std::cos(phi),
-                   std::cos(theta));
-      sum += picture.at({mirrored ? -d.x : d.x, d.y, d.z});
+      const double phi = 2 * double{pi} * ((x + (i + 0.5) / samples) / map.width - 0.5);
+      const Vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta),
+                   -std::sin(theta) * std::cos(phi));
+      sum += picture.at(glm::normalize(to_light.vector(d)));
     }
   }
   return sum / static_cast<float>(samples * samples);
@@ -99,8 +89,7 @@ double illuminance_of(const Picture& picture) {
 }
 
 void add_picture(Context& context, const Entity& entity, const Picture& picture, float scale) {
-  bool mirrored = false;
-  const Affine rotation = rotation_of(entity.to_world, mirrored);
+  const Affine to_light = inverse(entity.to_world);
   EnvironmentData& map = context.scene.environment;
   const int side = picture.is_equal_area ? 2 * picture.image.width : picture.image.width;
   map.width = std::clamp(side, 64, most_columns);
@@ -109,10 +98,10 @@ void add_picture(Context& context, const Entity& entity, const Picture& picture,
   map.pixels.reserve(static_cast<std::size_t>(map.width) * map.height);
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
-      map.pixels.push_back(scale * mean_around(picture, mirrored, map.width, map.height, x, y));
+      map.pixels.push_back(scale * mean_around(picture, to_light, map, x, y));
     }
   }
-  map.to_world = rotation * rotate({1, 0, 0}, 90.0f);
+  map.to_world = {};
 }
 
 }  // namespace

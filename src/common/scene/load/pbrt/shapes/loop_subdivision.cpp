@@ -176,7 +176,7 @@ Mesh subdivide_loop(const Mesh& cage, int levels) {
   for (Index v = 0; v < mesh.positions.size(); ++v) {
     const std::size_t n = std::max<std::size_t>(rings[v].vertices.size(), 1);
     const float inner = 1.0f / (static_cast<float>(n) + 3.0f / (8.0f * beta(n)));
-    limit.positions.push_back(weighted(mesh, v, rings[v], inner, 1.0f / 5.0f));
+    limit.positions.push_back(weighted(mesh, v, rings[v], inner, 1.0f / 6.0f));
   }
   for (Index v = 0; v < mesh.positions.size(); ++v) {
     limit.normals.push_back(normal_at(mesh, v, rings[v]));

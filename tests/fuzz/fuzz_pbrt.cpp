@@ -1,0 +1,10 @@
+#include "check_scene.h"
+#include "common/scene/load/pbrt/pbrt.h"
+#include "fuzz_folder.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const pt::FuzzFolder folder;
+  const auto path = folder.write("input.pbrt", pt::as_bytes(data, size));
+  pt::expect_result_or_error([&] { pt::check_scene(pt::load_pbrt(path)); });
+  return 0;
+}
