@@ -221,6 +221,21 @@ TEST(PbrtTextures, ScaleAndMixOfTextures) {
   expect_near(plain.at(0.25f, 0.25f), {0.75f, 0.25f, 0});
 }
 
+TEST(PbrtTextures, DisplacementOfAMaterialIsABumpMap) {
+  const TexturedScene scene = textured(
+      "Texture \"h\" \"float\" \"imagemap\" \"string filename\" \"a.ppm\" \"float scale\" .25\n"
+      "Material \"diffuse\" \"texture displacement\" \"h\" Shape \"disk\"\n" +
+      image_map() + "Material \"diffuse\" \"string normalmap\" \"a.ppm\" Shape \"disk\"\n");
+  ASSERT_EQ(scene.scene.meshes.size(), 2u);
+  const auto material = [&](std::size_t mesh) {
+    return scene.scene.materials[scene.scene.meshes[mesh].material];
+  };
+  EXPECT_EQ(material(0).node, MaterialNode::bump_map);
+  expect_near(material(0).parameters[0].value, {0.25f, 1, 1});
+  EXPECT_EQ(material(1).node, MaterialNode::normal_map);
+  EXPECT_EQ(scene.scene.materials[material(1).children[0]].kind, kind_of<Diffuse>);
+}
+
 TEST(PbrtTextures, OneThatRefersToItselfIsAnError) {
   EXPECT_NE(pbrt_error(pbrt_world("Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\"\n"
                                   "Material \"diffuse\" \"texture reflectance\" \"t\" Shape "

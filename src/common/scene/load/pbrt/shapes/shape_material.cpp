@@ -81,8 +81,8 @@ void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) 
   }
   if (result.invisible) {
     context_.reporter.warn_once("invisible light", place,
-                                "a light of the material 'interface' is not supported: it is a "
-                                "black surface that emits");
+                                "a light that rays pass (of the material 'interface' or an alpha "
+                                "of 0) is not supported: it is a black surface that emits");
     result.material = make_diffuse(Color(0.0f));
     result.invisible = false;
   }

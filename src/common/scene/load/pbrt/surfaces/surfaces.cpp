@@ -33,26 +33,40 @@ Surface default_surface() {
   return surface;
 }
 
-/// Under the map of normals that a material names.
-Surface with_normal_map(Context& context, const Parameters& parameters, Surface inside) {
-  const Parameter* filename = parameters.find("normalmap", {"string"});
-  if (!filename || inside.invisible) return inside;
-  Texture look;
-  look.format = TextureFormat::linear8;
-  std::uint32_t map = no_texture;
-  try {
-    map = context.textures.add_file(
-        context.resolve(filename->place, parameters.text("normalmap", "")), look);
-  } catch (const Error& error) {
-    fail(filename->place, error.what());
-  }
-  // Neither shadowing nor flipped normals (MaterialNode::normal_map).
-  const pt::Parameter parameter{{1.0f, 1.0f, 1.0f}, map};
+/// A surface whose normal a map turns: neither shadowed nor flipped (see MaterialNode::normal_map).
+Surface mapped(Context& context, MaterialNode node, float scale, std::uint32_t map,
+               Surface inside) {
   Surface result;
-  result.material = make_mapped(MaterialNode::normal_map, parameter, 0);
+  result.material = make_mapped(node, {{scale, 1.0f, 1.0f}, map}, 0);
   std::swap(result.material.opacity, inside.material.opacity);
   result.material.children[0] = result.material.children[1] = context.add_material(inside.material);
   return result;
+}
+
+/// Under the map of heights or of normals that a material names; pbrt prefers the former.
+Surface with_map(Context& context, const Parameters& parameters, const Surface& inside) {
+  const Parameter* filename = parameters.find("normalmap", {"string"});
+  if (const Parameter* heights = parameters.find("displacement")) {
+    const ColorTexture value = read_number_texture(context, parameters, "displacement", 0.0f);
+    if (inside.invisible || value.is_constant()) return inside;
+    if (context.scene.textures[value.texture].kind == TextureKind::image) {
+      return mapped(context, MaterialNode::bump_map, value.color.x, value.texture, inside);
+    }
+    context.reporter.warn_once("displacement", heights->place,
+                               "a 'displacement' of a material that is no picture is not supported "
+                               "and ignored");
+    return inside;
+  }
+  if (!filename || inside.invisible) return inside;
+  Texture look;
+  look.format = TextureFormat::linear8;
+  try {
+    const auto path = context.resolve(filename->place, parameters.text("normalmap", ""));
+    return mapped(context, MaterialNode::normal_map, 1.0f, context.textures.add_file(path, look),
+                  inside);
+  } catch (const Error& error) {
+    fail(filename->place, error.what());
+  }
 }
 
 Surface read_entity(Context& context, const Entity& entity, const std::string& type) {
@@ -69,12 +83,7 @@ Surface read_entity(Context& context, const Entity& entity, const std::string& t
     return default_surface();
   }
   Surface surface = reader->second(context, parameters);
-  if (parameters.find("displacement")) {
-    context.reporter.warn_once("displacement", parameters.find("displacement")->place,
-                               "displacement (of materials: a bump map) is not supported and "
-                               "ignored");
-  }
-  surface = with_normal_map(context, parameters, surface);
+  surface = with_map(context, parameters, surface);
   parameters.report_unused(context.reporter);
   return surface;
 }
