@@ -81,7 +81,7 @@ TEST(LoadScene, XmlIsMitsubas) {
 TEST(LoadScene, UnknownEndingsGetTheList) {
   expect_error([] { load_scene_file("scene.blend"); },
                "scene.blend: unknown kind of scene file '.blend'; expected one of .xml, .gltf, "
-               ".glb, .obj, .ply");
+               ".glb, .pbrt, .obj, .ply");
   expect_error([] { load_scene_file("scene"); }, "scene: unknown");
   TempFolder folder;
   write_text(folder.file("empty.ply"),

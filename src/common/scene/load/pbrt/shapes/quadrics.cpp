@@ -55,18 +55,19 @@ std::optional<float> whole_sphere(const Entity& entity) {
 
 /// v grows from the lowest z to the highest, with the angle.
 Mesh read_sphere(Context&, const Entity& entity, const ShapeMaterial&) {
-  const auto [radius, z_min, z_max, phi_max] = read_cut(entity.parameters);
-  const double low = std::acos(z_min / radius), high = std::acos(z_max / radius);
+  const SphereCut cut = read_cut(entity.parameters);
+  const double low = std::acos(cut.z_min / cut.radius), high = std::acos(cut.z_max / cut.radius);
   Mesh mesh;
   const auto surface = [&](float u, float v) {
     const double theta = low + double{v} * (high - low);
-    const bool is_pole = (v <= 0.0f && z_min <= -radius) || (v >= 1.0f && z_max >= radius);
+    const bool is_pole =
+        (v <= 0.0f && cut.z_min <= -cut.radius) || (v >= 1.0f && cut.z_max >= cut.radius);
     const float s = is_pole ? 0.0f : static_cast<float>(std::sin(theta));
-    const Vec2 p = around(u, phi_max);
+    const Vec2 p = around(u, cut.phi_max);
     const Vec3 normal(s * p.x, s * p.y, static_cast<float>(std::cos(theta)));
-    return SurfacePoint{radius * normal, normal};
+    return SurfacePoint{cut.radius * normal, normal};
   };
-  tessellate(mesh, columns_for(phi_max), meridian_segments, surface);
+  tessellate(mesh, columns_for(cut.phi_max), meridian_segments, surface);
   return mesh;
 }
 
