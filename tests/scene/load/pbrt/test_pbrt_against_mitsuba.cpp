@@ -30,7 +30,7 @@ AttributeBegin
 AttributeEnd
 MakeNamedMaterial "red" "string type" "coateddiffuse" "rgb reflectance" [ .7 .1 .1 ]
 MakeNamedMaterial "gold" "string type" "conductor" "float roughness" .04
-  "spectrum eta" "metal-Au-eta" "spectrum k" "metal-Au-k"
+  "rgb eta" [ .1 .4 1.5 ] "rgb k" [ 3.4 2.5 1.8 ]
 AttributeBegin
   NamedMaterial "red"
   Translate -1 .8 .3
@@ -67,7 +67,8 @@ const char* const mitsuba_text = R"(
 <boolean name='nonlinear' value='true'/><rgb name='diffuse_reflectance' value='.7 .1 .1'/></bsdf>
 </shape>
 <shape type='sphere'><point name='center' x='1.1' y='.6' z='.8'/><float name='radius' value='.6'/>
-<bsdf type='roughconductor'><string name='material' value='Au'/>
+<bsdf type='roughconductor'><rgb name='eta' value='.1 .4 1.5'/>
+<rgb name='k' value='3.4 2.5 1.8'/>
 <string name='distribution' value='ggx'/><float name='alpha' value='.2'/></bsdf></shape>
 <shape type='rectangle'><transform name='to_world'><rotate x='1' angle='-90'/><scale value='5'/>
 </transform><bsdf type='twosided'><bsdf type='diffuse'>

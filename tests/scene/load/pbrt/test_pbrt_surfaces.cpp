@@ -51,16 +51,13 @@ TEST(PbrtSurfaces, AreThoseOfMitsuba) {
   expect_same(pbrt_material("Material \"thindielectric\""),
               mitsuba_material("<bsdf type='thindielectric'><float name='int_ior' value='1.5'/>"
                                "<float name='ext_ior' value='1'/></bsdf>"));
-  expect_same(
-      pbrt_material("Material \"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" "
-                    "\"metal-Au-k\" \"float uroughness\" .1 \"float vroughness\" .2 "
-                    "\"bool remaproughness\" false"),
-      mitsuba_material("<bsdf type='roughconductor'><string name='material' value='Au'/>"
-                       "<string name='distribution' value='ggx'/><float name='alpha_u' "
-                       "value='.1'/><float name='alpha_v' value='.2'/></bsdf>"));
-  expect_same(
-      pbrt_material("Material \"conductor\""),
-      mitsuba_material("<bsdf type='conductor'><string name='material' value='Cu'/></bsdf>"));
+  expect_same(pbrt_material("Material \"conductor\" \"rgb eta\" [.2 .4 1.4] \"rgb k\" [4 2 1] "
+                            "\"float uroughness\" .1 \"float vroughness\" .2 "
+                            "\"bool remaproughness\" false"),
+              mitsuba_material("<bsdf type='roughconductor'><rgb name='eta' value='.2 .4 1.4'/>"
+                               "<rgb name='k' value='4 2 1'/>"
+                               "<string name='distribution' value='ggx'/><float name='alpha_u' "
+                               "value='.1'/><float name='alpha_v' value='.2'/></bsdf>"));
   const std::string plastic =
       "<rgb name='diffuse_reflectance' value='.1 .2 .3'/><boolean name='nonlinear' value='true'/>"
       "<float name='int_ior' value='1.5'/><float name='ext_ior' value='1'/></bsdf>";
@@ -79,6 +76,19 @@ TEST(PbrtSurfaces, AMetalMayBeGivenByWhatItReflects) {
   const Color reflected = fresnel_conductor(1.0f, m.parameters[Conductor::Index::eta].value,
                                             m.parameters[Conductor::Index::k].value);
   expect_near(reflected, {0.2f, 0.5f, 0.9f});
+}
+
+TEST(PbrtSurfaces, NamedMetalsReflectAsTheirSpectraDo) {
+  const auto reflected = [](const std::string& metal) {
+    const MaterialDescription m = pbrt_material("Material \"conductor\" " + metal);
+    return fresnel_conductor(1.0f, m.parameters[Conductor::Index::eta].value,
+                             m.parameters[Conductor::Index::k].value);
+  };
+  // Fresnel's reflectance by wavelength, of pbrt's data, in daylight to sRGB.
+  const Color copper(0.954f, 0.637f, 0.537f), silver(0.971f, 0.959f, 0.914f);
+  expect_near(reflected(""), copper, 0.02f);
+  expect_near(reflected("\"spectrum eta\" \"metal-Ag-eta\" \"spectrum k\" \"metal-Ag-k\""), silver,
+              0.005f);
 }
 
 /// The mean radiance of an image that a sphere around the camera, or what is before it, fills, in

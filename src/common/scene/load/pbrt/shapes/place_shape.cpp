@@ -100,6 +100,11 @@ void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial
   const Affine& to_world = entity.shape.to_world;
   if (mesh.uvs.empty() && shape.textured) add_default_uvs(mesh);
   transform_mesh(mesh, to_world);
+  for (const Vec3& p : mesh.positions) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+      fail(entity.shape.parameters.place(), "a shape that reaches farther than numbers do");
+    }
+  }
   if (turns(entity, is_quadric, shape.emits)) turn_mesh(mesh);
   if (!mesh.normals.empty()) {
     wind_by_normals(mesh);
