@@ -151,14 +151,14 @@ std::vector<FilmPart> ImageFilm::lacking(const Window& where, std::uint32_t next
   return found;
 }
 
-std::uint32_t ImageFilm::least_samples() const {
+std::uint32_t ImageFilm::least_samples(const std::vector<Window>& where) const {
   std::uint32_t least = ~0u;
-  std::uint64_t covered = 0;
-  for (const FilmPart& part : parts) {
-    covered += part.window.pixel_count();
-    least = std::min(least, part.next_sample - part.first_sample);
+  for (const Window& w : where) {
+    for (const FilmPart& part : lacking(w, ~0u)) {
+      least = std::min(least, part.next_sample - part.first_sample);
+    }
   }
-  return covered == window.pixel_count() ? least : 0;
+  return least;
 }
 
 std::uint64_t ImageFilm::samples() const {

@@ -35,8 +35,9 @@ struct ImageFilm : FilmSums {
   /// The parts of `where` that have fewer samples than `next_sample`, those without any included,
   /// by rising number of samples.
   std::vector<FilmPart> lacking(const Window& where, std::uint32_t next_sample) const;
-  /// The fewest samples that a pixel has.
-  std::uint32_t least_samples() const;
+  /// The fewest samples that a pixel of these windows has.
+  std::uint32_t least_samples(const std::vector<Window>& where) const;
+  std::uint32_t least_samples() const { return least_samples({window}); }
   /// All pixels together.
   std::uint64_t samples() const;
 };

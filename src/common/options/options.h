@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/choices/accel.h"
 #include "common/choices/choices.h"
@@ -44,7 +45,26 @@ constexpr StageBlocks default_stage_blocks() {
 
 struct DeviceChoice {
   enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
-  int index = 0;  ///< CUDA device ordinal
+  int index = 0;             ///< CUDA device ordinal
+  std::vector<int> more{};   ///< ordinals of further devices; of the CPU: a number for each
+  bool wants_all = false;    ///< every CUDA device that there is
+
+  int count() const { return 1 + static_cast<int>(more.size()); }
+  bool has_several() const { return wants_all || !more.empty(); }
+};
+
+/// One of `count` disjoint parts of an image's pixels, which together are all of them.
+struct PartChoice {
+  int index = 1;  ///< from 1
+  int count = 1;
+
+  bool operator==(const PartChoice&) const = default;
+};
+
+/// Where a render's film is saved, and how often.
+struct CheckpointChoice {
+  std::string file;  ///< empty: nowhere
+  float interval_s = 300.0f;
 };
 
 struct BlockSize {
@@ -117,6 +137,10 @@ struct Options {
   // Stops: the render ends with the first of them that is reached
   float time_limit = 0.0f;    ///< seconds of rendering, 0: none
   float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
+
+  // What is kept, and what is left to others
+  CheckpointChoice checkpoint;
+  PartChoice part;
 
   // Scene
   std::string scene = "spheres";
