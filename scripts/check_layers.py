@@ -28,7 +28,9 @@ SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
     # The program: commands, the command line, reports.
-    ("app", ["app/*"], [*SCHEDULES, *COMMON]),
+    ("app", ["app/*"], ["distribute", *SCHEDULES, *COMMON]),
+    # Several renderers as one: who gets which pixels.
+    ("distribute", ["common/distribute/*"], ["render", "film", "image", "plan", *PHYSICS, *HOST]),
     # Schedules. None includes another one.
     *[(name, [name + "/*"], COMMON) for name in SCHEDULES],
     # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
@@ -70,7 +72,7 @@ LAYERS = [
     ("platform", ["common/platform/*"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
-MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]
+MAIN_MAY_INCLUDE = ["app", "distribute", *SCHEDULES, *COMMON]
 
 # Who may know CUDA.
 CUDA_HEADER = re.compile(

@@ -8,10 +8,13 @@
 #include "app/compact_command.h"
 #include "app/compare_command.h"
 #include "app/interrupt.h"
+#include "app/merge_command.h"
 #include "app/options/command_line.h"
 #include "app/render_command.h"
+#include "app/resume_command.h"
 #include "app/standard_output.h"
 #include "app/trace_command.h"
+#include "app/verify_command.h"
 #include "common/device/devices.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
@@ -21,6 +24,12 @@ namespace pt {
 namespace {
 
 int execute(const RenderCommand& command) { return render_command(command); }
+
+int execute(const ResumeCommand& command) { return resume_command(command); }
+
+int execute(const MergeCommand& command) { return merge_command(command); }
+
+int execute(const VerifyCommand& command) { return verify_command(command); }
 
 int execute(const CompareCommand& command) {
   return compare_command(command.a, command.b, command.tolerance, command.difference);

@@ -50,11 +50,10 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void check_files(const Options& o, const GivenOptions& given) {
-  const std::pair<const char*, std::string> files[] = {
-      {"output", o.output},
-      {"stats", o.stats_file},
-      {"csv", o.csv_file},
-      {"checkpoint", o.checkpoint.file}};
+  const std::pair<const char*, std::string> files[] = {{"output", o.output},
+                                                       {"stats", o.stats_file},
+                                                       {"csv", o.csv_file},
+                                                       {"checkpoint", o.checkpoint.file}};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j)
       if (same_file(files[i].second, files[j].second))
@@ -219,7 +218,8 @@ void check_parts(const Options& o, const GivenOptions& given) {
     throw Error(fmt::format("{}: {}", option, why));
   };
   if (o.part.count > 1 && !has_file)
-    refuse("--part " + part_text(o.part), "expected --checkpoint FILE, which the part is written to");
+    refuse("--part " + part_text(o.part),
+           "expected --checkpoint FILE, which the part is written to");
   if (o.part.count > 1 && given.contains("output"))
     refuse("--output " + o.output, "a part of an image is written to --checkpoint alone");
   if (o.part.count > 1 && (o.target_error > 0 || o.time_limit > 0))

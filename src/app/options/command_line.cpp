@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/options/option_list.h"
+#include "app/options/option_values.h"
 #include "app/options/shell_text.h"
 #include "app/options/subcommand.h"
 #include "common/error/error.h"

@@ -45,9 +45,9 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command =
-    std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                 ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
+                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
+                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

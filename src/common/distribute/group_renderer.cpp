@@ -52,8 +52,9 @@ GroupRenderer::GroupRenderer(const Options& options, const PixelFilter& filter, 
       start_(window_of(options), plan_),
       film_(start_) {
   if (options.integrator == IntegratorKind::mlt) {
-    throw Error("--integrator mlt: its chains walk over the whole image, which is not divided; "
-                "expected one device, without --checkpoint and --part");
+    throw Error(
+        "--integrator mlt: its chains walk over the whole image, which is not divided; "
+        "expected one device, without --checkpoint and --part");
   }
   for (std::unique_ptr<Worker>& worker : workers) {
     Member member;
@@ -136,7 +137,8 @@ bool GroupRenderer::complete(std::uint32_t end, const RenderHooks& hooks, Render
   bool is_interrupted = false;
   for (;;) {
     if (!is_interrupted) hand_out(queue);
-    const bool is_idle = std::ranges::all_of(members_, [](const Member& m) { return m.ids.empty(); });
+    const bool is_idle =
+        std::ranges::all_of(members_, [](const Member& m) { return m.ids.empty(); });
     if (is_idle && (is_interrupted || queue.is_done())) break;
     if (is_idle) throw Error("no device is left that could go on");
     if (!collect(queue, run)) bell_ ? bell_->wait(bell_s) : ResultBell().wait(poll_s);
@@ -225,7 +227,8 @@ void GroupRenderer::fail(Member& member, const std::string& error, UnitQueue& qu
   member.at_work.clear();
   member.ids.clear();
   const bool is_last = std::ranges::all_of(members_, [](const Member& m) { return m.has_failed; });
-  if (is_last) throw Error(fmt::format("{}: {}; no other device is left", member.share.name, error));
+  if (is_last)
+    throw Error(fmt::format("{}: {}; no other device is left", member.share.name, error));
   if (hooks_.warn) {
     hooks_.warn(fmt::format("{}: {}; the other devices go on", member.share.name, error));
   }
@@ -233,7 +236,7 @@ void GroupRenderer::fail(Member& member, const std::string& error, UnitQueue& qu
 
 Image GroupRenderer::image() {
   const Window& window = film_.window;
-  Image image = develop(film_, plan_, filter_, window, film_.least_samples());
+  Image image = develop(film_, filter_);
   image.place = {static_cast<int>(window.x), static_cast<int>(window.y), options_.width,
                  options_.height};
   return image;

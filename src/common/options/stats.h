@@ -45,17 +45,17 @@ struct DeviceShare {
 
 /// One render of the whole image.
 struct RenderRun {
-  /// From the first stage's start to the last one's end, all batches; of several devices that of the
-  /// one that took longest.
+  /// From the first stage's start to the last one's end, all batches; of several devices that of
+  /// the one that took longest.
   double kernel_ms = 0;
-  double wall_ms = 0;  ///< of the render on the host
   std::vector<StageTime> stages;
   std::uint64_t waves = 0;  ///< turns of the wavefront's loop; 0 in other modes
   int samples_done = 0;     ///< per pixel; less than asked for where something ended it before
   RunEnd ended_by = RunEnd::samples;
   std::optional<double> relative_error;  ///< of the image (image_error.h), where it was estimated
-  std::optional<MetropolisStats> metropolis;  ///< of --integrator mlt
-  std::vector<DeviceShare> devices;           ///< where there are several; stages: of all together
+  std::optional<MetropolisStats> metropolis{};  ///< of --integrator mlt
+  std::vector<DeviceShare> devices{};  ///< where there are several; stages: of all together
+  double wall_ms = 0;                  ///< of the render on the host
 };
 
 /// Neither all samples were taken nor did a stop that was asked for end the render.
