@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "app/make_renderer.h"
 #include "common/device/cpu/cpu_renderer.h"
@@ -29,7 +30,9 @@ std::string name_of(const DeviceInfo& device) {
 }  // namespace
 
 bool needs_group(const Options& options, const std::vector<DeviceInfo>& devices) {
-  return devices.size() > 1 || !options.checkpoint.file.empty() || options.part.count > 1;
+  const bool is_divided = std::getenv(units_variable) != nullptr;
+  return devices.size() > 1 || !options.checkpoint.file.empty() || options.part.count > 1 ||
+         is_divided;
 }
 
 std::vector<std::unique_ptr<Worker>> make_workers(const Options& options, const SceneData& scene,

@@ -22,9 +22,8 @@ constexpr double even_s = 20;
 // Between two looks at the time, at interruptions and at workers without a bell.
 constexpr double poll_s = 2e-4, bell_s = 0.02;
 
-/// A means of tests and of experiments/scaling.py.
 int windows_per_worker() {
-  const char* const text = std::getenv("PTEXP_UNITS_PER_DEVICE");
+  const char* const text = std::getenv(units_variable);
   return text == nullptr ? 0 : std::max(0, std::atoi(text));
 }
 

@@ -15,6 +15,9 @@
 
 namespace pt {
 
+/// Environment variable of tests and experiments: so many windows of one size for each device.
+inline constexpr const char* units_variable = "PTEXP_UNITS_PER_DEVICE";
+
 /// What a group asks of who uses it. All may be empty.
 struct GroupHooks {
   /// After each unit: the film so far.
