@@ -1,5 +1,5 @@
-// Units, their results and reports of devices as bytes, to be sent to other processes. Exact: no bit
-// of a sum changes on the way. Readers throw Error for bytes that are cut off or make no sense.
+// Units, their results and reports of devices as bytes, to be sent to other processes. Exact: no
+// bit of a sum changes on the way. Readers throw Error for bytes that are cut off or make no sense.
 #pragma once
 
 #include "common/distribute/bytes.h"

@@ -20,8 +20,9 @@ enum class MessageKind {
   device,      ///< from a worker: what it is (device_message.cpp)
   result,      ///< from a worker: what became of a unit
   failure,     ///< to rank 0: this rank cannot go on
-  end,         ///< rank 0's last message: the exit code of all
+  end,         ///< rank 0: the exit code of all
   goodbye,     ///< the last message to rank 0
+  closing,     ///< the last message from rank 0: all have said good-bye
 };
 
 struct Message {
@@ -60,9 +61,9 @@ class Channel {
 };
 
 struct ChannelSettings {
-  double timeout_s = 60;                    ///< a rank that is silent for so long is lost
+  double timeout_s = 60;                  ///< a rank that is silent for so long is lost
   std::uint64_t chunk_bytes = 64u << 20;  ///< of messages that go in several: MPI counts by int
-  std::function<void()> before_abort;       ///< removes unfinished files; may be empty
+  std::function<void()> before_abort;     ///< removes unfinished files; may be empty
 };
 
 /// As the environment says: PTEXP_MPI_TIMEOUT (seconds), PTEXP_MPI_CHUNK (bytes). Throws Error.

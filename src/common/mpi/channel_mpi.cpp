@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <csignal>
 #include <cstdio>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "common/mpi/channel.h"
 #include "common/mpi/heartbeats.h"
@@ -23,9 +25,9 @@ double seconds(Clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
-/// After the last message; it is not to be followed by heartbeats.
-bool is_farewell(MessageKind kind) {
-  return kind == MessageKind::end || kind == MessageKind::goodbye;
+/// Of its sender: no heartbeat follows.
+bool is_last_message(MessageKind kind) {
+  return kind == MessageKind::goodbye || kind == MessageKind::closing;
 }
 
 class MpiChannel : public Channel {
@@ -34,10 +36,12 @@ class MpiChannel : public Channel {
       : settings_(std::move(settings)), thread_([this, processes] { run(processes); }) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return is_open_ || problem_; });
-    if (!problem_) return;
-    lock.unlock();
-    thread_.join();
-    std::rethrow_exception(problem_);
+    if (problem_) {
+      lock.unlock();
+      thread_.join();
+      std::rethrow_exception(problem_);
+    }
+    ignore_signals();
   }
   ~MpiChannel() override {
     if (thread_.joinable()) abort(2);  // nobody has said good-bye
@@ -88,6 +92,7 @@ class MpiChannel : public Channel {
   };
 
   void run(int processes);
+  void ignore_signals() const;
   bool take_orders(MpiTraffic& traffic, Heartbeats& heartbeats);
   void talk(MpiTraffic& traffic, Heartbeats& heartbeats);
   void rest(const MpiTraffic& traffic, Clock::duration idle);
@@ -113,6 +118,12 @@ void MpiChannel::end_all(MpiTraffic& traffic, int code, const std::string& messa
   traffic.abort(code);
 }
 
+/// mpirun and srun hand signals to all ranks: rank 0 decides what becomes of the others.
+void MpiChannel::ignore_signals() const {
+  if (rank_ == 0) return;
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+}
+
 /// False at the end.
 bool MpiChannel::take_orders(MpiTraffic& traffic, Heartbeats& heartbeats) {
   std::unique_lock lock(mutex_);
@@ -122,7 +133,7 @@ bool MpiChannel::take_orders(MpiTraffic& traffic, Heartbeats& heartbeats) {
   lock.unlock();
   for (const Outgoing& order : orders) {
     traffic.send(order.to, order.kind, order.bytes);
-    if (is_farewell(order.kind)) heartbeats.stop_sending(order.to);
+    if (is_last_message(order.kind)) heartbeats.stop_sending(order.to);
   }
   if (abort_code != 0) end_all(traffic, abort_code, "");
   return !is_closing || !traffic.has_sent_all();
@@ -142,14 +153,14 @@ void MpiChannel::talk(MpiTraffic& traffic, Heartbeats& heartbeats) {
   const auto empty = std::make_shared<const std::string>();
   for (Clock::time_point active = Clock::now(); take_orders(traffic, heartbeats);) {
     const Clock::time_point now = Clock::now();
-    const bool moved = traffic.turn(
-        [&](int from) { heartbeats.heard(from, seconds(now)); },
-        [&](Message&& message) {
-          if (is_farewell(message.kind)) heartbeats.part_with(message.from);
-          const std::lock_guard lock(mutex_);
-          inbox_.push_back(std::move(message));
-          changed_.notify_all();
-        });
+    const bool moved = traffic.turn([&](int from) { heartbeats.heard(from, seconds(now)); },
+                                    [&](Message&& message) {
+                                      if (is_last_message(message.kind))
+                                        heartbeats.stop_watching(message.from);
+                                      const std::lock_guard lock(mutex_);
+                                      inbox_.push_back(std::move(message));
+                                      changed_.notify_all();
+                                    });
     for (const int to : heartbeats.due(seconds(now))) {
       traffic.send(to, MessageKind::heartbeat, empty);
     }

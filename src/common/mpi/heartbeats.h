@@ -13,8 +13,9 @@ class Heartbeats {
   Heartbeats(int rank, int count, double timeout_s, double now);
 
   void heard(int from, double now) { peers_[from].heard = now; }
-  /// It has said its last word, or hears ours: neither watched nor sent to any more.
-  void part_with(int peer) { peers_[peer].sends = peers_[peer].listens = false; }
+  /// After its last message.
+  void stop_watching(int peer) { peers_[peer].sends = false; }
+  /// After our last one.
   void stop_sending(int peer) { peers_[peer].listens = false; }
 
   /// To be called at each turn of the loop: the ranks to which a heartbeat is due now.
