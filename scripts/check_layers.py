@@ -28,7 +28,9 @@ SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
     # The program: commands, the command line, reports.
-    ("app", ["app/*"], ["distribute", *SCHEDULES, *COMMON]),
+    ("app", ["app/*"], ["mpi", "distribute", *SCHEDULES, *COMMON]),
+    # Processes of one job, whose devices work for the first one.
+    ("mpi", ["common/mpi/*"], ["distribute", "film", "options", "error"]),
     # Several renderers as one: who gets which pixels.
     ("distribute", ["common/distribute/*"], ["render", "film", "image", "plan", *PHYSICS, *HOST]),
     # Schedules. None includes another one.
@@ -72,7 +74,7 @@ LAYERS = [
     ("platform", ["common/platform/*"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
-MAIN_MAY_INCLUDE = ["app", "distribute", *SCHEDULES, *COMMON]
+MAIN_MAY_INCLUDE = ["app", "mpi", "distribute", *SCHEDULES, *COMMON]
 
 # Who may know CUDA.
 CUDA_HEADER = re.compile(

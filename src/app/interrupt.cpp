@@ -61,6 +61,10 @@ void note_signals(bool usr1) {
   if (usr1) handle(note_signal, {SIGUSR1});
 }
 
+void ignore_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+}
+
 bool interrupted() { return signalled != 0; }
 
 int exit_code_of_signal() { return 128 + signalled; }

@@ -13,6 +13,10 @@ void end_on_signal(const char* what_is_lost = "");
 /// saved, and nothing must stop that. `usr1`: SIGUSR1, too, which Slurm sends before a time limit.
 void note_signals(bool usr1 = false);
 
+/// From now on they do nothing: another process of the job, which gets them, too, says what
+/// happens.
+void ignore_signals();
+
 bool interrupted();
 
 /// 128 and the signal's number, as shells have it: 130 after SIGINT, 143 after SIGTERM.

@@ -14,6 +14,7 @@
 #include "app/make_renderer.h"
 #include "app/measure.h"
 #include "app/progress.h"
+#include "app/rank_setup.h"
 #include "app/report/csv_file.h"
 #include "app/report/report.h"
 #include "app/resume_command.h"
@@ -23,6 +24,7 @@
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_io.h"
 #include "common/image/measure_exposure.h"
+#include "common/mpi/serve_units.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
 #include "common/scene/data/scene_facts.h"
@@ -46,11 +48,15 @@ void check_outputs(const Options& options) {
 }
 
 /// Finds the devices for the options and says which. The options then name these.
-std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given) {
+std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given,
+                                     const Ranks& ranks) {
   using Kind = DeviceChoice::Kind;
   const bool is_serial = options.mode == Mode::serial;  // one CPU thread, GPU or not
-  const DeviceChoice wanted = is_serial ? DeviceChoice{Kind::cpu, 0} : options.device;
-  const std::vector<DeviceInfo> devices = choose_devices(wanted, options.threads);
+  if (is_serial) options.device = {Kind::cpu, 0};
+  const DeviceChoice wanted = options.device;
+  const std::vector<DeviceInfo> devices = ranks.count() > 1
+                                              ? choose_rank_devices(options, ranks.own())
+                                              : choose_devices(wanted, options.threads);
   check_applicable(options, given, devices.front().choice.kind);
   if (!options.quiet) {
     for (const DeviceInfo& device : devices) {
@@ -59,7 +65,8 @@ std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given
     const bool is_gpu = devices.front().choice.kind == Kind::cuda;
     const std::size_t gpus =
         wanted.kind == Kind::automatic && is_gpu ? list_devices().size() - 1 : 0;
-    if (gpus > 1) fmt::print("{} GPUs are here; --device cuda:all renders on all of them\n", gpus);
+    if (gpus > 1 && ranks.count() == 1)
+      fmt::print("{} GPUs are here; --device cuda:all renders on all of them\n", gpus);
     flush_output();  // before the wait, even into a pipe
   }
   options.device = devices.front().choice;
@@ -151,13 +158,29 @@ void say_interrupted(const Options& options, const Measurement& measurement, boo
              options.csv_file.empty() ? "" : "; no row appended to " + options.csv_file);
 }
 
+std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& workers) {
+  std::vector<std::string> names;
+  for (const auto& worker : workers) names.push_back(worker->name());
+  return names;
+}
+
+/// Of a rank but the first: its devices work for that one until it needs them no more.
+void serve(Ranks& ranks, const Options& options, const SceneData& scene,
+           const std::vector<DeviceInfo>& devices) {
+  ResultBell bell;
+  const auto workers = make_workers(options, scene, devices, bell);
+  ranks.announce(names_of(workers));
+  serve_units(ranks, workers);
+}
+
 /// One device's renderer, or a group whose film may be kept.
 class Rendering {
  public:
   Rendering(const Options& options, const SceneData& scene, const std::vector<DeviceInfo>& devices,
-            const Resumption* resumption)
+            Ranks& ranks, const Resumption* resumption)
       : options_(options) {
-    if (!needs_group(options, devices)) {
+    const bool has_ranks = ranks.count() > 1 && !options.explain;
+    if (!needs_group(options, devices) && !has_ranks) {
       single_ = make_renderer(options, scene, devices.front());
       return;
     }
@@ -172,8 +195,16 @@ class Rendering {
     GroupHooks hooks;
     hooks.warn = warn;
     if (keeper_) hooks.film_grew = [this](const ImageFilm& film) { keeper_->film_grew(film); };
-    group_ = std::make_unique<GroupRenderer>(
-        options, scene.filter, make_workers(options, scene, devices, *bell_), bell_, hooks);
+    auto workers = make_workers(options, scene, devices, *bell_);
+    if (has_ranks) {
+      ranks.announce(names_of(workers));
+      const std::uint64_t least_paths = workers.front()->least_paths();
+      for (auto& remote : remote_workers(ranks, least_paths)) workers.push_back(std::move(remote));
+    }
+    // Nobody rings for what comes from other ranks.
+    const std::shared_ptr<ResultBell> bell = has_ranks ? nullptr : bell_;
+    group_ =
+        std::make_unique<GroupRenderer>(options, scene.filter, std::move(workers), bell, hooks);
     if (resumption != nullptr) group_->start_from(resumption->checkpoint.film);
     group_->restrict_to(part_windows(options));
   }
@@ -216,16 +247,25 @@ Measurement measure_and_keep(Rendering& rendering, const Options& options) {
 
 }  // namespace
 
-int render_command(const RenderCommand& command, const Resumption* resumption) {
+int render_command(const RenderCommand& command, Ranks& ranks, const Resumption* resumption) {
   Options options = command.options;
-  check_outputs(options);
-  const std::vector<DeviceInfo> devices = find_devices(options, command.given);
-  end_on_signal(": no sample was finished, no image written");
+  const bool is_first = ranks.is_first();
+  if (is_first) check_outputs(options);
+  options.quiet |= !is_first;
+  const std::vector<DeviceInfo> devices = find_devices(options, command.given, ranks);
+  if (ranks.count() > 1) check_ranks(ranks, options, devices.front());
+  if (is_first) end_on_signal(": no sample was finished, no image written");
 
   RenderReport report;
   SceneData scene;
-  report.scene_ms = timed_ms([&] { scene = make_scene_for(options, devices.front(), warn); });
+  report.scene_ms = timed_ms([&] {
+    scene = make_shared_scene(ranks, options, devices.front(), is_first ? Warn(warn) : Warn());
+  });
   apply_defaults(scene.defaults, command.given, options);
+  if (!is_first) {
+    if (!options.explain) serve(ranks, options, scene, devices);
+    return 0;
+  }
   if (resumption != nullptr) check_resumption(*resumption, options, scene.source_hash, devices);
   report.primitives = scene.primitive_count() + scene.triangle_count();
   describe_scene(scene, report.scene);
@@ -233,7 +273,7 @@ int render_command(const RenderCommand& command, const Resumption* resumption) {
     fmt::print("{}", scene_text(report.scene));
     std::fflush(stdout);
   }
-  Rendering rendering(options, scene, devices, resumption);
+  Rendering rendering(options, scene, devices, ranks, resumption);
   Renderer& renderer = rendering.renderer();
 
   if (options.explain) {

@@ -6,6 +6,7 @@
 
 #include "app/options/command_line.h"
 #include "common/film/checkpoint.h"
+#include "common/mpi/ranks.h"
 
 namespace pt {
 
@@ -18,6 +19,8 @@ struct Resumption {
 /// Returns the exit code: 0, or 128 + N after signal N, the image and the checkpoint then holding
 /// the samples that were finished. Throws Error; outputs that cannot be written are refused before
 /// any work.
-int render_command(const RenderCommand& command, const Resumption* resumption = nullptr);
+/// `ranks`: of the job; the first one prints and writes, the others work for it.
+int render_command(const RenderCommand& command, Ranks& ranks,
+                   const Resumption* resumption = nullptr);
 
 }  // namespace pt

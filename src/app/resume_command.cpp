@@ -28,7 +28,7 @@ void check_samples(const ImageFilm& film, const Options& before, const Options& 
 
 }  // namespace
 
-int resume_command(const ResumeCommand& command) {
+int resume_command(const ResumeCommand& command, Ranks& ranks) {
   const Resumption resumption{command.file, read_checkpoint(command.file)};
   const Options before = options_in_header(resumption.checkpoint.metadata, command.file);
   RenderCommand render;
@@ -42,7 +42,7 @@ int resume_command(const ResumeCommand& command) {
   check_samples(resumption.checkpoint.film, before, render.options, command.file);
   // The file's own defaults were applied when the render was begun.
   for (const char* name : {"width", "height", "spp", "max-depth", "rr"}) render.given.insert(name);
-  return render_command(render, &resumption);
+  return render_command(render, ranks, &resumption);
 }
 
 void check_resumption(const Resumption& resumption, const Options& options,

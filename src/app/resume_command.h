@@ -10,7 +10,7 @@
 namespace pt {
 
 /// As render_command. The checkpoint goes on in the same file unless --checkpoint names another.
-int resume_command(const ResumeCommand& command);
+int resume_command(const ResumeCommand& command, Ranks& ranks);
 
 /// Throws Error where the scene or the devices give other samples than the checkpoint has.
 void check_resumption(const Resumption& resumption, const Options& options,

@@ -44,6 +44,7 @@ class FakeWorker : public Worker {
 
   std::string name() const override { return name_; }
   int capacity() const override { return 2; }
+  std::uint64_t least_paths() const override { return 1; }
   void begin(Unit&& unit) override { units_.push_back(std::move(unit)); }
   std::optional<UnitResult> poll() override {
     if (units_.empty()) return std::nullopt;

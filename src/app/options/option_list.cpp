@@ -227,6 +227,12 @@ void add_scene(std::vector<OptionEntry>& list) {
                [](Options& o, const std::string&) { o.strict = true; },
                [](const Options& o) { return o.strict ? "on" : "off"; }),
            "Unsupported features of a scene file are errors, not warnings")
+      .add(custom(
+               "scene-from-disk", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.scene_from_disk = true; },
+               [](const Options& o) { return o.scene_from_disk ? "on" : "off"; }),
+           "In an MPI job each rank reads the scene's files; by default the\n"
+           "first one does, and sends them to the others")
       .add(integer("spheres", &Options::spheres, 0, max_spheres),
            "Random spheres of the scene 'spheres', besides the ground")
       .add(choice("create-world", &Options::create_world),
@@ -468,7 +474,8 @@ bool determines_image(const OptionEntry& entry) {
   const auto is_one_of = [](const std::string& text, std::initializer_list<const char*> list) {
     return std::ranges::any_of(list, [&](const char* one) { return text == one; });
   };
-  if (is_one_of(entry.name, {"output", "exposure", "spp", "strict"})) return false;
+  if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk"}))
+    return false;
   if (is_one_of(entry.name, {"rng", "kernel-set"})) return true;
   return entry.group == "Image" || entry.group == "Scene" || entry.group == "Camera" ||
          entry.group.starts_with("Metropolis");

@@ -111,9 +111,10 @@ DeviceChoice parse_device(const std::string& name, const std::string& text) {
 
 DeviceChoice parse_devices(const std::string& name, const std::string& text) {
   const auto refuse = [&] {
-    refuse_value(name, text,
-                 "expected auto, cpu, cpu:N for N devices that share its threads, cuda, cuda:all, or "
-                 "cuda:N,M,... with ordinals from 0");
+    refuse_value(
+        name, text,
+        "expected auto, cpu, cpu:N for N devices that share its threads, cuda, cuda:all, or "
+        "cuda:N,M,... with ordinals from 0");
   };
   DeviceChoice choice;
   if (text == "cuda:all") {
@@ -156,8 +157,7 @@ CheckpointChoice parse_checkpoint(const std::string& name, const std::string& te
   choice.file = text.substr(0, comma);
   if (comma != std::string::npos) {
     const char* const end = text.data() + text.size();
-    const auto [stop, error] =
-        std::from_chars(text.data() + comma + 1, end, choice.interval_s);
+    const auto [stop, error] = std::from_chars(text.data() + comma + 1, end, choice.interval_s);
     if (error != std::errc() || stop != end || !(choice.interval_s > 0) ||
         !std::isfinite(choice.interval_s)) {
       refuse_value(name, text, "expected FILE or FILE,SECONDS with seconds above 0");

@@ -101,6 +101,8 @@ class ByteReader {
     rest_.remove_prefix(count * sizeof(T));
   }
 
+  /// What is not yet read.
+  std::string_view rest() const { return rest_; }
   void expect_end() const {
     if (!rest_.empty()) throw Error("a message that is longer than expected");
   }

@@ -20,10 +20,10 @@ struct UnitRule {
 };
 
 /// Divides the pixels of `where` into windows of rows, for a render of `samples` per pixel. By
-/// factoring (Hummel, Schonberg and Flynn 1992): as many windows as there are workers, of a share of
-/// half of the pixels, then so of the rest, until a window would be too small. The large ones cost
-/// little to hand out, and the small ones, taken last, let all workers end at about the same time.
-/// Of one worker no more than are needed.
+/// factoring (Hummel, Schonberg and Flynn 1992): as many windows as there are workers, of a share
+/// of half of the pixels, then so of the rest, until a window would be too small. The large ones
+/// cost little to hand out, and the small ones, taken last, let all workers end at about the same
+/// time. Of one worker no more than are needed.
 std::vector<Window> divide_pixels(const std::vector<Window>& where, int samples,
                                   const UnitRule& rule);
 
@@ -41,8 +41,8 @@ class UnitQueue {
   UnitQueue(std::vector<FilmPart> parts, std::uint32_t end);
 
   /// The next unit of about `paths` paths, at least one sample; none if all that is left is in
-  /// work. While more than `even_paths` are left, of the window with the fewest samples, so that the
-  /// image grows evenly; then of the one that lacks most, so that the end is even.
+  /// work. While more than `even_paths` are left, of the window with the fewest samples, so that
+  /// the image grows evenly; then of the one that lacks most, so that the end is even.
   std::optional<UnitSpan> next(std::uint64_t paths, std::uint64_t even_paths);
   /// The unit has ended, and its pixels have samples up to `next_sample`.
   void end(const Window& window, std::uint32_t next_sample);

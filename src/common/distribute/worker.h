@@ -43,8 +43,8 @@ class Worker {
   virtual std::optional<UnitResult> poll() = 0;
   /// Units that have begun end with the samples that they have, those that wait without any more.
   virtual void cancel() = 0;
-  /// Fills in what is known of the device: name, memory, kernels, times of set-up. No unit has begun
-  /// that has not ended.
+  /// Fills in what is known of the device: name, memory, kernels, times of set-up. No unit has
+  /// begun that has not ended.
   virtual void describe(RenderReport& report) = 0;
 };
 

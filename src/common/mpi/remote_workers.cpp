@@ -59,13 +59,14 @@ class RemoteRank {
 
 class RemoteWorker : public Worker {
  public:
-  RemoteWorker(std::shared_ptr<RemoteRank> rank, std::uint32_t device)
-      : rank_(std::move(rank)), device_(device) {}
+  RemoteWorker(std::shared_ptr<RemoteRank> rank, std::uint32_t device, std::uint64_t least_paths)
+      : rank_(std::move(rank)), device_(device), least_paths_(least_paths) {}
 
   std::string name() const override {
     return fmt::format("{} {}", rank_->info().name(), rank_->info().devices[device_]);
   }
   int capacity() const override { return 2; }
+  std::uint64_t least_paths() const override { return least_paths_; }
   void begin(Unit&& unit) override {
     ByteWriter writer;
     writer.number(device_);
@@ -83,16 +84,17 @@ class RemoteWorker : public Worker {
  private:
   std::shared_ptr<RemoteRank> rank_;
   std::uint32_t device_;
+  std::uint64_t least_paths_;
 };
 
 }  // namespace
 
-std::vector<std::unique_ptr<Worker>> remote_workers(Ranks& ranks) {
+std::vector<std::unique_ptr<Worker>> remote_workers(Ranks& ranks, std::uint64_t least_paths) {
   std::vector<std::unique_ptr<Worker>> workers;
   for (int rank = 1; rank < ranks.count(); ++rank) {
     const auto remote = std::make_shared<RemoteRank>(ranks, rank);
     for (std::uint32_t device = 0; device < remote->info().devices.size(); ++device) {
-      workers.push_back(std::make_unique<RemoteWorker>(remote, device));
+      workers.push_back(std::make_unique<RemoteWorker>(remote, device, least_paths));
     }
   }
   return workers;

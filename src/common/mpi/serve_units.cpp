@@ -43,8 +43,11 @@ void send_device(Ranks& ranks, std::uint32_t index, Served& served) {
 void send_results(Ranks& ranks, std::uint32_t index, Served& served) {
   while (const std::optional<UnitResult> result = served.worker->poll()) {
     --served.begun;
-    // What it is comes before its first result, so that rank 0 knows it by then.
-    if (!served.is_described && result->error.empty()) send_device(ranks, index, served);
+    // What it is comes before a result, so that rank 0 knows it by then; only of a worker that has
+    // nothing else to do, which would answer late.
+    if (!served.is_described && served.begun == 0 && result->error.empty()) {
+      send_device(ranks, index, served);
+    }
     ByteWriter writer;
     writer.number(index);
     write(writer, *result);

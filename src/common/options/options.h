@@ -45,9 +45,9 @@ constexpr StageBlocks default_stage_blocks() {
 
 struct DeviceChoice {
   enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
-  int index = 0;             ///< CUDA device ordinal
-  std::vector<int> more{};   ///< ordinals of further devices; of the CPU: a number for each
-  bool wants_all = false;    ///< every CUDA device that there is
+  int index = 0;            ///< CUDA device ordinal
+  std::vector<int> more{};  ///< ordinals of further devices; of the CPU: a number for each
+  bool wants_all = false;   ///< every CUDA device that there is
 
   int count() const { return 1 + static_cast<int>(more.size()); }
   bool has_several() const { return wants_all || !more.empty(); }
@@ -147,7 +147,8 @@ struct Options {
   int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
   WorldBuilder create_world = WorldBuilder::host;
   std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
-  bool strict = false;  ///< what a scene file has and ptexp lacks is an error
+  bool strict = false;           ///< what a scene file has and ptexp lacks is an error
+  bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
 
   // Execution
