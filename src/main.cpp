@@ -56,8 +56,9 @@ int execute(const ListDevicesCommand&) {
 
 int execute(const VersionCommand&) {
   const BuildInfo& build = build_info();
-  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\n", build.version, build.commit,
-             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "");
+  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
+             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
+             mpi_version());
   return 0;
 }
 

@@ -210,6 +210,14 @@ void MpiChannel::run(int processes) {
 
 }  // namespace
 
+std::string mpi_version() {
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int length = 0;
+  MPI_Get_library_version(text, &length);  // may be called before MPI_Init
+  const std::string all(text, static_cast<std::size_t>(length));
+  return all.substr(0, all.find_first_of(",\n"));
+}
+
 std::unique_ptr<Channel> open_mpi_channel(ChannelSettings settings, int processes) {
   return std::make_unique<MpiChannel>(std::move(settings), processes);
 }
