@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 
 #include "common/error/error.h"
 #include "common/mpi/serve_units.h"
@@ -65,12 +66,11 @@ int signal_on(Ranks& ranks, int rank, int signal) {
 
 /// All of them stop for some seconds, as a batch system may want.
 int suspend(Ranks& ranks, int seconds) {
-  return render(ranks, 1, -1, [&, seconds](int unit) {
-    sleep_ms(1);
-    if (unit != 3) return;
-    const auto command = fmt::format("(sleep {}; kill -CONT {}) &", seconds, ::getpid());
-    if (std::system(command.c_str()) == 0) ::kill(::getpid(), SIGSTOP);
-  });
+  ranks.gather("");
+  sleep_ms(200);  // so that this is on its way
+  const auto command = fmt::format("(sleep {}; kill -CONT {}) &", seconds, ::getpid());
+  if (std::system(command.c_str()) == 0) ::kill(::getpid(), SIGSTOP);
+  return render(ranks, 1, -1, {});
 }
 
 int interrupt(Ranks& ranks) {
@@ -140,6 +140,15 @@ int ping(Ranks& ranks, int count, std::uint32_t pixels, int pause_us) {
   return 0;
 }
 
+/// As long as loading a large scene takes.
+int quiet(Ranks& ranks, int ms) {
+  const std::clock_t begin = std::clock();
+  sleep_ms(ms);
+  const auto cpu_ms = static_cast<double>(std::clock() - begin) * 1e3 / CLOCKS_PER_SEC;
+  if (ranks.is_first()) fmt::print("{:.1f} % of a core\n", 100 * cpu_ms / ms);
+  return render(ranks, 1, -1, {});
+}
+
 int run(Ranks& ranks, const std::vector<std::string>& arguments) {
   const auto number = [&](std::size_t i) { return std::stoll(arguments.at(i)); };
   const std::string& scenario = arguments.at(0);
@@ -157,10 +166,7 @@ int run(Ranks& ranks, const std::vector<std::string>& arguments) {
     return ping(ranks, static_cast<int>(number(1)), static_cast<std::uint32_t>(number(2)),
                 static_cast<int>(number(3)));
   }
-  if (scenario == "quiet") {  // as long as loading a large scene
-    sleep_ms(static_cast<int>(number(1)));
-    return render(ranks, 1, -1, {});
-  }
+  if (scenario == "quiet") return quiet(ranks, static_cast<int>(number(1)));
   if (scenario == "code") return ranks.is_first() ? static_cast<int>(number(1)) : 0;
   if (scenario == "where") {
     const RankInfo& own = ranks.own();
@@ -179,13 +185,14 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     auto channel = pt::open_channel();
-    const auto outcome = pt::run_rank(std::move(channel), [&](pt::Ranks& ranks) {
+    const auto body = [&](pt::Ranks& ranks) {
       const int code = pt::run(ranks, arguments);
       std::fflush(stdout);
       return code;
+    };
+    return pt::run_rank(std::move(channel), body, [](const std::string& message) {
+      fmt::print(stderr, "ptexp: error: {}\n", message);
     });
-    if (!outcome.reported.empty()) fmt::print(stderr, "ptexp: error: {}", outcome.reported);
-    return outcome.code;
   } catch (const std::exception& error) {
     fmt::print(stderr, "ptexp: error: {}\n", error.what());
     return 2;

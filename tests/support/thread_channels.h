@@ -60,26 +60,23 @@ class ThreadChannel : public Channel {
   int rank_;
 };
 
-/// What main() does of a rank: [0] its exit code, and what rank 0 has reported.
+/// What main() does of a rank; returns its exit code.
+inline int run_rank(std::unique_ptr<Channel> channel, const std::function<int(Ranks&)>& body,
+                    const std::function<void(const std::string& message)>& report) {
+  Ranks ranks(std::move(channel));
+  try {
+    return ranks.finish(body(ranks));
+  } catch (const RanksEnd& end) {
+    return ranks.finish(end.code);
+  } catch (const std::exception& error) {
+    return ranks.fail(error.what(), 2, report);
+  }
+}
+
 struct RankOutcome {
   int code = -1;
   std::string reported;
 };
-
-inline RankOutcome run_rank(std::unique_ptr<Channel> channel,
-                            const std::function<int(Ranks&)>& body) {
-  RankOutcome outcome;
-  Ranks ranks(std::move(channel));
-  try {
-    outcome.code = ranks.finish(body(ranks));
-  } catch (const RanksEnd& end) {
-    outcome.code = ranks.finish(end.code);
-  } catch (const std::exception& error) {
-    outcome.code = ranks.fail(
-        error.what(), 2, [&](const std::string& message) { outcome.reported += message + "\n"; });
-  }
-  return outcome;
-}
 
 /// Runs `body` on each of `count` ranks.
 inline std::vector<RankOutcome> run_ranks(int count, const std::function<int(Ranks&)>& body) {
@@ -89,7 +86,9 @@ inline std::vector<RankOutcome> run_ranks(int count, const std::function<int(Ran
   for (int rank = 0; rank < count; ++rank) {
     threads.emplace_back([&, rank] {
       try {
-        outcomes[rank] = run_rank(std::make_unique<ThreadChannel>(hub, rank), body);
+        outcomes[rank].code = run_rank(
+            std::make_unique<ThreadChannel>(hub, rank), body,
+            [&, rank](const std::string& text) { outcomes[rank].reported += text + "\n"; });
       } catch (const ThreadHub::Aborted&) {
         outcomes[rank].code = hub.abort_code;
       }

@@ -140,10 +140,10 @@ bool MpiChannel::take_orders(MpiTraffic& traffic, Heartbeats& heartbeats) {
 }
 
 /// Does not burn a core: sleeps for a hundredth of the time that nothing came, which is what a
-/// message that comes then may wait.
+/// message that comes then may wait. While a message is on its way MPI wants to be called, though.
 void MpiChannel::rest(const MpiTraffic& traffic, Clock::duration idle) {
-  if (idle < 50us) return std::this_thread::yield();
   const bool is_moving = !traffic.has_sent_all() || traffic.is_receiving();
+  if (idle < (is_moving ? 100ms : 50us)) return std::this_thread::yield();
   const auto pause = is_moving ? 20us : std::clamp<Clock::duration>(idle / 100, 20us, 1ms);
   std::unique_lock lock(mutex_);
   wake_.wait_for(lock, pause, [&] { return !outbox_.empty() || is_closing_ || abort_code_ != 0; });

@@ -2,6 +2,9 @@
 // messages alone, so that a rank that has failed leaves nobody inside a collective call.
 #pragma once
 
+// Without the classes for C++ that MPI 3 has removed.
+#define OMPI_SKIP_MPICXX 1
+#define MPICH_SKIP_MPICXX 1
 #include <mpi.h>
 
 #include <deque>
