@@ -87,6 +87,10 @@ CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_cuda/*.cu"]
 PLATFORM = "common/platform/platform.h"
 PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GLM needs them
 
+# Who may know MPI: a program without it lacks these files.
+MPI_HEADER = re.compile(r"mpi(cxx|-ext|_proto)?\.h$")
+MPI_FILES = ["common/mpi/*_mpi.*"]
+
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
@@ -170,6 +174,8 @@ def check_include(source, path, layer, quoted, angled):
     elif CUB_HEADER.match(header):
         if not fits(path, CUB_FILES):
             yield f"only {', '.join(CUB_FILES)} include CUB: each such file takes long to compile"
+    elif MPI_HEADER.match(header) and not fits(path, MPI_FILES):
+        yield f"only {', '.join(MPI_FILES)} include MPI's headers"
     elif CUDA_HEADER.match(header) and not fits(path, CUDA_FILES):
         if path != PLATFORM:
             yield f"only CUDA files ({', '.join(CUDA_FILES)}) include CUDA's headers"
