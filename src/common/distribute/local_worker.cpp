@@ -90,13 +90,14 @@ UnitResult LocalWorker::render(Unit unit) {
   if (!is_cancelled()) {
     try {
       if (problem_) std::rethrow_exception(problem_);
-      result.run = renderer_->render(result.film, unit.samples, {{}, is_cancelled, {}, is_cancelled});
+      result.run =
+          renderer_->render(result.film, unit.samples, {{}, is_cancelled, {}, is_cancelled});
     } catch (const std::exception& error) {
       result.error = error.what();
     }
   }
-  result.wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-                       .count();
+  result.wall_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 

@@ -58,9 +58,9 @@ std::vector<Window> divide_pixels(const std::vector<Window>& where, int samples,
   Cutter cutter(where);
   std::vector<Window> windows;
   const auto workers = static_cast<std::uint64_t>(rule.workers);
-  const std::uint64_t least = std::min(
-      window_pixels_max, (rule.least_paths + static_cast<std::uint64_t>(samples) - 1) /
-                             static_cast<std::uint64_t>(samples));
+  const std::uint64_t least =
+      std::min(window_pixels_max, (rule.least_paths + static_cast<std::uint64_t>(samples) - 1) /
+                                      static_cast<std::uint64_t>(samples));
   if (rule.windows_per_worker > 0) {
     const std::uint64_t count = workers * static_cast<std::uint64_t>(rule.windows_per_worker);
     const std::uint64_t pixels = (cutter.left() + count - 1) / count;
@@ -91,9 +91,8 @@ std::optional<UnitSpan> UnitQueue::next(std::uint64_t paths, std::uint64_t even_
   for (Entry& entry : entries_) {
     if (entry.in_work) continue;
     const bool is_better =
-        best == nullptr ||
-        (is_even ? entry.part.next_sample < best->part.next_sample
-                 : entry.paths_left(end_) > best->paths_left(end_));
+        best == nullptr || (is_even ? entry.part.next_sample < best->part.next_sample
+                                    : entry.paths_left(end_) > best->paths_left(end_));
     if (is_better) best = &entry;
   }
   if (best == nullptr) return std::nullopt;
@@ -101,8 +100,8 @@ std::optional<UnitSpan> UnitQueue::next(std::uint64_t paths, std::uint64_t even_
   const std::uint64_t left = end_ - best->part.next_sample;
   const std::uint64_t fitting = paths / best->part.window.pixel_count();
   // Not a small rest.
-  const std::uint64_t samples = left <= fitting + fitting / 2 ? left
-                                                              : std::clamp<std::uint64_t>(fitting, 1, left);
+  const std::uint64_t samples =
+      left <= fitting + fitting / 2 ? left : std::clamp<std::uint64_t>(fitting, 1, left);
   return UnitSpan{best->part, static_cast<int>(samples)};
 }
 
