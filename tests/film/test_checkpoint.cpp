@@ -136,6 +136,22 @@ TEST_F(Checkpoints, AreRefusedWhereTheHeaderIsWrong) {
   EXPECT_NE(error_of(folder_.file("nothing.exr")).find("nothing.exr"), std::string::npos);
 }
 
+// A value that another program has changed, in a file that is whole.
+TEST_F(Checkpoints, ChangedSumsAreRefused) {
+  for (const FilmPlan& plan : plans) {
+    write_checkpoint(path(), {random_film({0, 0, 8, 8}, plan, 10), {}}, {});
+    ImageMetadata header;
+    const Image image = read_image_with_numbers(path(), "film.", header);
+    for (std::size_t layer = 0; layer < image.layers.size(); ++layer) {
+      Image changed = image;
+      changed.layers[layer].numbers[5] ^= 1;
+      write_image(folder_.file("d.exr"), changed, header);
+      EXPECT_NE(error_of(folder_.file("d.exr")).find("damaged"), std::string::npos)
+          << image.layers[layer].name;
+    }
+  }
+}
+
 // Not every byte matters: where the file is read, it must be the film that was written.
 TEST_F(Checkpoints, DamagedFilesAreRefused) {
   const ImageFilm film = random_film({0, 0, 24, 16}, {0, true, false}, 8);

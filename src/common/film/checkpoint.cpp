@@ -121,6 +121,7 @@ void read_layers(const Image& image, ImageFilm& film) {
 
 template <class T>
 void add_checksum(const std::vector<T>& values, std::uint32_t& sum) {
+  if (values.empty()) return;  // zlib starts again where it is given no bytes
   const auto* const bytes = reinterpret_cast<const Bytef*>(values.data());
   sum = static_cast<std::uint32_t>(crc32_z(sum, bytes, values.size() * sizeof(T)));
 }
