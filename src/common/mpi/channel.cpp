@@ -73,7 +73,8 @@ ChannelSettings channel_settings() {
 
 std::unique_ptr<Channel> open_channel(ChannelSettings settings) {
   const int processes = launched_processes([](const char* name) { return std::getenv(name); });
-  if (processes == 0) return std::make_unique<LoneChannel>();
+  // One process, as in an interactive step of Slurm, needs no MPI, whose start there may fail.
+  if (processes <= 1) return std::make_unique<LoneChannel>();
   return open_mpi_channel(std::move(settings), processes);
 }
 
