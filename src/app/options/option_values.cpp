@@ -121,8 +121,7 @@ DeviceChoice parse_devices(const std::string& name, const std::string& text) {
     choice.kind = DeviceChoice::Kind::cuda, choice.wants_all = true;
     return choice;
   }
-  const std::size_t colon = text.find(':');
-  const bool has_list = colon != std::string::npos && text.find(',', colon) != std::string::npos;
+  const bool has_list = text.find(',') != std::string::npos;
   if (text.starts_with("cpu:")) {
     const auto count = whole<unsigned>(text.substr(4));
     if (!count || *count < 1 || *count > devices_max) refuse();

@@ -18,10 +18,12 @@ struct Devices {
 Devices find_devices() {
   const int threads = cpu_threads(0);
   Devices devices;
-  devices.list.push_back({{DeviceChoice::Kind::cpu, 0},
-                          "CPU",
-                          fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"),
-                          cpu_properties(threads)});
+  DeviceInfo cpu;
+  cpu.choice.kind = DeviceChoice::Kind::cpu;
+  cpu.name = "CPU";
+  cpu.detail = fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
+  cpu.properties = cpu_properties(threads);
+  devices.list.push_back(cpu);
 #ifdef PTEXP_CUDA
   devices.about_gpus = append_cuda_devices(devices.list);
 #else
