@@ -105,7 +105,7 @@ TEST_P(DeviceGroup, MakesTheImageOfOne) {
 }
 
 TEST(GroupRenderer, StopsByErrorWhereOneDeviceDoes) {
-  const Options options = small({{"scene", "cornell"}, {"spp", "200"}});
+  const Options options = small({{"scene", "cornell"}, {"spp", "5000"}});
   const DeviceInfo device = choose_device(options.device);
   RenderHooks hooks;
   hooks.stops.relative_error = 0.2;

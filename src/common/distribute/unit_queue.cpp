@@ -28,7 +28,8 @@ class Cutter {
       piece.height = 1;
       cut_from_row(from, piece.width);
     } else {
-      const std::uint64_t rows = std::min<std::uint64_t>(pixels / from.width, from.height);
+      const std::uint64_t wanted = (pixels + from.width - 1) / from.width;
+      const std::uint64_t rows = std::min<std::uint64_t>(wanted, from.height);
       piece.height = static_cast<std::uint32_t>(rows);
       from.y += piece.height, from.height -= piece.height;
       if (from.height == 0) windows_.pop_back();
@@ -58,9 +59,12 @@ std::vector<Window> divide_pixels(const std::vector<Window>& where, int samples,
   Cutter cutter(where);
   std::vector<Window> windows;
   const auto workers = static_cast<std::uint64_t>(rule.workers);
+  // Long renders divide samples as well: there is no need for windows of few pixels.
+  constexpr std::uint64_t smallest_share = 64;  // of a worker's
+  const auto wanted = static_cast<std::uint64_t>(samples);
   const std::uint64_t least =
-      std::min(window_pixels_max, (rule.least_paths + static_cast<std::uint64_t>(samples) - 1) /
-                                      static_cast<std::uint64_t>(samples));
+      std::min(window_pixels_max, std::max((rule.least_paths + wanted - 1) / wanted,
+                                           cutter.left() / (smallest_share * workers)));
   if (rule.windows_per_worker > 0) {
     const std::uint64_t count = workers * static_cast<std::uint64_t>(rule.windows_per_worker);
     const std::uint64_t pixels = (cutter.left() + count - 1) / count;
@@ -82,6 +86,7 @@ UnitQueue::UnitQueue(std::vector<FilmPart> parts, std::uint32_t end) : end_(end)
     if (part.next_sample >= end) continue;
     entries_.push_back({part});
     left_ += entries_.back().paths_left(end);
+    largest_ = std::max(largest_, part.window.pixel_count());
   }
 }
 
@@ -98,7 +103,7 @@ std::optional<UnitSpan> UnitQueue::next(std::uint64_t paths, std::uint64_t even_
   if (best == nullptr) return std::nullopt;
   best->in_work = true;
   const std::uint64_t left = end_ - best->part.next_sample;
-  const std::uint64_t fitting = paths / best->part.window.pixel_count();
+  const std::uint64_t fitting = paths / (is_even ? largest_ : best->part.window.pixel_count());
   // Not a small rest.
   const std::uint64_t samples =
       left <= fitting + fitting / 2 ? left : std::clamp<std::uint64_t>(fitting, 1, left);

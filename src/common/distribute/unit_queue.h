@@ -41,8 +41,9 @@ class UnitQueue {
   UnitQueue(std::vector<FilmPart> parts, std::uint32_t end);
 
   /// The next unit of about `paths` paths, at least one sample; none if all that is left is in
-  /// work. While more than `even_paths` are left, of the window with the fewest samples, so that
-  /// the image grows evenly; then of the one that lacks most, so that the end is even.
+  /// work. While more than `even_paths` are left, of the window with the fewest samples, and as
+  /// many as the largest window would get, so that the image grows evenly; then of the one that
+  /// lacks most, so that the end is even.
   std::optional<UnitSpan> next(std::uint64_t paths, std::uint64_t even_paths);
   /// The unit has ended, and its pixels have samples up to `next_sample`.
   void end(const Window& window, std::uint32_t next_sample);
@@ -65,6 +66,7 @@ class UnitQueue {
   std::vector<Entry> entries_;
   std::uint32_t end_;
   std::uint64_t left_ = 0;
+  std::uint64_t largest_ = 1;  ///< pixels of the largest window
 };
 
 }  // namespace pt
