@@ -16,6 +16,7 @@
 #include "app/trace_command.h"
 #include "app/verify_command.h"
 #include "common/device/devices.h"
+#include "common/image/atomic_file.h"
 #include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
@@ -112,7 +113,9 @@ int run(Ranks& ranks, const std::vector<std::string>& arguments) {
 
 int main(int argc, char** argv) {
   try {
-    pt::Ranks ranks;
+    pt::ChannelSettings settings = pt::channel_settings();
+    settings.before_abort = pt::remove_unfinished_file;
+    pt::Ranks ranks(pt::open_channel(settings));
     return pt::run(ranks, {argv + 1, argv + argc});
   } catch (const std::exception& error) {
     pt::report_error(error.what());

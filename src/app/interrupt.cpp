@@ -53,7 +53,7 @@ void handle(void (*handler)(int), std::initializer_list<int> signals) {
 
 void end_on_signal(const char* what_is_lost) {
   end_text = what_is_lost;
-  handle(end_now, {SIGINT, SIGTERM});
+  handle(end_now, {SIGINT, SIGTERM, SIGUSR1});
 }
 
 void note_signals(bool usr1) {

@@ -13,7 +13,7 @@ class DevicesOf : public CudaTest, public testing::WithParamInterface<Settings> 
 INSTANTIATE_TEST_SUITE_P(
     Cuda, DevicesOf,
     testing::Values(Settings{{"scene", "spheres"}, {"mode", "megakernel"}},
-                    Settings{{"scene", "cornell"}, {"rng", "xorwow"}},
+                    Settings{{"scene", "spheres"}, {"rng", "xorwow"}},
                     Settings{{"scene", "boxes"}, {"aov", "albedo,depth,primitive,variance,rays"}},
                     Settings{{"scene", "boxes"}, {"mode", "megakernel"}, {"crop", "30,5,200,99"}},
                     Settings{{"scene", "instances:20"}, {"filter", "mitchell"}},

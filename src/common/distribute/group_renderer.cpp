@@ -69,7 +69,11 @@ void GroupRenderer::start_from(ImageFilm film) { start_ = std::move(film), film_
 void GroupRenderer::restrict_to(std::vector<Window> windows) { windows_ = std::move(windows); }
 
 RenderRun GroupRenderer::render(const RenderHooks& hooks) {
-  film_ = start_;
+  if (start_.parts.empty()) {
+    film_.clear();
+  } else {
+    film_ = start_;
+  }
   return add_samples(static_cast<std::uint32_t>(options_.spp), hooks);
 }
 
@@ -175,7 +179,10 @@ void GroupRenderer::hand_out(UnitQueue& queue) {
       if (!span) return;
       member.at_work.push_back(*span);
       member.ids.push_back(++next_id_);
-      member.worker->begin({next_id_, film_.take(span->part.window), span->samples});
+      FilmSums memory;
+      if (!spares_.empty()) memory = std::move(spares_.back()), spares_.pop_back();
+      member.worker->begin(
+          {next_id_, film_.take(span->part.window, std::move(memory)), span->samples});
     }
   }
 }
@@ -209,6 +216,7 @@ void GroupRenderer::take(Member& member, UnitResult&& result, UnitQueue& queue, 
   queue.end(span.part.window, next_sample);
   if (result.run.samples_done == 0) return;
   film_.put(result.film);
+  if (spares_.size() < 2 * members_.size()) spares_.push_back(std::move(result.film));
   const auto paths = static_cast<double>(span.part.window.pixel_count()) * result.run.samples_done;
   if (result.wall_ms > 0) member.paths_per_s = paths / (1e-3 * result.wall_ms);
   DeviceShare& share = member.share;

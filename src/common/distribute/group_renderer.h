@@ -77,6 +77,7 @@ class GroupRenderer : public Renderer {
   std::vector<Member> members_;
   std::vector<Window> windows_;  ///< to be rendered
   ImageFilm start_, film_;
+  std::vector<FilmSums> spares_;  ///< memory of films that came home
   std::uint64_t next_id_ = 0;
 };
 

@@ -44,6 +44,7 @@ class LocalWorker : public Worker {
   void wait_until_ready();
 
   std::string name() const override { return name_; }
+  int capacity() const override { return 2; }  // goes on while a film is put into the image
   std::uint64_t least_paths() const override { return least_paths_; }
   void begin(Unit&& unit) override;
   std::optional<UnitResult> poll() override;

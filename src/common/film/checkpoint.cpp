@@ -288,6 +288,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
     image.place.y = static_cast<int>(film.window.y);
   }
   add_layers(film, image);
+  image.is_compressed = false;  // the sums' lower halves are noise: a fifth would be saved
   ImageMetadata header = checkpoint.metadata;
   add_header(film, header);
   write_image(path, image, header);

@@ -79,12 +79,14 @@ ImageFilm::ImageFilm(const Window& w, const FilmPlan& p) : window(w), plan(p) {
   reset(plan, window.pixel_count());
 }
 
-Film ImageFilm::take(const Window& part) const {
+Film ImageFilm::take(const Window& part, FilmSums&& memory) const {
   if (part.pixel_count() == 0 || !window.contains(part)) {
     throw Error(fmt::format("a film of the pixels {}: expected pixels of the image {}", text(part),
                             text(window)));
   }
   Film film;
+  static_cast<FilmSums&>(film) = std::move(memory);
+  film.pixels.clear(), film.moments.clear(), film.features.clear();
   film.window = part;
   std::uint64_t covered = 0;
   for (const FilmPart& own : parts) {

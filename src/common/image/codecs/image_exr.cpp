@@ -76,7 +76,7 @@ int compression_threads() {
 
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
   Imf::Header header = header_of(image);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = image.is_compressed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   const Names rgb = {"R", "G", "B"};
   for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), header.dataWindow(), rgb);
