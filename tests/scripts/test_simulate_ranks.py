@@ -255,7 +255,7 @@ class Replay(unittest.TestCase):
                 tuple(chance.uniform(0.2, 1) for _ in range(count)),
                 tuple(chance.uniform(0.001, 1) for _ in range(count)), chance.randrange(count + 1),
                 chance.choice([50.0, 400.0]), chance.choice([0.0, 0.013]),
-                chance.choice([0.001, 0.1]), chance.choice([90.0, math.inf]))
+                chance.choice([0.001, 0.1, 0.6]), chance.choice([90.0, math.inf]))
             rule = Rule(chance.randrange(1, 6), chance.choice([0, 1, 2.5]), chance.randrange(1, 5),
                         chance.randrange(1, 4))
             with self.subTest(job=job, cluster=cluster, rule=rule):
