@@ -18,6 +18,7 @@ namespace {
 
 constexpr int max_block_threads = 1024;             // CUDA's limit on every device since 2010
 constexpr std::uint64_t max_pool_size = INT32_MAX;  // slots are numbered with 32 bits
+constexpr std::size_t devices_max = 64;             // of one machine
 
 /// The whole of `text` as a T, or nothing. Unlike strtol: no blanks, no sign of an unsigned value.
 template <typename T>
@@ -106,6 +107,84 @@ DeviceChoice parse_device(const std::string& name, const std::string& text) {
   if (!index || *index > INT32_MAX)
     refuse_value(name, text, "expected auto, cpu, cuda or cuda:N with N from 0");
   return {DeviceChoice::Kind::cuda, static_cast<int>(*index)};
+}
+
+DeviceChoice parse_devices(const std::string& name, const std::string& text) {
+  const auto refuse = [&] {
+    refuse_value(
+        name, text,
+        "expected auto, cpu, cpu:N for N devices that share its threads, cuda, cuda:all, or "
+        "cuda:N,M,... with ordinals from 0");
+  };
+  DeviceChoice choice;
+  if (text == "cuda:all") {
+    choice.kind = DeviceChoice::Kind::cuda, choice.wants_all = true;
+    return choice;
+  }
+  const bool has_list = text.find(',') != std::string::npos;
+  if (text.starts_with("cpu:")) {
+    const auto count = whole<unsigned>(text.substr(4));
+    if (!count || *count < 1 || *count > devices_max) refuse();
+    choice.kind = DeviceChoice::Kind::cpu;
+    for (int i = 1; i < static_cast<int>(*count); ++i) choice.more.push_back(i);
+    return choice;
+  }
+  if (!has_list || !text.starts_with("cuda:")) {
+    const auto index = text.starts_with("cuda:") ? whole<unsigned>(text.substr(5)) : 0;
+    const bool is_name = text == "auto" || text == "cpu" || text == "cuda";
+    if (!is_name && (!text.starts_with("cuda:") || !index || *index > INT32_MAX)) refuse();
+    return parse_device(name, text);
+  }
+  choice.kind = DeviceChoice::Kind::cuda;
+  const std::vector<std::string> ordinals = split(text.substr(5), ',');
+  if (ordinals.size() > devices_max) refuse();
+  for (std::size_t i = 0; i < ordinals.size(); ++i) {
+    const auto index = whole<unsigned>(ordinals[i]);
+    if (!index || *index > INT32_MAX) refuse();
+    if (i == 0) {
+      choice.index = static_cast<int>(*index);
+    } else {
+      choice.more.push_back(static_cast<int>(*index));
+    }
+  }
+  return choice;
+}
+
+CheckpointChoice parse_checkpoint(const std::string& name, const std::string& text) {
+  CheckpointChoice choice;
+  const std::size_t comma = text.rfind(',');
+  choice.file = text.substr(0, comma);
+  if (comma != std::string::npos) {
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + comma + 1, end, choice.interval_s);
+    if (error != std::errc() || stop != end || !(choice.interval_s > 0) ||
+        !std::isfinite(choice.interval_s)) {
+      refuse_value(name, text, "expected FILE or FILE,SECONDS with seconds above 0");
+    }
+  }
+  if (!choice.file.ends_with(".exr")) {
+    refuse_value(name, text, "expected the name of an .exr file, and perhaps ,SECONDS");
+  }
+  return choice;
+}
+
+std::string checkpoint_text(const CheckpointChoice& checkpoint) {
+  if (checkpoint.file.empty()) return "";
+  return fmt::format("{},{}", checkpoint.file, checkpoint.interval_s);
+}
+
+PartChoice parse_part(const std::string& name, const std::string& text) {
+  const std::vector<std::string> numbers = split(text, '/');
+  const auto index = numbers.size() == 2 ? whole<std::uint16_t>(numbers[0]) : std::nullopt;
+  const auto count = numbers.size() == 2 ? whole<std::uint16_t>(numbers[1]) : std::nullopt;
+  if (!index || !count || *index < 1 || *index > *count) {
+    refuse_value(name, text, "expected I/N, the part I of N, with 1 <= I <= N, e.g. 3/16");
+  }
+  return {*index, *count};
+}
+
+std::string part_text(const PartChoice& part) {
+  return part.count == 1 ? "" : fmt::format("{}/{}", part.index, part.count);
 }
 
 BlockSize parse_block(const std::string& name, const std::string& text) {
