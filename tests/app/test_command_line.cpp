@@ -8,6 +8,7 @@
 
 #include "app/options/command_line.h"
 #include "app/options/option_list.h"
+#include "app/options/option_values.h"
 #include "common/options/option_names.h"
 #include "temp_folder.h"
 
