@@ -33,7 +33,7 @@ def key_of(session, given):
         "programs": sorted(map(version_of, programs)),
         "device": asdict(session.device),
         "arguments": {name: str(value) for name, value in given.items() if name not in where},
-        "configurations": {c.name: [c.arguments, c.labels, c.device, c.repeat, c.warmup,
+        "configurations": {c.name: [c.arguments, c.labels, c.device, c.repeat, c.warmup, c.launcher,
                                     scene_hash(c.arguments)] for c in session.configurations}}
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
 
