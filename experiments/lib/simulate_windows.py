@@ -56,7 +56,6 @@ class Window:
     pixels: int
     cost: float  # of a pixel, the image's mean being 1
     done: float = 0.0  # share of its samples
-    in_work: bool = False
     version: int = 0  # of its entries in the heaps
 
 
@@ -105,8 +104,7 @@ class WindowSimulation(Simulation):
         self.rates, self.hungry = {}, []
 
     def enter(self, window):
-        """Into both heaps; what was there of it is void."""
-        window.version += 1
+        """Into both heaps."""
         entry = next(self.order), window.version, window
         heapq.heappush(self.lacking, (-(1 - window.done) * window.pixels, *entry))
         heapq.heappush(self.behind, (window.done, *entry))
@@ -114,7 +112,8 @@ class WindowSimulation(Simulation):
     def pick(self, heap):
         while heap:
             _, _, version, window = heapq.heappop(heap)
-            if version == window.version and not window.in_work:
+            if version == window.version:
+                window.version += 1  # the other heap's entry is void, too
                 return window
         return None
 
@@ -133,7 +132,6 @@ class WindowSimulation(Simulation):
         fitting = paths / (self.largest if is_even else window.pixels)
         left = 1 - window.done
         part = left if left <= 1.5 * fitting else fitting
-        window.in_work = True
         size = self.job.film_bytes * window.pixels / self.pixels
         return Unit(part * window.pixels * window.cost * self.pixel_s,
                     size if window.done else 0, size, (window, part))
@@ -141,10 +139,10 @@ class WindowSimulation(Simulation):
     def ended(self, now, device, unit):
         window, part = unit.origin
         seconds = unit.work_s / device.speed + self.job.overhead_s
-        self.rates[id(device)] = part * window.pixels / seconds
+        if seconds > 0:
+            self.rates[id(device)] = part * window.pixels / seconds
         self.paths_left -= part * window.pixels
         window.done = min(window.done + part, 1)
-        window.in_work = False
         if window.done < 1 - 1e-9:
             self.enter(window)
             hungry, self.hungry = self.hungry, []
