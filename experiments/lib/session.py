@@ -53,8 +53,8 @@ def origin(session, journal, constant):
                          for event in journal.of("equal images")},
         **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
         "configurations": {
-            c.name: shlex.join(["ptexp", *command_line(session, c)[1:]])
-            for c in session.configurations},
+            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
+            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
     }
 
 

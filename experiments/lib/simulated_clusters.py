@@ -49,8 +49,8 @@ CASES = [
 def add_arguments(parser):
     add = parser.add_argument_group("with --simulate").add_argument
     add("--simulate", action="store_true", help="simulate clusters and measure nothing")
-    add("--nodes", metavar="N", type=int, nargs="+", default=[1, 4, 16, 32, 64, 128],
-        help="machines of 8 GPUs [1 4 16 32 64 128]")
+    add("--nodes", metavar="N", type=int, nargs="+", default=[1, 8, 32, 128],
+        help="machines of 8 GPUs [1 8 32 128]")
     add("--seconds", metavar="S", type=float, nargs="+", default=[10],
         help="what the image takes if nothing is lost [10]")
     add("--cost-maps", metavar="FILE", nargs="+", default=[],
