@@ -149,7 +149,7 @@ void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Op
 void say_interrupted(const Options& options, const Measurement& measurement, bool has_image) {
   std::string image = has_image ? fmt::format("image has {} of {} samples per pixel",
                                               measurement.runs.back().samples_done, options.spp)
-                                : "not all pixels have a sample, no image written";
+                                : "no sample was finished, no image written";
   const std::string& checkpoint = options.checkpoint.file;
   if (!checkpoint.empty()) {
     image += fmt::format("; ptexp resume {} goes on", checkpoint);

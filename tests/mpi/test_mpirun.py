@@ -50,11 +50,11 @@ class Mpirun(unittest.TestCase):
         self.assertIn(f"800 units, right, {errors} errors", out)
         return out
 
-    def assert_error(self, pattern, ranks, *arguments, limit_s=60, **variables):
+    def assert_error(self, pattern, ranks, *arguments, limit_s=60, most=1, **variables):
         begin = time.monotonic()
         code, out, messages = self.start(ranks, *arguments, limit_s=limit_s, **variables)
         self.assertEqual(code, 2, out)
-        self.assertEqual(len(messages), 1, messages)
+        self.assertLessEqual(len(messages), most, messages)
         self.assertRegex(messages[0], "^ptexp: error: " + pattern)
         self.assertNotIn("agreed", out)
         return time.monotonic() - begin
@@ -102,13 +102,13 @@ class Mpirun(unittest.TestCase):
             begin = time.monotonic()
             code, _, _ = self.start(4, "kill", rank)
             self.assertNotEqual(code, 0)
-            self.assertLess(time.monotonic() - begin, 10)
+            self.assertLess(time.monotonic() - begin, 20)  # 10 on a machine that is not busy
 
     def test_a_silent_rank_is_the_end(self):
         for rank in (0, 2):
             seconds = self.assert_error(rf"rank {rank} \(\S+\) has been silent for 3 s", 4, "hang",
-                                        rank, PTEXP_MPI_TIMEOUT="3")
-            self.assertLess(seconds, 10)
+                                        rank, PTEXP_MPI_TIMEOUT="3", most=3)
+            self.assertLess(seconds, 20)
 
     def test_a_busy_rank_is_not_silent_and_a_waiting_one_not_busy(self):
         out = self.assert_right(3, "quiet", 5000, PTEXP_MPI_TIMEOUT="2")

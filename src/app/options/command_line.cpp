@@ -25,15 +25,15 @@ constexpr const char* compare_text =
     "Prints RMSE, relMSE, FLIP, the largest difference, how many pixels differ.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
 constexpr const char* resume_text =
-    "Goes on with the render of a checkpoint, by the options that it was begun with. Of other\n"
-    "options those can be given that do not change what a sample is: --spp, for more samples,\n"
+    "Goes on with the render of a checkpoint, by the options of its beginning. Others\n"
+    "may be given that do not change what a sample is: --spp, for more of them,\n"
     "--output, and how and where to render.";
 constexpr const char* merge_text =
-    "Joins the checkpoints of the parts of an image (--part) to the image. Pixels that several\n"
-    "have are compared. Exit code 0: done, 2: something is missing, foreign or differs.";
+    "Joins the checkpoints of an image's parts (--part). Pixels that several have are\n"
+    "compared. Exit code 0: done, 2: something is missing, foreign or differs.";
 constexpr const char* verify_text =
-    "Renders some of an image's pixels again, by the options in its header, and compares the\n"
-    "bits. Exit code 0: they are equal, 1: they differ, 2: it cannot be rendered here.";
+    "Renders some of an image's pixels again, by the options in its header, and\n"
+    "compares. Exit code 0: the bits are equal, 1: they differ, 2: an error.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
