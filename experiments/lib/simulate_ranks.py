@@ -64,6 +64,14 @@ class Cluster:
 
 
 @dataclass
+class Unit:
+    work_s: float
+    out_bytes: float  # with the sums that its pixels have already
+    into_bytes: float
+    origin: object = None  # of whoever made it
+
+
+@dataclass
 class Outcome:
     time_s: float
     efficiency: float  # work over what all devices could have done in that time
@@ -102,7 +110,7 @@ class Device:
     speed: float
     ready_s: float
     is_local: bool
-    waiting: deque = field(default_factory=deque)  # work of units that have come
+    waiting: deque = field(default_factory=deque)  # units that have come
     is_busy: bool = False
     units: int = 0  # that it has or that are on the way to it
     work_s = overhead_s = end_s = 0.0  # work in seconds of a device of speed 1
@@ -137,33 +145,36 @@ class Simulation:
             return now
         return line.serve(now, size / self.cluster.bandwidth) + self.cluster.latency_s
 
-    def film_bytes(self, grains, passes):
-        return self.job.film_bytes * passes * grains / self.all
-
-    def arrive(self, now, device, grains):
-        """A message at rank 0: a result of so many grains, or (0) that the device wants units."""
-        copied = self.film_bytes(grains, self.job.passes)
+    def arrive(self, now, device, unit):
+        """A message at rank 0: the result of a unit, or (None) that the device wants units."""
+        copied = unit.into_bytes if unit else 0
         served = self.server.serve(
             now, self.cluster.service_s + copied / self.cluster.copy_bandwidth)
-        self.at(served, self.hand_out, device, grains)
+        self.at(served, self.answer, device, unit)
 
-    def hand_out(self, now, device, grains):
-        if grains:
+    def answer(self, now, device, unit):
+        if unit:
             device.units -= 1
             self.time_s = now
-        if not self.left or device.units >= self.rule.capacity:
-            return
-        grains = self.next_unit(device)
+            self.ended(now, device, unit)
+        self.hand_out(now, device)
+
+    def hand_out(self, now, device):
+        """Whether there was a unit for it."""
+        unit = self.take(device) if device.units < self.rule.capacity else None
+        if unit is None:
+            return False
         device.units += 1
         self.unit_count += 1
-        work = self.job.work_s * grains / self.all * self.cost
-        size = self.film_bytes(grains, self.job.passes - 1)
-        self.at(self.over_link(self.out, now, device, size), self.receive, device, grains, work)
+        self.at(self.over_link(self.out, now, device, unit.out_bytes), self.receive, device, unit)
         if device.units < self.rule.capacity:
-            self.at(now, self.arrive, device, 0)
+            self.at(now, self.arrive, device, None)
+        return True
 
-    def next_unit(self, device):
-        """Its grains, which the window loses."""
+    def take(self, device):
+        """The next unit, or None."""
+        if not self.left:
+            return None
         if not self.window_left:
             self.window_left = self.rule.parts
             self.cost = self.random.choice(self.job.times) / self.mean
@@ -172,26 +183,31 @@ class Simulation:
                                       self.cost))
         self.window_left -= grains
         self.left -= grains
-        return grains
+        share = grains / self.all
+        return Unit(self.job.work_s * share * self.cost,
+                    self.job.film_bytes * (self.job.passes - 1) * share,
+                    self.job.film_bytes * self.job.passes * share)
 
-    def receive(self, now, device, grains, work):
-        device.waiting.append((grains, work))
+    def ended(self, now, device, unit):
+        """For rules that care."""
+
+    def receive(self, now, device, unit):
+        device.waiting.append(unit)
         self.begin(now, device)
 
     def begin(self, now, device):
         if device.is_busy or not device.waiting:
             return
         device.is_busy = True
-        grains, work = device.waiting.popleft()
-        device.work_s += work
+        unit = device.waiting.popleft()
+        device.work_s += unit.work_s
         device.overhead_s += self.job.overhead_s
-        self.at(now + self.job.overhead_s + work / device.speed, self.end, device, grains)
+        self.at(now + self.job.overhead_s + unit.work_s / device.speed, self.end, device, unit)
 
-    def end(self, now, device, grains):
+    def end(self, now, device, unit):
         device.is_busy = False
         device.end_s = now
-        size = self.film_bytes(grains, self.job.passes)
-        self.at(self.over_link(self.into, now, device, size), self.arrive, device, grains)
+        self.at(self.over_link(self.into, now, device, unit.into_bytes), self.arrive, device, unit)
         self.begin(now, device)
 
     def run(self):
@@ -203,7 +219,7 @@ class Simulation:
         return self.outcome()
 
     def ask(self, now, device):
-        self.at(self.over_link(self.into, now, device, 0), self.arrive, device, 0)
+        self.at(self.over_link(self.into, now, device, 0), self.arrive, device, None)
 
     def outcome(self):
         time_s = self.time_s + self.job.image_s
