@@ -41,22 +41,21 @@ class DamagedCheckpoints : public testing::Test {
 };
 
 TEST_F(DamagedCheckpoints, AnyByteOfTheHeaderCounts) {
-  const ImageFilm film = random_film({2, 1, 5, 4}, {all_aovs, true, false}, 1);
+  const ImageFilm film = random_film({2, 1, 5, 4}, {aov_bit<aov::Depth>, false, false}, 1);
   write_checkpoint(path(), {film, metadata}, {}, {0, 0, 30, 40});
   const std::string bytes = read_text(path());
   const std::size_t end = bytes.find("screenWindowWidth");
   ASSERT_LT(end, bytes.size());
   for (std::size_t i = 0; i < end; ++i) {
-    for (const unsigned mask : {0x01u, 0x08u, 0x80u}) {
-      std::string changed = bytes;
-      changed[i] = static_cast<char>(static_cast<unsigned char>(changed[i]) ^ mask);
-      write_text(path(), changed);
-      try {
-        const Checkpoint read = read_checkpoint(path());
-        EXPECT_TRUE(is_same(read.film, film)) << "byte " << i << ", " << bytes.substr(i, 20);
-        EXPECT_EQ(read.metadata, metadata) << "byte " << i;
-      } catch (const Error&) {
-      }
+    std::string changed = bytes;
+    changed[i] =
+        static_cast<char>(static_cast<unsigned char>(changed[i]) ^ (i % 2 ? 0x01u : 0x80u));
+    write_text(path(), changed);
+    try {
+      const Checkpoint read = read_checkpoint(path());
+      EXPECT_TRUE(is_same(read.film, film)) << "byte " << i << ", " << bytes.substr(i, 20);
+      EXPECT_EQ(read.metadata, metadata) << "byte " << i;
+    } catch (const Error&) {
     }
   }
 }
