@@ -1,4 +1,5 @@
 #include "common/film/checkpoint.h"
+#include "common/film/develop.h"
 #include "fuzz.h"
 #include "fuzz_folder.h"
 
@@ -10,6 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const pt::ImageFilm& film = checkpoint.film;
     if (!film.have(film.plan, film.window.pixel_count())) std::abort();
     for (const pt::FilmPart& part : film.parts) film.take(part.window);
+    pt::develop(film, {});
   });
   return 0;
 }

@@ -166,10 +166,13 @@ def checkpoint(moments):
             pair = [struct.unpack_from("<II", data, at + 8 * c + size * x) for x in range(2)]
             for half, name in ((1, "high"), (0, "low")):
                 numbers[f"film.{layer}.{name}.{letter}".encode()] = [p[half] for p in pair]
-    texts = {"format": "1", "window": "0 0 2 1", "plan": f"0 {int(moments)} 0",
+    texts = {"format": "1", "window": "0 0 2 1", "aovs": "", "plan": f"{int(moments)} 0",
              "parts": "0 0 1 1 0 3", "tally": "5 6 0 3" + " 0" * 127,
              "checksum": str(zlib.crc32(pixels + more))}
-    return exr(numbers, {f"ptexp.film.{key}".encode(): text.encode() for key, text in texts.items()})
+    texts = {f"ptexp.film.{key}".encode(): text.encode() for key, text in texts.items()}
+    header = b"".join(key + b"\0" + texts[key] + b"\0" for key in sorted(texts))
+    texts[b"ptexp.film.header_checksum"] = str(zlib.crc32(header)).encode()
+    return exr(numbers, texts)
 
 
 def rays():

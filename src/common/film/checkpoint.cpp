@@ -1,23 +1,19 @@
 #include "common/film/checkpoint.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
-#include <cstring>
-#include <span>
 
-#include "common/error/error.h"
+#include "common/error/error_context.h"
+#include "common/film/checkpoint_header.h"
 #include "common/film/develop.h"
 
 namespace pt {
 namespace {
 
 // EXR has no doubles and no 64-bit numbers: a sum is two channels of 32 bits.
-const std::string layer_prefix = "film.", key_prefix = "ptexp.film.";
-constexpr int format_version = 1;
+const std::string layer_prefix = "film.";
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 std::uint64_t bits(std::uint64_t value) { return value; }
@@ -51,13 +47,19 @@ void for_each_layer(Sums& film, const FilmPlan& plan, std::uint64_t count, Visit
           });
     }
     const std::uint32_t planes = plan.feature_planes();
-    for (std::uint32_t plane = 0; plane < planes; ++plane) {
-      const std::uint64_t begin = (std::uint64_t{sign} * planes + plane) * count;
+    std::uint64_t plane = std::uint64_t{sign} * planes;
+    const auto visit_feature = [&](const std::string& feature, std::string_view channels) {
       visit(
-          fmt::format("{}feature{}", name, plane), "F",
-          [&, begin ](std::uint64_t pixel, std::size_t) -> auto& {
-            return film.features[begin + pixel];
+          name + feature, channels,
+          [&, begin = plane * count, count ](std::uint64_t pixel, std::size_t c) -> auto& {
+            return film.features[begin + c * count + pixel];
           });
+      plane += channels.size();
+    };
+    if (planes > 0) visit_feature("feature_samples", "N");
+    for (const AovInfo& aov : aov_table) {
+      if ((plan.aovs & aov.bit) == 0 || aov.source == AovSource::statistics) continue;
+      visit_feature("feature." + std::string(aov.name), aov.channels);
     }
   }
 }
@@ -119,160 +121,50 @@ void read_layers(const Image& image, ImageFilm& film) {
                  });
 }
 
-template <class T>
-void add_checksum(const std::vector<T>& values, std::uint32_t& sum) {
-  if (values.empty()) return;  // zlib starts again where it is given no bytes
-  const auto* const bytes = reinterpret_cast<const Bytef*>(values.data());
-  sum = static_cast<std::uint32_t>(crc32_z(sum, bytes, values.size() * sizeof(T)));
-}
-
-std::uint32_t checksum(const FilmSums& sums) {
-  static_assert(sizeof(FilmPixel) == 32 && sizeof(PixelMoments) == 24);  // no padding
-  std::uint32_t sum = 0;
-  add_checksum(sums.pixels, sum);
-  add_checksum(sums.moments, sum);
-  add_checksum(sums.features, sum);
-  return sum;
-}
-
-std::string numbers_text(std::span<const std::uint64_t> numbers) {
-  return fmt::format("{}", fmt::join(numbers, " "));
-}
-
-std::vector<std::uint64_t> parse_numbers(const ImageMetadata& header, const std::string& key) {
-  const auto found = header.find(key_prefix + key);
-  if (found == header.end()) throw Error(fmt::format("no attribute {}{}", key_prefix, key));
-  const std::string& text = found->second;
-  std::vector<std::uint64_t> numbers;
-  for (const char *at = text.data(), *end = at + text.size(); at < end;) {
-    const auto [stop, error] = std::from_chars(at, end, numbers.emplace_back());
-    if (error != std::errc() || (stop != end && *stop != ' ')) {
-      throw Error(fmt::format("{}{} {}: expected whole numbers", key_prefix, key, text));
-    }
-    at = stop + 1;
-  }
-  return numbers;
-}
-
-/// The same, of so many.
-std::vector<std::uint64_t> parse_numbers(const ImageMetadata& header, const std::string& key,
-                                         std::size_t count) {
-  std::vector<std::uint64_t> numbers = parse_numbers(header, key);
-  if (numbers.size() == count) return numbers;
-  throw Error(
-      fmt::format("{}{}: expected {} numbers, found {}", key_prefix, key, count, numbers.size()));
-}
-
-void add_header(const ImageFilm& film, ImageMetadata& header) {
-  const auto add = [&](const std::string& key, std::vector<std::uint64_t> numbers) {
-    header[key_prefix + key] = numbers_text(numbers);
-  };
-  add("format", {format_version});
-  add("window", {film.window.x, film.window.y, film.window.width, film.window.height});
-  add("plan", {film.plan.aovs, film.plan.moments, film.plan.two_signs});
-  std::vector<std::uint64_t> parts;
+/// A film never has more samples of a pixel, of both signs together, than of its window.
+void check_samples(const ImageFilm& film) {
+  const std::uint64_t pixels = film.window.pixel_count();
   for (const FilmPart& part : film.parts) {
-    const Window& w = part.window;
-    for (const std::uint32_t n : {w.x, w.y, w.width, w.height, part.first_sample, part.next_sample})
-      parts.push_back(n);
-  }
-  add("parts", parts);
-  const PathTally& tally = film.tally;
-  std::vector<std::uint64_t> counts{tally.rays, tally.shadow_rays, tally.nonfinite};
-  counts.insert(counts.end(), std::begin(tally.lengths), std::end(tally.lengths));
-  add("tally", counts);
-  add("checksum", {checksum(film)});
-}
-
-Window window_in(std::span<const std::uint64_t> numbers) {
-  Window w;
-  std::uint32_t* const fields[] = {&w.x, &w.y, &w.width, &w.height};
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (numbers[i] > 65535)
-      throw Error(fmt::format("a window with {}: expected 0 to 65535", numbers[i]));
-    *fields[i] = static_cast<std::uint32_t>(numbers[i]);
-  }
-  return w;
-}
-
-std::vector<FilmPart> parts_in(const ImageMetadata& header, const Window& window) {
-  const std::vector<std::uint64_t> numbers = parse_numbers(header, "parts");
-  constexpr std::size_t fields = 6;
-  if (numbers.size() % fields != 0) {
-    throw Error(
-        fmt::format("{}parts: expected x y width height first_sample next_sample of each, "
-                    "found {} numbers",
-                    key_prefix, numbers.size()));
-  }
-  std::vector<FilmPart> parts;
-  for (std::size_t i = 0; i < numbers.size(); i += fields) {
-    FilmPart part{window_in(std::span(numbers).subspan(i, 4)), 0, 0};
-    const std::uint64_t first = numbers[i + 4], next = numbers[i + 5];
-    part.first_sample = static_cast<std::uint32_t>(first);
-    part.next_sample = static_cast<std::uint32_t>(next);
-    const bool overlaps = std::ranges::any_of(
-        parts, [&](const FilmPart& other) { return other.window.overlaps(part.window); });
-    if (first > next || next > UINT32_MAX || overlaps || part.window.pixel_count() == 0 ||
-        !window.contains(part.window)) {
-      throw Error(
-          fmt::format("{}parts: expected disjoint windows of the image, with samples that "
-                      "ascend",
-                      key_prefix));
+    const std::uint64_t most = part.next_sample - part.first_sample;
+    for (std::uint64_t i = 0; i < part.window.pixel_count(); ++i) {
+      const std::uint64_t x = part.window.x + i % part.window.width,
+                          y = part.window.y + i / part.window.width;
+      const FilmPixel* pixel =
+          &film.pixels[(y - film.window.y) * film.window.width + (x - film.window.x)];
+      std::uint64_t left = most;
+      for (std::uint32_t sign = 0; sign < film.plan.signs(); ++sign, pixel += pixels) {
+        if (pixel->samples > left) {
+          throw Error(fmt::format("pixel {},{} has {} samples: expected {} at most", x, y,
+                                  pixel->samples + (most - left), most));
+        }
+        left -= pixel->samples;
+      }
     }
-    parts.push_back(part);
-  }
-  return parts;
-}
-
-PathTally tally_in(const ImageMetadata& header) {
-  const auto numbers = parse_numbers(header, "tally", 3 + path_length_bins);
-  PathTally tally;
-  tally.rays = numbers[0], tally.shadow_rays = numbers[1], tally.nonfinite = numbers[2];
-  std::copy(numbers.begin() + 3, numbers.end(), std::begin(tally.lengths));
-  return tally;
-}
-
-void check_format(const ImageMetadata& header) {
-  if (!header.contains(key_prefix + "format")) {
-    throw Error(
-        fmt::format("no attribute {}format; expected a checkpoint, which --checkpoint "
-                    "writes",
-                    key_prefix));
-  }
-  const std::uint64_t version = parse_numbers(header, "format", 1)[0];
-  if (version != format_version) {
-    throw Error(
-        fmt::format("{}format {}: this program reads {}", key_prefix, version, format_version));
   }
 }
 
 Checkpoint read(const Image& image, ImageMetadata header) {
-  check_format(header);
-  const Window window = window_in(parse_numbers(header, "window", 4));
-  if (static_cast<int>(window.width) != image.width ||
-      static_cast<int>(window.height) != image.height) {
-    throw Error(fmt::format("{}window of {}x{}: the image has {}x{} pixels", key_prefix,
-                            window.width, window.height, image.width, image.height));
-  }
-  const auto plan = parse_numbers(header, "plan", 3);
-  if (plan[0] >> Aovs::size != 0 || plan[1] > 1 || plan[2] > 1) {
-    throw Error(fmt::format("{}plan: expected a bit for each of {} layers, and two of 0 or 1",
-                            key_prefix, Aovs::size));
-  }
-  Checkpoint checkpoint{
-      ImageFilm(window, {static_cast<std::uint32_t>(plan[0]), plan[1] == 1, plan[2] == 1}), {}};
+  const FilmHeader known = parse_film_header(header, image.width, image.height);
+  // Before memory is taken for them.
+  const FilmSums none;
+  for_each_layer(none, known.plan, 0,
+                 [&](const std::string& name, std::string_view channels, const auto&) {
+                   for (const std::string& half : halves) find_layer(image, name + half, channels);
+                 });
+  check_header_checksum(header);
+  std::erase_if(header, [](const auto& entry) { return entry.first.starts_with(film_key); });
+  Checkpoint checkpoint{ImageFilm(known.window, known.plan), std::move(header)};
   ImageFilm& film = checkpoint.film;
-  film.parts = parts_in(header, window);
-  film.tally = tally_in(header);
+  film.parts = known.parts;
+  film.tally = known.tally;
   read_layers(image, film);
-  if (checksum(film) != parse_numbers(header, "checksum", 1)[0]) {
+  if (checksum(film) != known.checksum) {
     throw Error(
         fmt::format("{}checksum: the sums are not those that were written; the file is "
                     "damaged",
-                    key_prefix));
+                    film_key));
   }
-  std::erase_if(header, [](const auto& entry) { return entry.first.starts_with(key_prefix); });
-  checkpoint.metadata = std::move(header);
+  check_samples(film);
   return checkpoint;
 }
 
@@ -281,6 +173,7 @@ Checkpoint read(const Image& image, ImageMetadata header) {
 void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
                       const PixelFilter& filter, ImagePlace image_size) {
   const ImageFilm& film = checkpoint.film;
+  explaining("cannot write " + path, [&] { check_samples(film); });  // it could not be read
   Image image = develop(film, filter);
   image.place = image_size;
   if (image_size.width > 0) {
@@ -290,7 +183,7 @@ void write_checkpoint(const std::string& path, const Checkpoint& checkpoint,
   add_layers(film, image);
   image.is_compressed = false;  // the sums' lower halves are noise: a fifth would be saved
   ImageMetadata header = checkpoint.metadata;
-  add_header(film, header);
+  add_film_header(film, header);
   write_image(path, image, header);
 }
 

@@ -69,6 +69,15 @@ void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& b
   }
 }
 
+/// Decompressed, of all channels.
+std::size_t bytes_per_pixel(const Imf::ChannelList& channels) {
+  std::size_t bytes = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    bytes += it.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return bytes;
+}
+
 /// A plain image is compressed at once; many layers take seconds.
 int compression_threads() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
@@ -86,6 +95,10 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
     header.insert(key, Imf::StringAttribute(value));
   }
   ExrWriter stream;
+  if (!image.is_compressed) {  // its size is known but for the header: it grows in place
+    const std::size_t pixels = std::size_t{1} * image.width * image.height;
+    stream.bytes.reserve(pixels * bytes_per_pixel(header.channels()) + 65536);
+  }
   {
     // Other threads change the time alone, not the bytes.
     const int threads = compression_threads();
@@ -126,15 +139,6 @@ Names channels_to_read(const Imf::ChannelList& channels) {
   return names;
 }
 
-/// Decompressed, of all channels.
-int bytes_per_pixel(const Imf::ChannelList& channels) {
-  int bytes = 0;
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    bytes += it.channel().type == Imf::HALF ? 2 : 4;
-  }
-  return bytes;
-}
-
 /// Blank layers for the channels PREFIX...C of whole numbers, in the order of the file.
 std::vector<ImageLayer> number_layers(const Imf::ChannelList& channels, const std::string& prefix,
                                       std::size_t pixels) {
@@ -169,7 +173,8 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const double decoded_bytes = 1.0 * bytes_per_pixel(header.channels()) * width * height;
+  const double decoded_bytes =
+      static_cast<double>(bytes_per_pixel(header.channels())) * width * height;
   Image image = allocate_image(width, height, decoded_bytes, bytes.size());
   Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), window, names);
   if (prefix != nullptr) {
