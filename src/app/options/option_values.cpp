@@ -110,43 +110,39 @@ DeviceChoice parse_device(const std::string& name, const std::string& text) {
 }
 
 DeviceChoice parse_devices(const std::string& name, const std::string& text) {
-  const auto refuse = [&] {
+  using Kind = DeviceChoice::Kind;
+  const auto check = [&](bool holds) {
+    if (holds) return;
     refuse_value(
         name, text,
         "expected auto, cpu, cpu:N for N devices that share its threads, cuda, cuda:all, or "
         "cuda:N,M,... with ordinals from 0");
   };
+  const std::vector<std::string> words = split(text, ':');
   DeviceChoice choice;
-  if (text == "cuda:all") {
-    choice.kind = DeviceChoice::Kind::cuda, choice.wants_all = true;
+  bool is_known = false;
+  for (const auto& [kind, kind_name] : enum_names<Kind>) {
+    if (kind_name == words[0]) choice.kind = kind, is_known = true;
+  }
+  check(is_known && words.size() <= 2);
+  if (words.size() == 1) return choice;
+  choice.wants_all = choice.kind == Kind::cuda && words[1] == "all";
+  if (choice.wants_all) return choice;
+  std::vector<int> numbers;
+  for (const std::string& word : split(words[1], ',')) {
+    const auto number = whole<unsigned>(word);
+    check(number && *number <= INT32_MAX && numbers.size() < devices_max);
+    numbers.push_back(static_cast<int>(number.value_or(0)));
+  }
+  if (choice.kind == Kind::cuda) {
+    choice.index = numbers[0];
+    choice.more.assign(numbers.begin() + 1, numbers.end());
     return choice;
   }
-  const bool has_list = text.find(',') != std::string::npos;
-  if (text.starts_with("cpu:")) {
-    const auto count = whole<unsigned>(text.substr(4));
-    if (!count || *count < 1 || *count > devices_max) refuse();
-    choice.kind = DeviceChoice::Kind::cpu;
-    for (int i = 1; i < static_cast<int>(*count); ++i) choice.more.push_back(i);
-    return choice;
-  }
-  if (!has_list || !text.starts_with("cuda:")) {
-    const auto index = text.starts_with("cuda:") ? whole<unsigned>(text.substr(5)) : 0;
-    const bool is_name = text == "auto" || text == "cpu" || text == "cuda";
-    if (!is_name && (!text.starts_with("cuda:") || !index || *index > INT32_MAX)) refuse();
-    return parse_device(name, text);
-  }
-  choice.kind = DeviceChoice::Kind::cuda;
-  const std::vector<std::string> ordinals = split(text.substr(5), ',');
-  if (ordinals.size() > devices_max) refuse();
-  for (std::size_t i = 0; i < ordinals.size(); ++i) {
-    const auto index = whole<unsigned>(ordinals[i]);
-    if (!index || *index > INT32_MAX) refuse();
-    if (i == 0) {
-      choice.index = static_cast<int>(*index);
-    } else {
-      choice.more.push_back(static_cast<int>(*index));
-    }
-  }
+  const int count = numbers[0];
+  check(choice.kind == Kind::cpu && numbers.size() == 1 && count >= 1 &&
+        count <= static_cast<int>(devices_max));
+  for (int i = 1; i < count; ++i) choice.more.push_back(i);
   return choice;
 }
 
