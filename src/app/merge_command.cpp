@@ -6,6 +6,7 @@
 #include <cstring>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "app/film_header.h"
 #include "common/error/error.h"
@@ -116,7 +117,8 @@ class Joiner {
                       ours.next_sample - ours.first_sample));
     }
     const auto differ = [](const auto& x, const auto& y) {
-      return std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) != 0;
+      const auto a = std::as_bytes(std::span(x)), b = std::as_bytes(std::span(y));
+      return !std::ranges::equal(a, b);
     };
     if (differ(ours.moments, theirs.moments) || differ(ours.features, theirs.features)) {
       throw Error(fmt::format("{}: other layers than in {} of {}", b, a, text(window)));
