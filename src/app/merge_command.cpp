@@ -117,8 +117,9 @@ class Joiner {
                       ours.next_sample - ours.first_sample));
     }
     const auto differ = [](const auto& x, const auto& y) {
-      const auto a = std::as_bytes(std::span(x)), b = std::as_bytes(std::span(y));
-      return !std::ranges::equal(a, b);
+      const auto ours_bytes = std::as_bytes(std::span(x)),
+                 theirs_bytes = std::as_bytes(std::span(y));
+      return !std::ranges::equal(ours_bytes, theirs_bytes);
     };
     if (differ(ours.moments, theirs.moments) || differ(ours.features, theirs.features)) {
       throw Error(fmt::format("{}: other layers than in {} of {}", b, a, text(window)));

@@ -15,7 +15,7 @@ namespace pt {
 namespace {
 
 // Films come home so often, and a render that is interrupted waits for nobody longer.
-constexpr double unit_s = 5;
+constexpr double unit_s = 1;
 // Before its rate is known a worker gets so many times what keeps it busy.
 constexpr std::uint64_t first_unit_factor = 64;
 // A render that takes longer grows evenly until so much is left.

@@ -72,7 +72,7 @@ std::vector<Window> divide_pixels(const std::vector<Window>& where, int samples,
     return windows;
   }
   while (cutter.left() > 0) {
-    const std::uint64_t share = workers == 1 ? cutter.left() : cutter.left() / (2 * workers);
+    const std::uint64_t share = workers == 1 ? cutter.left() : cutter.left() / (4 * workers);
     const std::uint64_t pixels = std::clamp(share, least, window_pixels_max);
     for (std::uint64_t i = 0; i < workers && cutter.left() > 0; ++i) {
       windows.push_back(cutter.cut(pixels));

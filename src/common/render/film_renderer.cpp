@@ -125,7 +125,8 @@ RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const Rende
   begin_render(film);
   Film result;
   result.window = film.window;
-  RenderRun run = render_chains(*this, chain_plan_, options_, samples, hooks, result, &pace_);
+  RenderRun run =
+      render_chains(chain_device(), chain_plan_, options_, samples, hooks, result, &pace_);
   end_render(run);
   Film traced;
   traced.window = film.window;
