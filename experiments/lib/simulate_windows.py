@@ -16,10 +16,10 @@ WINDOW_PIXELS_MAX = 1 << 21
 class WindowRule:
     width: int
     height: int
-    unit_s: float = 5
+    unit_s: float = 1
     even_s: float = 20  # while so much is left, the image grows evenly
     smallest_share: int = 64  # windows have at least 1 / so much of a device's share of the pixels
-    first_share: float = 2  # the first windows have 1 / so much of it
+    first_share: float = 4  # the first windows have 1 / so much of it
     first_s: float = 0.3  # of a device's first unit, before its speed is known
     capacity: int = 2
     round_up: bool = True  # to whole rows, else down
@@ -138,7 +138,7 @@ class WindowSimulation(Simulation):
 
     def ended(self, now, device, unit):
         window, part = unit.origin
-        seconds = unit.work_s / device.speed + self.job.overhead_s
+        seconds = unit.work_s / device.speed
         if seconds > 0:
             self.rates[id(device)] = part * window.pixels / seconds
         self.paths_left -= part * window.pixels

@@ -20,6 +20,7 @@ WIDTH, HEIGHT, PER_NODE = 3840, 2160, 8
 RULES = {
     "windows of 1/2, units of 5 s": {"first_share": 2, "unit_s": 5},
     "windows of 1/4, units of 5 s": {"first_share": 4, "unit_s": 5},
+    "windows of 1/4, units of 1 s": {"first_share": 4, "unit_s": 1},
     "windows of 1/8, units of 1 s": {"first_share": 8, "unit_s": 1},
     "windows of 1/16, units of 5 s": {"first_share": 16, "unit_s": 5},
     "windows of 1/16, units of 1 s": {"first_share": 16, "unit_s": 1},

@@ -41,9 +41,10 @@ std::vector<std::unique_ptr<Worker>> make_workers(const Options& options, const 
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<LocalWorker*> locals;
   for (const DeviceInfo& device : devices) {
-    const auto make = [options, &scene, device, count = devices.size()] {
+    const auto make = [options, &scene, device, count = devices.size()](int halvings) {
       Options own = options;
       own.device = device.choice;
+      own.memory_halvings = halvings;
       if (count > 1 && device.choice.kind == DeviceChoice::Kind::cpu) {
         own.threads = device.properties.threads;
       }

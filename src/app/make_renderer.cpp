@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/error/error.h"
+#include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/load/files/scene_files.h"
 #include "common/scene/load/load_scene.h"
@@ -78,6 +79,18 @@ std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData&
     default:
       return make_wavefront_cpu(options, scene);
   }
+}
+
+std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
+                                                const DeviceInfo& device, const Warn& warn) {
+  MemoryShare share;
+  auto renderer = make_fitting(share, [&](int halvings) {
+    Options own = options;
+    own.memory_halvings = halvings;
+    return make_renderer(own, scene, device);
+  });
+  if (const std::string warning = share.take_warning(); !warning.empty()) warn(warning);
+  return renderer;
 }
 
 }  // namespace pt

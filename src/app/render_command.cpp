@@ -181,7 +181,7 @@ class Rendering {
       : options_(options) {
     const bool has_ranks = ranks.count() > 1 && !options.explain;
     if (!needs_group(options, devices) && !has_ranks) {
-      single_ = make_renderer(options, scene, devices.front());
+      single_ = make_fitting_renderer(options, scene, devices.front(), warn);
       return;
     }
     filter_ = scene.filter;

@@ -49,7 +49,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
             !buffers_.fused};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
-  const std::uint64_t free = CudaMemory::free_bytes();
+  const int halvings = options_.pool_size == 0 ? options_.memory_halvings : 0;
+  const std::uint64_t free = CudaMemory::free_bytes() >> halvings;
   if (options_.pool_size == 0) {
     const std::uint64_t most = execution_.pool_paths_max;
     const std::uint64_t wanted = most == 0 ? batch_paths() : std::min(most, batch_paths());

@@ -188,7 +188,7 @@ class FakeWorker : public Worker {
     if (units_.empty()) return std::nullopt;
     Unit unit = std::move(units_.front());
     units_.erase(units_.begin());
-    UnitResult result{unit.id, std::move(unit.film), {}, 1.0, ""};
+    UnitResult result{unit.id, std::move(unit.film), {}, 1.0, "", ""};
     if (fails_at_ > 0 && ++ended_ >= fails_at_) {
       if (sends_others_) {
         result.id += 1000;
@@ -247,6 +247,31 @@ TEST(GroupRenderer, OtherWorkersTakeTheUnitsOfOneThatFails) {
   }
 }
 
+/// Takes longer to be reached than to compute: 1e5 paths per second, 2 s for each unit.
+class FarWorker : public FakeWorker {
+ public:
+  FarWorker() : FakeWorker(0) {}
+  std::optional<UnitResult> poll() override {
+    std::optional<UnitResult> result = FakeWorker::poll();
+    if (!result) return result;
+    const auto pixels = static_cast<double>(result->film.window.pixel_count());
+    result->run.kernel_ms = 1e3 * pixels * result->run.samples_done / 1e5;
+    result->wall_ms = result->run.kernel_ms + 2000;
+    return result;
+  }
+};
+
+TEST(GroupRenderer, UnitsDoNotShrinkForTheirOverhead) {
+  const Options options = small({{"width", "40"}, {"height", "30"}, {"spp", "20000"}});
+  GroupRenderer::Workers workers;
+  for (int i = 0; i < 2; ++i) workers.push_back(std::make_unique<FarWorker>());
+  GroupRenderer group(options, {}, std::move(workers), nullptr);
+  const RenderRun run = group.render(RenderHooks{});
+  // 240 s of work, in units of about one second of the largest window.
+  EXPECT_GT(run.devices[0].units + run.devices[1].units, 240u);
+  EXPECT_LT(run.devices[0].units + run.devices[1].units, 3000u);
+}
+
 TEST(GroupRenderer, SaysSoWhereNoWorkerIsLeft) {
   const Options options = small({{"width", "300"}, {"height", "200"}, {"spp", "50"}});
   GroupRenderer::Workers workers;
@@ -260,8 +285,78 @@ TEST(GroupRenderer, SaysSoWhereNoWorkerIsLeft) {
 TEST(GroupRenderer, ThrowsWhatMakingARendererThrows) {
   ResultBell bell;
   LocalWorker worker(
-      "w", 1, []() -> std::unique_ptr<Renderer> { throw Error("no memory"); }, bell);
+      "w", 1, [](int) -> std::unique_ptr<Renderer> { throw Error("no memory"); }, bell);
   EXPECT_EQ(error_of([&] { worker.wait_until_ready(); }), "no memory");
+}
+
+/// Runs out of memory `times` times in renders, each after it has begun to change a copy.
+class HungryRenderer : public Renderer {
+ public:
+  HungryRenderer(std::unique_ptr<Renderer> renderer, int& times)
+      : renderer_(std::move(renderer)), times_(times) {}
+
+  RenderRun render(const RenderHooks& hooks) override { return renderer_->render(hooks); }
+  RenderRun render(Film& film, int samples, const RenderHooks& hooks) override {
+    if (times_-- > 0) throw OutOfMemory("no room for a stack");
+    return renderer_->render(film, samples, hooks);
+  }
+  Image image() override { return renderer_->image(); }
+  void describe(RenderReport& report) const override { renderer_->describe(report); }
+
+ private:
+  std::unique_ptr<Renderer> renderer_;
+  int& times_;
+};
+
+struct Hungry {
+  std::vector<int> halvings;
+  std::vector<std::string> warnings;
+  Film film;
+
+  /// One device, whose memory is too little so often when it is set up, and in renders.
+  Hungry(const Options& options, int at_setup, int in_renders) {
+    const DeviceInfo device = choose_device(options.device);
+    const SceneData scene = make_scene_for(options, device);
+    ResultBell bell;
+    GroupRenderer::Workers workers;
+    workers.push_back(std::make_unique<LocalWorker>(
+        "w", 4096,
+        [&](int share) -> std::unique_ptr<Renderer> {
+          halvings.push_back(share);
+          if (at_setup-- > 0) throw OutOfMemory("no room for a pool");
+          return std::make_unique<HungryRenderer>(make_renderer(options, scene, device),
+                                                  in_renders);
+        },
+        bell));
+    GroupRenderer group(options, scene.filter, std::move(workers), nullptr,
+                        {{}, [&](const std::string& text) { warnings.push_back(text); }});
+    group.render(RenderHooks{});
+    film = whole_film(group.film());
+  }
+};
+
+TEST(GroupRenderer, ADeviceThatRunsOutOfMemoryTakesLess) {
+  const Options options = small();
+  const Hungry fed(options, 0, 0), at_setup(options, 2, 0), in_renders(options, 0, 3),
+      both(options, 1, 1);
+  EXPECT_EQ(fed.halvings, (std::vector<int>{0}));
+  EXPECT_TRUE(fed.warnings.empty());
+  EXPECT_EQ(at_setup.halvings, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(in_renders.halvings, (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(both.halvings, (std::vector<int>{0, 1, 2}));
+  for (const Hungry* hungry : {&at_setup, &in_renders, &both}) {
+    ASSERT_EQ(hungry->warnings.size(), 1u);
+    EXPECT_NE(hungry->warnings[0].find("goes on with less memory"), std::string::npos);
+    EXPECT_EQ(differing_sums(hungry->film, fed.film), 0u);
+  }
+}
+
+TEST(GroupRenderer, LittleMemoryIsAnErrorInTheEnd) {
+  const Options options = small();
+  EXPECT_NE(error_of([&] { Hungry(options, 100, 0); }).find("no room for a pool"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { Hungry(options, 0, 100); }).find("no room for a stack"),
+            std::string::npos);
 }
 
 TEST(Parts, AreDisjointAndTheWhole) {

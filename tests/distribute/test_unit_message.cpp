@@ -60,6 +60,7 @@ void expect_same(const Film& a, const Film& b) {
 UnitResult result_of(const FilmPlan& plan) {
   UnitResult result;
   result.id = 1ull << 40, result.wall_ms = 3.25, result.error = "out of memory";
+  result.warning = "a smaller pool";
   result.film = film_of(plan);
   RenderRun& run = result.run;
   run.kernel_ms = 1.5, run.waves = 77, run.samples_done = 9, run.ended_by = RunEnd::interrupted;
@@ -108,6 +109,7 @@ TEST(UnitMessage, ResultsStayAsTheyAre) {
     EXPECT_EQ(read.id, result.id);
     EXPECT_EQ(read.wall_ms, result.wall_ms);
     EXPECT_EQ(read.error, result.error);
+    EXPECT_EQ(read.warning, result.warning);
     expect_same(read.film, result.film);
     EXPECT_EQ(bytes_of(read), bytes);  // the run as well, whose fields the next test looks at
   }

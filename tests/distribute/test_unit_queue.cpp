@@ -50,7 +50,7 @@ TEST(UnitQueue, DividesPixelsExactly) {
 
 TEST(UnitQueue, LargeWindowsComeFirst) {
   const std::vector<Window> windows = divide_pixels({{0, 0, 1000, 1000}}, 64, {4, 1 << 20, 0});
-  EXPECT_EQ(windows.front().pixel_count(), 125000u);  // a half, by four
+  EXPECT_EQ(windows.front().pixel_count(), 63000u);  // a quarter, by four, in rows
   std::uint64_t last = 1000000;
   for (std::size_t i = 0; i + 1 < windows.size(); ++i) {
     EXPECT_LE(windows[i].pixel_count(), last + 1000);  // a row
@@ -89,7 +89,7 @@ Replay replay(const Window& image, int samples, const std::vector<double>& speed
   std::priority_queue<Event> events;
   Replay result;
   const auto hand_out = [&](double now, std::size_t worker) {
-    const auto span = queue.next(static_cast<std::uint64_t>(5 * speeds[worker]) + 1,
+    const auto span = queue.next(static_cast<std::uint64_t>(speeds[worker]) + 1,
                                  static_cast<std::uint64_t>(20 * all));
     if (!span) return;
     const double paths = static_cast<double>(span->part.window.pixel_count()) * span->samples;

@@ -29,12 +29,14 @@ def pixels(rule, workers):
 class Windows(unittest.TestCase):
     def test_by_hand(self):
         # Half a worker's share of 64 rows of 2 workers: 16 rows, then 8, 4, 2, and at least half one.
-        self.assertEqual(pixels(WindowRule(100, 64), 2),
+        self.assertEqual(pixels(WindowRule(100, 64, first_share=2), 2),
                          [100 * rows for rows in (16, 16, 8, 8, 4, 4, 2, 2, 1, 1)] + [50] * 4)
+        # A quarter, by default: 8 rows, then 6, 5 and so on.
+        self.assertEqual(pixels(WindowRule(100, 64), 2)[:6], [100 * rows for rows in (8, 8, 6, 6, 5, 5)])
         # Rows are whole: 1.5 become 2, and what is less than one a part of it.
-        self.assertEqual(pixels(WindowRule(100, 6), 2), [200, 200, 50, 50, 25, 25, 12, 12, 6, 6, 4, 4,
+        self.assertEqual(pixels(WindowRule(100, 6, first_share=2), 2), [200, 200, 50, 50, 25, 25, 12, 12, 6, 6, 4, 4,
                                                          4, 2])
-        self.assertEqual(pixels(WindowRule(100, 6, round_up=False), 2)[:2], [100, 100])
+        self.assertEqual(pixels(WindowRule(100, 6, first_share=2, round_up=False), 2)[:2], [100, 100])
         self.assertEqual(pixels(WindowRule(100, 64, first_share=8), 2)[:3], [400, 400, 400])
 
     def test_every_pixel_once(self):
@@ -69,7 +71,8 @@ class Times(unittest.TestCase):
         # The first row costs everything, and is a window for its cost is not known: one device has
         # all the work.
         rows = [[1.0], [0.0], [0.0], [0.0]]
-        outcome = simulate_windows(Job(8.0), Cluster((1.0,) * 2), WindowRule(4, 4), rows)
+        outcome = simulate_windows(Job(8.0), Cluster((1.0,) * 2), WindowRule(4, 4, first_share=2),
+                                   rows)
         self.assertAlmostEqual(outcome.time_s, 8)
         self.assertAlmostEqual(outcome.efficiency, 0.5)
 

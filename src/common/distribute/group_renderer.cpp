@@ -205,6 +205,9 @@ void GroupRenderer::take(Member& member, UnitResult&& result, UnitQueue& queue, 
   if (result.error.empty() && result.id != member.ids.front()) {
     result.error = "sent the result of another unit";
   }
+  if (!result.warning.empty() && hooks_.warn) {
+    hooks_.warn(fmt::format("{}: {}", member.share.name, result.warning));
+  }
   if (!result.error.empty()) {
     fail(member, result.error, queue);
     return;
@@ -218,7 +221,9 @@ void GroupRenderer::take(Member& member, UnitResult&& result, UnitQueue& queue, 
   film_.put(result.film);
   if (spares_.size() < 2 * members_.size()) spares_.push_back(std::move(result.film));
   const auto paths = static_cast<double>(span.part.window.pixel_count()) * result.run.samples_done;
-  if (result.wall_ms > 0) member.paths_per_s = paths / (1e-3 * result.wall_ms);
+  // Of kernels alone: a unit that is short beside its way to the device and back must not make the
+  // next one shorter still.
+  if (result.run.kernel_ms > 0) member.paths_per_s = paths / (1e-3 * result.run.kernel_ms);
   DeviceShare& share = member.share;
   ++share.units;
   share.samples += static_cast<std::uint64_t>(paths);

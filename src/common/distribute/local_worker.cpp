@@ -3,8 +3,6 @@
 #include <chrono>
 #include <future>
 
-#include "common/error/error.h"
-
 namespace pt {
 
 void ResultBell::ring() {
@@ -19,12 +17,13 @@ void ResultBell::wait(double seconds) {
   has_rung_ = false;
 }
 
-LocalWorker::LocalWorker(std::string name, std::uint64_t least_paths, const MakeRenderer& make,
+LocalWorker::LocalWorker(std::string name, std::uint64_t least_paths, MakeRenderer make,
                          ResultBell& bell)
     : name_(std::move(name)),
       least_paths_(least_paths),
+      make_(std::move(make)),
       bell_(bell),
-      thread_([this, make] { run(make); }) {}
+      thread_([this] { run(); }) {}
 
 LocalWorker::~LocalWorker() {
   {
@@ -37,9 +36,9 @@ LocalWorker::~LocalWorker() {
 }
 
 // The renderer is destroyed in the thread that made it, too.
-void LocalWorker::run(const MakeRenderer& make) {
+void LocalWorker::run() {
   try {
-    renderer_ = make();
+    renderer_ = make_fitting(memory_, make_);
   } catch (...) {
     problem_ = std::current_exception();
   }
@@ -83,19 +82,32 @@ void LocalWorker::wait_until_ready() {
   if (problem_) std::rethrow_exception(problem_);
 }
 
+/// A render that throws leaves its film as it was.
+RenderRun LocalWorker::render_fitting(Film& film, int samples, const std::function<bool()>& stop) {
+  for (;;) {
+    try {
+      if (renderer_ == nullptr) renderer_ = make_fitting(memory_, make_);
+      return renderer_->render(film, samples, {{}, stop, {}, stop});
+    } catch (const OutOfMemory& error) {
+      renderer_.reset();
+      memory_.halve(error);
+    }
+  }
+}
+
 UnitResult LocalWorker::render(Unit unit) {
   const auto start = std::chrono::steady_clock::now();
-  UnitResult result{unit.id, std::move(unit.film), {}, 0, ""};
+  UnitResult result{unit.id, std::move(unit.film), {}, 0, "", ""};
   const auto is_cancelled = [this] { return is_cancelled_.load(); };
   if (!is_cancelled()) {
     try {
       if (problem_) std::rethrow_exception(problem_);
-      result.run =
-          renderer_->render(result.film, unit.samples, {{}, is_cancelled, {}, is_cancelled});
+      result.run = render_fitting(result.film, unit.samples, is_cancelled);
     } catch (const std::exception& error) {
       result.error = error.what();
     }
   }
+  result.warning = memory_.take_warning();
   result.wall_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;

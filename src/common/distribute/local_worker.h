@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/distribute/worker.h"
+#include "common/render/memory_share.h"
 #include "common/render/renderer.h"
 
 namespace pt {
@@ -30,12 +31,13 @@ class ResultBell {
 
 class LocalWorker : public Worker {
  public:
-  using MakeRenderer = std::function<std::unique_ptr<Renderer>()>;
+  /// A renderer that takes its device's free memory / 2^halvings (Options::memory_halvings).
+  using MakeRenderer = std::function<std::unique_ptr<Renderer>(int halvings)>;
 
-  /// Begins to make the renderer, in the thread in which it will be used. `bell` rings at each
-  /// result and must live longer.
-  LocalWorker(std::string name, std::uint64_t least_paths, const MakeRenderer& make,
-              ResultBell& bell);
+  /// Begins to make the renderer, in the thread in which it will be used; where its device runs out
+  /// of memory, then or in a render, it is made again with less, and the next result has a warning.
+  /// `bell` rings at each result and must live longer.
+  LocalWorker(std::string name, std::uint64_t least_paths, MakeRenderer make, ResultBell& bell);
   ~LocalWorker() override;
   LocalWorker(const LocalWorker&) = delete;
   LocalWorker& operator=(const LocalWorker&) = delete;
@@ -52,7 +54,8 @@ class LocalWorker : public Worker {
   void describe(RenderReport& report) override;
 
  private:
-  void run(const MakeRenderer& make);
+  void run();
+  RenderRun render_fitting(Film& film, int samples, const std::function<bool()>& stop);
   UnitResult render(Unit unit);
   /// In the worker's thread, after what it has to do already.
   void post(std::function<void()> job);
@@ -60,9 +63,11 @@ class LocalWorker : public Worker {
 
   const std::string name_;
   const std::uint64_t least_paths_;
+  const MakeRenderer make_;
   ResultBell& bell_;
   std::unique_ptr<Renderer> renderer_;  ///< of the thread
-  std::exception_ptr problem_;          ///< of making it
+  MemoryShare memory_;
+  std::exception_ptr problem_;  ///< of making it
   std::atomic<bool> is_cancelled_{false};
 
   std::mutex mutex_;

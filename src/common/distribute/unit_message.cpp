@@ -123,7 +123,8 @@ Unit read_unit(ByteReader& reader) {
 }
 
 void write(ByteWriter& writer, const UnitResult& result) {
-  writer.number(result.id), writer.number(result.wall_ms), writer.text(result.error);
+  writer.number(result.id), writer.number(result.wall_ms), writer.text(result.error),
+      writer.text(result.warning);
   write(writer, result.run);
   write(writer, result.film);
 }
@@ -132,6 +133,7 @@ UnitResult read_unit_result(ByteReader& reader) {
   UnitResult result;
   reader.raw(&result.id, 1), reader.raw(&result.wall_ms, 1);
   result.error = reader.text();
+  result.warning = reader.text();
   result.run = read_run(reader);
   result.film = read_film(reader);
   return result;

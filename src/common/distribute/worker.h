@@ -24,8 +24,9 @@ struct UnitResult {
   std::uint64_t id = 0;
   Film film;
   RenderRun run;
-  double wall_ms = 0;  ///< from the unit's beginning to its film
-  std::string error;   ///< empty: none; else the worker cannot go on, and the unit was not done
+  double wall_ms = 0;   ///< from the unit's beginning to its film
+  std::string error;    ///< empty: none; else the worker cannot go on, and the unit was not done
+  std::string warning;  ///< of the worker, which goes on; empty: none
 };
 
 class Worker {

@@ -138,6 +138,10 @@ struct Options {
   float time_limit = 0.0f;    ///< seconds of rendering, 0: none
   float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
 
+  /// Pools and samples take no more than the free memory / 2^this allows. No option of the command
+  /// line: a device that has run out of memory is tried again with less.
+  int memory_halvings = 0;
+
   // What is kept, and what is left to others
   CheckpointChoice checkpoint;
   PartChoice part;

@@ -10,7 +10,7 @@
 #include "common/device/cuda/profiler_range.cuh"
 #include "common/device/cuda/read_properties.cuh"
 #include "common/device/cuda/wall_timer.h"
-#include "common/error/error.h"
+#include "common/error/memory_error.h"
 #include "common/film/develop.h"
 #include "common/options/option_names.h"
 #include "common/render/lane_histograms.h"
@@ -42,7 +42,11 @@ CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int d
   driver_ = fmt::format("CUDA driver {}.{}, runtime {}.{}", driver / 1000, driver % 1000 / 10,
                         runtime / 1000, runtime % 1000 / 10);
   const WallTimer transfer;
-  upload(scene);
+  try {
+    upload(scene);
+  } catch (const OutOfMemory& error) {
+    throw Error(error.what());  // which less memory for paths does not mend
+  }
   transfer_ms_ = transfer.ms();
   allocate_film();
   setup_ms_ = opening_ms() + watch.ms() - transfer_ms_;
@@ -84,17 +88,18 @@ void CudaRenderer::allocate_planes(std::uint64_t pixels) {
 void CudaRenderer::allocate_film() {
   const std::uint64_t pixels = image_window().pixel_count();
   const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
-  make_samples({"device memory", CudaMemory::free_bytes(), plan_.bytes_per_pixel(),
-                sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
-               CudaChains::defaults(properties_), [&](std::uint64_t paths) {
-                 allocate_planes(pixels);
-                 Sample* samples = memory_.allocate<Sample>("samples", paths);
-                 if (state_bytes > 0) {
-                   states_ = reinterpret_cast<CurandState*>(
-                       memory_.allocate<char>("random states", paths * state_bytes));
-                 }
-                 return samples;
-               });
+  make_samples(
+      {"device memory", CudaMemory::free_bytes() >> options_.memory_halvings,
+       plan_.bytes_per_pixel(), sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
+      CudaChains::defaults(properties_), [&](std::uint64_t paths) {
+        allocate_planes(pixels);
+        Sample* samples = memory_.allocate<Sample>("samples", paths);
+        if (state_bytes > 0) {
+          states_ = reinterpret_cast<CurandState*>(
+              memory_.allocate<char>("random states", paths * state_bytes));
+        }
+        return samples;
+      });
   if (has_chains()) chains_ = std::make_unique<CudaChains>(*this, chain_layout());
   tally_ = memory_.allocate<PathTally>("counters", 1);
   set_clock(memory_.allocate<StageClock>("counters", 1));
