@@ -28,7 +28,11 @@ SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
     # The program: commands, the command line, reports.
-    ("app", ["app/*"], [*SCHEDULES, *COMMON]),
+    ("app", ["app/*"], ["mpi", "distribute", *SCHEDULES, *COMMON]),
+    # Processes of one job, whose devices work for the first one.
+    ("mpi", ["common/mpi/*"], ["distribute", "film", "options", "error"]),
+    # Several renderers as one: who gets which pixels.
+    ("distribute", ["common/distribute/*"], ["render", "film", "image", "plan", *PHYSICS, *HOST]),
     # Schedules. None includes another one.
     *[(name, [name + "/*"], COMMON) for name in SCHEDULES],
     # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
@@ -70,7 +74,7 @@ LAYERS = [
     ("platform", ["common/platform/*"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
-MAIN_MAY_INCLUDE = ["app", *SCHEDULES, *COMMON]
+MAIN_MAY_INCLUDE = ["app", "mpi", "distribute", *SCHEDULES, *COMMON]
 
 # Who may know CUDA.
 CUDA_HEADER = re.compile(
@@ -82,6 +86,10 @@ CUDA_FILES = ["*.cu", "*.cuh", "*_cuda.*"]
 CUB_FILES = ["*compaction_cuda.cu", "common/accel/build_cuda/*.cu"]
 PLATFORM = "common/platform/platform.h"
 PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GLM needs them
+
+# Who may know MPI: a program without it lacks these files.
+MPI_HEADER = re.compile(r"mpi(cxx|-ext|_proto)?\.h$")
+MPI_FILES = ["common/mpi/*_mpi.*"]
 
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
@@ -166,6 +174,8 @@ def check_include(source, path, layer, quoted, angled):
     elif CUB_HEADER.match(header):
         if not fits(path, CUB_FILES):
             yield f"only {', '.join(CUB_FILES)} include CUB: each such file takes long to compile"
+    elif MPI_HEADER.match(header) and not fits(path, MPI_FILES):
+        yield f"only {', '.join(MPI_FILES)} include MPI's headers"
     elif CUDA_HEADER.match(header) and not fits(path, CUDA_FILES):
         if path != PLATFORM:
             yield f"only CUDA files ({', '.join(CUDA_FILES)}) include CUDA's headers"

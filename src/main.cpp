@@ -8,11 +8,16 @@
 #include "app/compact_command.h"
 #include "app/compare_command.h"
 #include "app/interrupt.h"
+#include "app/merge_command.h"
 #include "app/options/command_line.h"
 #include "app/render_command.h"
+#include "app/resume_command.h"
 #include "app/standard_output.h"
 #include "app/trace_command.h"
+#include "app/verify_command.h"
 #include "common/device/devices.h"
+#include "common/image/atomic_file.h"
+#include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
 #include "common/scene/builtin/builtin_scenes.h"
@@ -20,7 +25,13 @@
 namespace pt {
 namespace {
 
-int execute(const RenderCommand& command) { return render_command(command); }
+int execute(const RenderCommand& command, Ranks& ranks) { return render_command(command, ranks); }
+
+int execute(const ResumeCommand& command, Ranks& ranks) { return resume_command(command, ranks); }
+
+int execute(const MergeCommand& command) { return merge_command(command); }
+
+int execute(const VerifyCommand& command) { return verify_command(command); }
 
 int execute(const CompareCommand& command) {
   return compare_command(command.a, command.b, command.tolerance, command.difference);
@@ -46,8 +57,9 @@ int execute(const ListDevicesCommand&) {
 
 int execute(const VersionCommand&) {
   const BuildInfo& build = build_info();
-  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\n", build.version, build.commit,
-             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "");
+  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
+             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
+             mpi_version());
   return 0;
 }
 
@@ -56,12 +68,44 @@ int execute(const HelpCommand& command) {
   return 0;
 }
 
+/// All other commands are for one process.
+template <class AnyCommand>
+int execute(const AnyCommand& command, const Ranks& ranks) {
+  return ranks.is_first() ? execute(command) : 0;
+}
+
 /// One line, whatever a file's name contains.
-int report_error(std::string message) {
+void report_error(std::string message) {
   for (char& c : message)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
   fmt::print(stderr, "ptexp: error: {}\n", message);
-  return 2;
+}
+
+}  // namespace
+}  // namespace pt
+
+namespace pt {
+namespace {
+
+/// What a user is told of an exception.
+std::string message_of(const std::exception& error) {
+  const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         dynamic_cast<const std::length_error*>(&error) != nullptr;  // of a vector
+  return is_memory ? "not enough host memory for this scene and image size" : error.what();
+}
+
+int run(Ranks& ranks, const std::vector<std::string>& arguments) {
+  try {
+    const auto command = parse_command_line(arguments);
+    ranks.is_first() ? end_on_signal() : ignore_signals();
+    const int code = std::visit([&](const auto& one) { return execute(one, ranks); }, command);
+    flush_output();
+    return ranks.finish(code);
+  } catch (const RanksEnd& end) {
+    return ranks.finish(end.code);
+  } catch (const std::exception& error) {
+    return ranks.fail(message_of(error), 2, report_error);
+  }
 }
 
 }  // namespace
@@ -69,16 +113,12 @@ int report_error(std::string message) {
 
 int main(int argc, char** argv) {
   try {
-    const auto command = pt::parse_command_line({argv + 1, argv + argc});
-    pt::end_on_signal();
-    const int code = std::visit([](const auto& one) { return pt::execute(one); }, command);
-    pt::flush_output();
-    return code;
-  } catch (const std::bad_alloc&) {
-    return pt::report_error("not enough host memory for this scene and image size");
-  } catch (const std::length_error&) {  // a std::vector that no memory could hold
-    return pt::report_error("not enough host memory for this scene and image size");
+    pt::ChannelSettings settings = pt::channel_settings();
+    settings.before_abort = pt::remove_unfinished_file;
+    pt::Ranks ranks(pt::open_channel(settings));
+    return pt::run(ranks, {argv + 1, argv + argc});
   } catch (const std::exception& error) {
-    return pt::report_error(error.what());
+    pt::report_error(error.what());
+    return 2;
   }
 }

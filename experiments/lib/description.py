@@ -33,6 +33,7 @@ class Configuration:
     image: str = ""  # a whole path, where `finish` needs it; else no image is kept
     same_image: str = ""  # all with one such name render equal images, bit for bit; "": unchecked
     program: str = ""  # "": the experiment's ptexp
+    launcher: str = ""  # a command before it: "mpirun -n 4", "env NAME=VALUE"
 
 
 @dataclass

@@ -31,7 +31,7 @@ def commands_of(members, session):
     changes = experiment.quick_image_check if arguments.quick else experiment.image_check
     commands = {}
     for member in members:
-        command = (member.program or str(session.program),
+        command = (*shlex.split(member.launcher), member.program or str(session.program),
                    *with_options(member.arguments, changes),
                    "--device", member.device or session.device.choice, "--quiet")
         commands.setdefault(command, []).append(member)

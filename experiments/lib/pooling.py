@@ -1,6 +1,6 @@
 """Makes one row of the processes that measured a configuration, one in each round."""
 import re
-from statistics import median
+from statistics import mean, median
 
 from lib.intervals import median_interval
 
@@ -21,6 +21,22 @@ def stage_times(runs, stage, named):
 def put_times(row, column, times):
     row.update({f"{column}_median": number(median(times)), f"{column}_min": number(min(times)),
                 f"{column}_max": number(max(times))})
+
+
+def put_interval(row, column, processes):
+    """The times of the runs, as the harness gives those of kernel_ms."""
+    rounds = tuple(tuple(run[column] for run in process.runs) for process in processes)
+    low, high = median_interval(rounds)
+    row.update({f"{column}_low": number(low), f"{column}_high": number(high),
+                f"{column}_runs": ";".join(number(time) for times in rounds for time in times)})
+
+
+def put_devices(row, runs):
+    """Of several devices: units of the last run, and by how much the device that had the most to do
+    exceeds the mean of all."""
+    row["units"] = str(sum(device["units"] for device in runs[-1]["devices"]))
+    times = [[device["kernel_ms"] for device in run["devices"]] for run in runs]
+    put_times(row, "uneven_ms", [max(of_run) - mean(of_run) for of_run in times])
 
 
 def pooled(processes):
@@ -44,8 +60,12 @@ def pooled(processes):
         if row.get(column):
             count = sum(int(row[name]) for name in counts)
             row[column] = f"{count / (1000 * median(times)):.6g}"
-    low, high = median_interval(tuple(tuple(run["kernel_ms"] for run in process.runs)
-                                      for process in processes))
+    own = {"rounds": str(len(processes))}
+    put_interval(own, "kernel_ms", processes)
+    if all(run.get("wall_ms") for run in runs):
+        put_times(row, "wall_ms", [run["wall_ms"] for run in runs])
+        put_interval(own, "wall_ms", processes)
+    if all(run.get("devices") for run in runs):
+        put_devices(own, runs)
     row["repeat"] = str(len(times))
-    return {"rounds": str(len(processes)), "kernel_ms_low": number(low),
-            "kernel_ms_high": number(high), "kernel_ms_runs": ";".join(map(number, times)), **row}
+    return {**own, **row}

@@ -99,7 +99,7 @@ def check_gpu(experiment, device):
 
 
 def command_line(program, configuration, device, repeat, warmup):
-    return [configuration.program or str(program), *shlex.split(configuration.arguments),
+    return [*shlex.split(configuration.launcher), configuration.program or str(program), *shlex.split(configuration.arguments),
             "--device", configuration.device or device.choice,
             "--repeat", str(repeat), "--warmup", str(warmup),
             "--output", configuration.image or "image.ppm",
@@ -112,7 +112,7 @@ class Process:
     status: str  # measured, refused or failed
     message: str = ""  # why not measured
     row: dict = field(default_factory=dict)  # of ptexp's CSV
-    runs: list = field(default_factory=list)  # for each repeat kernel_ms and {stage: ms}
+    runs: list = field(default_factory=list)  # for each repeat kernel_ms, wall_ms, {stage: ms}, devices
 
 
 def code_text(code):
@@ -139,6 +139,7 @@ def measure(command, timeout_s):
             row, = csv.DictReader(file)
         facts = json.loads(Path(folder, "run.json").read_text(encoding="utf-8"))
         return Process("measured", row=row, runs=[
-            {"kernel_ms": run["kernel_ms"],
+            {"kernel_ms": run["kernel_ms"], "wall_ms": run.get("wall_ms"),
+             "devices": run.get("devices", []),
              "stages": {stage["stage"]: stage["time_ms"] for stage in run["stages"]}}
             for run in facts["runs"]])

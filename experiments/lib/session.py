@@ -33,7 +33,7 @@ def key_of(session, given):
         "programs": sorted(map(version_of, programs)),
         "device": asdict(session.device),
         "arguments": {name: str(value) for name, value in given.items() if name not in where},
-        "configurations": {c.name: [c.arguments, c.labels, c.device, c.repeat, c.warmup,
+        "configurations": {c.name: [c.arguments, c.labels, c.device, c.repeat, c.warmup, c.launcher,
                                     scene_hash(c.arguments)] for c in session.configurations}}
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -53,8 +53,8 @@ def origin(session, journal, constant):
                          for event in journal.of("equal images")},
         **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
         "configurations": {
-            c.name: shlex.join(["ptexp", *command_line(session, c)[1:]])
-            for c in session.configurations},
+            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
+            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
     }
 
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <initializer_list>
 #include <string_view>
 
 #include "common/image/atomic_file.h"
@@ -35,12 +36,12 @@ void note_signal(int signal) {
   signalled.compare_exchange_strong(none, signal);
 }
 
-void handle(void (*handler)(int)) {
+void handle(void (*handler)(int), std::initializer_list<int> signals) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART;  // spares all I/O an EINTR
   sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : signals) {
     struct sigaction before {};
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN)
@@ -52,10 +53,17 @@ void handle(void (*handler)(int)) {
 
 void end_on_signal(const char* what_is_lost) {
   end_text = what_is_lost;
-  handle(end_now);
+  handle(end_now, {SIGINT, SIGTERM, SIGUSR1});
 }
 
-void note_signals() { handle(note_signal); }
+void note_signals(bool usr1) {
+  handle(note_signal, {SIGINT, SIGTERM});
+  if (usr1) handle(note_signal, {SIGUSR1});
+}
+
+void ignore_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+}
 
 bool interrupted() { return signalled != 0; }
 

@@ -1,16 +1,22 @@
-// SIGINT (Ctrl-C) and SIGTERM (a cluster's warning) end the program early but keep what it has.
+// SIGINT (Ctrl-C), SIGTERM and, where it is wanted, SIGUSR1 (a cluster's warnings) end the program
+// early but keep what it has.
 #pragma once
 
 namespace pt {
 
-/// From now on both signals end the program at once, with 128 and its number as the exit code:
-/// nothing is there yet that could be kept, and half a file is removed. "interrupted" and
-/// `what_is_lost`, a literal, are printed.
+/// From now on they end the program at once, with 128 and their number as the exit code: nothing is
+/// there yet that could be kept, and half a file is removed. "interrupted" and `what_is_lost`, a
+/// literal, are printed.
 void end_on_signal(const char* what_is_lost = "");
 
-/// From now on they only make interrupted() true, however often they come: what there is will be
-/// saved, and nothing must stop that.
-void note_signals();
+/// From now on SIGINT and SIGTERM only make interrupted() true, however often they come: what there
+/// is will be saved, and nothing must stop that. `usr1`: SIGUSR1, too, which Slurm sends before a
+/// time limit.
+void note_signals(bool usr1 = false);
+
+/// From now on they do nothing: another process of the job, which gets them, too, says what
+/// happens.
+void ignore_signals();
 
 bool interrupted();
 

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "common/error/error.h"
+#include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/load/files/scene_files.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "megakernel/megakernel.h"
@@ -33,7 +35,11 @@ bool is_scene_file(const std::string& scene) {
 SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
                      const Warn& warn) {
   if (is_scene_file(options.scene)) {
-    return load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    const SceneFiles files;
+    SceneData scene = load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
+    for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
+    return scene;
   }
   if (options.strict || !options.definitions.empty()) {
     throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
@@ -73,6 +79,18 @@ std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData&
     default:
       return make_wavefront_cpu(options, scene);
   }
+}
+
+std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
+                                                const DeviceInfo& device, const Warn& warn) {
+  MemoryShare share;
+  auto renderer = make_fitting(share, [&](int halvings) {
+    Options own = options;
+    own.memory_halvings = halvings;
+    return make_renderer(own, scene, device);
+  });
+  if (const std::string warning = share.take_warning(); !warning.empty()) warn(warning);
+  return renderer;
 }
 
 }  // namespace pt

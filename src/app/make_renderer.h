@@ -26,4 +26,8 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device, const
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
                                         const DeviceInfo& device);
 
+/// The same with less memory where the device runs out of it, which is said.
+std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
+                                                const DeviceInfo& device, const Warn& warn);
+
 }  // namespace pt

@@ -29,7 +29,9 @@ Measurement measure(Renderer& renderer, const Options& options, Progress& progre
       break;
     }
     progress.begin(label(options, i));
+    const double begin_s = Progress::steady_seconds();
     last = renderer.render(hooks);
+    last.wall_ms = 1e3 * (Progress::steady_seconds() - begin_s);
     if (is_cut_short(last, options.spp)) {
       measurement = {{last}, true};
       break;

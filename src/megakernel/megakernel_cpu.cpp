@@ -15,10 +15,10 @@ namespace {
 template <class Cancelled>
 class PathRange {
  public:
-  /// Every `step`-th path of [first, end), or chain where chains are asynchronous.
-  PathRange(const ChainRun* chains, const SampleBuffer& batch, std::uint32_t first,
+  /// Every `step`-th index of [first, end).
+  PathRange(const PathSupply& supply, const SampleBuffer& batch, std::uint32_t first,
             std::uint32_t end, std::uint32_t step, const Cancelled& cancelled)
-      : chains_(chains),
+      : supply_(supply),
         samples_(batch.samples),
         next_(first),
         end_(end),
@@ -31,20 +31,25 @@ class PathRange {
     if (!wanted) return true;
     for (; next_ < end_; advance()) {
       path_index = next_;
-      if (chains_ == nullptr) {
+      if (!supply_.repeats()) {
         if (cancelled_()) return false;
         advance();
         return true;
       }
-      if (continue_chain_apart(chains_, samples_, path_index)) return true;
+      if (next_apart(path_index)) return true;
     }
     return false;
   }
 
  private:
+  // Not inlined: paths of other kinds keep their registers.
+  PT_NOINLINE bool next_apart(std::uint32_t path_index) const {
+    return supply_.next(samples_, path_index);
+  }
+
   void advance() { next_ = end_ - next_ > step_ ? next_ + step_ : end_; }
 
-  const ChainRun* chains_;
+  PathSupply supply_;
   Sample* samples_;
   std::uint32_t next_, end_, step_;
   const Cancelled& cancelled_;
@@ -66,7 +71,7 @@ class MegakernelCpu : public CpuRenderer {
             dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
-                  PathRange work(chains(), batch, first, end, step, cancelled);
+                  PathRange work(supply(), batch, first, end, step, cancelled);
                   trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
                 });
               });

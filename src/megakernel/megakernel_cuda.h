@@ -19,8 +19,8 @@ class MegakernelCuda : public CudaRenderer {
                          const Source& source, const SampleBuffer& batch);
 
  protected:
-  /// A branch in each thread on whether it follows a chain cost all renders 4 to 11 % (results/).
-  bool runs_chains_async() const override { return false; }
+  /// A branch in each thread on whether paths repeat cost all renders 4 to 11 % (results/).
+  bool can_repeat_paths() const override { return false; }
   void trace_batch(const SampleBuffer& batch) override;
 
  private:

@@ -11,7 +11,7 @@ class SerialRenderer : public CpuRenderer {
   SerialRenderer(const Options& options, const SceneData& scene) : CpuRenderer(options, scene, 1) {}
 
  private:
-  bool runs_chains_async() const override { return false; }  // the plain reference
+  bool can_repeat_paths() const override { return false; }  // the plain reference
 
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {

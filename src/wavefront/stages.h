@@ -2,7 +2,7 @@
 // the stage for which the path waits next. Compaction does the rest (compaction.h).
 #pragma once
 
-#include "common/film/markov_chains.h"
+#include "common/film/path_supply.h"
 #include "common/options/options.h"
 #include "common/transport/follow_path.h"
 #include "wavefront/pool/path_pool.h"
@@ -65,7 +65,7 @@ struct StageContext {
   WaveCounters* counters;
   std::uint32_t* ray_queue;  ///< null: there are no queues
   PathLimits limits;
-  const ChainRun* chains = nullptr;  ///< asynchronous chains, to which free slots belong
+  PathSupply supply;
 };
 
 /// The camera ray of a path in a free slot.
@@ -149,11 +149,11 @@ struct GeneratePaths {
   }
 };
 
-/// Instead of GeneratePaths for asynchronous Markov chains: a slot follows a chain from path to
-/// path, and when that has taken all of its steps the next of its chains, whose indices differ from
-/// the slot's by multiples of `all_slots`. Slots whose chains are done wait for nothing.
+/// Instead of GeneratePaths where paths repeat (PathSupply): a slot follows an index from path to
+/// path, and when that has no more the next of its indices, which differ from the slot's by
+/// multiples of `all_slots`. Slots whose indices are done wait for nothing.
 template <class Source>
-struct ContinueChains {
+struct RepeatPaths {
   static constexpr StageId id = StageId::mutate;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
@@ -162,9 +162,9 @@ struct ContinueChains {
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const SampleBuffer& samples = context.samples;
-    for (std::uint64_t chain = first_slot + slot; chain < samples.path_count; chain += all_slots) {
-      const auto path_index = static_cast<std::uint32_t>(chain);
-      if (continue_chain(*context.chains, samples.samples, path_index)) {
+    for (std::uint64_t index = first_slot + slot; index < samples.path_count; index += all_slots) {
+      const auto path_index = static_cast<std::uint32_t>(index);
+      if (context.supply.next(samples.samples, path_index)) {
         start_path(scene, context, slot, path_index);
         return {StageId::intersect};
       }
@@ -261,7 +261,7 @@ struct ShadeSurface {
 
   /// As a function of its own it would be handed the scene in local memory.
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;
+    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
@@ -333,7 +333,7 @@ struct FollowPaths {
   bool starts_paths = false;  ///< in free slots: their first rays are never stored
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits, chains] = context;
+    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
     Ray ray;
     PathState path;
     if (starts_paths) {

@@ -45,7 +45,7 @@ struct WaveBuffers {
   bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
   bool fused = false;           ///< --stages
   std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
-  // Pools that share a batch divide its Markov chains among all of their slots:
+  // Pools that share a batch whose paths repeat divide its indices among all of their slots:
   std::uint32_t first_slot = 0;  ///< this pool's, counted through all of them
   std::uint32_t all_slots = 0;
   // The order of surfaces:
@@ -223,15 +223,15 @@ void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<
   shade_surfaces_by<Shading, branching>(execute, context, surfaces);
 }
 
-/// Markov chains whose paths have ended take their steps and begin the next ones, which wait for
-/// rays as continuing ones do.
+/// Where paths repeat: paths that have ended are followed by the next ones of their indices, which
+/// wait for rays as continuing ones do.
 template <class Source, class Executor>
-void continue_chains(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
+void repeat_paths(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   constexpr StageId id = StageId::mutate;
   execute.compact(b.request<free_slot>(b.pool.tag));
   StageQueues free = b.stage_queues(id, b.waiting(id), b.pool.tag);
   free.next[queue_index(free_slot)] = nullptr;
-  execute.run(ContinueChains<Source>{context, b.first_slot, b.all_slots}, free);
+  execute.run(RepeatPaths<Source>{context, b.first_slot, b.all_slots}, free);
 }
 
 /// Fused stages: every path in flight gets `wave_rays` more rays. With `starts_paths` all of them
@@ -255,12 +255,12 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   StageId* tags = b.pool.tag;
 
   if constexpr (std::is_same_v<Source, SamplerSource>) {
-    if (context.chains != nullptr) continue_chains(execute, b, context);
+    if (context.supply.repeats()) repeat_paths(execute, b, context);
   }
   execute.compact(b.request<generate, intersect>(tags));
   execute.begin_wave();
   const bool all_new = b.fused && starts_paths && !b.reuses_slots;
-  if (starts_paths && !all_new && context.chains == nullptr) {
+  if (starts_paths && !all_new && !context.supply.repeats()) {
     execute.run(GeneratePaths<Source>{context, Traits::has_lights},
                 b.stage_queues(generate, &b.counters->generate, tags));
   }

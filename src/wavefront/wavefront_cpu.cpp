@@ -91,12 +91,12 @@ struct PoolPart {
 class CpuExecutor {
  public:
   CpuExecutor(const Scene& scene, const Options& options, PoolPart& part, PathRuns& runs,
-              bool of_chains, std::uint32_t finish_paths)
+              bool repeats, std::uint32_t finish_paths)
       : scene_(scene),
         options_(options),
         part_(part),
         runs_(runs),
-        of_chains_(of_chains),
+        repeats_(repeats),
         finish_paths_(finish_paths) {}
 
   void compact(const CompactionRequest& request) {
@@ -111,7 +111,7 @@ class CpuExecutor {
     const bool starts_paths = options_.regenerate || is_empty;
     const std::uint32_t free = starts_paths ? c.waiting[queue_of<free_slot>] : 0;
     std::uint32_t left = 0;
-    if (!of_chains_) {
+    if (!repeats_) {
       // Every free slot gets a path as long as there are some. Where none is to start now, one that
       // could says that there are more.
       left = free > 0 ? runs_.take(free, c.next_path) : (runs_.is_empty() ? 0 : 1);
@@ -154,7 +154,7 @@ class CpuExecutor {
   const Options& options_;
   PoolPart& part_;
   PathRuns& runs_;
-  bool of_chains_;
+  bool repeats_;  ///< the stages start paths themselves
   std::uint32_t finish_paths_;
   bool more_ = true;
 };
@@ -230,19 +230,19 @@ class WavefrontCpu : public CpuRenderer {
                  PathRuns& runs) const {
     part.reset();
     const WaveBuffers& buffers = part.buffers;
-    const bool of_chains = this->chains() != nullptr;
+    const bool repeats = this->supply().repeats();
     const StageContext<Source> context{
         buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
-        this->limits_, this->chains()};
+        this->limits_, this->supply()};
     const std::uint64_t finish_paths =
-        of_chains ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
-    CpuExecutor execute(scene_, options_, part, runs, of_chains,
+        repeats ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
+    CpuExecutor execute(scene_, options_, part, runs, repeats,
                         static_cast<std::uint32_t>(finish_paths));
     while (execute.more()) {
       run_wave<Traits, branching>(execute, buffers, context);
       if (is_cancelled()) runs.end();
     }
-    if (!of_chains) run_finish<Traits>(execute, buffers, context);
+    if (!repeats) run_finish<Traits>(execute, buffers, context);
   }
 
   std::vector<std::unique_ptr<PoolPart>> parts_;

@@ -49,7 +49,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
             !buffers_.fused};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
-  const std::uint64_t free = CudaMemory::free_bytes();
+  const int halvings = options_.pool_size == 0 ? options_.memory_halvings : 0;
+  const std::uint64_t free = CudaMemory::free_bytes() >> halvings;
   if (options_.pool_size == 0) {
     const std::uint64_t most = execution_.pool_paths_max;
     const std::uint64_t wanted = most == 0 ? batch_paths() : std::min(most, batch_paths());
@@ -57,7 +58,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   } else {
     pool_size_ = options_.pool_size;
   }
-  buffers_.reuses_slots = !appends || pool_size_ < batch_paths() || has_chains();
+  buffers_.reuses_slots = !appends || pool_size_ < batch_paths() || paths_repeat();
   if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
     throw Error(
         fmt::format("not enough device memory: a pool of {} paths (--pool-size) needs "
@@ -120,7 +121,7 @@ template <class Source>
 StageContext<Source> WavefrontCuda::context_of(const SampleBuffer& batch,
                                                const Source& source) const {
   return {buffers_.pool, batch,   source, buffers_.counters, buffers_.queue(StageId::intersect),
-          limits_,       chains()};
+          limits_,       supply()};
 }
 
 template <class Function>
@@ -133,7 +134,7 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
 
 void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
                                  bool starts_paths) {
-  path_count_ = chains() == nullptr ? batch.path_count : 0;
+  path_count_ = supply().repeats() ? 0 : batch.path_count;
   loop_ = loop;
   set_wave(static_cast<int>(flows_.size()));
   with_context(batch, [&](auto kinds, const auto& context) {
@@ -149,7 +150,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
   if (!execution_.uses_graph || is_counting()) return;
-  if (graph_exec_ != nullptr && batch == graph_batch_ && chains() == graph_chains_) return;
+  if (graph_exec_ != nullptr && batch == graph_batch_ && supply() == graph_supply_) return;
   destroy_graph();
   build_graph(batch);
 }
@@ -182,7 +183,7 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaGraphUpload(graph_exec_, stream()), "cudaGraphUpload");
   check_cuda(cudaStreamSynchronize(stream()), "cudaGraphUpload");
   graph_batch_ = batch;
-  graph_chains_ = chains();
+  graph_supply_ = supply();
 }
 
 void WavefrontCuda::destroy_graph() {
@@ -223,7 +224,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
         read_counters();
     } while (host_counters_->intersect > 0);
   }
-  if (execution_.finish_paths > 0 && chains() == nullptr) enqueue_finish(batch);
+  if (execution_.finish_paths > 0 && !supply().repeats()) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 

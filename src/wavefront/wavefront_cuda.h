@@ -80,7 +80,7 @@ class WavefrontCuda : public CudaRenderer {
   cudaGraph_t graph_ = nullptr;
   cudaGraphExec_t graph_exec_ = nullptr;
   SampleBuffer graph_batch_;
-  const ChainRun* graph_chains_ = nullptr;
+  PathSupply graph_supply_;
 };
 
 }  // namespace pt

@@ -7,6 +7,7 @@
 #include "accel/triangle_rays.h"
 #include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/accel/traverse_brute.h"
+#include "common/accel/traverse_triangles.h"
 
 namespace pt {
 namespace {
@@ -85,7 +86,8 @@ TEST_P(BruteBlocks, MeetTheSameTriangles) {
         for_each_block(8, random, make, [&](RayBlock& block) {
           // Some rays end exactly where they meet something, or the next float before or behind.
           for (std::uint32_t i = 0; i < block.count; i += 3) {
-            const float t = closest_triangle_brute<false>(tree, block.ray(i), 0.0f, HUGE_VALF).t;
+            const float t =
+                closest_triangle<Accel::brute, false>(tree, block.ray(i), 0.0f, HUGE_VALF).t;
             block.t_max[i] = random.below(2) == 0 ? t : std::nextafter(t, HUGE_VALF);
           }
           block.fill_lanes();
@@ -94,9 +96,10 @@ TEST_P(BruteBlocks, MeetTheSameTriangles) {
           const std::uint32_t occluded = lanes_->any_triangle(tree, block);
           for (std::uint32_t i = 0; i < block.count; ++i) {
             const Ray ray = block.ray(i);
-            const Hit expected = closest_triangle_brute<false>(tree, ray, 0.0f, block.t_max[i]);
+            const Hit expected =
+                closest_triangle<Accel::brute, false>(tree, ray, 0.0f, block.t_max[i]);
             ASSERT_NO_FATAL_FAILURE(expect_hit(hits, i, expected));
-            const bool any = any_triangle_brute<false>(tree, ray, 0.0f, block.t_max[i]);
+            const bool any = any_triangle<Accel::brute, false>(tree, ray, 0.0f, block.t_max[i]);
             ASSERT_EQ((occluded >> i & 1u) != 0, any) << "ray " << i;
             hits_found += expected.is_miss() ? 0 : 1, occluded_found += any ? 1 : 0;
           }

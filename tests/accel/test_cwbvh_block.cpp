@@ -41,9 +41,10 @@ TEST_P(CwbvhBlocks, MeetTheSameTriangles) {
         const std::uint32_t occluded = trees().any(tree, block, nullptr);
         for (std::uint32_t i = 0; i < block.count; ++i) {
           const Ray ray = block.ray(i);
-          const Hit expected = closest_triangle_cwbvh<false>(tree, ray, 0.0f, block.t_max[i]);
+          const Hit expected =
+              closest_triangle<Accel::cwbvh, false>(tree, ray, 0.0f, block.t_max[i]);
           ASSERT_NO_FATAL_FAILURE(expect_hit(hits, i, expected));
-          const bool any = any_triangle_cwbvh<false>(tree, ray, 0.0f, block.t_max[i]);
+          const bool any = any_triangle<Accel::cwbvh, false>(tree, ray, 0.0f, block.t_max[i]);
           ASSERT_EQ((occluded >> i & 1u) != 0, any) << "ray " << i;
           hits_found += expected.is_miss() ? 0 : 1, occluded_found += any ? 1 : 0;
         }

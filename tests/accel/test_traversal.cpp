@@ -3,9 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "accel/triangle_trees.h"
-#include "common/accel/traverse_cwbvh.h"
-#include "common/accel/traverse_triangles_brute.h"
-#include "common/accel/traverse_triangles_bvh2.h"
 #include "statistics.h"
 
 namespace pt {
@@ -73,7 +70,7 @@ Ray random_ray(TestRandom& random, const Triangles& triangles, const Bounds& all
 template <bool instanced>
 int expect_same(const TestTrees& trees, const Ray& ray, float t_min, float t_max) {
   const TriangleTree binary = trees.binary(), wide = trees.wide();
-  const Hit expected = closest_triangle_brute<instanced>(binary, ray, t_min, t_max);
+  const Hit expected = closest_triangle<Accel::brute, instanced>(binary, ray, t_min, t_max);
   const auto expect = [&](const char* name, const TriangleTree& tree, const Hit& hit, bool any) {
     SCOPED_TRACE(testing::Message()
                  << name << " from " << ray.origin.x << ' ' << ray.origin.y << ' ' << ray.origin.z
@@ -87,11 +84,12 @@ int expect_same(const TestTrees& trees, const Ray& ray, float t_min, float t_max
       EXPECT_EQ(tree.instances[hit.instance].index, binary.instances[expected.instance].index);
     }
   };
-  expect("brute", binary, expected, any_triangle_brute<instanced>(binary, ray, t_min, t_max));
-  expect("bvh2", binary, closest_triangle_bvh2<instanced>(binary, ray, t_min, t_max),
-         any_triangle_bvh2<instanced>(binary, ray, t_min, t_max));
-  expect("cwbvh", wide, closest_triangle_cwbvh<instanced>(wide, ray, t_min, t_max),
-         any_triangle_cwbvh<instanced>(wide, ray, t_min, t_max));
+  expect("brute", binary, expected,
+         any_triangle<Accel::brute, instanced>(binary, ray, t_min, t_max));
+  expect("bvh2", binary, closest_triangle<Accel::bvh2, instanced>(binary, ray, t_min, t_max),
+         any_triangle<Accel::bvh2, instanced>(binary, ray, t_min, t_max));
+  expect("cwbvh", wide, closest_triangle<Accel::cwbvh, instanced>(wide, ray, t_min, t_max),
+         any_triangle<Accel::cwbvh, instanced>(wide, ray, t_min, t_max));
   return expected.is_miss() ? 0 : 1;
 }
 

@@ -545,8 +545,8 @@ class Interruption(CommandLine):
     def test_a_batch_is_not_waited_for(self):
         for mode in MODES:
             with self.subTest(mode=mode):
-                process = self.start("--mode", mode, "--scene", "boxes", "--width", "64",
-                                     "--height", "64", "--spp", "20000", "--output", f"{mode}.ppm")
+                process = self.start("--mode", mode, "--scene", "boxes", "--width", "32",
+                                     "--height", "32", "--spp", "80000", "--output", f"{mode}.ppm")
                 self.end(process, signal.SIGINT)
                 self.assertIn(f"{mode}.ppm", self.files())
 

@@ -8,6 +8,7 @@
 
 #include "app/options/command_line.h"
 #include "app/options/option_list.h"
+#include "app/options/option_values.h"
 #include "common/options/option_names.h"
 #include "temp_folder.h"
 
@@ -59,6 +60,9 @@ const std::map<std::string, std::string>& other_values() {
       {"scene", "rtow"},
       {"define", "a=1"},
       {"strict", "on"},
+      {"scene-from-disk", "on"},
+      {"checkpoint", "c.exr,20.5"},
+      {"part", "3/16"},
       {"spheres", "0"},
       {"create-world", "device"},
       {"look-from", "13,-2,0.1"},
@@ -105,6 +109,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   if (entry.group.starts_with("Metropolis")) {
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
+  if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
   if (entry.name == "wave-rays") arguments.insert(arguments.end(), {"--stages", "fused"});
   if (entry.name == "work" || entry.name == "block" || entry.name == "kernel")
     arguments.insert(arguments.end(), {"--mode", "megakernel"});
@@ -290,6 +295,8 @@ TEST(OptionNames, RoundTrip) {
   EXPECT_EQ(to_string(StageId::shade_surface), "shade_surface");
   EXPECT_EQ(to_string(DeviceChoice{DeviceChoice::Kind::automatic, 0}), "auto");
   EXPECT_EQ(to_string(DeviceChoice{DeviceChoice::Kind::cuda, 1}), "cuda:1");
+  for (const char* text : {"cpu", "cpu:4", "cuda:0", "cuda:2,0,1", "cuda:0,0", "cuda:all"})
+    EXPECT_EQ(to_string(parse_devices("device", text)), text);
 }
 
 struct Refusal {
@@ -362,7 +369,8 @@ TEST(Refused, NumbersAndVectors) {
 
 TEST(Refused, NamesAndForms) {
   expect_refused({
-      {"--device gpu", "--device gpu: expected auto, cpu, cuda or cuda:N with N from 0"},
+      {"--device gpu",
+       "--device gpu: expected auto, cpu, cpu:N for N devices that share its threads, cuda, "},
       {"--device cuda:", "--device cuda:: expected auto"},
       {"--device cuda:-1", "--device cuda:-1: expected auto"},
       {"--device cuda:1x", "--device cuda:1x: expected auto"},

@@ -23,7 +23,8 @@ TEST(CountersCommand, WhatCannotBeCountedLosesNoImage) {
   options.stats_file = folder.file("run.json");
   options.csv_file = folder.file("runs.csv");
   testing::internal::CaptureStderr();
-  const int status = render_command(command);
+  Ranks ranks;
+  const int status = render_command(command, ranks);
   const std::string warning = testing::internal::GetCapturedStderr();
   EXPECT_EQ(status, 0);
   EXPECT_EQ(warning, "ptexp: warning: --counters: no counters of this device are known\n");

@@ -14,7 +14,8 @@ namespace {
 
 RenderRun first_run() {
   RenderRun run;
-  run.kernel_ms = 8;
+  run.kernel_ms = 8, run.wall_ms = 10;
+  run.devices = {{"cuda:0", 5, 600, 7.25, 7.5}, {"cuda:1", 8, 900, 8.0, 9.5}};
   run.stages = {{"generate", 0.75, 5}, {"intersect", 1.5, 40}, {"denoise", 0.375, 9}};
   run.waves = 21, run.samples_done = 31;
   run.ended_by = RunEnd::target_error, run.relative_error = 0.3125;
@@ -25,7 +26,8 @@ RenderRun first_run() {
 
 RenderRun last_run() {
   RenderRun run;
-  run.kernel_ms = 3;
+  run.kernel_ms = 3, run.wall_ms = 5;
+  run.devices = {{"cuda:1", 3, 1500, 3.0, 4.5}};
   run.stages = {{"generate", 0.25, 7}, {"intersect", 2.75, 46}, {"denoise", 0.875, 11}};
   run.waves = 23, run.samples_done = 37;
   run.ended_by = RunEnd::time_limit, run.relative_error = 0.15625;
@@ -82,7 +84,8 @@ constexpr const char* expected_json = R"({
   "metropolis": {"chains": 5100, "mutations": 3100000, "bootstrap": 3200, "brightness": 0.6,
                  "brightness_error": 0.14, "large_share": 0.32, "large_acceptance": 0.11,
                  "small_acceptance": 0.84, "bootstrap_ms": 13.75, "mmutations_per_s": 4.75},
-  "time_ms": {"kernel": {"median": 5.5, "min": 3.0, "max": 8.0}, "scene": 401.5, "setup": 402.5,
+  "time_ms": {"kernel": {"median": 5.5, "min": 3.0, "max": 8.0},
+              "wall": {"median": 7.5, "min": 5.0, "max": 10.0}, "scene": 401.5, "setup": 402.5,
               "load": 403.5, "transfer": 404.5, "image_write": 405.5},
   "rates": {"mpaths_per_s": 2000.0, "mrays_per_s": 5000.0},
   "waves": 23, "launches": 64,
@@ -101,7 +104,10 @@ constexpr const char* expected_json = R"({
      "block_threads": 192, "occupancy": 0.625}],
   "counters": null,
   "runs": [
-    {"kernel_ms": 8.0, "waves": 21, "samples_done": 31, "ended_by": "target_error",
+    {"kernel_ms": 8.0, "wall_ms": 10.0, "devices": [
+      {"name": "cuda:0", "units": 5, "samples": 600, "kernel_ms": 7.25, "wall_ms": 7.5},
+      {"name": "cuda:1", "units": 8, "samples": 900, "kernel_ms": 8.0, "wall_ms": 9.5}],
+     "waves": 21, "samples_done": 31, "ended_by": "target_error",
      "relative_error": 0.3125,
      "metropolis": {"chains": 4100, "mutations": 2100000, "bootstrap": 2200, "brightness": 0.2,
                     "brightness_error": 0.13, "large_share": 0.31, "large_acceptance": 0.12,
@@ -109,7 +115,9 @@ constexpr const char* expected_json = R"({
      "stages": [{"stage": "generate", "time_ms": 0.75, "launches": 5},
                 {"stage": "intersect", "time_ms": 1.5, "launches": 40},
                 {"stage": "denoise", "time_ms": 0.375, "launches": 9}]},
-    {"kernel_ms": 3.0, "waves": 23, "samples_done": 37, "ended_by": "time_limit",
+    {"kernel_ms": 3.0, "wall_ms": 5.0, "devices": [
+      {"name": "cuda:1", "units": 3, "samples": 1500, "kernel_ms": 3.0, "wall_ms": 4.5}],
+     "waves": 23, "samples_done": 37, "ended_by": "time_limit",
      "relative_error": 0.15625,
      "metropolis": {"chains": 5100, "mutations": 3100000, "bootstrap": 3200, "brightness": 0.6,
                     "brightness_error": 0.14, "large_share": 0.32, "large_acceptance": 0.11,
@@ -181,6 +189,10 @@ TEST(ReportFields, OfTheCsv) {
       {"kernel_ms_median", "5.500000"},
       {"kernel_ms_min", "3.000000"},
       {"kernel_ms_max", "8.000000"},
+      {"wall_ms_median", "7.500000"},
+      {"wall_ms_min", "5.000000"},
+      {"wall_ms_max", "10.000000"},
+      {"devices", "cuda:1:3:1500:3.000000:4.500000"},
       {"generate_ms_median", "0.500000"},
       {"generate_ms_min", "0.250000"},
       {"generate_ms_max", "0.750000"},

@@ -130,10 +130,16 @@ def hdr():
     return flat, runs
 
 
-def exr():
+def exr(numbers=None, texts=None):
+    """2x1 pixels, with channels of whole numbers ({name: (left, right)}) and string attributes."""
+    numbers, texts = numbers or {}, texts or {}
+
     def attribute(name, kind, data):
         return name + b"\0" + kind + b"\0" + struct.pack("<I", len(data)) + data
-    channels = b"".join(name + b"\0" + struct.pack("<IIII", 2, 0, 1, 1) for name in (b"B", b"G", b"R"))
+    floats = {b"B": (0, 1), b"G": (2, 3), b"R": (4, 5)}
+    names = sorted([*floats, *numbers])
+    channels = b"".join(name + b"\0" + struct.pack("<IIII", 2 if name in floats else 0, 0, 1, 1)
+                        for name in names)
     box = struct.pack("<iiii", 0, 0, 1, 0)
     header = (b"\x76\x2f\x31\x01\x02\0\0\0" + attribute(b"channels", b"chlist", channels + b"\0") +
               attribute(b"compression", b"compression", b"\0") +
@@ -141,9 +147,47 @@ def exr():
               attribute(b"lineOrder", b"lineOrder", b"\0") +
               attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) +
               attribute(b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)) +
-              attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0")
-    line = struct.pack("<6f", *range(6))
+              attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) +
+              b"".join(attribute(key, b"string", text) for key, text in texts.items()) + b"\0")
+    line = b"".join(struct.pack("<2f", *floats[name]) if name in floats else
+                    struct.pack("<2I", *numbers[name]) for name in names)
     return header + struct.pack("<Q", len(header) + 8) + struct.pack("<iI", 0, len(line)) + line
+
+
+def checkpoint(moments):
+    """Two pixels of which the left one has 3 samples."""
+    pixels = struct.pack("<3dQ3dQ", 1, 2, 3, 3, 0, 0, 0, 0)
+    more = struct.pack("<dQQdQQ", 4, 5, 6, 0, 0, 0) if moments else b""
+    numbers = {}
+    for layer, channels, at, data in (("sum", "RGB", 0, pixels), ("samples", "N", 24, pixels),
+                                      ("luminance_squares", "Y", 0, more), ("rays", "CS", 8, more)):
+        size = len(data) // 2
+        for c, letter in enumerate(channels if data else ""):
+            pair = [struct.unpack_from("<II", data, at + 8 * c + size * x) for x in range(2)]
+            for half, name in ((1, "high"), (0, "low")):
+                numbers[f"film.{layer}.{name}.{letter}".encode()] = [p[half] for p in pair]
+    texts = {"format": "1", "window": "0 0 2 1", "aovs": "", "plan": f"{int(moments)} 0",
+             "parts": "0 0 1 1 0 3", "tally": "5 6 0 3" + " 0" * 127,
+             "checksum": str(zlib.crc32(pixels + more))}
+    texts = {f"ptexp.film.{key}".encode(): text.encode() for key, text in texts.items()}
+    header = b"".join(key + b"\0" + texts[key] + b"\0" for key in sorted(texts))
+    texts[b"ptexp.film.header_checksum"] = str(zlib.crc32(header)).encode()
+    return exr(numbers, texts)
+
+
+def rays():
+    mesh = b"TRBMESH1" + struct.pack("<II9f3I", 3, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+    ray = b"TRBRAYS1" + struct.pack("<QI12x8f", 1, 0, 0, 0, 0, 0, 0, 0, 1, 9)
+    hit = b"TRBHITS1" + struct.pack("<QI12xfIff", 1, 0, 1.5, 0, 0.25, 0.25)
+    return mesh, ray, hit
+
+
+def unit():
+    """Guesses at the layout of unit_message.h; the fuzzer mends them."""
+    window = struct.pack("<4I", 0, 0, 1, 1)
+    film = window + struct.pack("<2I", 0, 1) + struct.pack("<Q", 1) + window
+    film += struct.pack("<Q3dQ", 1, 1, 2, 3, 1) + struct.pack("<QQ", 0, 0) + bytes(8 * 131)
+    return struct.pack("<Q", 7) + film + struct.pack("<I", 4), bytes(2048)
 
 
 XML_START = b"""<?xml version="1.0"?>
@@ -267,6 +311,9 @@ SEEDS = {
     "mitsuba_xml": [XML_START + part + b"</scene>\n" for part in XML_PARTS],
     "pbrt": [PBRT_START + part for part in PBRT_PARTS],
     "gltf": gltf(),
+    "checkpoint": [checkpoint(False), checkpoint(True)],
+    "rays": rays(),
+    "unit": unit(),
 }
 
 # Beside the scenes, under the names that they use.

@@ -4,6 +4,7 @@
 // The emulation comes before what it emulates.
 // clang-format off
 #include "emulated_gpu.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
@@ -55,7 +56,7 @@ void expect_hits_of_cpu(const std::vector<Mesh>& meshes, const std::vector<Insta
   int found = 0;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const RayRecord& r = rays.rays[i];
-    const Hit hit = closest_triangle_cwbvh<instanced>(tree, r.ray(), r.t_min, r.t_max);
+    const Hit hit = closest_triangle<Accel::cwbvh, instanced>(tree, r.ray(), r.t_min, r.t_max);
     EXPECT_EQ(id_of(hits[i]), id_of(hit)) << i;
     if (hit.is_miss()) continue;
     ++found;

@@ -144,6 +144,11 @@ class CheckLayers(unittest.TestCase):
         self.assert_breach("wavefront/wavefront_cuda.cu", "#include <cub/cub.cuh>\n", 1, "CUB")
         self.assert_breach("common/device/x.cuh", "#include <thrust/sort.h>\n", 1, "CUB")
 
+    def test_only_mpi_files_include_mpi(self):
+        self.assert_breach("common/mpi/ranks.cpp", "#include <mpi.h>\n", 1, "MPI")
+        self.assert_breach("app/x_mpi.cpp", "#include <mpi.h>\n", 1, "MPI")
+        self.assert_sound({"common/mpi/x_mpi.cpp": "#include <mpi.h>\n"})
+
     def test_one_file_asks_for_the_compiler(self):
         for condition in ["#ifdef __CUDACC__", "#ifndef __CUDA_ARCH__", "#if defined(__NVCC__)",
                           "#  if 1 && \\\n  defined(__CUDACC__)"]:

@@ -248,6 +248,23 @@ class Harness(unittest.TestCase):
         with self.assertRaisesRegex(harness.HarnessError, "expected a build with PTEXP_DIV"):
             harness.find_program(self.program, counts_lanes=True)
 
+    def test_launchers_and_wall_times(self):
+        (self.folder / "a" / "behaviour.json").write_text(json.dumps(
+            {"times": {"1": [2.0, 6.0]}, "devices": [[3.0, 1.0], [5.0, 2.0]]}), encoding="utf-8")
+        experiment = Experiment("fake", "Fake?", lambda *_: [
+            Configuration("a", "--seed 1", launcher="env PTEXP_FAKE_WALL=1.5", same_image="one"),
+            Configuration("b", "--seed 1", same_image="one")], None)
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(harness.main(experiment, self.options("--repeat", "4")), 0)
+        launched, plain = self.rows()
+        self.assertEqual(launched["wall_ms_runs"], "3.000000;9.000000;3.000000;9.000000")
+        self.assertEqual([launched[f"wall_ms_{part}"] for part in ("median", "low", "high")],
+                         ["6.000000", "3.000000", "9.000000"])
+        # The busiest device had 1.0 and 1.5 more than the mean.
+        self.assertEqual((launched["units"], launched["uneven_ms_median"]), ("7", "1.250000"))
+        self.assertEqual((plain["wall_ms_runs"], plain["units"]), ("", ""))
+        self.assertIn("env PTEXP_FAKE_WALL=1.5", self.facts()["configurations"]["a"])
+
     def test_ctrl_c(self):
         self.fake("a", wrong={"2": 130})
         status, _, errors = self.run_seeds()

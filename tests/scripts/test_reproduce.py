@@ -13,7 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
 REPRODUCE = ROOT / "scripts" / "reproduce"
-NOT_IN_IT = {"compare_builds", "divergence"}  # they need another build
+# The first two need another build, the last one several devices.
+NOT_IN_IT = {"compare_builds", "divergence", "scaling"}
 BUDGET_S = 25 * 60  # of all on one H200
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.

@@ -269,25 +269,25 @@ TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
   EXPECT_EQ(std::ranges::count(as_they_come.notes.ran, StageId::order_surfaces), 0);
 }
 
-/// Of a wave in which Markov chains go on by themselves.
-Notes<false> chain_notes(bool fused) {
+/// Of a wave in which paths repeat.
+Notes<false> repeat_notes(bool fused) {
   WaveCounters counters{};
   WaveBuffers buffers;
   buffers.compaction = compaction_info(Compaction::atomic);
   buffers.counters = &counters;
   buffers.fused = fused;
   const ChainRun chains{};
-  const StageContext<SamplerSource> context{{}, {}, {}, &counters, nullptr, {}, &chains};
+  const StageContext<SamplerSource> context{{}, {}, {}, &counters, nullptr, {}, {&chains}};
   Notes<false> notes;
   run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
   return notes;
 }
 
-TEST(WaveOrder, ChainsStartTheirPathsThemselves) {
+TEST(WaveOrder, RepeatedPathsAreStartedByTheirOwnStage) {
   using enum StageId;
-  EXPECT_EQ(chain_notes(false).ran, (Ids{compact, mutate, compact, begin_wave, intersect, compact,
-                                         shade_miss, shade_surface, compact, shadow}));
-  EXPECT_EQ(chain_notes(true).ran, (Ids{compact, mutate, compact, begin_wave, bounce}));
+  EXPECT_EQ(repeat_notes(false).ran, (Ids{compact, mutate, compact, begin_wave, intersect, compact,
+                                          shade_miss, shade_surface, compact, shadow}));
+  EXPECT_EQ(repeat_notes(true).ran, (Ids{compact, mutate, compact, begin_wave, bounce}));
 }
 
 TEST(WaveOrder, EveryStageOfAWaveIsReached) {
@@ -296,7 +296,7 @@ TEST(WaveOrder, EveryStageOfAWaveIsReached) {
     const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy);
     reached.insert(notes.ran.begin(), notes.ran.end());
   }
-  for (const auto& notes : {fused_notes(Compaction::atomic, true), chain_notes(false)}) {
+  for (const auto& notes : {fused_notes(Compaction::atomic, true), repeat_notes(false)}) {
     reached.insert(notes.ran.begin(), notes.ran.end());
   }
   for (const StageInfo& stage : stage_table) {

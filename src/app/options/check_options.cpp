@@ -50,9 +50,11 @@ bool same_file(const std::string& a, const std::string& b) {
 }
 
 void check_files(const Options& o, const GivenOptions& given) {
-  const std::pair<const char*, std::string> files[] = {
-      {"output", o.output}, {"stats", o.stats_file}, {"csv", o.csv_file}};
-  for (int i = 0; i < 3; ++i)
+  const std::pair<const char*, std::string> files[] = {{"output", o.output},
+                                                       {"stats", o.stats_file},
+                                                       {"csv", o.csv_file},
+                                                       {"checkpoint", o.checkpoint.file}};
+  for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j)
       if (same_file(files[i].second, files[j].second))
         throw Error(fmt::format("--{} {}: is the file of --{} too", files[i].first, files[i].second,
@@ -209,7 +211,36 @@ void check_inert(const Options& options, const GivenOptions& given) {
 
 }  // namespace
 
+/// A film that is made in pieces is of one render of whole paths.
+void check_parts(const Options& o, const GivenOptions& given) {
+  const bool has_file = !o.checkpoint.file.empty();
+  const auto refuse = [](const std::string& option, const std::string& why) {
+    throw Error(fmt::format("{}: {}", option, why));
+  };
+  if (o.part.count > 1 && !has_file)
+    refuse("--part " + part_text(o.part),
+           "expected --checkpoint FILE, which the part is written to");
+  if (o.part.count > 1 && given.contains("output"))
+    refuse("--output " + o.output, "a part of an image is written to --checkpoint alone");
+  if (o.part.count > 1 && (o.target_error > 0 || o.time_limit > 0))
+    refuse("--part " + part_text(o.part),
+           "all parts need the same samples; expected neither --time-limit nor --target-error");
+  if (has_file && o.repeat + o.warmup > 1)
+    refuse("--checkpoint " + o.checkpoint.file,
+           "is of one render; expected neither --repeat nor --warmup");
+  const bool has_several = o.device.has_several();
+  if (has_several && o.mode == Mode::serial)
+    refuse("--device " + to_string(o.device), "--mode serial has one thread; expected one device");
+  if (has_several && o.counters)
+    refuse("--counters", "reads those of one device; --device names several");
+  if (o.integrator == IntegratorKind::mlt && (has_several || has_file))
+    refuse(has_several ? "--device " + to_string(o.device) : "--checkpoint " + o.checkpoint.file,
+           "the chains of --integrator mlt walk over the whole image and have no state that could "
+           "be continued; expected one device and no checkpoint");
+}
+
 void check_consistent(const Options& options, const GivenOptions& given) {
+  check_parts(options, given);
   check_metropolis_only(options, given);
   check_stages(options, given);
   check_files(options, given);

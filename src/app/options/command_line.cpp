@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/options/option_list.h"
+#include "app/options/option_values.h"
 #include "app/options/shell_text.h"
 #include "app/options/subcommand.h"
 #include "common/error/error.h"
@@ -23,6 +24,16 @@ constexpr const char* program_text =
 constexpr const char* compare_text =
     "Prints RMSE, relMSE, FLIP, the largest difference, how many pixels differ.\n"
     "Exit code 0: within the tolerance, 1: beyond it, 2: an image cannot be read.";
+constexpr const char* resume_text =
+    "Goes on with the render of a checkpoint, by the options of its beginning. Others\n"
+    "may be given that do not change what a sample is: --spp, for more of them,\n"
+    "--output, and how and where to render.";
+constexpr const char* merge_text =
+    "Joins the checkpoints of an image's parts (--part). Pixels that several have are\n"
+    "compared. Exit code 0: done, 2: something is missing, foreign or differs.";
+constexpr const char* verify_text =
+    "Renders some of an image's pixels again, by the options in its header, and\n"
+    "compares. Exit code 0: the bits are equal, 1: they differ, 2: an error.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
@@ -45,11 +56,15 @@ struct Parser {
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   Subcommand<CompactCommand> compact{app, "compact", compact_text, compact_options()};
+  CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr;
+  CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
+  CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;
   CLI::App* compare = nullptr;
   CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr, *difference = nullptr;
 
   Parser();
   void add_option(const OptionEntry& entry);
+  void add_film_commands();
 };
 
 CLI::Option* add_flag(CLI::App& app, const std::string& flags, const std::string& help) {
@@ -89,6 +104,7 @@ Parser::Parser() {
   for (CLI::Option* option : {list_scenes, list_devices, version}) option->group("Information");
   app.allow_extras();
 
+  add_film_commands();
   compare = app.add_subcommand("compare", compare_text);
   image_a = add_text(*compare, "A", "Image, .exr, .png or .ppm");
   image_b = add_text(*compare, "B", "Reference of the same size");
@@ -102,6 +118,26 @@ Parser::Parser() {
     image->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   app.footer(footer_text);  // last: a subcommand would inherit it
   app.get_formatter()->column_width(34);
+}
+
+/// Options of rendering that stand behind the subcommand's name are the program's.
+void Parser::add_film_commands() {
+  resume = app.add_subcommand("resume", resume_text);
+  checkpoint = add_text(*resume, "FILE", "Checkpoint, an .exr of --checkpoint");
+  merge = app.add_subcommand("merge", merge_text);
+  merged = add_text(*merge, "OUT", "Image to write");
+  parts = merge->add_option_function<std::vector<std::string>>(
+      "IN", [](const std::vector<std::string>&) {}, "Checkpoints of parts");
+  allow_missing = add_flag(*merge, "--allow-missing", "Pixels without samples are black");
+  keep_sums = add_flag(*merge, "--keep-sums", "OUT, an .exr, is a checkpoint, too");
+  verify = app.add_subcommand("verify", verify_text);
+  verified = add_text(*verify, "IMAGE", "Image to verify, .exr or .png");
+  share = add_text(*verify, "--share", "Share of the pixels, above 0, at most 1");
+  share->type_name("X [0.01]");
+  for (CLI::Option* file : {checkpoint, merged, verified})
+    file->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
+  parts->type_name("");
+  for (CLI::App* command : {resume, merge, verify}) command->allow_extras()->fallthrough();
 }
 
 /// Of an option that is given more than once the last holds, as in other programs: so a script's
@@ -132,16 +168,54 @@ CompareCommand parse_compare(const Parser& parser) {
   return command;
 }
 
-RenderCommand parse_render(const Parser& parser) {
-  RenderCommand command;
+/// Of all options that are given, in the order of the table.
+std::vector<Setting> given_settings(const Parser& parser) {
+  std::vector<Setting> settings;
   for (const auto& [entry, option] : parser.options) {
     if (option->count() == 0) continue;
-    const bool is_vector = entry->form == OptionForm::vector;
     if (entry->form == OptionForm::list) {
-      for (const std::string& value : option->results()) entry->set(command.options, value);
+      for (const std::string& value : option->results()) settings.push_back({entry, value});
     } else {
-      entry->set(command.options, is_vector ? last_vector(*option) : last_value(*option));
+      const bool is_vector = entry->form == OptionForm::vector;
+      settings.push_back({entry, is_vector ? last_vector(*option) : last_value(*option)});
     }
+  }
+  return settings;
+}
+
+/// The one argument of a subcommand.
+std::string file_of(const CLI::Option* option, const char* usage) {
+  if (option->count() == 0) throw Error(fmt::format("{}: expected {}", usage, option->get_name()));
+  return option->results()[0];
+}
+
+MergeCommand parse_merge(const Parser& parser) {
+  const std::string usage = "ptexp merge OUT IN...";
+  for (const Setting& setting : given_settings(parser))
+    throw Error(fmt::format("--{}: has no effect together with merge", setting.entry->name));
+  MergeCommand command{file_of(parser.merged, usage.c_str()), parser.parts->results()};
+  if (command.inputs.empty()) throw Error(usage + ": expected at least one checkpoint");
+  command.allow_missing = parser.allow_missing->count() > 0;
+  command.keeps_sums = parser.keep_sums->count() > 0;
+  if (command.keeps_sums && !command.output.ends_with(".exr"))
+    throw Error(fmt::format("--keep-sums: expected an .exr to write, not {}", command.output));
+  return command;
+}
+
+VerifyCommand parse_verify(const Parser& parser) {
+  VerifyCommand command{file_of(parser.verified, "ptexp verify IMAGE"), 0.01,
+                        given_settings(parser)};
+  if (parser.share->count() > 0) {
+    command.share = parse_number("share", last_value(*parser.share), "a number above 0, at most 1",
+                                 [](float x) { return x > 0 && x <= 1; });
+  }
+  return command;
+}
+
+RenderCommand parse_render(const Parser& parser) {
+  RenderCommand command;
+  for (const auto& [entry, value] : given_settings(parser)) {
+    entry->set(command.options, value);
     command.given.insert(entry->name);
   }
   check_consistent(command.options, command.given);
@@ -201,6 +275,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     throw Error(error.what());
   }
   check_extras(parser);
+  if (parser.resume->parsed()) {
+    return ResumeCommand{file_of(parser.checkpoint, "ptexp resume FILE"), given_settings(parser)};
+  }
+  if (parser.merge->parsed()) return parse_merge(parser);
+  if (parser.verify->parsed()) return parse_verify(parser);
   if (parser.compare->parsed()) {
     check_alone(parser, "compare", nullptr);
     return parse_compare(parser);

@@ -7,6 +7,7 @@
 
 #include "app/options/check_options.h"
 #include "app/options/compact_options.h"
+#include "app/options/option_list.h"
 #include "app/options/trace_options.h"
 #include "common/options/options.h"
 
@@ -15,6 +16,22 @@ namespace pt {
 struct RenderCommand {
   Options options;
   GivenOptions given;  ///< for check_applicable, once the device is known
+};
+/// Of a checkpoint, whose options hold but for these.
+struct ResumeCommand {
+  std::string file;
+  std::vector<Setting> settings;
+};
+struct MergeCommand {
+  std::string output;
+  std::vector<std::string> inputs;
+  bool allow_missing = false;  ///< pixels without samples are black
+  bool keeps_sums = false;     ///< the output is a checkpoint, too
+};
+struct VerifyCommand {
+  std::string image;
+  double share = 0.01;  ///< of the pixels, in (0, 1]
+  std::vector<Setting> settings;
 };
 struct CompareCommand {
   std::string a, b;
@@ -28,9 +45,9 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command =
-    std::variant<RenderCommand, CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                 ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
+                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
+                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

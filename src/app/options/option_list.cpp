@@ -190,6 +190,25 @@ void add_stops(std::vector<OptionEntry>& list) {
            "pixels' mean variance, over their mean, of luminance");
 }
 
+void add_parts(std::vector<OptionEntry>& list) {
+  Group(list, "Parts of a render (ptexp resume, ptexp merge and ptexp verify read their files)")
+      .add(custom(
+               "checkpoint", OptionForm::text, "FILE[,SECONDS]",
+               [](Options& o, const std::string& s) {
+                 o.checkpoint = parse_checkpoint("checkpoint", s);
+               },
+               [](const Options& o) { return checkpoint_text(o.checkpoint); }),
+           "Saves the render so far as an .exr, every 300 seconds or as\n"
+           "often as said, at its end, and at SIGINT, SIGTERM or SIGUSR1;\n"
+           "ptexp resume FILE goes on")
+      .add(custom(
+               "part", OptionForm::text, "I/N",
+               [](Options& o, const std::string& s) { o.part = parse_part("part", s); },
+               [](const Options& o) { return part_text(o.part); }),
+           "Renders the part I of N disjoint parts of the image into\n"
+           "--checkpoint FILE; ptexp merge joins them");
+}
+
 void add_scene(std::vector<OptionEntry>& list) {
   Group(list, "Scene")
       .add(text("scene", "NAME|FILE", &Options::scene),
@@ -208,6 +227,12 @@ void add_scene(std::vector<OptionEntry>& list) {
                [](Options& o, const std::string&) { o.strict = true; },
                [](const Options& o) { return o.strict ? "on" : "off"; }),
            "Unsupported features of a scene file are errors, not warnings")
+      .add(custom(
+               "scene-from-disk", OptionForm::flag, "",
+               [](Options& o, const std::string&) { o.scene_from_disk = true; },
+               [](const Options& o) { return o.scene_from_disk ? "on" : "off"; }),
+           "In an MPI job each rank reads the scene's files; by default the\n"
+           "first one does, and sends them to the others")
       .add(integer("spheres", &Options::spheres, 0, max_spheres),
            "Random spheres of the scene 'spheres', besides the ground")
       .add(choice("create-world", &Options::create_world),
@@ -240,11 +265,12 @@ void add_execution(std::vector<OptionEntry>& list) {
            "megakernel: each thread traces whole paths.\n"
            "wavefront: one kernel per stage over a pool of paths")
       .add(custom(
-               "device", OptionForm::text, "auto|cpu|cuda[:N]",
-               [](Options& o, const std::string& s) { o.device = parse_device("device", s); },
+               "device", OptionForm::text, "auto|cpu[:N]|cuda[:N,..|:all]",
+               [](Options& o, const std::string& s) { o.device = parse_devices("device", s); },
                [](const Options& o) { return to_string(o.device); }),
-           "Where to render; auto: the first GPU if there is one,\n"
-           "else the CPU. See --list-devices")
+           "Where to render; auto: the first GPU if there is one, else the\n"
+           "CPU; cuda:0,2 or cuda:all: several GPUs, to the same image;\n"
+           "cpu:N: N devices that share the threads. See --list-devices")
       .only(parallel, cuda, "cuda")
       .add(integer("threads", &Options::threads, 0, 65535), "CPU threads; 0: one per core")
       .only(parallel, cpu)
@@ -426,6 +452,7 @@ const std::vector<OptionEntry>& option_list() {
     add_image(entries);
     add_metropolis(entries);
     add_stops(entries);
+    add_parts(entries);
     add_scene(entries);
     add_camera(entries);
     add_execution(entries);
@@ -441,6 +468,17 @@ const OptionEntry& find_option(const std::string& name) {
   const auto found = std::ranges::find(list, name, &OptionEntry::name);
   if (found == list.end()) throw std::logic_error("no option is named " + name);
   return *found;
+}
+
+bool determines_image(const OptionEntry& entry) {
+  const auto is_one_of = [](const std::string& text, std::initializer_list<const char*> list) {
+    return std::ranges::any_of(list, [&](const char* one) { return text == one; });
+  };
+  if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk"}))
+    return false;
+  if (is_one_of(entry.name, {"rng", "kernel-set"})) return true;
+  return entry.group == "Image" || entry.group == "Scene" || entry.group == "Camera" ||
+         entry.group.starts_with("Metropolis");
 }
 
 std::string option_key(const OptionEntry& entry) {

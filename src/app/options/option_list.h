@@ -44,6 +44,16 @@ struct OptionEntry {
 
 const std::vector<OptionEntry>& option_list();
 
+/// An option and a value of it, as the user wrote them.
+struct Setting {
+  const OptionEntry* entry;
+  std::string value;
+};
+
+/// Whether other values mean other samples: renders that differ in nothing else have the same bits
+/// on devices of one kind, and their samples can be added.
+bool determines_image(const OptionEntry& entry);
+
 /// Throws std::logic_error when there is no such option: a programmer's mistake.
 const OptionEntry& find_option(const std::string& name);
 

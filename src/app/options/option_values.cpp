@@ -18,6 +18,7 @@ namespace {
 
 constexpr int max_block_threads = 1024;             // CUDA's limit on every device since 2010
 constexpr std::uint64_t max_pool_size = INT32_MAX;  // slots are numbered with 32 bits
+constexpr std::size_t devices_max = 64;             // of one machine
 
 /// The whole of `text` as a T, or nothing. Unlike strtol: no blanks, no sign of an unsigned value.
 template <typename T>
@@ -106,6 +107,80 @@ DeviceChoice parse_device(const std::string& name, const std::string& text) {
   if (!index || *index > INT32_MAX)
     refuse_value(name, text, "expected auto, cpu, cuda or cuda:N with N from 0");
   return {DeviceChoice::Kind::cuda, static_cast<int>(*index)};
+}
+
+DeviceChoice parse_devices(const std::string& name, const std::string& text) {
+  using Kind = DeviceChoice::Kind;
+  const auto check = [&](bool holds) {
+    if (holds) return;
+    refuse_value(
+        name, text,
+        "expected auto, cpu, cpu:N for N devices that share its threads, cuda, cuda:all, or "
+        "cuda:N,M,... with ordinals from 0");
+  };
+  const std::vector<std::string> words = split(text, ':');
+  DeviceChoice choice;
+  bool is_known = false;
+  for (const auto& [kind, kind_name] : enum_names<Kind>) {
+    if (kind_name == words[0]) choice.kind = kind, is_known = true;
+  }
+  check(is_known && words.size() <= 2);
+  if (words.size() == 1) return choice;
+  choice.wants_all = choice.kind == Kind::cuda && words[1] == "all";
+  if (choice.wants_all) return choice;
+  std::vector<int> numbers;
+  for (const std::string& word : split(words[1], ',')) {
+    const auto number = whole<unsigned>(word);
+    check(number && *number <= INT32_MAX && numbers.size() < devices_max);
+    numbers.push_back(static_cast<int>(number.value_or(0)));
+  }
+  if (choice.kind == Kind::cuda) {
+    choice.index = numbers[0];
+    choice.more.assign(numbers.begin() + 1, numbers.end());
+    return choice;
+  }
+  const int count = numbers[0];
+  check(choice.kind == Kind::cpu && numbers.size() == 1 && count >= 1 &&
+        count <= static_cast<int>(devices_max));
+  for (int i = 1; i < count; ++i) choice.more.push_back(i);
+  return choice;
+}
+
+CheckpointChoice parse_checkpoint(const std::string& name, const std::string& text) {
+  CheckpointChoice choice;
+  const std::size_t comma = text.rfind(',');
+  choice.file = text.substr(0, comma);
+  if (comma != std::string::npos) {
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data() + comma + 1, end, choice.interval_s);
+    if (error != std::errc() || stop != end || !(choice.interval_s > 0) ||
+        !std::isfinite(choice.interval_s)) {
+      refuse_value(name, text, "expected FILE or FILE,SECONDS with seconds above 0");
+    }
+  }
+  if (!choice.file.ends_with(".exr")) {
+    refuse_value(name, text, "expected the name of an .exr file, and perhaps ,SECONDS");
+  }
+  return choice;
+}
+
+std::string checkpoint_text(const CheckpointChoice& checkpoint) {
+  if (checkpoint.file.empty()) return "";
+  return fmt::format("{},{}", checkpoint.file, checkpoint.interval_s);
+}
+
+PartChoice parse_part(const std::string& name, const std::string& text) {
+  const std::vector<std::string> numbers = split(text, '/');
+  const auto index = numbers.size() == 2 ? whole<std::uint16_t>(numbers[0]) : std::nullopt;
+  const auto count = numbers.size() == 2 ? whole<std::uint16_t>(numbers[1]) : std::nullopt;
+  if (!index || !count || *index < 1 || *index > *count) {
+    refuse_value(name, text, "expected I/N, the part I of N, with 1 <= I <= N, e.g. 3/16");
+  }
+  return {*index, *count};
+}
+
+std::string part_text(const PartChoice& part) {
+  return part.count == 1 ? "" : fmt::format("{}/{}", part.index, part.count);
 }
 
 BlockSize parse_block(const std::string& name, const std::string& text) {

@@ -27,7 +27,16 @@ float parse_number(const std::string& name, const std::string& text, const char*
                    bool (*holds)(float));
 std::array<float, 3> parse_vector(const std::string& name, const std::string& text);  ///< "x,y,z"
 bool parse_switch(const std::string& name, const std::string& text);  ///< "on" or "off"
+/// Of one device: "auto", "cpu", "cuda" or "cuda:N".
 DeviceChoice parse_device(const std::string& name, const std::string& text);
+/// Of one or several: also "cpu:N", "cuda:N,M,..." or "cuda:all".
+DeviceChoice parse_devices(const std::string& name, const std::string& text);
+/// "FILE" or "FILE,SECONDS".
+CheckpointChoice parse_checkpoint(const std::string& name, const std::string& text);
+std::string checkpoint_text(const CheckpointChoice& checkpoint);
+/// "I/N" with 1 <= I <= N.
+PartChoice parse_part(const std::string& name, const std::string& text);
+std::string part_text(const PartChoice& part);  ///< empty for the whole image
 BlockSize parse_block(const std::string& name, const std::string& text);  ///< "16x8"
 /// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
 StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,

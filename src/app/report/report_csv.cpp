@@ -153,6 +153,19 @@ void add_metropolis(CsvRow& row, const std::optional<MetropolisStats>& stats) {
 
 }  // namespace
 
+namespace {
+
+/// Of the last render: "name:units:samples:kernel_ms:wall_ms;...", empty for one device.
+std::string devices_text(const RenderReport& report) {
+  if (report.runs.empty()) return "";
+  return joined(report.runs.back().devices, [](const DeviceShare& device) {
+    return fmt::format("{}:{}:{}:{}:{}", device.name, device.units, device.samples,
+                       ms(device.kernel_ms), ms(device.wall_ms));
+  });
+}
+
+}  // namespace
+
 CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   const RunSummary summary = summarize(with_other_stage(report));
   CsvRow row{{"schema_version", std::to_string(report_schema_version)}};
@@ -167,6 +180,8 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
                    summary.relative_error ? fmt::format("{:.6g}", *summary.relative_error) : "");
   add_metropolis(row, summary.metropolis);
   add_spread(row, "kernel", summary.kernel_ms);
+  add_spread(row, "wall", summary.wall_ms);
+  row.emplace_back("devices", devices_text(report));
   for (const std::string& stage : column_stages()) add_stage(row, stage, summary);
   add_stage(row, "other", summary);
   row.emplace_back("waves", std::to_string(summary.waves));

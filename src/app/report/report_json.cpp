@@ -85,7 +85,16 @@ Json runs_json(const RenderReport& report) {
     for (const StageTime& time : run.stages)
       stages.push_back(
           {{"stage", time.stage}, {"time_ms", time.time_ms}, {"launches", time.launches}});
+    Json devices = Json::array();
+    for (const DeviceShare& device : run.devices)
+      devices.push_back({{"name", device.name},
+                         {"units", device.units},
+                         {"samples", device.samples},
+                         {"kernel_ms", device.kernel_ms},
+                         {"wall_ms", device.wall_ms}});
     json.push_back({{"kernel_ms", run.kernel_ms},
+                    {"wall_ms", run.wall_ms},
+                    {"devices", devices},
                     {"waves", run.waves},
                     {"samples_done", run.samples_done},
                     {"ended_by", to_string(run.ended_by)},
@@ -222,6 +231,7 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["relative_error"] = number_or_null(summary.relative_error);
   json["metropolis"] = metropolis_json(summary.metropolis);
   json["time_ms"] = {{"kernel", spread_json(summary.kernel_ms)},
+                     {"wall", spread_json(summary.wall_ms)},
                      {"scene", report.scene_ms},
                      {"setup", report.setup_ms},
                      {"load", report.load_ms},

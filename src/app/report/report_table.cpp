@@ -32,6 +32,17 @@ std::string stage_rows(const RenderReport& report, const RunSummary& summary) {
                             grouped(summary.launches));
 }
 
+/// What each of several devices did; the times of stages are sums over all.
+std::string device_rows(const RenderReport& report) {
+  if (report.runs.empty() || report.runs.back().devices.size() < 2) return "";
+  std::string text = fmt::format("{:<16}{:>12}{:>12}{:>9}{:>18}\n", "device", "kernel ms",
+                                 "wall ms", "units", "samples");
+  for (const DeviceShare& device : report.runs.back().devices)
+    text += fmt::format("{:<16}{:>12.3f}{:>12.3f}{:>9}{:>18}\n", device.name, device.kernel_ms,
+                        device.wall_ms, grouped(device.units), grouped(device.samples));
+  return text + '\n';
+}
+
 std::string count_rows(const PathCounts& counts, const RunSummary& summary) {
   std::string text = fmt::format("{:<16}{:>18}{:>12.2f} Mpaths/s\n{:<16}{:>18}{:>12.2f} Mrays/s\n",
                                  "paths", grouped(counts.paths), summary.mpaths_per_s, "rays",
@@ -98,8 +109,9 @@ std::string report_table(const Options& options, const RenderReport& report) {
              "{} of '{}', {}x{}, {} samples per pixel, on {}{}\n\n", to_string(options.mode),
              options.scene, options.width, options.height, summary.samples_done, report.device_name,
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
-         stage_rows(report, summary) + '\n' + count_rows(report.counts, summary) +
-         metropolis_rows(summary.metropolis) + stop_row(summary) +
+         stage_rows(report, summary) + '\n' + device_rows(report) +
+         count_rows(report.counts, summary) + metropolis_rows(summary.metropolis) +
+         stop_row(summary) +
          fmt::format(
              "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",

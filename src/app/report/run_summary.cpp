@@ -46,9 +46,12 @@ Spread spread(std::vector<double> values) {
 
 RunSummary summarize(const RenderReport& report) {
   RunSummary summary;
-  std::vector<double> kernel_ms;
-  for (const RenderRun& run : report.runs) kernel_ms.push_back(run.kernel_ms);
+  std::vector<double> kernel_ms, wall_ms;
+  for (const RenderRun& run : report.runs) {
+    kernel_ms.push_back(run.kernel_ms), wall_ms.push_back(run.wall_ms);
+  }
   summary.kernel_ms = spread(std::move(kernel_ms));
+  summary.wall_ms = spread(std::move(wall_ms));
   summary.stages = summarize_stages(report.runs);
   if (!report.runs.empty()) {
     const RenderRun& last = report.runs.back();

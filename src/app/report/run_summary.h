@@ -26,7 +26,7 @@ struct StageSummary {
 };
 
 struct RunSummary {
-  Spread kernel_ms;                  ///< over the repeats
+  Spread kernel_ms, wall_ms;         ///< over the repeats
   std::vector<StageSummary> stages;  ///< in the order in which the runs first name them
   std::uint64_t waves = 0;           ///< of the last repeat, as is what follows
   std::uint64_t launches = 0;        ///< of all stages

@@ -219,21 +219,4 @@ PT_HD void traverse_cwbvh(const TriangleTree& tree, const Ray& ray, Query& query
   traverse_cwbvh_by<instanced, CwbvhTests>(tree, ray, query);
 }
 
-/// The closest hit with t_min < t < t_max; t_min >= 0.
-template <bool instanced>
-PT_HD Hit closest_triangle_cwbvh(const TriangleTree& tree, const Ray& ray, float t_min,
-                                 float t_max) {
-  ClosestTriangle query(t_min, t_max);
-  traverse_cwbvh<instanced>(tree, ray, query);
-  return query.result();
-}
-
-/// Whether there is a hit with t_min < t < t_max; t_min >= 0.
-template <bool instanced>
-PT_HD bool any_triangle_cwbvh(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  AnyTriangle query(t_min, t_max);
-  traverse_cwbvh<instanced>(tree, ray, query);
-  return query.result();
-}
-
 }  // namespace pt

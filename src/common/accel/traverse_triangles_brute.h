@@ -30,21 +30,4 @@ PT_HD void traverse_triangles_brute(const TriangleTree& tree, const Ray& ray, Qu
   }
 }
 
-/// The closest hit with t_min < t < t_max.
-template <bool instanced>
-PT_HD Hit closest_triangle_brute(const TriangleTree& tree, const Ray& ray, float t_min,
-                                 float t_max) {
-  ClosestTriangle query(t_min, t_max);
-  traverse_triangles_brute<instanced>(tree, ray, query);
-  return query.result();
-}
-
-/// Whether there is a hit with t_min < t < t_max.
-template <bool instanced>
-PT_HD bool any_triangle_brute(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  AnyTriangle query(t_min, t_max);
-  traverse_triangles_brute<instanced>(tree, ray, query);
-  return query.result();
-}
-
 }  // namespace pt

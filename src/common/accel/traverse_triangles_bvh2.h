@@ -98,21 +98,4 @@ PT_HD void traverse_triangles_bvh2(const TriangleTree& tree, const Ray& ray, Que
   }
 }
 
-/// The closest hit with t_min < t < t_max; t_min >= 0.
-template <bool instanced>
-PT_HD Hit closest_triangle_bvh2(const TriangleTree& tree, const Ray& ray, float t_min,
-                                float t_max) {
-  ClosestTriangle query(t_min, t_max);
-  traverse_triangles_bvh2<instanced>(tree, ray, query);
-  return query.result();
-}
-
-/// Whether there is a hit with t_min < t < t_max; t_min >= 0.
-template <bool instanced>
-PT_HD bool any_triangle_bvh2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max) {
-  AnyTriangle query(t_min, t_max);
-  traverse_triangles_bvh2<instanced>(tree, ray, query);
-  return query.result();
-}
-
 }  // namespace pt

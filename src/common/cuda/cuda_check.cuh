@@ -5,7 +5,8 @@
 
 namespace pt {
 
-/// Throws Error("CUDA: <what>: <reason>") unless `status` is cudaSuccess.
+/// Throws Error("CUDA: <what>: <reason>") unless `status` is cudaSuccess: OutOfMemory where it is
+/// cudaErrorMemoryAllocation.
 void check_cuda(cudaError_t status, const char* what);
 
 }  // namespace pt

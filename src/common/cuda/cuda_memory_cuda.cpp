@@ -7,9 +7,13 @@
 namespace pt {
 
 void check_cuda(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) {
-    throw Error(fmt::format("CUDA: {}: {}", what, cudaGetErrorString(status)));
+  if (status == cudaSuccess) return;
+  const std::string message = fmt::format("CUDA: {}: {}", what, cudaGetErrorString(status));
+  if (status == cudaErrorMemoryAllocation) {
+    cudaGetLastError();  // clears it
+    throw OutOfMemory(message);
   }
+  throw Error(message);
 }
 
 CudaMemory::~CudaMemory() {
@@ -27,7 +31,7 @@ void* CudaMemory::allocate_bytes(const std::string& name, std::uint64_t size_byt
   void* pointer = nullptr;
   if (cudaMalloc(&pointer, size_bytes) != cudaSuccess) {
     cudaGetLastError();  // clears it
-    throw memory_error("device memory", name, size_bytes, free_bytes());
+    throw OutOfMemory(memory_error("device memory", name, size_bytes, free_bytes()).what());
   }
   pointers_.push_back(pointer);
   for (BufferSize& entry : sizes_) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 
@@ -16,10 +18,12 @@ struct Devices {
 Devices find_devices() {
   const int threads = cpu_threads(0);
   Devices devices;
-  devices.list.push_back({{DeviceChoice::Kind::cpu, 0},
-                          "CPU",
-                          fmt::format("{} thread{}", threads, threads == 1 ? "" : "s"),
-                          cpu_properties(threads)});
+  DeviceInfo cpu;
+  cpu.choice.kind = DeviceChoice::Kind::cpu;
+  cpu.name = "CPU";
+  cpu.detail = fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
+  cpu.properties = cpu_properties(threads);
+  devices.list.push_back(cpu);
 #ifdef PTEXP_CUDA
   devices.about_gpus = append_cuda_devices(devices.list);
 #else
@@ -31,6 +35,29 @@ Devices find_devices() {
 }  // namespace
 
 std::vector<DeviceInfo> list_devices() { return find_devices().list; }
+
+std::vector<DeviceInfo> choose_devices(const DeviceChoice& choice, int threads) {
+  using Kind = DeviceChoice::Kind;
+  std::vector<DeviceInfo> chosen;
+  if (choice.wants_all) {
+    for (const DeviceInfo& device : list_devices()) {
+      if (device.choice.kind == Kind::cuda) chosen.push_back(device);
+    }
+    if (chosen.empty()) choose_device({Kind::cuda, 0});  // says why there is none
+    return chosen;
+  }
+  chosen.push_back(choose_device({choice.kind, choice.index}));
+  for (const int index : choice.more) chosen.push_back(choose_device({choice.kind, index}));
+  if (choice.kind != Kind::cpu || choice.more.empty()) return chosen;
+  const int share = std::max(1, cpu_threads(threads) / choice.count());
+  for (int i = 0; i < choice.count(); ++i) {
+    DeviceInfo& device = chosen[static_cast<std::size_t>(i)];
+    device.choice.index = i;
+    device.detail = fmt::format("{} thread{}", share, share == 1 ? "" : "s");
+    device.properties = cpu_properties(share);
+  }
+  return chosen;
+}
 
 DeviceInfo choose_device(const DeviceChoice& choice) {
   const auto [devices, about_gpus] = find_devices();

@@ -16,13 +16,14 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
   for (int i = 0; i < count; ++i) {
     cudaDeviceProp p{};
     if (cudaGetDeviceProperties(&p, i) != cudaSuccess) continue;
-    devices.push_back(
-        {{DeviceChoice::Kind::cuda, i},
-         p.name,
-         fmt::format("{} multiprocessors, {:.1f} GiB, compute capability {}.{}",
-                     p.multiProcessorCount, static_cast<double>(p.totalGlobalMem) / (1 << 30),
-                     p.major, p.minor),
-         plan_properties(p)});
+    DeviceInfo device;
+    device.choice.kind = DeviceChoice::Kind::cuda, device.choice.index = i;
+    device.name = p.name;
+    device.detail = fmt::format(
+        "{} multiprocessors, {:.1f} GiB, compute capability {}.{}", p.multiProcessorCount,
+        static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major, p.minor);
+    device.properties = plan_properties(p);
+    devices.push_back(device);
   }
   return fmt::format("this machine has {}", count);
 }

@@ -1,4 +1,4 @@
-// The one message that says what did not fit into a memory.
+// What did not fit into a memory.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,6 +8,12 @@
 #include "common/error/error.h"
 
 namespace pt {
+
+/// A device had less memory than it said it had; with less to do the same may succeed.
+class OutOfMemory : public Error {
+ public:
+  using Error::Error;
+};
 
 /// `memory`: "memory" or "device memory"; `purpose`: what needs so many bytes.
 inline Error memory_error(const std::string& memory, const std::string& purpose,

@@ -1,5 +1,6 @@
 #include "common/film/develop.h"
 
+#include <algorithm>
 #include <numeric>
 #include <span>
 
@@ -70,6 +71,50 @@ Image develop(const FilmSums& sums, const FilmPlan& plan, const PixelFilter& fil
       plane += static_cast<std::uint32_t>(image.layers.back().channels.size());
     }
   });
+  return image;
+}
+
+namespace {
+
+/// Copies rows of `count` values for a pixel from a part of the image.
+template <class T>
+void paste(const std::vector<T>& from, const Window& part, std::vector<T>& to, const Window& image,
+           std::size_t count) {
+  to.resize(image.pixel_count() * count);
+  if (from.empty()) return;
+  for (std::size_t y = 0; y < part.height; ++y) {
+    const std::size_t row = (part.y - image.y + y) * image.width + (part.x - image.x);
+    std::copy_n(&from[y * part.width * count], part.width * count, &to[row * count]);
+  }
+}
+
+}  // namespace
+
+Image develop(const ImageFilm& film, const PixelFilter& filter) {
+  // Without samples: black, and the layers that there are.
+  FilmSums blank;
+  blank.reset(film.plan, 1);
+  Image image = develop(blank, film.plan, filter, {0, 0, 1, 1}, 0);
+  image.width = static_cast<int>(film.window.width);
+  image.height = static_cast<int>(film.window.height);
+  image.rgb.assign(3 * film.window.pixel_count(), 0.0f);
+  for (ImageLayer& layer : image.layers) {
+    const std::uint64_t count = film.window.pixel_count() * layer.channels.size();
+    layer.numbers.empty() ? layer.values.assign(count, 0.0f) : layer.numbers.assign(count, 0);
+  }
+  for (const FilmPart& part : film.parts) {
+    const Image piece = develop(film.take(part.window), film.plan, filter, part.window,
+                                part.next_sample - part.first_sample);
+    paste(piece.rgb, part.window, image.rgb, film.window, 3);
+    for (std::size_t i = 0; i < image.layers.size(); ++i) {
+      ImageLayer& layer = image.layers[i];
+      const std::size_t channels = layer.channels.size();
+      if (!layer.values.empty())
+        paste(piece.layers[i].values, part.window, layer.values, film.window, channels);
+      if (!layer.numbers.empty())
+        paste(piece.layers[i].numbers, part.window, layer.numbers, film.window, channels);
+    }
+  }
   return image;
 }
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/film/film_data.h"
+#include "common/film/image_film.h"
 #include "common/image/image.h"
 #include "common/options/stats.h"
 
@@ -16,6 +16,9 @@ Image develop(std::span<const FilmPixel> film, int width, int height);
 /// The sums may be larger than the window.
 Image develop(const FilmSums& sums, const FilmPlan& plan, const PixelFilter& filter,
               const Window& window, std::uint64_t samples);
+
+/// Of all pixels, each with the samples that it has; those without are black, and zero in layers.
+Image develop(const ImageFilm& film, const PixelFilter& filter);
 
 PathCounts summarize(const PathTally& tally);
 

@@ -79,12 +79,14 @@ ImageFilm::ImageFilm(const Window& w, const FilmPlan& p) : window(w), plan(p) {
   reset(plan, window.pixel_count());
 }
 
-Film ImageFilm::take(const Window& part) const {
+Film ImageFilm::take(const Window& part, FilmSums&& memory) const {
   if (part.pixel_count() == 0 || !window.contains(part)) {
     throw Error(fmt::format("a film of the pixels {}: expected pixels of the image {}", text(part),
                             text(window)));
   }
   Film film;
+  static_cast<FilmSums&>(film) = std::move(memory);
+  film.pixels.clear(), film.moments.clear(), film.features.clear();
   film.window = part;
   std::uint64_t covered = 0;
   for (const FilmPart& own : parts) {
@@ -151,14 +153,14 @@ std::vector<FilmPart> ImageFilm::lacking(const Window& where, std::uint32_t next
   return found;
 }
 
-std::uint32_t ImageFilm::least_samples() const {
+std::uint32_t ImageFilm::least_samples(const std::vector<Window>& where) const {
   std::uint32_t least = ~0u;
-  std::uint64_t covered = 0;
-  for (const FilmPart& part : parts) {
-    covered += part.window.pixel_count();
-    least = std::min(least, part.next_sample - part.first_sample);
+  for (const Window& w : where) {
+    for (const FilmPart& part : lacking(w, ~0u)) {
+      least = std::min(least, part.next_sample - part.first_sample);
+    }
   }
-  return covered == window.pixel_count() ? least : 0;
+  return least;
 }
 
 std::uint64_t ImageFilm::samples() const {

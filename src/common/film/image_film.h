@@ -27,16 +27,21 @@ struct ImageFilm : FilmSums {
   ImageFilm(const Window& window, const FilmPlan& plan);
 
   /// The pixels of `part`, to be continued. Its tally is zero: it will count what is added. Throws
-  /// Error unless all of them have the same samples, or none.
-  Film take(const Window& part) const;
+  /// Error unless all of them have the same samples, or none. `memory` is used again: pages that
+  /// are new to a process take longer than the copy.
+  Film take(const Window& part, FilmSums&& memory = {}) const;
   /// Replaces the pixels of the film's window by the film's, and adds its tally.
   void put(const Film& film);
+
+  /// No pixel has samples.
+  void clear() { parts.clear(), tally = {}; }
 
   /// The parts of `where` that have fewer samples than `next_sample`, those without any included,
   /// by rising number of samples.
   std::vector<FilmPart> lacking(const Window& where, std::uint32_t next_sample) const;
-  /// The fewest samples that a pixel has.
-  std::uint32_t least_samples() const;
+  /// The fewest samples that a pixel of these windows has.
+  std::uint32_t least_samples(const std::vector<Window>& where) const;
+  std::uint32_t least_samples() const { return least_samples({window}); }
   /// All pixels together.
   std::uint64_t samples() const;
 };

@@ -217,11 +217,4 @@ PT_HD bool continue_chain(const ChainRun& run, Sample* samples, std::uint32_t ch
   return run.arrays.proposals[chain].iteration <= run.last;
 }
 
-/// continue_chain, not inlined: a kernel that follows paths of other kinds, too, keeps its
-/// registers.
-PT_NOINLINE inline bool continue_chain_apart(const ChainRun* run, Sample* samples,
-                                             std::uint32_t chain) {
-  return continue_chain(*run, samples, chain);
-}
-
 }  // namespace pt

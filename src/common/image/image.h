@@ -29,6 +29,7 @@ struct Image {
   std::vector<float> rgb;            ///< 3 * width * height linear radiance values
   std::vector<ImageLayer> layers{};  ///< for EXR alone
   ImagePlace place{};                ///< an EXR's data window in its display window
+  bool is_compressed = true;         ///< in an EXR: else it is written faster
 
   float* pixel(int x, int y) { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
   const float* pixel(int x, int y) const {

@@ -165,10 +165,17 @@ std::string to_string(E value) {
   return "?";  // only a cast can make a value without a name
 }
 
-/// "auto", "cpu" or "cuda:N".
+/// "auto", "cpu", "cpu:N" of N devices, "cuda:N", "cuda:N,M" or "cuda:all".
 inline std::string to_string(const DeviceChoice& device) {
-  const std::string kind = to_string(device.kind);
-  return device.kind == DeviceChoice::Kind::cuda ? kind + ':' + std::to_string(device.index) : kind;
+  std::string text = to_string(device.kind);
+  if (device.kind == DeviceChoice::Kind::cpu) {
+    return device.more.empty() ? text : text + ':' + std::to_string(device.count());
+  }
+  if (device.kind == DeviceChoice::Kind::automatic) return text;
+  if (device.wants_all) return text + ":all";
+  text += ':' + std::to_string(device.index);
+  for (const int index : device.more) text += ',' + std::to_string(index);
+  return text;
 }
 
 /// The names joined, e.g. "serial|megakernel|wavefront".

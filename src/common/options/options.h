@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/choices/accel.h"
 #include "common/choices/choices.h"
@@ -44,7 +45,26 @@ constexpr StageBlocks default_stage_blocks() {
 
 struct DeviceChoice {
   enum class Kind { automatic, cpu, cuda } kind = Kind::automatic;
-  int index = 0;  ///< CUDA device ordinal
+  int index = 0;            ///< CUDA device ordinal
+  std::vector<int> more{};  ///< ordinals of further devices; of the CPU: a number for each
+  bool wants_all = false;   ///< every CUDA device that there is
+
+  int count() const { return 1 + static_cast<int>(more.size()); }
+  bool has_several() const { return wants_all || !more.empty(); }
+};
+
+/// One of `count` disjoint parts of an image's pixels, which together are all of them.
+struct PartChoice {
+  int index = 1;  ///< from 1
+  int count = 1;
+
+  bool operator==(const PartChoice&) const = default;
+};
+
+/// Where a render's film is saved, and how often.
+struct CheckpointChoice {
+  std::string file;  ///< empty: nowhere
+  float interval_s = 300.0f;
 };
 
 struct BlockSize {
@@ -118,12 +138,21 @@ struct Options {
   float time_limit = 0.0f;    ///< seconds of rendering, 0: none
   float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
 
+  /// Pools and samples take no more than the free memory / 2^this allows. No option of the command
+  /// line: a device that has run out of memory is tried again with less.
+  int memory_halvings = 0;
+
+  // What is kept, and what is left to others
+  CheckpointChoice checkpoint;
+  PartChoice part;
+
   // Scene
   std::string scene = "spheres";
   int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
   WorldBuilder create_world = WorldBuilder::host;
   std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
-  bool strict = false;  ///< what a scene file has and ptexp lacks is an error
+  bool strict = false;           ///< what a scene file has and ptexp lacks is an error
+  bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
 
   // Execution

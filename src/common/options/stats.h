@@ -34,15 +34,28 @@ struct MetropolisStats {
   double mutations_per_s = 0;  ///< by the time of the mutations alone
 };
 
+/// What one of several devices contributed to a render.
+struct DeviceShare {
+  std::string name;
+  std::uint64_t units = 0;
+  std::uint64_t samples = 0;  ///< of all pixels
+  double kernel_ms = 0;       ///< of its units
+  double wall_ms = 0;         ///< the same, with what the host did for them
+};
+
 /// One render of the whole image.
 struct RenderRun {
-  double kernel_ms = 0;  ///< from the first stage's start to the last one's end, all batches
+  /// From the first stage's start to the last one's end, all batches; of several devices that of
+  /// the one that took longest.
+  double kernel_ms = 0;
   std::vector<StageTime> stages;
   std::uint64_t waves = 0;  ///< turns of the wavefront's loop; 0 in other modes
   int samples_done = 0;     ///< per pixel; less than asked for where something ended it before
   RunEnd ended_by = RunEnd::samples;
   std::optional<double> relative_error;  ///< of the image (image_error.h), where it was estimated
-  std::optional<MetropolisStats> metropolis;  ///< of --integrator mlt
+  std::optional<MetropolisStats> metropolis{};  ///< of --integrator mlt
+  std::vector<DeviceShare> devices{};  ///< where there are several; stages: of all together
+  double wall_ms = 0;                  ///< of the render on the host
 };
 
 /// Neither all samples were taken nor did a stop that was asked for end the render.

@@ -21,7 +21,8 @@ constexpr std::size_t scan_spheres_wavefront_max = 384, scan_spheres_megakernel_
 /// constants (traverse_brute.h). Beyond, 250 spheres take 5 % longer than in global memory, 1000
 /// 45 %.
 constexpr std::size_t constant_spheres_best = 64;
-/// On a GPU a tree's descents can take as long as all other shading, which few emitters are not worth.
+/// On a GPU a tree's descents can take as long as all other shading, which few emitters are not
+/// worth.
 constexpr std::size_t few_emitters = 16;
 // Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
 // the L2 cache.

@@ -17,14 +17,14 @@ struct SceneProperties {
   std::size_t instances = 0;
   bool is_primitive_only = false;   ///< nothing that the paper's scenes have not
   bool has_masks = false;           ///< materials that are not opaque everywhere
-  bool has_emitters = false;           ///< surfaces that shine
+  bool has_emitters = false;        ///< surfaces that shine
   bool limits_camera_rays = false;  ///< clip planes or hidden emitters
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
   // Known when the scene has been prepared:
-  std::optional<Accel> structure;    ///< what was built
-  std::string why_structure;         ///< as its plan said
-  std::size_t scan_bytes = 0;        ///< of the spheres that CUDA scans
+  std::optional<Accel> structure;       ///< what was built
+  std::string why_structure;            ///< as its plan said
+  std::size_t scan_bytes = 0;           ///< of the spheres that CUDA scans
   std::optional<std::size_t> emitters;  ///< lights that can be sampled
 
   bool has_masked_kernels() const { return has_masks || limits_camera_rays; }

@@ -6,14 +6,10 @@
 #include "common/film/develop.h"
 #include "common/film/pixel_statistics.h"
 #include "common/options/option_names.h"
+#include "common/render/film_plan_of.h"
 
 namespace pt {
 namespace {
-
-FilmPlan make_plan(const Options& options, const PixelFilter& filter) {
-  return {options.aovs, needs_moments(options.aovs) || options.target_error > 0.0f,
-          filter.has_negative()};
-}
 
 // Features and signs are found from the numbers that begin a path, drawn a second time.
 void check_random(const Options& options, const FilmPlan& plan) {
@@ -32,7 +28,7 @@ FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene,
     : options_(options),
       execution_(plan_execution(options, scene.properties, device)),
       limits_(path_limits_of(options)),
-      plan_(make_plan(options, scene.filter)),
+      plan_(film_plan_of(options, scene.filter)),
       filter_(scene.filter),
       image_window_(window_of(options)),
       window_(image_window_) {
@@ -129,7 +125,8 @@ RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const Rende
   begin_render(film);
   Film result;
   result.window = film.window;
-  RenderRun run = render_chains(*this, chain_plan_, options_, samples, hooks, result, &pace_);
+  RenderRun run =
+      render_chains(chain_device(), chain_plan_, options_, samples, hooks, result, &pace_);
   end_render(run);
   Film traced;
   traced.window = film.window;

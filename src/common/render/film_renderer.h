@@ -2,9 +2,10 @@
 #pragma once
 
 #include "common/film/film_data.h"
+#include "common/film/path_supply.h"
 #include "common/plan/execution_plan.h"
 #include "common/render/batches.h"
-#include "common/render/metropolis.h"
+#include "common/render/chain_layout.h"
 #include "common/render/path_limits_of.h"
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
@@ -12,7 +13,7 @@
 namespace pt {
 
 /// A device holds the film's pixels and counts while it renders, and after: `film` is the rest.
-class FilmRenderer : public Renderer, protected ChainDevice {
+class FilmRenderer : public Renderer {
  public:
   RenderRun render(const RenderHooks& hooks) final;
   RenderRun render(Film& film, int samples, const RenderHooks& hooks) final;
@@ -35,30 +36,21 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   }
 
   bool has_chains() const { return options_.integrator == IntegratorKind::mlt; }
-  const ChainPlan& chain_plan() const { return chain_plan_; }
-  /// Calls make(pointer to set, count) for each array of the chains.
-  template <class Make>
-  void make_chain_arrays(ChainArrays& arrays, Make&& make) const {
-    arrays.for_each_array(chain_plan_.chains, batch_paths_, chain_plan_.bootstrap,
-                          chain_plan_.blocks, image_window_.pixel_count(), make);
+  ChainLayout chain_layout() const {
+    return {chain_plan_, image_window_.pixel_count(), samples_, options_.seed,
+            mutation_size(options_.mutation_size)};
   }
-  /// The chains as what draws their paths' numbers sees them.
-  Chains chains_view(const ChainArrays& arrays, const ChainWindow& window) const {
-    return {arrays.proposals,
-            arrays.accepted,
-            options_.seed,
-            static_cast<std::uint32_t>(chain_plan_.chains),
-            mutation_size(options_.mutation_size),
-            window};
-  }
-  /// A batch of chains: a path's number is its name. --work pixel and sample see a row of pixels.
-  SampleBuffer chain_batch(std::uint32_t paths) const {
-    return {samples_, Window{0, 0, paths, 1}, 0, 1};
-  }
+  /// With has_chains().
+  virtual ChainDevice& chain_device() = 0;
+  /// Whether trace_batch asks supply() for paths; else indices do not repeat.
+  virtual bool can_repeat_paths() const { return true; }
+  /// Whether paths will repeat in some batches of this render.
+  bool paths_repeat() const { return has_chains() && can_repeat_paths(); }
+  /// Of the batch that is traced.
+  const PathSupply& supply() const { return supply_; }
+  void set_supply(const PathSupply& supply) { supply_ = supply; }
 
-  /// Of the last render.
-  const Window& window() const { return window_; }
-  /// The samples that each pixel has.
+  /// The samples that each pixel has after the last render.
   std::uint64_t pixel_samples() const { return pixel_samples_; }
   /// What films there are: parts of the crop window, or of the whole image.
   const Window& image_window() const { return image_window_; }
@@ -103,6 +95,7 @@ class FilmRenderer : public Renderer, protected ChainDevice {
   BatchPace pace_{1};
   ChainPlan chain_plan_;
   Sample* samples_ = nullptr;
+  PathSupply supply_;
 };
 
 }  // namespace pt

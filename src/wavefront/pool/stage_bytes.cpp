@@ -126,11 +126,11 @@ constexpr PredictedKernel predicted_kernels[] = {
 /// Surfaces that the kernel shades: those of its kind, or what is left.
 double surfaces_of(std::string_view kind, const WaveFlow& flow, const WaveLayout& layout) {
   if (!layout.shades_by_kind) return flow.surfaces;
-  auto index = static_cast<std::size_t>(several_kinds);
+  auto chosen = static_cast<std::size_t>(several_kinds);
   for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    if (kind == Bsdf::name) index = static_cast<std::size_t>(kind_of<Bsdf>);
+    if (kind == Bsdf::name) chosen = static_cast<std::size_t>(kind_of<Bsdf>);
   });
-  return flow.kinds[index];
+  return flow.kinds[chosen];
 }
 
 }  // namespace

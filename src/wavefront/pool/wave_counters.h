@@ -33,9 +33,9 @@ struct WaveCounters {
 
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
 /// when the waves end: no path is left to start, and no more than `finish_paths` are alive. Without
-/// regeneration the pool is filled again only when all of its paths have ended. Chains start their
-/// paths themselves before: they have a path_count of 0. `half`: where the second half of the queue
-/// of rays begins, if the wave fills one while it reads the other; else 0.
+/// regeneration the pool is filled again only when all of its paths have ended. Where
+/// paths repeat, a stage before has started them: `path_count` is 0. `half`: where the second half
+/// of the queue of rays begins, if the wave fills one while it reads the other; else 0.
 PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate,
                       std::uint32_t finish_paths, std::uint32_t half = 0) {
   constexpr int free_queue = queue_of<StageId::generate>, ray_queue = queue_of<StageId::intersect>;

@@ -1,8 +1,6 @@
 // Trees built on the device hold everything and find what testing every triangle finds.
 #include "accel/device_tree.h"
-#include "common/accel/traverse_cwbvh.h"
-#include "common/accel/traverse_triangles_brute.h"
-#include "common/accel/traverse_triangles_bvh2.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/error/error.h"
 
 namespace pt {
@@ -53,11 +51,11 @@ void expect_brute_force_hits(const HostTree& tree, const std::vector<Triangle>& 
   int hits = 0;
   for (int i = 0; i < rays; ++i) {
     const Ray ray = random_ray(random, triangles, scene);
-    const Hit expected = closest_triangle_brute<false>(plain, ray, 0.0f, infinite_distance);
+    const Hit expected = closest_triangle<Accel::brute, false>(plain, ray, 0.0f, infinite_distance);
     const Hit hit =
         tree.data.bvh2.empty()
-            ? closest_triangle_cwbvh<false>(tree.data.view(), ray, 0.0f, infinite_distance)
-            : closest_triangle_bvh2<false>(tree.data.view(), ray, 0.0f, infinite_distance);
+            ? closest_triangle<Accel::cwbvh, false>(tree.data.view(), ray, 0.0f, infinite_distance)
+            : closest_triangle<Accel::bvh2, false>(tree.data.view(), ray, 0.0f, infinite_distance);
     ASSERT_EQ(hit.is_miss(), expected.is_miss()) << "ray " << i;
     if (hit.is_miss()) continue;
     ++hits;

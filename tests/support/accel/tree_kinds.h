@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/traverse_cwbvh.h"
-#include "common/accel/traverse_triangles_brute.h"
-#include "common/accel/traverse_triangles_bvh2.h"
+#include "common/accel/traverse_triangles.h"
 
 namespace pt {
 
@@ -37,17 +35,17 @@ inline const TreeKind brute_kind = {"brute", AccelKind::brute, TreeBuilder::auto
 template <bool instanced>
 Hit closest_hit_of(const TriangleTreeData& data, const Ray& ray, float t_min, float t_max) {
   const TriangleTree tree = data.view();
-  return !data.bvh2.empty()    ? closest_triangle_bvh2<instanced>(tree, ray, t_min, t_max)
-         : !data.cwbvh.empty() ? closest_triangle_cwbvh<instanced>(tree, ray, t_min, t_max)
-                               : closest_triangle_brute<instanced>(tree, ray, t_min, t_max);
+  return !data.bvh2.empty()    ? closest_triangle<Accel::bvh2, instanced>(tree, ray, t_min, t_max)
+         : !data.cwbvh.empty() ? closest_triangle<Accel::cwbvh, instanced>(tree, ray, t_min, t_max)
+                               : closest_triangle<Accel::brute, instanced>(tree, ray, t_min, t_max);
 }
 
 template <bool instanced>
 bool any_hit_of(const TriangleTreeData& data, const Ray& ray, float t_min, float t_max) {
   const TriangleTree tree = data.view();
-  return !data.bvh2.empty()    ? any_triangle_bvh2<instanced>(tree, ray, t_min, t_max)
-         : !data.cwbvh.empty() ? any_triangle_cwbvh<instanced>(tree, ray, t_min, t_max)
-                               : any_triangle_brute<instanced>(tree, ray, t_min, t_max);
+  return !data.bvh2.empty()    ? any_triangle<Accel::bvh2, instanced>(tree, ray, t_min, t_max)
+         : !data.cwbvh.empty() ? any_triangle<Accel::cwbvh, instanced>(tree, ray, t_min, t_max)
+                               : any_triangle<Accel::brute, instanced>(tree, ray, t_min, t_max);
 }
 
 /// By a tree of one level or two.

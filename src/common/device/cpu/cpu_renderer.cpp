@@ -90,7 +90,10 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
   note_memory("film", pixels * plan_.bytes_per_pixel());
   note_memory("samples", sample_memory_.size() * sizeof(Sample));
   if (state_bytes > 0) note_memory("random states", states_.size() * state_bytes);
-  if (has_chains()) allocate_chains();
+  if (has_chains()) {
+    chains_ = std::make_unique<CpuChains>(*this, chain_layout());
+    note_memory("chains", chains_->size_bytes());
+  }
   setup_ms_ =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -115,15 +118,6 @@ void CpuRenderer::begin_render(const Film& film) {
   store_film(film);
   timer_.reset();
   waves_ = 0;
-}
-
-template <class Function>
-void CpuRenderer::time_in_arena(RenderRun& run, Function&& function) {
-  const auto start = std::chrono::steady_clock::now();
-  arena_.execute(function);
-  const std::chrono::duration<double, std::milli> elapsed =
-      std::chrono::steady_clock::now() - start;
-  run.kernel_ms += elapsed.count();
 }
 
 /// False: it was abandoned.
@@ -163,6 +157,20 @@ void CpuRenderer::init_random_states(const SampleBuffer& batch) {
   tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t i) {
     xorwow_init(xorwow_seed(options_.seed, batch.id_of(i)), states_[i]);
   });
+}
+
+void CpuRenderer::count_paths(const SampleBuffer& batch) {
+  const tbb::blocked_range<std::uint32_t> paths(0, batch.path_count, 4096);
+  tally_ =
+      tally_ + tbb::parallel_reduce(
+                   paths, PathTally{},
+                   [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
+                     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                       count_sample(batch.samples[i], sum, [&](int bin) { ++sum.lengths[bin]; });
+                     }
+                     return sum;
+                   },
+                   [](const PathTally& a, const PathTally& b) { return a + b; });
 }
 
 FilmView CpuRenderer::film_view() {
@@ -207,137 +215,6 @@ void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
       pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
     });
   });
-}
-
-void CpuRenderer::allocate_chains() {
-  std::uint64_t bytes = 0;
-  make_chain_arrays(chain_arrays_, [&]<class T>(T*& pointer, std::uint64_t count) {
-    // operator new aligns for all of them.
-    chain_memory_.emplace_back(count * sizeof(T));
-    pointer = reinterpret_cast<T*>(chain_memory_.back().data());
-    bytes += count * sizeof(T);
-  });
-  note_memory("chains", bytes);
-}
-
-void CpuRenderer::begin_chains(const ChainWindow& window) {
-  *chain_arrays_.chains = chains_view(chain_arrays_, window);
-  clear_chain_sums();
-}
-
-void CpuRenderer::clear_chain_sums() {
-  std::fill_n(chain_arrays_.counts, ChainCounts::copies, ChainCounts{});
-  std::fill_n(chain_arrays_.sums, 3 * window().pixel_count(), SplatSum{0});
-}
-
-/// In parallel, within the time of the stage `mutate`.
-template <class Function>
-void CpuRenderer::for_each_path(std::uint32_t count, Function&& function) {
-  timer_.time(to_string(StageId::mutate), [&] {
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 64), [&](const auto& range) {
-      for (std::uint32_t i = range.begin(); i < range.end(); ++i) function(i);
-    });
-  });
-}
-
-bool CpuRenderer::trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
-                                  const std::function<bool()>& cancel) {
-  const SampleBuffer batch = chain_batch(count);
-  bool is_whole = true;
-  time_in_arena(run, [&] {
-    for_each_path(count,
-                  [&](std::uint32_t i) { chain_arrays_.proposals[i] = bootstrap_path(first + i); });
-    is_whole = trace_whole(batch, cancel);
-    if (!is_whole) return;
-    for_each_path(count, [&](std::uint32_t i) {
-      chain_arrays_.bootstrap.targets[first + i] = target_of(batch.samples[i]);
-    });
-    count_paths(batch);
-  });
-  return is_whole;
-}
-
-void CpuRenderer::count_paths(const SampleBuffer& batch) {
-  const tbb::blocked_range<std::uint32_t> paths(0, batch.path_count, 4096);
-  tally_ =
-      tally_ + tbb::parallel_reduce(
-                   paths, PathTally{},
-                   [&](const tbb::blocked_range<std::uint32_t>& range, PathTally sum) {
-                     for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                       count_sample(batch.samples[i], sum, [&](int bin) { ++sum.lengths[bin]; });
-                     }
-                     return sum;
-                   },
-                   [](const PathTally& a, const PathTally& b) { return a + b; });
-}
-
-void CpuRenderer::splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) {
-  time_in_arena(run, [&] {
-    for_each_path(count, [&](std::uint32_t i) {
-      pt::splat_bootstrap(chain_arrays_, step, chain_arrays_.proposals[i], samples()[i]);
-    });
-  });
-}
-
-std::vector<TargetSum> CpuRenderer::sum_targets(std::uint32_t paths, RenderRun& run) {
-  const auto groups = static_cast<std::uint32_t>(Bootstrap::group_count(paths));
-  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
-  time_in_arena(run, [&] {
-    for_each_path(groups, [&](std::uint32_t group) {
-      bootstrap.groups[group] = sum_group(bootstrap, group, paths);
-    });
-  });
-  return {bootstrap.groups, bootstrap.groups + groups};
-}
-
-void CpuRenderer::start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) {
-  const Bootstrap& bootstrap = chain_arrays_.bootstrap;
-  std::ranges::copy(starts.below, bootstrap.below);
-  time_in_arena(run, [&] {
-    for_each_path(starts.positions.chains, [&](std::uint32_t chain) {
-      chain_arrays_.proposals[chain] = bootstrap_path(start_of(bootstrap, starts.positions, chain));
-    });
-  });
-  run_chains(starts.positions.chains, step, run);
-}
-
-/// Traces a path of each chain, and the chain takes this step.
-void CpuRenderer::run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
-  const SampleBuffer batch = chain_batch(chains);
-  time_in_arena(run, [&] {
-    trace_batch(batch);
-    for_each_path(chains, [&](std::uint32_t chain) {
-      step_chain(chain_arrays_, step, chain, batch.samples[chain]);
-    });
-  });
-}
-
-void CpuRenderer::mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
-                                RenderRun& run) {
-  if (!runs_chains_async()) {
-    while (chain_arrays_.proposals[0].iteration <= last) run_chains(chains, step, run);
-    return;
-  }
-  const SampleBuffer batch = chain_batch(chains);
-  chain_run_ = {chain_arrays_, step, last};
-  std::fill_n(samples(), chains, Sample{});
-  chains_are_async_ = true;
-  time_in_arena(run, [&] { trace_batch(batch); });
-  chains_are_async_ = false;
-}
-
-void CpuRenderer::finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) {
-  time_in_arena(run, [&] {
-    for_each_path(chains, [&](std::uint32_t chain) { finish_chain(chain_arrays_, step, chain); });
-  });
-}
-
-ChainSums CpuRenderer::take_chain_sums() {
-  const std::uint64_t count = 3 * window().pixel_count();
-  ChainSums result{{chain_arrays_.sums, chain_arrays_.sums + count}, {}, {}};
-  result.add(chain_arrays_.counts);
-  clear_chain_sums();
-  return result;
 }
 
 void CpuRenderer::describe(RenderReport& report) const {

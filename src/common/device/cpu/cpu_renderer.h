@@ -6,6 +6,7 @@
 #include <chrono>
 #include <vector>
 
+#include "common/device/cpu/cpu_chains.h"
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
 #include "common/render/random_source.h"
@@ -53,13 +54,9 @@ class CpuRenderer : public FilmRenderer {
     if (options_.rng == RngKind::xorwow) {
       timer_.time("render_init", [&] { init_random_states(batch); });
     }
-    pt::with_random_source(options_, traits_, states_.data(), chain_arrays_.chains, function);
+    const Chains* const chains = chains_ == nullptr ? nullptr : chains_->numbers();
+    pt::with_random_source(options_, traits_, states_.data(), chains, function);
   }
-
-  /// Whether trace_batch looks at chains(); else chains take their steps one batch after the other.
-  virtual bool runs_chains_async() const { return true; }
-  /// Null: the batch is of paths. Else it is of asynchronous chains (continue_chain).
-  const ChainRun* chains() const { return chains_are_async_ ? &chain_run_ : nullptr; }
 
   /// Whether the batch is to be abandoned: no path more needs to be traced.
   bool is_cancelled() const { return cancel_ != nullptr && *cancel_ && (*cancel_)(); }
@@ -74,7 +71,9 @@ class CpuRenderer : public FilmRenderer {
   std::uint64_t pool_size_ = 0;
 
  private:
-  void allocate_chains();
+  friend class CpuChains;  // another user of the arena, the clock and trace_batch
+
+  ChainDevice& chain_device() override { return *chains_; }
   void store_film(const Film& film) override;
   void begin_render(const Film& film) override;
   bool render_batch(const SampleBuffer& batch, RenderRun& run,
@@ -82,23 +81,15 @@ class CpuRenderer : public FilmRenderer {
   void end_render(RenderRun& run) override;
   void read_film(Film& film) override;
   template <class Function>
-  void time_in_arena(RenderRun& run, Function&& function);
+  void time_in_arena(RenderRun& run, Function&& function) {
+    const auto start = std::chrono::steady_clock::now();
+    arena_.execute(function);
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start;
+    run.kernel_ms += elapsed.count();
+  }
   bool trace_whole(const SampleBuffer& batch, const std::function<bool()>& cancel);
-  void begin_chains(const ChainWindow& window) override;
-  bool trace_bootstrap(std::uint32_t first, std::uint32_t count, RenderRun& run,
-                       const std::function<bool()>& cancel) override;
-  void splat_bootstrap(std::uint32_t count, const ChainStep& step, RenderRun& run) override;
-  std::vector<TargetSum> sum_targets(std::uint32_t paths, RenderRun& run) override;
-  void start_chains(const ChainStarts& starts, const ChainStep& step, RenderRun& run) override;
-  void mutate_chains(std::uint32_t chains, const ChainStep& step, std::uint32_t last,
-                     RenderRun& run) override;
-  void finish_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run) override;
-  void run_chains(std::uint32_t chains, const ChainStep& step, RenderRun& run);
   void count_paths(const SampleBuffer& batch);
-  template <class Function>
-  void for_each_path(std::uint32_t count, Function&& function);
-  ChainSums take_chain_sums() override;
-  void clear_chain_sums();
   void init_random_states(const SampleBuffer& batch);
   void accumulate(const SampleBuffer& batch);
   template <class MakeSum>
@@ -116,10 +107,7 @@ class CpuRenderer : public FilmRenderer {
   FilmSums sums_;  ///< of the film that is rendered, the first of their elements
   std::vector<XorwowState> states_;
   PathTally tally_;
-  ChainArrays chain_arrays_;  ///< null without --integrator mlt
-  ChainRun chain_run_;
-  bool chains_are_async_ = false;
-  std::vector<std::vector<char>> chain_memory_;  ///< of chain_arrays_
+  std::unique_ptr<CpuChains> chains_;  ///< only with --integrator mlt
   std::vector<BufferSize> memory_;
 };
 

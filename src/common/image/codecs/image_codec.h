@@ -22,6 +22,10 @@ struct ImageCodec {
   Image (*decode)(std::string_view bytes, ImageMetadata* metadata);
 };
 
+/// The image of an EXR and those of its layers of whole numbers whose names begin with `prefix`.
+Image decode_exr_numbers(std::string_view bytes, const std::string& prefix,
+                         ImageMetadata* metadata);
+
 extern const ImageCodec exr_codec;  ///< float, ZIP-compressed, metadata as string attributes
 extern const ImageCodec png_codec;  ///< sRGB, metadata as text chunks
 extern const ImageCodec ppm_codec;  ///< gamma 2, no metadata

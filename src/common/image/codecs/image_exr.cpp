@@ -6,9 +6,11 @@
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <thread>
 #include <vector>
 
 #include "common/error/error.h"
@@ -67,9 +69,23 @@ void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& b
   }
 }
 
+/// Decompressed, of all channels.
+std::size_t bytes_per_pixel(const Imf::ChannelList& channels) {
+  std::size_t bytes = 0;
+  for (auto it = channels.begin(); it != channels.end(); ++it) {
+    bytes += it.channel().type == Imf::HALF ? 2 : 4;
+  }
+  return bytes;
+}
+
+/// A plain image is compressed at once; many layers take seconds.
+int compression_threads() {
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
+}
+
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
   Imf::Header header = header_of(image);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = image.is_compressed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   const Names rgb = {"R", "G", "B"};
   for (const char* name : rgb) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), header.dataWindow(), rgb);
@@ -79,8 +95,15 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
     header.insert(key, Imf::StringAttribute(value));
   }
   ExrWriter stream;
+  if (!image.is_compressed) {  // its size is known but for the header: it grows in place
+    const std::size_t pixels = std::size_t{1} * image.width * image.height;
+    stream.bytes.reserve(pixels * bytes_per_pixel(header.channels()) + 65536);
+  }
   {
-    Imf::OutputFile file(stream, header, 0);
+    // Other threads change the time alone, not the bytes.
+    const int threads = compression_threads();
+    if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+    Imf::OutputFile file(stream, header, threads);
     file.setFrameBuffer(buffer);
     file.writePixels(image.height);
   }  // writes the table of offsets
@@ -116,16 +139,27 @@ Names channels_to_read(const Imf::ChannelList& channels) {
   return names;
 }
 
-/// Decompressed, of all channels.
-int bytes_per_pixel(const Imf::ChannelList& channels) {
-  int bytes = 0;
+/// Blank layers for the channels PREFIX...C of whole numbers, in the order of the file.
+std::vector<ImageLayer> number_layers(const Imf::ChannelList& channels, const std::string& prefix,
+                                      std::size_t pixels) {
+  std::vector<ImageLayer> layers;
   for (auto it = channels.begin(); it != channels.end(); ++it) {
-    bytes += it.channel().type == Imf::HALF ? 2 : 4;
+    const std::string name = it.name();
+    const Imf::Channel& channel = it.channel();
+    const std::size_t dot = name.size() < 2 ? name.npos : name.size() - 2;
+    if (dot == name.npos || name[dot] != '.' || !name.starts_with(prefix)) continue;
+    if (channel.type != Imf::UINT || channel.xSampling != 1 || channel.ySampling != 1) continue;
+    if (layers.empty() || layers.back().name != name.substr(0, dot)) {
+      layers.push_back({name.substr(0, dot), "", {}, {}});
+    }
+    layers.back().channels += name.back();
   }
-  return bytes;
+  for (ImageLayer& layer : layers) layer.numbers.resize(pixels * layer.channels.size());
+  return layers;
 }
 
-Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
+/// `prefix`: of the layers of whole numbers that are wanted, too; null: none.
+Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::string* prefix) {
   check_exr_header(bytes);
   // For the whole process, hence the same value each time.
   Imf::Header::setMaxImageSize(max_image_size, max_image_size);
@@ -139,9 +173,22 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const double decoded_bytes = 1.0 * bytes_per_pixel(header.channels()) * width * height;
+  const double decoded_bytes =
+      static_cast<double>(bytes_per_pixel(header.channels())) * width * height;
   Image image = allocate_image(width, height, decoded_bytes, bytes.size());
-  file.setFrameBuffer(frame_buffer(image.rgb.data(), window, names));
+  Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), window, names);
+  if (prefix != nullptr) {
+    image.layers = number_layers(header.channels(), *prefix, image.rgb.size() / 3);
+    for (ImageLayer& layer : image.layers) {
+      const std::size_t stride = sizeof(std::uint32_t) * layer.channels.size();
+      for (std::size_t c = 0; c < layer.channels.size(); ++c) {
+        buffer.insert(layer.name + '.' + layer.channels[c],
+                      Imf::Slice::Make(Imf::UINT, layer.numbers.data() + c, window, stride,
+                                       stride * static_cast<std::size_t>(width)));
+      }
+    }
+  }
+  file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
   if (names.size() == 1) {
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
@@ -156,9 +203,9 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata) {
   return image;
 }
 
-Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
+Image decode(std::string_view bytes, ImageMetadata* metadata, const std::string* prefix) {
   try {
-    return read_exr(bytes, metadata);
+    return read_exr(bytes, metadata, prefix);
   } catch (const Iex::BaseExc& error) {
     // OpenEXR begins with 'Cannot read image file "NAME". ', and our stream has no name.
     const std::string_view message = error.what();
@@ -167,7 +214,16 @@ Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
   }
 }
 
+Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
+  return decode(bytes, metadata, nullptr);
+}
+
 }  // namespace
+
+Image decode_exr_numbers(std::string_view bytes, const std::string& prefix,
+                         ImageMetadata* metadata) {
+  return decode(bytes, metadata, &prefix);
+}
 
 const ImageCodec exr_codec{".exr", encode_exr, decode_exr};
 

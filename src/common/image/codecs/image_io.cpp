@@ -124,4 +124,10 @@ Image read_image(const std::string& path, ImageMetadata* metadata) {
   });
 }
 
+Image read_image_with_numbers(const std::string& path, const std::string& prefix,
+                              ImageMetadata& metadata) {
+  return explaining("cannot read " + path,
+                    [&] { return decode_exr_numbers(read_file(path), prefix, &metadata); });
+}
+
 }  // namespace pt

@@ -44,7 +44,7 @@ struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
   LightTreeData tree;                               ///< empty unless lights are chosen by it
-  std::size_t emitters = 0;                            ///< that give any light
+  std::size_t emitters = 0;                         ///< that give any light
   std::uint32_t sun = 0;                            ///< its index
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap
@@ -53,6 +53,8 @@ struct LightListData {
 };
 
 struct SceneData {
+  std::string source_hash;                ///< of the files that it was read from; empty: of none
+  std::vector<std::string> source_files;  ///< by absolute path
   std::string name;
   SceneDefaults defaults;
   CameraParameters camera;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "common/error/error.h"
+#include "common/scene/load/files/scene_files.h"
 
 namespace pt {
 namespace {
@@ -30,12 +31,16 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
   struct stat status {};
   if (::fstat(fd, &status) != 0) fail();
   if (!S_ISREG(status.st_mode)) throw Error("not a regular file");
-  if (status.st_size == 0) return;  // nothing to map
+  if (status.st_size == 0) {  // nothing to map
+    SceneFiles::note(path, {});
+    return;
+  }
   const auto size = static_cast<std::size_t>(status.st_size);
   void* memory = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, fd, 0);
   if (memory == MAP_FAILED) fail();
   ::madvise(memory, size, MADV_WILLNEED);  // advice only: it may be refused
   bytes_ = {static_cast<const char*>(memory), size};
+  SceneFiles::note(path, bytes_);
 }
 
 MappedFile::~MappedFile() {

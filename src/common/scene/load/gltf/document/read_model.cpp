@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/scene/load/files/find_file.h"
+#include "common/scene/load/files/scene_files.h"
 #include "common/scene/load/gltf/document/check_json.h"
 #include "common/scene/load/gltf/document/file.h"
 
@@ -25,7 +26,16 @@ std::string read_bytes(const std::filesystem::path& path) {
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(fmt::format("{}: larger than 4 GiB, which glTF does not allow", path.string()));
   }
+  SceneFiles::note(path, bytes);
   return bytes;
+}
+
+/// tinygltf's, of buffers and pictures beside the model.
+bool read_beside(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
+                 void* user) {
+  if (!tinygltf::ReadWholeFile(bytes, error, path, user)) return false;
+  SceneFiles::note(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+  return true;
 }
 
 std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
@@ -127,8 +137,7 @@ ReadModel read_model(const std::filesystem::path& path) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
   Folder files{std::filesystem::absolute(path).parent_path(), {}};
-  loader.SetFsCallbacks(
-      {exists_beside, found_path, tinygltf::ReadWholeFile, tinygltf::WriteWholeFile, &files});
+  loader.SetFsCallbacks({exists_beside, found_path, read_beside, tinygltf::WriteWholeFile, &files});
   const std::string folder = files.path.string();
   const auto size = static_cast<unsigned int>(bytes.size());
   tinygltf::Model model;

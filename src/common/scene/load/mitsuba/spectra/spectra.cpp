@@ -4,8 +4,9 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
+#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/mitsuba/xml/values.h"
 
 namespace pt::mitsuba {
@@ -66,8 +67,13 @@ Samples listed_samples(const Element& element, std::string text) {
 /// A file of lines "wavelength value"; # begins a comment.
 Samples sample_file(Context& context, const Element& element) {
   const std::filesystem::path path = context.resolve(element, element.required("filename"));
-  std::ifstream file(path);
-  if (!file) fail(element, fmt::format("cannot read the spectrum {}", path.string()));
+  std::string text;
+  try {
+    text = MappedFile(path).bytes();
+  } catch (const Error& error) {
+    fail(element, fmt::format("cannot read the spectrum {}: {}", path.string(), error.what()));
+  }
+  std::istringstream file(text);
   std::string line, all;
   while (std::getline(file, line)) all += line.substr(0, line.find('#')) + " ";
   return listed_samples(element, std::move(all));

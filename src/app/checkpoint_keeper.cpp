@@ -1,0 +1,43 @@
+#include "app/checkpoint_keeper.h"
+
+#include <memory>
+
+#include "app/progress.h"
+#include "common/error/error.h"
+
+namespace pt {
+
+CheckpointKeeper::CheckpointKeeper(float interval_s, Save save, Warn warn)
+    : interval_s_(interval_s),
+      save_(std::move(save)),
+      warn_(std::move(warn)),
+      saved_s_(Progress::steady_seconds()) {}
+
+CheckpointKeeper::~CheckpointKeeper() { wait(); }
+
+void CheckpointKeeper::wait() {
+  if (thread_.joinable()) thread_.join();
+}
+
+void CheckpointKeeper::film_grew(const ImageFilm& film) {
+  if (Progress::steady_seconds() - saved_s_ < interval_s_ || is_saving_) return;
+  wait();
+  is_saving_ = true;
+  const auto copy = std::make_shared<const ImageFilm>(film);
+  thread_ = std::thread([this, copy] {
+    try {
+      save_(*copy);
+    } catch (const std::exception& error) {
+      warn_(error.what());
+    }
+    is_saving_ = false;
+  });
+  saved_s_ = Progress::steady_seconds();
+}
+
+void CheckpointKeeper::finish(const ImageFilm& film) {
+  wait();
+  save_(film);
+}
+
+}  // namespace pt

@@ -1,0 +1,41 @@
+// Saves a render's film now and then, beside the render.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "common/film/image_film.h"
+
+namespace pt {
+
+class CheckpointKeeper {
+ public:
+  using Save = std::function<void(const ImageFilm&)>;  ///< may throw Error
+  using Warn = std::function<void(const std::string&)>;
+
+  /// `save` writes the file. It is called in a thread of its own, and by finish().
+  CheckpointKeeper(float interval_s, Save save, Warn warn);
+  ~CheckpointKeeper();
+  CheckpointKeeper(const CheckpointKeeper&) = delete;
+  CheckpointKeeper& operator=(const CheckpointKeeper&) = delete;
+
+  /// Saves a copy of the film if the last one is older than the interval. What fails is a warning:
+  /// the render goes on, and the next film is tried again after the interval.
+  void film_grew(const ImageFilm& film);
+  /// Saves this film. Throws what saving throws.
+  void finish(const ImageFilm& film);
+
+ private:
+  void wait();
+
+  const double interval_s_;
+  const Save save_;
+  const Warn warn_;
+  double saved_s_;
+  std::atomic<bool> is_saving_{false};
+  std::thread thread_;
+};
+
+}  // namespace pt

@@ -1,0 +1,85 @@
+// Messages between the processes ("ranks") of one render. What is sent arrives once and, from one
+// rank to another, in order. By MPI (channel_mpi.cpp), within a process for tests, or none at all.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pt {
+
+enum class MessageKind {
+  heartbeat,   ///< of the channel itself: its sender lives
+  collective,  ///< of gather() and broadcast()
+  unit,        ///< rank 0 to a worker: take these samples
+  cancel,      ///< rank 0 to a worker
+  no_units,    ///< rank 0: serve_units() returns
+  device,      ///< from a worker: what it is (device_message.cpp)
+  result,      ///< from a worker: what became of a unit
+  failure,     ///< to rank 0: this rank cannot go on
+  end,         ///< rank 0: the exit code of all
+  goodbye,     ///< the last message to rank 0
+  closing,     ///< the last message from rank 0: all have said good-bye
+};
+
+struct Message {
+  int from = 0;
+  MessageKind kind{};
+  std::string bytes;
+};
+
+struct RankInfo {
+  int rank = 0;
+  std::string host;
+  int local_rank = 0, local_ranks = 1;  ///< among those of the same machine
+  std::vector<std::string> devices;     ///< once all have announced them
+
+  /// "rank 3 (host7)"
+  std::string name() const;
+};
+
+class Channel {
+ public:
+  virtual ~Channel() = default;
+
+  /// Of this process.
+  virtual int rank() const = 0;
+  virtual const std::vector<RankInfo>& ranks() const = 0;
+  /// Does not wait.
+  virtual void send(int to, MessageKind kind, std::shared_ptr<const std::string> bytes) = 0;
+  /// Waits until no more than so many bytes are still to be sent.
+  virtual void flush(std::uint64_t unsent_bytes) = 0;
+  /// The next message, if one comes within that time.
+  virtual std::optional<Message> receive(std::chrono::microseconds wait) = 0;
+  /// After the last message: all ranks do this together.
+  virtual void close() = 0;
+  /// Ends all ranks at once.
+  [[noreturn]] virtual void abort(int code) = 0;
+};
+
+struct ChannelSettings {
+  double timeout_s = 60;                  ///< a rank that is silent for so long is lost
+  std::uint64_t chunk_bytes = 64u << 20;  ///< of messages that go in several: MPI counts by int
+  std::function<void()> before_abort;     ///< removes unfinished files; may be empty
+};
+
+/// As the environment says: PTEXP_MPI_TIMEOUT (seconds), PTEXP_MPI_CHUNK (bytes). Throws Error.
+ChannelSettings channel_settings();
+
+/// Connects the processes that a launcher (mpirun, srun) has started together; without one, the
+/// channel of this process alone, which costs nothing and cannot fail.
+std::unique_ptr<Channel> open_channel(ChannelSettings settings = channel_settings());
+
+/// The processes that a launcher has started; 0: there is no launcher. `variable` is getenv.
+int launched_processes(const std::function<const char*(const char*)>& variable);
+
+/// Which MPI the program was built with, a line; "off": none.
+std::string mpi_version();
+
+/// By MPI, or an Error in a build without it.
+std::unique_ptr<Channel> open_mpi_channel(ChannelSettings settings, int processes);
+
+}  // namespace pt

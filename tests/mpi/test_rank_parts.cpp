@@ -1,0 +1,121 @@
+// What ranks consist of, without any message: devices, launchers, heartbeats.
+#include <map>
+
+#include "common/mpi/channel.h"
+#include "common/mpi/heartbeats.h"
+#include "common/mpi/local_devices.h"
+#include "gtest/gtest.h"
+
+namespace pt {
+namespace {
+
+using Ordinals = std::vector<int>;
+
+TEST(LocalDevices, AreSharedAsTheTableSays) {
+  struct Row {
+    int ranks, gpus;
+    std::vector<Ordinals> expected;  ///< [local rank]
+  };
+  const std::vector<Row> table{{1, 0, {{}}},
+                               {3, 0, {{}, {}, {}}},
+                               {1, 1, {{0}}},
+                               {1, 4, {{0, 1, 2, 3}}},
+                               {2, 4, {{0, 1}, {2, 3}}},
+                               {4, 4, {{0}, {1}, {2}, {3}}},
+                               {2, 3, {{0}, {1, 2}}},
+                               {3, 8, {{0, 1}, {2, 3, 4}, {5, 6, 7}}},
+                               {2, 1, {{0}, {0}}},
+                               {5, 2, {{0}, {1}, {0}, {1}, {0}}}};
+  for (const Row& row : table) {
+    for (int rank = 0; rank < row.ranks; ++rank) {
+      EXPECT_EQ(local_devices(rank, row.ranks, row.gpus), row.expected[rank])
+          << "rank " << rank << " of " << row.ranks << ", " << row.gpus << " GPUs";
+    }
+  }
+}
+
+TEST(LocalDevices, ThoseThatABatchSystemGaveToOneRankAreItsOwn) {
+  const std::vector<std::vector<std::string>> own{{"a", "b"}, {"c", "d"}};
+  EXPECT_EQ(local_devices(0, own), (Ordinals{0, 1}));
+  EXPECT_EQ(local_devices(1, own), (Ordinals{0, 1}));
+  const std::vector<std::vector<std::string>> pairs{{"a", "b"}, {"c"}, {"a", "b"}, {"c"}};
+  EXPECT_EQ(local_devices(0, pairs), Ordinals{0});
+  EXPECT_EQ(local_devices(2, pairs), Ordinals{1});
+  EXPECT_EQ(local_devices(3, pairs), Ordinals{0});
+}
+
+TEST(Launcher, IsKnownByItsEnvironment) {
+  const auto processes = [](std::map<std::string, const char*> environment) {
+    return launched_processes([&](const char* name) {
+      const auto found = environment.find(name);
+      return found == environment.end() ? nullptr : found->second;
+    });
+  };
+  EXPECT_EQ(processes({}), 0);
+  EXPECT_EQ(processes({{"OMPI_COMM_WORLD_SIZE", "4"}}), 4);
+  EXPECT_EQ(processes({{"PMI_SIZE", "3"}, {"PMI_RANK", "0"}}), 3);
+  EXPECT_EQ(processes({{"OMPI_COMM_WORLD_SIZE", "4"}, {"PTEXP_LAUNCHER", "off"}}), 0);
+  // A batch script of Slurm, and srun of one task, whose own MPI need not be there.
+  EXPECT_EQ(processes({{"SLURM_PROCID", "0"}, {"SLURM_NTASKS", "8"}}), 0);
+  EXPECT_EQ(
+      processes({{"SLURM_PROCID", "0"}, {"SLURM_STEP_ID", "0"}, {"SLURM_STEP_NUM_TASKS", "1"}}), 0);
+  EXPECT_EQ(
+      processes({{"SLURM_PROCID", "0"}, {"SLURM_STEP_ID", "0"}, {"SLURM_STEP_NUM_TASKS", "8"}}), 8);
+  EXPECT_EQ(processes({{"PMIX_RANK", "1"},
+                       {"SLURM_PROCID", "1"},
+                       {"SLURM_STEP_ID", "0"},
+                       {"SLURM_STEP_NUM_TASKS", "2"}}),
+            2);
+}
+
+/// A turn of the loop every tenth of a second from `begin` to `end`.
+std::optional<int> live(Heartbeats& beats, double begin, double end,
+                        const std::vector<int>& heard) {
+  for (double now = begin; now < end; now += 0.1) {
+    for (const int from : heard) beats.heard(from, now);
+    beats.due(now);
+    if (const auto lost = beats.lost(now)) return lost;
+  }
+  return std::nullopt;
+}
+
+TEST(Heartbeats, RankZeroMissesARankThatFallsSilent) {
+  Heartbeats beats(0, 4, 10, 0);
+  EXPECT_EQ(live(beats, 0, 100, {1, 2, 3}), std::nullopt);
+  EXPECT_EQ(live(beats, 100, 109.8, {1, 3}), std::nullopt);
+  EXPECT_EQ(live(beats, 109.8, 112, {1, 3}), 2);
+}
+
+TEST(Heartbeats, OthersWatchRankZeroAlone) {
+  Heartbeats beats(2, 4, 10, 0);
+  EXPECT_EQ(live(beats, 0, 100, {0}), std::nullopt);
+  EXPECT_EQ(live(beats, 100, 114, {1, 3}), 0);
+}
+
+TEST(Heartbeats, NobodyIsMissedAfterTheLastMessage) {
+  Heartbeats beats(0, 2, 10, 0);
+  beats.stop_watching(1);
+  EXPECT_EQ(live(beats, 0, 100, {}), std::nullopt);
+}
+
+TEST(Heartbeats, WhoeverWasSuspendedItselfMissesNobody) {
+  Heartbeats beats(0, 2, 10, 0);
+  EXPECT_EQ(live(beats, 0, 5, {1}), std::nullopt);
+  EXPECT_EQ(live(beats, 1000, 1009, {}), std::nullopt);
+  EXPECT_EQ(live(beats, 1009, 1012, {}), 1);
+}
+
+TEST(Heartbeats, AreDueOnceASecondWhereTheyAreHeard) {
+  Heartbeats beats(0, 3, 60, 0);
+  int sent = 0;
+  for (double now = 0; now < 10.05; now += 0.1) sent += static_cast<int>(beats.due(now).size());
+  EXPECT_NEAR(sent, 20, 2);
+  beats.stop_sending(1);
+  EXPECT_EQ(beats.due(11.5), std::vector<int>{2});
+  Heartbeats other(2, 3, 2, 0);
+  EXPECT_EQ(other.due(0.4), std::vector<int>{});
+  EXPECT_EQ(other.due(0.6), std::vector<int>{0});  // four within the time
+}
+
+}  // namespace
+}  // namespace pt
