@@ -65,12 +65,12 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
   const std::string sphere = "Shape \"sphere\" \"float radios\" 2\n";
   const LoadedScene loaded = load_pbrt_text(
       pbrt_world(lit + sphere + sphere +
-                 "Shape \"curve\"\nLightSource \"laser\"\nMaterial \"cheese\"\n" + sphere));
+                 "Shape \"torus\"\nLightSource \"laser\"\nMaterial \"cheese\"\n" + sphere));
   EXPECT_EQ(loaded.count("parameter 'float radios' of Shape 'sphere' is not supported and ignored; "
                          "expected one of alpha, phimax, radius, zmax, zmin"),
             1);
   EXPECT_EQ(loaded.count("scene.pbrt:7:16: "), 1);
-  EXPECT_EQ(loaded.count("shape 'curve' is not supported: it is left out"), 1);
+  EXPECT_EQ(loaded.count("shape 'torus' is not supported: it is left out"), 1);
   EXPECT_EQ(loaded.count("light 'laser' is not supported"), 1);
   EXPECT_EQ(loaded.count("material 'cheese' is not known: diffuse grey is used"), 1);
   EXPECT_EQ(loaded.warnings.size(), 4u);
@@ -78,6 +78,26 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
   LoadOptions strict;
   strict.strict = true;
   EXPECT_NE(pbrt_error(pbrt_world(lit + sphere), strict).find("(--strict)"), std::string::npos);
+}
+
+TEST(PbrtSyntax, AMissingFileIsNamedWhereItIsNamed) {
+  for (const char* name : {"none.ply", "none.ply.gz"}) {
+    const std::string message =
+        pbrt_error(pbrt_world(lit + "Shape \"plymesh\" \"string filename\" \"" + name + "\""));
+    EXPECT_EQ(message.substr(0, 17), "scene.pbrt:6:17: ") << message;
+    EXPECT_NE(message.find(name), std::string::npos) << message;
+  }
+}
+
+TEST(PbrtSyntax, MediaAreReportedWhereThereAreAny) {
+  const auto count = [](const std::string& names) {
+    return load_pbrt_text(pbrt_world(lit + "MediumInterface " + names + " Shape \"sphere\""))
+        .count("media are not supported");
+  };
+  EXPECT_EQ(count("\"\" \"\""), 0);
+  EXPECT_EQ(count("\"\""), 0);
+  EXPECT_EQ(count("\"\" \"fog\""), 1);
+  EXPECT_EQ(count("\"fog\""), 1);
 }
 
 TEST(PbrtSyntax, IncludedFilesShareTheStateAndImportedOnesDoNot) {

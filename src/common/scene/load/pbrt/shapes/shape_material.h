@@ -13,8 +13,9 @@ struct ShapeMaterial {
   float light_mean = 1.0f;  ///< mean luminance of the picture that it shows; power counts it
 
   // What it needs of a shape:
-  bool textured = false;  ///< texture coordinates
-  bool tangents = false;  ///< and the directions in which they grow
+  bool textured = false;   ///< texture coordinates
+  TextureMapping mapping;  ///< which these are
+  bool tangents = false;   ///< and the directions in which they grow
 };
 
 /// Reads each material and each area light once.

@@ -8,7 +8,8 @@ namespace pt::pbrt {
 /// What a material becomes.
 struct Surface {
   MaterialDescription material;
-  bool invisible = false;  ///< light passes as if nothing were there
+  bool invisible = false;                     ///< light passes as if nothing were there
+  std::vector<TextureMapping> mappings = {};  ///< of its textures
 };
 
 /// Each replacement is reported once for its kind. Adding a material is adding a line to the table

@@ -51,6 +51,21 @@ void read_crop(const Parameters& parameters, SceneDefaults& defaults) {
   if (!(crop == CropWindow{0, 0, width, height})) defaults.crop = crop;
 }
 
+/// What cameras take for white, if nothing is said, is near ours.
+void read_white(Context& context, const Parameters& parameters, float fallback) {
+  const float kelvins = parameters.number("whitebalance", 0.0f);
+  if (kelvins != 0.0f && !(kelvins >= 1000.0f && kelvins <= 25000.0f)) {
+    fail(parameters.place(),
+         fmt::format("whitebalance {}; expected 0, or kelvins from 1000 to 25000", kelvins));
+  }
+  context.white_kelvins = kelvins != 0.0f ? kelvins : fallback;
+  if (kelvins == 0.0f) return;
+  context.reporter.warn_once("white balance", parameters.find("whitebalance")->place,
+                             fmt::format("whitebalance {} changes the colours of lights, not of "
+                                         "pixels: the same where surfaces are grey",
+                                         kelvins));
+}
+
 /// pbrt's sensor multiplies by the time of exposure and ISO / 100.
 void read_film(Context& context, const Entity& film) {
   const Parameters& parameters = film.parameters;
@@ -65,14 +80,13 @@ void read_film(Context& context, const Entity& film) {
   read_crop(parameters, defaults);
   context.imaging_ratio *= parameters.number("iso", 100.0f) / 100.0f;
   const std::string sensor = parameters.text("sensor", "cie1931");
-  const float balance = parameters.number("whitebalance", 0.0f);
-  if (sensor != "cie1931" || balance != 0.0f) {
-    context.reporter.warn_once("sensor", parameters.place(),
-                               fmt::format("the film's sensor '{}' and whitebalance {} are not "
-                                           "supported: the observer of 1931 sees the scene as it "
-                                           "is",
-                                           sensor, balance));
+  if (sensor != "cie1931") {
+    context.reporter.warn_once("sensor", parameters.find("sensor")->place,
+                               fmt::format("sensor '{}' is not supported: the observer of 1931 is "
+                                           "used, with the sensor's whitebalance",
+                                           sensor));
   }
+  read_white(context, parameters, sensor == "cie1931" ? 0.0f : 6500.0f);
   // About the file that pbrt would write, and what it does about fireflies.
   parameters.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue"});
   parameters.report_unused(context.reporter);
