@@ -70,7 +70,7 @@ struct Walk {
     return 0;
   }
   double albedo(double cosine) {
-    constexpr int count = 200000;
+    constexpr int count = 100000;
     double sum = 0;
     for (int i = 0; i < count; ++i) sum += once(cosine);
     return sum / count;
@@ -97,17 +97,25 @@ double albedo_here(double cosine, double alpha, double body) {
   return sum / 768;
 }
 
+struct CoatCase {
+  double alpha, off_walk, off_pbrt;  ///< albedos may differ by
+};
+
 TEST(PbrtCoat, ReflectsAsMuchAsARandomWalkInIt) {
-  for (const double alpha : {0.0, 0.1, 0.3, 0.6}) {
-    for (const double body : {0.2, 0.5, 0.8}) {
-      for (const double cosine : {0.95, 0.6, 0.25}) {
+  // Rough plastic counts nothing that facets do to light within the coat. pbrt's own walk ends
+  // after a number of encounters, which bright bodies feel.
+  for (const CoatCase& c : {CoatCase{0.0, 0.006, 0.018}, CoatCase{0.1, 0.004, 0.010},
+                            CoatCase{0.3, 0.012, 0.012}, CoatCase{0.6, 0.039, 0.046}}) {
+    for (const double body : {0.2, 0.8}) {
+      for (const double cosine : {0.95, 0.25}) {
         Walk walk;
-        walk.alpha = alpha, walk.body = body;
-        const double whole = walk.albedo(cosine), here = albedo_here(cosine, alpha, body);
+        walk.alpha = c.alpha, walk.body = body;
+        const double here = albedo_here(cosine, c.alpha, body);
+        const std::string what =
+            fmt::format("alpha {}, reflectance {}, cosine {}", c.alpha, body, cosine);
+        EXPECT_NEAR(here, walk.albedo(cosine), c.off_walk) << what;
         walk.most = 12;
-        const double pbrts = walk.albedo(cosine);
-        printf("alpha %.1f body %.1f cos %.2f: here %.4f walk %.4f pbrt %.4f  diff %.4f %.4f\n",
-               alpha, body, cosine, here, whole, pbrts, here - whole, here - pbrts);
+        EXPECT_NEAR(here, walk.albedo(cosine), c.off_pbrt) << what << ", pbrt's maxdepth";
       }
     }
   }

@@ -84,7 +84,7 @@ TEST(PbrtSyntax, AMissingFileIsNamedWhereItIsNamed) {
   for (const char* name : {"none.ply", "none.ply.gz"}) {
     const std::string message =
         pbrt_error(pbrt_world(lit + "Shape \"plymesh\" \"string filename\" \"" + name + "\""));
-    EXPECT_EQ(message.substr(0, 17), "scene.pbrt:6:17: ") << message;
+    EXPECT_EQ(message.substr(0, 17), "scene.pbrt:7:17: ") << message;
     EXPECT_NE(message.find(name), std::string::npos) << message;
   }
 }

@@ -32,6 +32,12 @@ Vec3 position_on(const Bezier& b, float t) {
   return s * s * s * b[0] + 3.0f * s * s * t * b[1] + 3.0f * s * t * t * b[2] + t * t * t * b[3];
 }
 
+/// In proportion to the derivative.
+Vec3 slope_on(const Bezier& b, float t) {
+  const float s = 1.0f - t;
+  return s * s * (b[1] - b[0]) + 2.0f * s * t * (b[2] - b[1]) + t * t * (b[3] - b[2]);
+}
+
 std::vector<Bezier> read_segments(const Parameters& parameters) {
   const int degree = parameters.integer("degree", 3);
   const std::string basis = parameters.text("basis", "bezier");
@@ -73,21 +79,17 @@ Vec3 unit_or(const Vec3& v, const Vec3& fallback) {
 
 /// x stays as near to what it was before as the curve allows, so that tubes are not twisted.
 std::vector<Frame> frames_of(const std::vector<Bezier>& segments) {
-  std::vector<Vec3> points;
-  for (const Bezier& segment : segments) {
-    for (int i = points.empty() ? 0 : 1; i <= curve_steps; ++i) {
-      points.push_back(position_on(segment, static_cast<float>(i) / float{curve_steps}));
-    }
-  }
   std::vector<Frame> frames;
   Vec3 along(0, 0, 1), x(0.0f);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3 &before = points[i == 0 ? 0 : i - 1],
-               &after = points[std::min(i + 1, points.size() - 1)];
-    along = unit_or(after - before, along);
-    const Vec3 aside = std::abs(along.x) < 0.6f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    x = unit_or(x - glm::dot(x, along) * along, glm::normalize(glm::cross(along, aside)));
-    frames.push_back({points[i], along, x, glm::cross(along, x)});
+  for (const Bezier& segment : segments) {
+    for (int i = frames.empty() ? 0 : 1; i <= curve_steps; ++i) {
+      const float t = static_cast<float>(i) / float{curve_steps};
+      // Where points of it coincide, its ends tell where it goes.
+      along = unit_or(slope_on(segment, t), unit_or(segment[3] - segment[0], along));
+      const Vec3 aside = std::abs(along.x) < 0.6f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+      x = unit_or(x - glm::dot(x, along) * along, glm::normalize(glm::cross(along, aside)));
+      frames.push_back({position_on(segment, t), along, x, glm::cross(along, x)});
+    }
   }
   return frames;
 }
