@@ -2,70 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "common/scene/load/pbrt/shapes/bezier.h"
 #include "common/scene/load/pbrt/shapes/shape_kinds.h"
 #include "common/scene/load/pbrt/shapes/tessellate.h"
 
 namespace pt::pbrt {
 namespace {
-
-using Bezier = std::array<Vec3, 4>;
-
-Vec3 between(const Vec3& a, const Vec3& b, float t) { return (1.0f - t) * a + t * b; }
-
-Bezier elevated(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return {a, between(a, b, 2.0f / 3.0f), between(c, b, 2.0f / 3.0f), c};
-}
-
-/// A span of a uniform B-spline; p points to its degree + 1 control points.
-Bezier of_spline(const Vec3* p, int degree) {
-  if (degree == 2) return elevated(between(p[0], p[1], 0.5f), p[1], between(p[1], p[2], 0.5f));
-  const Vec3 left = between(p[1], p[2], 1.0f / 3.0f), right = between(p[1], p[2], 2.0f / 3.0f);
-  return {between(between(p[0], p[1], 2.0f / 3.0f), left, 0.5f), left, right,
-          between(right, between(p[2], p[3], 1.0f / 3.0f), 0.5f)};
-}
-
-Vec3 position_on(const Bezier& b, float t) {
-  const float s = 1.0f - t;
-  return s * s * s * b[0] + 3.0f * s * s * t * b[1] + 3.0f * s * t * t * b[2] + t * t * t * b[3];
-}
-
-/// In proportion to the derivative.
-Vec3 slope_on(const Bezier& b, float t) {
-  const float s = 1.0f - t;
-  return s * s * (b[1] - b[0]) + 2.0f * s * t * (b[2] - b[1]) + t * t * (b[3] - b[2]);
-}
-
-std::vector<Bezier> read_segments(const Parameters& parameters) {
-  const int degree = parameters.integer("degree", 3);
-  const std::string basis = parameters.text("basis", "bezier");
-  const std::vector<Vec3> p = parameters.points("P");
-  if ((degree != 2 && degree != 3) || (basis != "bezier" && basis != "bspline")) {
-    fail(parameters.place(), fmt::format("curve: degree {}, basis '{}'; expected 2 or 3, and "
-                                         "bezier or bspline",
-                                         degree, basis));
-  }
-  const auto step = static_cast<std::size_t>(basis == "bezier" ? degree : 1);
-  const auto own = static_cast<std::size_t>(degree) + 1;
-  if (p.size() < own || (p.size() - own) % step != 0) {
-    fail(parameters.place(),
-         fmt::format("curve: {} points in 'P'; expected {} and a multiple of {}", p.size(), own,
-                     step));
-  }
-  std::vector<Bezier> segments;
-  for (std::size_t i = 0; i + own <= p.size(); i += step) {
-    if (basis == "bspline") {
-      segments.push_back(of_spline(&p[i], degree));
-    } else if (degree == 2) {
-      segments.push_back(elevated(p[i], p[i + 1], p[i + 2]));
-    } else {
-      segments.push_back({p[i], p[i + 1], p[i + 2], p[i + 3]});
-    }
-  }
-  return segments;
-}
 
 /// Points on the curve and what lies across it: two unit vectors, x and y.
 struct Frame {
@@ -111,7 +55,7 @@ Vec3 ribbon_normal(const std::vector<Vec3>& normals, std::size_t column, const V
   const Vec3 a = glm::normalize(normals[segment]), b = glm::normalize(normals[segment + 1]);
   const float angle = std::acos(glm::clamp(glm::dot(a, b), -1.0f, 1.0f)), sine = std::sin(angle);
   const Vec3 n = sine > 1e-4f ? (std::sin((1.0f - t) * angle) * a + std::sin(t * angle) * b) / sine
-                              : between(a, b, t);
+                              : (1.0f - t) * a + t * b;
   return unit_or(n - glm::dot(n, along) * along, n);
 }
 
@@ -141,7 +85,7 @@ std::vector<Vec3> read_normals(Context& context, const Parameters& parameters,
 /// u grows along the curve by 1 for each segment, v across it.
 Mesh read_curve(Context& context, const Entity& entity, const ShapeMaterial&) {
   const Parameters& parameters = entity.parameters;
-  const std::vector<Bezier> segments = read_segments(parameters);
+  const std::vector<Bezier> segments = read_beziers(parameters);
   const std::vector<Vec3> normals = read_normals(context, parameters, segments.size());
   const float both = parameters.number("width", 1.0f);
   const float first = parameters.number("width0", both), last = parameters.number("width1", both);
