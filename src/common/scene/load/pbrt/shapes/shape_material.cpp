@@ -33,11 +33,12 @@ float mean_luminance(const Image& image) {
 
 }  // namespace
 
-const Surface& ShapeMaterials::surface_of(const MaterialReference& reference) {
+const Surface& ShapeMaterials::surface_of(const ShapeEntity& shape) {
+  const MaterialReference& reference = shape.material;
   const auto found = surfaces_.find(reference);
   if (found != surfaces_.end()) return found->second;
   context_.mappings.clear();
-  Surface surface = read_surface(context_, reference);
+  Surface surface = read_surface(context_, reference, shape.shape.parameters.place());
   surface.mappings = context_.mappings;
   return surfaces_.emplace(reference, std::move(surface)).first->second;
 }
@@ -99,7 +100,7 @@ void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) 
 }
 
 ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
-  const Surface& surface = surface_of(shape.material);
+  const Surface& surface = surface_of(shape);
   ShapeMaterial result;
   result.material = surface.material;
   result.invisible = surface.invisible;

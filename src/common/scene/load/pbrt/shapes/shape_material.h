@@ -31,7 +31,7 @@ class ShapeMaterials {
     bool two_sided = false;
     float power = 0.0f, mean = 1.0f;
   };
-  const Surface& surface_of(const MaterialReference& reference);
+  const Surface& surface_of(const ShapeEntity& shape);
   const AreaLight& light_of(const Entity& entity);
   void add_light(const ShapeEntity& shape, ShapeMaterial& result);
 

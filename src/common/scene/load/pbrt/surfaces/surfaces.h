@@ -12,8 +12,8 @@ struct Surface {
   std::vector<TextureMapping> mappings = {};  ///< of its textures
 };
 
-/// Each replacement is reported once for its kind. Adding a material is adding a line to the table
-/// in surfaces.cpp.
-Surface read_surface(Context& context, const MaterialReference& reference);
+/// An Error about a name that is not defined has `place`. Each replacement is reported once for its
+/// kind. Adding a material is adding a line to the table in surfaces.cpp.
+Surface read_surface(Context& context, const MaterialReference& reference, const Place& place);
 
 }  // namespace pt::pbrt
