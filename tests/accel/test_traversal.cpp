@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/triangle_trees.h"
+#include "common/accel/traverse_triangles.h"
 #include "statistics.h"
 
 namespace pt {

@@ -256,6 +256,12 @@ Material "coatedconductor" Shape "sphere" Material "dielectric" "spectrum eta" "
 Shape "sphere" "float zmin" -0.5 MediumInterface "a" "b" ColorSpace "rec2020" Material "interface"
 Material "diffusetransmission" Shape "trianglemesh" "point3 P" [ 0 0 0 1 0 0 1 1 0 ]
 "integer indices" [ 0 1 2 ] "normal N" [ 0 0 1 0 0 1 0 0 1 ] "point2 uv" [ 0 0 1 0 1 1 ]
+""", b"""Texture "t" "spectrum" "checkerboard" "string mapping" "planar" "vector3 v1" [ 0 1 0 ]
+Texture "a" "float" "imagemap" "string filename" "a.png" "string mapping" "spherical"
+Material "coateddiffuse" "texture reflectance" "t" "float thickness" 0.1
+Shape "curve" "string type" "ribbon" "normal N" [ 0 0 1 0 1 0 ] "float width0" 0.1
+"point3 P" [ 0 0 0 1 0 0 1 1 0 1 1 1 ] Shape "disk" "texture alpha" "a"
+Shape "curve" "string basis" "bspline" "integer degree" 2 "point3 P" [ 0 0 0 1 0 0 1 1 0 ]
 """]
 
 

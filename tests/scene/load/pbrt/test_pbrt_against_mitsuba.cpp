@@ -29,6 +29,7 @@ AttributeBegin
     "point3 P" [ -1 -1 0  1 -1 0  1 1 0  -1 1 0 ]
 AttributeEnd
 MakeNamedMaterial "red" "string type" "coateddiffuse" "rgb reflectance" [ .7 .1 .1 ]
+  "float thickness" 0
 MakeNamedMaterial "gold" "string type" "conductor" "float roughness" .04
   "rgb eta" [ .1 .4 1.5 ] "rgb k" [ 3.4 2.5 1.8 ]
 AttributeBegin

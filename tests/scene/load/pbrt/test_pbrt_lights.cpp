@@ -56,6 +56,28 @@ TEST(PbrtLights, TheFilmsExposureMultipliesAll) {
               Color(0.5f));
 }
 
+TEST(PbrtLights, TheFilmsWhiteIsWhite) {
+  const auto color = [](const std::string& film, const std::string& light) {
+    return mean_color(
+        load_pbrt_text("Film \"rgb\" \"integer xresolution\" 16 \"integer yresolution\" 16 " +
+                       film +
+                       " PixelFilter \"box\" Camera \"perspective\" WorldBegin LightSource "
+                       "\"infinite\" \"spectrum L\" \"" +
+                       light + "\"" + dot_behind)
+            .scene);
+  };
+  expect_near(color("\"float whitebalance\" 5000", "stdillum-D50"), Color(1.0f), 2e-3f);
+  const Color lamp = color("\"float whitebalance\" 2855.5", "stdillum-A");
+  expect_near(lamp, Color(1.0f), 3e-3f);
+  // A camera's sensor takes daylight for white unless it is told otherwise.
+  const std::string sensor = "\"string sensor\" \"canon_eos_100d\" ";
+  expect_near(color(sensor, "stdillum-D65"), Color(1.0f), 3e-3f);
+  expect_near(color(sensor + "\"float whitebalance\" 5000", "stdillum-D50"), Color(1.0f), 2e-3f);
+  // Daylight is blue where a lamp is white.
+  const Color blue = color("\"float whitebalance\" 3200", "stdillum-D65");
+  EXPECT_GT(blue.z, 1.5f * blue.x);
+}
+
 TEST(PbrtLights, SpectraHaveLuminanceOneWhateverTheirMagnitude) {
   const auto sky = [](const std::string& L) {
     return load_pbrt_silently(pbrt_world("LightSource \"infinite\" " + L)).sky.zenith;

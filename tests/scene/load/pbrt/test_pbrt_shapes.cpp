@@ -121,6 +121,125 @@ TEST(PbrtShapes, PlyFilesAlsoCompressed) {
   }
 }
 
+const std::string bend = "\"point3 P\" [0 0 0  1 0 0  1 1 0  1 1 1] ";
+
+TEST(PbrtShapes, CurvesAreTubesAsWideAsTheySay) {
+  const Mesh mesh = only_mesh(checks +
+                              "Shape \"curve\" \"string type\" \"cylinder\" \"float width0\" .2 "
+                              "\"float width1\" .1 " +
+                              bend);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    // Bernstein's polynomials.
+    const float t = mesh.uvs[i].x, s = 1 - t;
+    const Vec3 on_curve =
+        3 * s * s * t * Vec3(1, 0, 0) + 3 * s * t * t * Vec3(1, 1, 0) + t * t * t * Vec3(1, 1, 1);
+    const Vec3 along = s * s * Vec3(1, 0, 0) + 2 * s * t * Vec3(0, 1, 0) + t * t * Vec3(0, 0, 1);
+    const Vec3 aside = mesh.positions[i] - on_curve;
+    // The octagon whose circumference is the circle's.
+    EXPECT_NEAR(glm::length(aside), 0.5f * (0.2f * s + 0.1f * t) * 1.0262f, 1e-4f);
+    EXPECT_NEAR(glm::dot(glm::normalize(aside), glm::normalize(along)), 0.0f, 1e-3f);
+    expect_near(glm::normalize(aside), mesh.normals[i], 1e-4f);
+  }
+  EXPECT_EQ(mesh.triangles.size(), 2u * 4 * 8);
+}
+
+TEST(PbrtShapes, CurvesOfAllBasesArePbrts) {
+  // Quadratic and cubic, of Bezier and of B-splines: de Boor's values at the knots.
+  const auto ends = [](const std::string& parameters) {
+    const Mesh mesh = only_mesh(checks +
+                                "Shape \"curve\" \"string type\" \"cylinder\" "
+                                "\"float width\" 1e-4 " +
+                                parameters);
+    return std::pair(at_uv(mesh, 0, 0), at_uv(mesh, 1, 0));
+  };
+  const std::string points = "\"point3 P\" [0 0 0  6 0 0  6 6 0  6 6 6  0 6 6] ";
+  const auto [a, b] = ends("\"integer degree\" 2 " + points);
+  expect_near(a, {0, 0, 0}, 1e-3f), expect_near(b, {6, 6, 0}, 1e-3f);
+  const auto [c, d] = ends("\"string basis\" \"bspline\" \"integer degree\" 2 " + points);
+  expect_near(c, {3, 0, 0}, 1e-3f), expect_near(d, {6, 3, 0}, 1e-3f);
+  const auto [e, f] = ends("\"string basis\" \"bspline\" " + points);
+  expect_near(e, {5, 1, 0}, 1e-3f), expect_near(f, {6, 5, 1}, 1e-3f);
+  EXPECT_NE(pbrt_error(pbrt_world("Shape \"curve\" " + points)).find("5 points in 'P'; expected"),
+            std::string::npos);
+}
+
+TEST(PbrtShapes, RibbonsLieAcrossTheirNormals) {
+  const Mesh mesh = only_mesh(checks +
+                              "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" .4 "
+                              "\"normal N\" [0 0 1  0 1 0] "
+                              "\"point3 P\" [0 0 0  1 0 0  2 0 0  3 0 0]");
+  EXPECT_NEAR(std::abs(at_uv(mesh, 0, 0).y), 0.2f, 1e-5f);
+  EXPECT_NEAR(std::abs(at_uv(mesh, 1, 1).z), 0.2f, 1e-5f);
+  const Vec3 middle = at_uv(mesh, 0.5f, 1) - at_uv(mesh, 0.5f, 0);
+  EXPECT_NEAR(std::abs(middle.y), 0.4f * std::sqrt(0.5f), 1e-5f);
+  EXPECT_EQ(mesh.triangles.size(), 2u * 4);
+  const std::string flat = pbrt_world(lit + "Shape \"curve\" " + bend);
+  EXPECT_EQ(load_pbrt_text(flat).count("a tube is used"), 1);
+}
+
+TEST(PbrtShapes, MappingsOfTexturesByPoints) {
+  const auto mapped = [](const std::string& mapping, const std::string& shape) {
+    return only_mesh(
+        "Translate 1 0 0 Scale 2 2 2\nTexture \"t\" \"spectrum\" \"checkerboard\" "
+        "\"string mapping\" " +
+        mapping +
+        "\nMaterial \"diffuse\" \"texture "
+        "reflectance\" \"t\" Translate 3 0 0 " +
+        shape);
+  };
+  const std::string disk = "Shape \"disk\" \"float height\" 1";
+  // In the texture's space, where the disk is moved by 3 along x.
+  const Mesh plane = mapped(
+      "\"planar\" \"vector3 v1\" [0 2 0] \"vector3 v2\" [1 0 0] \"float "
+      "udelta\" .5",
+      disk);
+  const Mesh ball = mapped("\"spherical\"", disk), tube = mapped("\"cylindrical\"", disk);
+  const auto own = [](const Vec3& world) { return (world - Vec3(1, 0, 0)) / 2.0f; };
+  for (std::size_t i = 0; i < plane.positions.size(); ++i) {
+    const Vec3 p = own(plane.positions[i]);
+    EXPECT_NEAR(plane.uvs[i].x, 0.5f + 2 * p.y, 1e-5f);
+    EXPECT_NEAR(plane.uvs[i].y, p.x, 1e-5f);
+  }
+  for (std::size_t i = 0; i < ball.positions.size(); ++i) {
+    const Vec3 p = own(ball.positions[i]);
+    EXPECT_NEAR(std::cos(ball.uvs[i].x * pi), 1 / glm::length(p), 1e-4f);
+    EXPECT_NEAR(std::tan(ball.uvs[i].y * 2 * pi), p.y / p.x, 1e-4f);
+    EXPECT_NEAR(tube.uvs[i].y, 1.0f, 1e-5f);
+    EXPECT_NEAR(std::tan(tube.uvs[i].x * 2 * pi), p.y / p.x, 1e-4f);
+  }
+}
+
+TEST(PbrtShapes, TrianglesAcrossASeamAreNotTurnedAround) {
+  const Mesh mesh = only_mesh(
+      "Texture \"t\" \"spectrum\" \"checkerboard\" \"string mapping\" \"cylindrical\"\n"
+      "Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\" \"float zmax\" .99");
+  for (const TriangleIndices& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const float step = mesh.uvs[t.v[i]].x - mesh.uvs[t.v[(i + 1) % 3]].x;
+      EXPECT_LT(std::abs(step), 0.01f);
+    }
+  }
+}
+
+TEST(PbrtShapes, OneSurfaceHasOneMapping) {
+  const auto texture = [](const char* name, const char* mapping) {
+    return fmt::format("Texture \"{}\" \"spectrum\" \"checkerboard\" \"string mapping\" \"{}\"\n",
+                       name, mapping);
+  };
+  const std::string text =
+      texture("a", "planar") + texture("b", "uv") +
+      "MakeNamedMaterial \"x\" \"string type\" \"diffuse\" \"texture "
+      "reflectance\" \"a\" MakeNamedMaterial \"y\" \"string type\" \"diffuse\" "
+      "\"texture reflectance\" \"b\"\n";
+  const auto warnings = [&](const std::string& material) {
+    return load_pbrt_text(pbrt_world(lit + text + material + " Shape \"disk\""))
+        .count("textures of different mappings on one surface");
+  };
+  EXPECT_EQ(warnings("Material \"mix\" \"string materials\" [ \"x\" \"y\" ]"), 1);
+  EXPECT_EQ(warnings("Material \"mix\" \"string materials\" [ \"x\" \"x\" ]"), 0);
+  EXPECT_EQ(warnings("NamedMaterial \"y\" Shape \"disk\" NamedMaterial \"x\""), 0);
+}
+
 TEST(PbrtShapes, ObjectsAreInstanced) {
   const SceneData scene = load_pbrt_silently(pbrt_world(
       lit +

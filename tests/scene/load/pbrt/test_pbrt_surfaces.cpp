@@ -61,10 +61,12 @@ TEST(PbrtSurfaces, AreThoseOfMitsuba) {
   const std::string plastic =
       "<rgb name='diffuse_reflectance' value='.1 .2 .3'/><boolean name='nonlinear' value='true'/>"
       "<float name='int_ior' value='1.5'/><float name='ext_ior' value='1'/></bsdf>";
-  expect_same(pbrt_material("Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3]"),
-              mitsuba_material("<bsdf type='plastic'>" + plastic));
+  expect_same(
+      pbrt_material(
+          "Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] \"float thickness\" 0"),
+      mitsuba_material("<bsdf type='plastic'>" + plastic));
   expect_same(pbrt_material("Material \"coateddiffuse\" \"rgb reflectance\" [.1 .2 .3] "
-                            "\"float roughness\" .09"),
+                            "\"float roughness\" .09 \"float thickness\" 0"),
               mitsuba_material("<bsdf type='roughplastic'><string name='distribution' value='ggx'/>"
                                "<float name='alpha' value='.3'/>" +
                                plastic));
@@ -120,7 +122,8 @@ TEST(PbrtSurfaces, DiffuseTransmissionSharesTheLight) {
 
 TEST(PbrtSurfaces, ACoatedMirrorKeepsItsEnergy) {
   // A perfect metal below a clear coat reflects everything.
-  const std::string metal = "Material \"coatedconductor\" \"rgb reflectance\" [1 1 1]";
+  const std::string metal =
+      "Material \"coatedconductor\" \"rgb reflectance\" [1 1 1] \"float thickness\" 0";
   expect_near(furnace(metal, wall), Color(1.0f), 0.01f);
 }
 
@@ -229,6 +232,31 @@ TEST(PbrtTextures, ScaleAndMixOfTextures) {
       "Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [1 0 0] "
       "\"rgb tex2\" [0 1 0] \"float amount\" .25\n");
   expect_near(plain.at(0.25f, 0.25f), {0.75f, 0.25f, 0});
+}
+
+TEST(PbrtTextures, ANumberIsTheAlphaOfAPictureThatHasOne) {
+  const TempFolder folder;
+  // TGA, 2 x 1 pixels of B G R A: white and transparent, grey and half so.
+  const auto write = [&](int first, int second) {
+    std::string bytes("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\1\0\40\10", 18);
+    for (const int b : {255, 255, 255, first, 128, 128, 128, second}) bytes += static_cast<char>(b);
+    write_text(folder.file("a.tga"), bytes);
+  };
+  const auto opacity = [&](float u) {
+    write_text(folder.file("scene.pbrt"),
+               pbrt_world(lit + "Texture \"a\" \"float\" \"imagemap\" \"string filename\" "
+                                "\"a.tga\" \"string filter\" \"point\" Shape \"disk\" \"texture "
+                                "alpha\" \"a\""));
+    const SceneData scene = load_pbrt_file(folder.file("scene.pbrt")).scene;
+    const auto& o = scene.materials[scene.meshes.at(0).material].opacity;
+    return sample_texture(scene.textures.data(), o.texture, scene.texels.data(), {u, 0.5f}).x;
+  };
+  write(0, 51);
+  EXPECT_NEAR(opacity(0.25f), 0.0f, 1e-5f);
+  EXPECT_NEAR(opacity(0.75f), 0.2f, 1e-5f);
+  write(255, 255);
+  EXPECT_NEAR(opacity(0.25f), 1.0f, 1e-5f);
+  EXPECT_NEAR(opacity(0.75f), 0.2159f, 1e-3f);  // of sRGB
 }
 
 TEST(PbrtTextures, DisplacementOfAMaterialIsABumpMap) {

@@ -49,7 +49,7 @@ TEST(PbrtSyntax, ErrorsNameLineAndColumn) {
   expect_error("ObjectBegin \"a\" AttributeEnd", "scene.pbrt:2:17: AttributeEnd without");
   expect_error("ObjectInstance \"a\"", "scene.pbrt:2:1: there is no object 'a'");
   expect_error("Film \"rgb\"", "scene.pbrt:2:1: Film after WorldBegin");
-  expect_error("NamedMaterial \"a\" Shape \"sphere\"", "scene.pbrt: there is no material 'a'");
+  expect_error("NamedMaterial \"a\" Shape \"sphere\"", "scene.pbrt:2:19: there is no material 'a'");
   expect_error("Rotate 10 0 0 0", "scene.pbrt:2:1: Rotate about an axis of length zero");
   expect_error("LookAt 0 0 0  0 1 0  0 1 0", "scene.pbrt:2:1: LookAt: expected two different");
   expect_error("Material \"diffuse\" \"rgb reflectance\" [1 -1 0] Shape \"sphere\"",
@@ -65,12 +65,12 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
   const std::string sphere = "Shape \"sphere\" \"float radios\" 2\n";
   const LoadedScene loaded = load_pbrt_text(
       pbrt_world(lit + sphere + sphere +
-                 "Shape \"curve\"\nLightSource \"laser\"\nMaterial \"cheese\"\n" + sphere));
+                 "Shape \"torus\"\nLightSource \"laser\"\nMaterial \"cheese\"\n" + sphere));
   EXPECT_EQ(loaded.count("parameter 'float radios' of Shape 'sphere' is not supported and ignored; "
                          "expected one of alpha, phimax, radius, zmax, zmin"),
             1);
   EXPECT_EQ(loaded.count("scene.pbrt:7:16: "), 1);
-  EXPECT_EQ(loaded.count("shape 'curve' is not supported: it is left out"), 1);
+  EXPECT_EQ(loaded.count("shape 'torus' is not supported: it is left out"), 1);
   EXPECT_EQ(loaded.count("light 'laser' is not supported"), 1);
   EXPECT_EQ(loaded.count("material 'cheese' is not known: diffuse grey is used"), 1);
   EXPECT_EQ(loaded.warnings.size(), 4u);
@@ -78,6 +78,40 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
   LoadOptions strict;
   strict.strict = true;
   EXPECT_NE(pbrt_error(pbrt_world(lit + sphere), strict).find("(--strict)"), std::string::npos);
+}
+
+TEST(PbrtSyntax, AMissingFileIsNamedWhereItIsNamed) {
+  for (const char* name : {"none.ply", "none.ply.gz"}) {
+    const std::string message =
+        pbrt_error(pbrt_world(lit + "Shape \"plymesh\" \"string filename\" \"" + name + "\""));
+    EXPECT_EQ(message.substr(0, 17), "scene.pbrt:7:17: ") << message;
+    EXPECT_NE(message.find(name), std::string::npos) << message;
+  }
+}
+
+TEST(PbrtSyntax, MessagesAreOneLineWhateverNamesContain) {
+  for (const char* text :
+       {"Shape \"sphere\" \"no\\nparameter at all\" 1", "NamedMaterial \"a\\nb\" Shape \"sphere\"",
+        "Material \"mix\" \"string materials\" [\"a\\n\" \"b\"] Shape \"sphere\"",
+        "Include \"a\\nb\"", "ObjectInstance \"a\\nb\""}) {
+    const std::string message = pbrt_error(pbrt_world(lit + text));
+    EXPECT_EQ(message.substr(0, 13), "scene.pbrt:7:") << message;
+    EXPECT_EQ(message.find('\n'), message.npos) << message;
+  }
+  const LoadedScene loaded =
+      load_pbrt_text(pbrt_world(lit + "Material \"a\\nb\" Shape \"sphere\""));
+  EXPECT_EQ(loaded.count("material 'a b' is not known"), 1);
+}
+
+TEST(PbrtSyntax, MediaAreReportedWhereThereAreAny) {
+  const auto count = [](const std::string& names) {
+    return load_pbrt_text(pbrt_world(lit + "MediumInterface " + names + " Shape \"sphere\""))
+        .count("media are not supported");
+  };
+  EXPECT_EQ(count("\"\" \"\""), 0);
+  EXPECT_EQ(count("\"\""), 0);
+  EXPECT_EQ(count("\"\" \"fog\""), 1);
+  EXPECT_EQ(count("\"fog\""), 1);
 }
 
 TEST(PbrtSyntax, IncludedFilesShareTheStateAndImportedOnesDoNot) {

@@ -6,6 +6,7 @@
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/load/files/studio.h"
+#include "common/scene/load/pbrt/colors/white_balance.h"
 #include "common/scene/load/pbrt/description/read_description.h"
 #include "common/scene/load/pbrt/lights/lights.h"
 #include "common/scene/load/pbrt/shapes/shapes.h"
@@ -47,6 +48,7 @@ SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& option
   pbrt::read_view(context);
   pbrt::add_lights(context);
   pbrt::add_shapes(context);
+  if (context.white_kelvins > 0.0f) pbrt::balance_lights(scene, double{context.white_kelvins});
   complete(context);
   return scene;
 }

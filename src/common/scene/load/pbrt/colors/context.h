@@ -8,6 +8,7 @@
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/images/texture_store.h"
 #include "common/scene/load/pbrt/description/description.h"
+#include "common/scene/load/pbrt/description/texture_mapping.h"
 
 namespace pt::pbrt {
 
@@ -25,6 +26,7 @@ class Context {
   Reporter& reporter;
   TextureStore textures;
   float imaging_ratio = 1.0f;  ///< of the film: multiplies all light
+  float white_kelvins = 0.0f;  ///< what the film takes for white; 0: takes all as it is
 
   /// The number of a material; one that is there already is not added.
   std::uint32_t add_material(const MaterialDescription& material);
@@ -36,10 +38,16 @@ class Context {
   /// By texture, while its value is being made: what refers to itself is an error.
   std::set<const Entity*> open_entities;
 
+  /// Whether a picture has an alpha that is not 1 everywhere.
+  bool has_alpha(const std::filesystem::path& path);
+
+  std::vector<TextureMapping> mappings;  ///< of the textures read since this was cleared
+
   bool lit = false;  ///< a light of the file is in the scene
 
  private:
   std::map<std::string, std::uint32_t> materials_;  ///< by all that they say
+  std::map<std::filesystem::path, bool> alphas_;
 };
 
 /// Marks an entity as open; throws Error where it is that already.

@@ -57,7 +57,7 @@ std::vector<double> read_samples(Context& context, const Parameter& parameter) {
     }
   } catch (const Error& error) {
     fail(parameter.place, fmt::format("'{}' is no spectrum that is known by name and no file: {}",
-                                      path.string(), error.what()));
+                                      parameter.strings[0], error.what()));
   }
   return numbers;
 }

@@ -98,9 +98,13 @@ void Interpreter::medium(const Directive& directive) {
   if (directive.name == "MakeNamedMedium") {
     read_entity(directive, "medium");
   } else {
-    name_after(directive);
+    // One name is for both sides; an empty one is no medium.
+    bool is_empty = name_after(directive).empty();
     const Token* second = directive.tokens.peek();
-    if (second && second->kind == TokenKind::string) directive.tokens.next();
+    if (second && second->kind == TokenKind::string) {
+      is_empty = directive.tokens.next()->text.empty() && is_empty;
+    }
+    if (is_empty) return;
   }
   reporter_.warn_once("medium", directive.place,
                       "media are not supported: shapes are empty, and light passes through those "

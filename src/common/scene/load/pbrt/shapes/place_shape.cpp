@@ -7,24 +7,10 @@
 
 #include "common/geometry/bounds.h"
 #include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/pbrt/shapes/map_vertices.h"
 
 namespace pt::pbrt {
 namespace {
-
-/// Each triangle gets vertices of its own with the coordinates that pbrt gives it.
-void add_default_uvs(Mesh& mesh) {
-  Mesh split;
-  for (const TriangleIndices& t : mesh.triangles) {
-    const auto first = static_cast<std::uint32_t>(split.positions.size());
-    for (const std::uint32_t v : t.v) {
-      split.positions.push_back(mesh.positions[v]);
-      if (!mesh.normals.empty()) split.normals.push_back(mesh.normals[v]);
-    }
-    split.uvs.insert(split.uvs.end(), {{0, 0}, {1, 0}, {1, 1}});
-    split.triangles.push_back({{first, first + 1, first + 2}});
-  }
-  mesh = std::move(split);
-}
 
 double area_of(const Mesh& mesh) {
   double sum = 0;
@@ -98,8 +84,9 @@ bool turns(const ShapeEntity& entity, bool is_quadric, bool emits) {
 void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial& shape,
                 bool is_quadric, Mesh mesh) {
   const Affine& to_world = entity.shape.to_world;
-  if (mesh.uvs.empty() && shape.textured) add_default_uvs(mesh);
+  if (mesh.uvs.empty() && shape.textured && shape.mapping.is_uv()) add_default_uvs(mesh);
   transform_mesh(mesh, to_world);
+  if (shape.textured) map_vertices(mesh, shape.mapping);
   for (const Vec3& p : mesh.positions) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
       fail(entity.shape.parameters.place(), "a shape that reaches farther than numbers do");
@@ -131,8 +118,8 @@ bool place_sphere(Context& context, const ShapeEntity& entity, const ShapeMateri
   const Affine& to_world = entity.shape.to_world;
   const std::optional<float> factor = uniform_scale(to_world);
   const bool inside_out = turns(entity, true, shape.emits);
-  if (!factor || entity.group != 0 || !shape.material.opacity.is_opaque() ||
-      shape.material.emission.texture != no_texture ||
+  if (!factor || entity.group != 0 || (shape.textured && !shape.mapping.is_uv()) ||
+      !shape.material.opacity.is_opaque() || shape.material.emission.texture != no_texture ||
       (shape.emits && (inside_out || shape.two_sided))) {
     return false;
   }

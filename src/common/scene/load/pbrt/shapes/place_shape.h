@@ -10,7 +10,8 @@ void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial
                 bool is_quadric, Mesh mesh);
 
 /// A whole sphere around the entity's origin, where ours can be as pbrt's: unless it is squeezed,
-/// repeated, masked, or a lamp that shows a picture or shines inward. Tells whether.
+/// repeated, masked, textured by its points, or a lamp that shows a picture or shines inward. Tells
+/// whether.
 bool place_sphere(Context& context, const ShapeEntity& entity, const ShapeMaterial& material,
                   float radius);
 

@@ -16,6 +16,7 @@ Mesh read_loop_mesh(Context& context, const Entity& entity, const ShapeMaterial&
 Mesh read_sphere(Context& context, const Entity& entity, const ShapeMaterial& material);
 Mesh read_disk(Context& context, const Entity& entity, const ShapeMaterial& material);
 Mesh read_cylinder(Context& context, const Entity& entity, const ShapeMaterial& material);
+Mesh read_curve(Context& context, const Entity& entity, const ShapeMaterial& material);
 
 /// The radius of a whole sphere, or none of one that is cut.
 std::optional<float> whole_sphere(const Entity& entity);

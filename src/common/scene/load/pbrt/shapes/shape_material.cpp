@@ -33,10 +33,14 @@ float mean_luminance(const Image& image) {
 
 }  // namespace
 
-const Surface& ShapeMaterials::surface_of(const MaterialReference& reference) {
+const Surface& ShapeMaterials::surface_of(const ShapeEntity& shape) {
+  const MaterialReference& reference = shape.material;
   const auto found = surfaces_.find(reference);
   if (found != surfaces_.end()) return found->second;
-  return surfaces_.emplace(reference, read_surface(context_, reference)).first->second;
+  context_.mappings.clear();
+  Surface surface = read_surface(context_, reference, shape.shape.parameters.place());
+  surface.mappings = context_.mappings;
+  return surfaces_.emplace(reference, std::move(surface)).first->second;
 }
 
 /// The picture of an area light is looked up like a texture.
@@ -96,10 +100,11 @@ void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) 
 }
 
 ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
-  const Surface& surface = surface_of(shape.material);
+  const Surface& surface = surface_of(shape);
   ShapeMaterial result;
   result.material = surface.material;
   result.invisible = surface.invisible;
+  context_.mappings = surface.mappings;
   const ColorTexture alpha = read_number_texture(context_, shape.shape.parameters, "alpha", 1.0f);
   if (!surface.invisible) {
     result.material.opacity = alpha.is_constant()
@@ -108,6 +113,9 @@ ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
     result.invisible = alpha.is_constant() && alpha.color.x <= 0.0f;
   }
   if (shape.area_light) add_light(shape, result);
+  if (result.material.emission.texture != no_texture) context_.mappings.emplace_back();
+  result.mapping =
+      common_mapping(context_.mappings, shape.shape.parameters.place(), context_.reporter);
   result.textured = is_textured(context_.scene, result.material);
   result.tangents = needs_tangents(context_.scene, result.material);
   return result;

@@ -13,8 +13,9 @@ struct ShapeMaterial {
   float light_mean = 1.0f;  ///< mean luminance of the picture that it shows; power counts it
 
   // What it needs of a shape:
-  bool textured = false;  ///< texture coordinates
-  bool tangents = false;  ///< and the directions in which they grow
+  bool textured = false;   ///< texture coordinates
+  TextureMapping mapping;  ///< which these are
+  bool tangents = false;   ///< and the directions in which they grow
 };
 
 /// Reads each material and each area light once.
@@ -30,7 +31,7 @@ class ShapeMaterials {
     bool two_sided = false;
     float power = 0.0f, mean = 1.0f;
   };
-  const Surface& surface_of(const MaterialReference& reference);
+  const Surface& surface_of(const ShapeEntity& shape);
   const AreaLight& light_of(const Entity& entity);
   void add_light(const ShapeEntity& shape, ShapeMaterial& result);
 

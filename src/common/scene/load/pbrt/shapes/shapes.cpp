@@ -21,7 +21,7 @@ const std::map<std::string_view, Kind>& kinds() {
       {"trianglemesh", {read_triangle_mesh}}, {"plymesh", {read_ply_mesh}},
       {"bilinearmesh", {read_bilinear_mesh}}, {"loopsubdiv", {read_loop_mesh}},
       {"sphere", {read_sphere, true}},        {"disk", {read_disk, true}},
-      {"cylinder", {read_cylinder, true}},
+      {"cylinder", {read_cylinder, true}},    {"curve", {read_curve}},
   };
   return table;
 }
@@ -34,7 +34,7 @@ void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& mate
     return context.reporter.warn_once(
         "shape " + type, parameters.place(),
         fmt::format("shape '{}' is not supported: it is left out; expected trianglemesh, plymesh, "
-                    "bilinearmesh, loopsubdiv, sphere, disk or cylinder",
+                    "bilinearmesh, loopsubdiv, sphere, disk, cylinder or curve",
                     type));
   }
   const ShapeMaterial material = materials.read(entity);

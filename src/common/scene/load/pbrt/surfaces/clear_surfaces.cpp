@@ -43,7 +43,8 @@ Surface read_mix_material(Context& context, const Parameters& parameters) {
          fmt::format("mix: {} names in 'string materials'; expected 2", names.size()));
   }
   const ColorTexture amount = read_number_texture(context, parameters, "amount", 0.5f);
-  const Surface first = read_surface(context, names[0]), second = read_surface(context, names[1]);
+  const Surface first = read_surface(context, names[0], parameters.place());
+  const Surface second = read_surface(context, names[1], parameters.place());
   if (first.invisible || second.invisible) {
     fail(parameters.place(), "mix: expected two materials, of which none is 'interface'");
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/scene/data/plastic_material.h"
 #include "common/scene/load/pbrt/surfaces/surface_kinds.h"
@@ -61,10 +62,14 @@ Surface read_coated_diffuse(Context& context, const Parameters& parameters) {
                                "a medium in a coat ('albedo', 'g') is not supported: the coat is "
                                "clear");
   }
-  parameters.ignore({"maxdepth", "nsamples", "g", "thickness"});
+  parameters.ignore({"maxdepth", "nsamples", "g"});
   const Roughness roughness = read_roughness(context, parameters);
   report_anisotropy(context, parameters, roughness);
-  return coated(read_color_texture(context, parameters, "reflectance", Color(0.5f)),
+  const ColorTexture body = read_color_texture(context, parameters, "reflectance", Color(0.5f));
+  // A coat absorbs exp(-thickness / cos) on each way, whatever its medium. Between what light on
+  // its way out meets and the mean of all directions, ways to the body and back are 3 thicknesses
+  // long.
+  return coated(scaled(body, std::exp(-3.0f * read_thickness(context, parameters))),
                 read_index(context, parameters, "eta", 1.5f), roughness);
 }
 

@@ -93,24 +93,32 @@ Roughness read_roughness(Context& context, const Parameters& parameters, const s
   return {along(prefix + "uroughness"), along(prefix + "vroughness")};
 }
 
+float read_thickness(Context& context, const Parameters& parameters) {
+  const float thickness = read_plain_number(context, parameters, "thickness", 0.01f);
+  if (thickness >= 0.0f) return thickness;
+  fail(parameters.place(), fmt::format("{}: a thickness below 0", parameters.what()));
+}
+
 Surface read_conductor(Context& context, const Parameters& parameters) {
   const MetalIndex metal = read_metal(context, parameters, "", 1.0f);
   return conductor_of(metal, read_roughness(context, parameters));
 }
 
 /// A blend of the coat's reflection and the metal's below it. Along the normal the sum is right,
-/// also of what is reflected to and fro: F + (1 - F)^2 R / (1 - F R).
+/// also of what is reflected to and fro and absorbed on its way: F + (1 - F)^2 R / (1 - F R).
 Surface read_coated_conductor(Context& context, const Parameters& parameters) {
   report_replaced(context, parameters,
                   "a blend of its metal and a mirror that reflects as its coat along the normal is "
                   "used");
-  parameters.ignore({"thickness", "maxdepth", "nsamples", "g", "albedo"});
+  parameters.ignore({"maxdepth", "nsamples", "g", "albedo"});
   const float eta = read_index(context, parameters, "interface.eta", 1.5f);
   const MetalIndex metal = read_metal(context, parameters, "conductor.", eta);
   const float F = fresnel_dielectric(1.0f, eta);
   Surface below = conductor_of(metal, read_roughness(context, parameters, "conductor."));
-  const Color R = fresnel_conductor(1.0f, metal.eta.color, metal.k.color);
-  below.material.parameters[Conductor::Index::tint].value = Color(1.0f - F) / (Color(1.0f) - F * R);
+  const float T = std::exp(-2.0f * read_thickness(context, parameters));
+  const Color R = T * fresnel_conductor(1.0f, metal.eta.color, metal.k.color);
+  below.material.parameters[Conductor::Index::tint].value =
+      T * Color(1.0f - F) / (Color(1.0f) - F * R);
   const MetalIndex mirror{{Color(0.0f)}, {Color(1.0f)}};  // reflects everything
   const Surface coat = conductor_of(mirror, read_roughness(context, parameters, "interface."));
   return blend(context, {Color(F)}, below, coat);

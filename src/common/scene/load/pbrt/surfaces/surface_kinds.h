@@ -43,6 +43,9 @@ struct Roughness {
 Roughness read_roughness(Context& context, const Parameters& parameters,
                          const std::string& prefix = {}, float fallback = 0.0f);
 
+/// Of a coat.
+float read_thickness(Context& context, const Parameters& parameters);
+
 /// Reports, once for the material's kind, that it is replaced `by` something.
 void report_replaced(Context& context, const Parameters& parameters, std::string_view by);
 

@@ -95,17 +95,16 @@ void report_replaced(Context& context, const Parameters& parameters, std::string
                              fmt::format("{} is not supported: {}", parameters.what(), by));
 }
 
-Surface read_surface(Context& context, const MaterialReference& reference) {
+Surface read_surface(Context& context, const MaterialReference& reference, const Place& place) {
   if (const auto* pointer = std::get_if<EntityPointer>(&reference)) {
     return *pointer ? read_entity(context, **pointer, (*pointer)->type) : default_surface();
   }
   const std::string& name = std::get<std::string>(reference);
   const auto found = context.description.materials.find(name);
   if (found == context.description.materials.end()) {
-    throw Error(
-        fmt::format("{}: there is no material '{}'; expected one that MakeNamedMaterial "
-                    "defines",
-                    *context.description.place.file, name));
+    fail(place,
+         fmt::format("there is no material '{}'; expected one that MakeNamedMaterial defines",
+                     name));
   }
   const Parameters& parameters = found->second->parameters;
   const Parameter* type = parameters.find("type", {"string"});

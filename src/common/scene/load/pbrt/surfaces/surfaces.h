@@ -8,11 +8,12 @@ namespace pt::pbrt {
 /// What a material becomes.
 struct Surface {
   MaterialDescription material;
-  bool invisible = false;  ///< light passes as if nothing were there
+  bool invisible = false;                     ///< light passes as if nothing were there
+  std::vector<TextureMapping> mappings = {};  ///< of its textures
 };
 
-/// Each replacement is reported once for its kind. Adding a material is adding a line to the table
-/// in surfaces.cpp.
-Surface read_surface(Context& context, const MaterialReference& reference);
+/// An Error about a name that is not defined has `place`. Each replacement is reported once for its
+/// kind. Adding a material is adding a line to the table in surfaces.cpp.
+Surface read_surface(Context& context, const MaterialReference& reference, const Place& place);
 
 }  // namespace pt::pbrt

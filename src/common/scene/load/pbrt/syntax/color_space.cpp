@@ -46,6 +46,8 @@ std::optional<ColorSpace> color_space_named(std::string_view name) {
   return std::nullopt;
 }
 
+DMat3 xyz_from_srgb() { return xyz_from_rgb(spaces[0]); }
+
 Color to_srgb(const Color& color, ColorSpace space) {
   if (space == ColorSpace::srgb) return color;
   return srgb_of_xyz(xyz_from_rgb(spaces[static_cast<std::size_t>(space)]) * DVec3(color));

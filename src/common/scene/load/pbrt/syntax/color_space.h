@@ -15,6 +15,9 @@ inline constexpr const char* color_space_names = "srgb, dci-p3, rec2020 or aces2
 /// None for a name that pbrt does not know.
 std::optional<ColorSpace> color_space_named(std::string_view name);
 
+/// Linear sRGB to CIE XYZ, white with Y = 1.
+glm::dmat3 xyz_from_srgb();
+
 /// Linear colour of the space as linear sRGB; components outside of its gamut become 0.
 Color to_srgb(const Color& color, ColorSpace space);
 

@@ -15,6 +15,10 @@ struct Place {
   std::string text() const;
 };
 
+/// "FILE:LINE:COLUMN: message" in one line: names in files may contain control characters, which
+/// become spaces.
+std::string message_at(const Place& place, std::string_view message);
+
 /// Throws Error with the place.
 [[noreturn]] void fail(const Place& place, std::string_view message);
 

@@ -16,12 +16,12 @@ class Reporter {
 
   /// Reports what is replaced or ignored, once for each `kind`.
   void warn_once(const std::string& kind, const Place& place, const std::string& message) {
-    if (warned_.insert(kind).second) options_.report(place.text() + ": " + message);
+    if (warned_.insert(kind).second) options_.report(message_at(place, message));
   }
 
   /// Says what was chosen where the file leaves it open.
   void note(const Place& place, const std::string& message) const {
-    if (options_.warn) options_.warn(place.text() + ": " + message);
+    if (options_.warn) options_.warn(message_at(place, message));
   }
 
   const LoadOptions& options() const { return options_; }

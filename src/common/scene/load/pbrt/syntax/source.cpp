@@ -1,5 +1,6 @@
 #include "common/scene/load/pbrt/syntax/source.h"
 
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -51,9 +52,13 @@ std::string decompress(std::string_view bytes) {
 }  // namespace
 
 std::string read_source(const std::filesystem::path& path) {
-  const MappedFile file(path);
-  if (file.bytes().starts_with("\x1f\x8b")) return decompress(file.bytes());
-  return std::string(file.bytes());
+  try {
+    const MappedFile file(path);
+    if (file.bytes().starts_with("\x1f\x8b")) return decompress(file.bytes());
+    return std::string(file.bytes());
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+  }
 }
 
 }  // namespace pt::pbrt

@@ -7,7 +7,7 @@
 namespace pt::pbrt {
 
 /// All of a file; one that gzip has compressed, as its first bytes tell, is decompressed. Throws
-/// Error, without the file's name, where that cannot be.
+/// Error with the file's name where that cannot be.
 std::string read_source(const std::filesystem::path& path);
 
 }  // namespace pt::pbrt

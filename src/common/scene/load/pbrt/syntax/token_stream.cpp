@@ -17,13 +17,7 @@ constexpr std::size_t most_files = 64;  // in each other
 TokenStream::TokenStream(const std::filesystem::path& path) { open(path); }
 
 void TokenStream::open(const std::filesystem::path& path) {
-  std::string content;
-  try {
-    content = read_source(path);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path.string(), error.what()));
-  }
-  files_.push_back({path, Tokenizer(std::move(content), path.string())});
+  files_.push_back({path, Tokenizer(read_source(path), path.string())});
   last_ = files_.back().tokens.place();
 }
 

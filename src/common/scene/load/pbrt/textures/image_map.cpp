@@ -64,11 +64,14 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
 
 ColorTexture add_file(Context& context, const Parameter& filename, const Texture& look,
                       const TextureUse& use) {
-  // A number is the mean of what a picture has.
-  std::optional<Color> weights;
-  if (use.is_number) weights = Color(1.0f / 3.0f);
   const auto path = context.resolve(filename.place, filename.strings.at(0));
   try {
+    // A number is the alpha of a picture that has one, else the mean of its colours.
+    if (use.is_number && context.has_alpha(path)) {
+      return {Color(1.0f), context.textures.add_alpha_of(context.textures.add_file(path, look))};
+    }
+    std::optional<Color> weights;
+    if (use.is_number) weights = Color(1.0f / 3.0f);
     return {Color(1.0f), context.textures.add_file(path, look, weights)};
   } catch (const Error& error) {
     fail(filename.place, error.what());
@@ -86,7 +89,7 @@ ColorTexture read_image_map(Context& context, const Entity& entity, const Textur
   look.format = encoding.is_srgb ? TextureFormat::srgb8 : TextureFormat::linear8;
   look.wrap_u = look.wrap_v = read_wrap(context, parameters);
   read_filter(context, parameters, look);
-  read_mapping(context, parameters, look);
+  read_mapping(context, entity, look);
   const float scale = parameters.number("scale", 1.0f);
   const bool invert = parameters.boolean("invert", false);
   if (!(scale >= 0.0f)) fail(parameters.place(), "imagemap: expected a scale that is not negative");

@@ -1,18 +1,52 @@
 // Textures made of others, and how all lie on surfaces.
 #include <fmt/format.h>
 
+#include "common/scene/load/pbrt/description/transforms.h"
 #include "common/scene/load/pbrt/textures/bake.h"
 #include "common/scene/load/pbrt/textures/texture_kinds.h"
 
 namespace pt::pbrt {
 
-void read_mapping(Context& context, const Parameters& parameters, Texture& texture) {
-  const std::string mapping = parameters.text("mapping", "uv");
-  if (mapping != "uv") {
-    parameters.ignore({"v1", "v2"});
-    context.reporter.warn_once("mapping " + mapping, parameters.place(),
-                               fmt::format("mapping '{}' is not supported: uv is used", mapping));
+namespace {
+
+TextureMapping mapping_by_points(const Entity& entity, MappingKind kind) {
+  const Parameters& parameters = entity.parameters;
+  TextureMapping mapping;
+  mapping.kind = kind;
+  if (!is_invertible(entity.to_world)) {
+    fail(parameters.place(),
+         fmt::format("{}: its transformation has no inverse", parameters.what()));
   }
+  mapping.to_texture = inverse(entity.to_world);
+  if (kind != MappingKind::planar) return mapping;
+  mapping.u_axis = parameters.point("v1", mapping.u_axis);
+  mapping.v_axis = parameters.point("v2", mapping.v_axis);
+  mapping.shift = {parameters.number("udelta", 0.0f), parameters.number("vdelta", 0.0f)};
+  return mapping;
+}
+
+}  // namespace
+
+void read_mapping(Context& context, const Entity& entity, Texture& texture) {
+  const Parameters& parameters = entity.parameters;
+  static const std::map<std::string_view, MappingKind> kinds = {
+      {"uv", MappingKind::uv},
+      {"planar", MappingKind::planar},
+      {"spherical", MappingKind::spherical},
+      {"cylindrical", MappingKind::cylindrical}};
+  const std::string name = parameters.text("mapping", "uv");
+  const auto kind = kinds.find(name);
+  if (kind == kinds.end()) {
+    context.reporter.warn_once("mapping " + name, parameters.place(),
+                               fmt::format("mapping '{}' is not known: uv is used; expected uv, "
+                                           "planar, spherical or cylindrical",
+                                           name));
+  }
+  if (kind != kinds.end() && kind->second != MappingKind::uv) {
+    context.mappings.push_back(mapping_by_points(entity, kind->second));
+    return;
+  }
+  context.mappings.emplace_back();
   texture.u_row[0] = parameters.number("uscale", 1.0f);
   texture.v_row[1] = parameters.number("vscale", 1.0f);
   texture.u_row[2] = parameters.number("udelta", 0.0f);
@@ -61,7 +95,7 @@ ColorTexture read_checkerboard(Context& context, const Entity& entity, const Tex
   const ColorTexture first = read_part(context, parameters, "tex1", 1.0f, use);
   const ColorTexture second = read_part(context, parameters, "tex2", 0.0f, use);
   Texture texture;
-  read_mapping(context, parameters, texture);
+  read_mapping(context, entity, texture);
   for (int i = 0; i < 3; ++i) texture.u_row[i] *= 0.5f, texture.v_row[i] *= 0.5f;
   texture.kind = TextureKind::checkerboard;
   texture.color0 = first.color, texture.color1 = second.color;

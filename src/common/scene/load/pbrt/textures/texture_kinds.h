@@ -21,7 +21,8 @@ ColorTexture read_checkerboard(Context& context, const Entity& entity, const Tex
 ColorTexture read_part(Context& context, const Parameters& parameters, std::string_view name,
                        float fallback, const TextureUse& use);
 
-/// uscale, vscale, udelta and vdelta; other mappings become these with a warning.
-void read_mapping(Context& context, const Parameters& parameters, Texture& texture);
+/// How the texture lies on surfaces: uscale and the like into its map, and all into
+/// Context::mappings.
+void read_mapping(Context& context, const Entity& entity, Texture& texture);
 
 }  // namespace pt::pbrt

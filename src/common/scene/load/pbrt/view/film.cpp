@@ -1,18 +1,15 @@
-// Film, filter, sampler and integrator.
+// The film, and all of the view.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "common/scene/load/pbrt/view/view.h"
-#include "common/scene/prepare/prepare_filter.h"
 
 namespace pt::pbrt {
 namespace {
 
 constexpr int most_pixels = 65535;  // a side
-constexpr int most_rays = 65535;
 
 /// pbrt's where the file has none.
 const Entity& or_default(const EntityPointer& entity, const Entity& fallback) {
@@ -51,6 +48,21 @@ void read_crop(const Parameters& parameters, SceneDefaults& defaults) {
   if (!(crop == CropWindow{0, 0, width, height})) defaults.crop = crop;
 }
 
+/// What cameras take for white, if nothing is said, is near ours.
+void read_white(Context& context, const Parameters& parameters, float fallback) {
+  const float kelvins = parameters.number("whitebalance", 0.0f);
+  if (kelvins != 0.0f && !(kelvins >= 1000.0f && kelvins <= 25000.0f)) {
+    fail(parameters.place(),
+         fmt::format("whitebalance {}; expected 0, or kelvins from 1000 to 25000", kelvins));
+  }
+  context.white_kelvins = kelvins != 0.0f ? kelvins : fallback;
+  if (kelvins == 0.0f) return;
+  context.reporter.warn_once("white balance", parameters.find("whitebalance")->place,
+                             fmt::format("whitebalance {} changes the colours of lights, not of "
+                                         "pixels: the same where surfaces are grey",
+                                         kelvins));
+}
+
 /// pbrt's sensor multiplies by the time of exposure and ISO / 100.
 void read_film(Context& context, const Entity& film) {
   const Parameters& parameters = film.parameters;
@@ -65,102 +77,16 @@ void read_film(Context& context, const Entity& film) {
   read_crop(parameters, defaults);
   context.imaging_ratio *= parameters.number("iso", 100.0f) / 100.0f;
   const std::string sensor = parameters.text("sensor", "cie1931");
-  const float balance = parameters.number("whitebalance", 0.0f);
-  if (sensor != "cie1931" || balance != 0.0f) {
-    context.reporter.warn_once("sensor", parameters.place(),
-                               fmt::format("the film's sensor '{}' and whitebalance {} are not "
-                                           "supported: the observer of 1931 sees the scene as it "
-                                           "is",
-                                           sensor, balance));
+  if (sensor != "cie1931") {
+    context.reporter.warn_once("sensor", parameters.find("sensor")->place,
+                               fmt::format("sensor '{}' is not supported: the observer of 1931 is "
+                                           "used, with the sensor's whitebalance",
+                                           sensor));
   }
+  read_white(context, parameters, sensor == "cie1931" ? 0.0f : 6500.0f);
   // About the file that pbrt would write, and what it does about fireflies.
   parameters.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue"});
   parameters.report_unused(context.reporter);
-}
-
-/// Ours have the radius that their other parameters give them.
-void read_filter(Context& context, const Entity& filter) {
-  const Parameters& p = filter.parameters;
-  const std::map<std::string_view, FilterKind> kinds = {{"box", FilterKind::box},
-                                                        {"triangle", FilterKind::tent},
-                                                        {"gaussian", FilterKind::gaussian},
-                                                        {"mitchell", FilterKind::mitchell},
-                                                        {"sinc", FilterKind::lanczos}};
-  const auto kind = kinds.find(filter.type);
-  if (kind == kinds.end()) {
-    p.ignore_all();
-    return context.reporter.warn_once("filter " + filter.type, p.place(),
-                                      fmt::format("filter '{}' is not known: box is used; expected "
-                                                  "box, triangle, gaussian, mitchell or sinc",
-                                                  filter.type));
-  }
-  FilterChoice choice = default_filter(kind->second);
-  float radius = 2.0f;
-  switch (choice.kind) {
-    case FilterKind::box:
-      choice.a = radius = p.number("xradius", 0.5f);
-      break;
-    case FilterKind::tent:
-      choice.a = radius = p.number("xradius", 2.0f);
-      break;
-    case FilterKind::gaussian:
-      choice.a = p.number("sigma", 0.5f);
-      radius = p.number("xradius", 1.5f);
-      break;
-    case FilterKind::mitchell:
-      choice.a = p.number("B", 1.0f / 3.0f), choice.b = p.number("C", 1.0f / 3.0f);
-      radius = p.number("xradius", 2.0f);
-      break;
-    case FilterKind::lanczos:
-      choice.a = p.number("tau", 3.0f);
-      radius = p.number("xradius", 4.0f);
-      break;
-  }
-  if (!(radius > 0.0f) || (choice.kind != FilterKind::mitchell && !(choice.a > 0.0f))) {
-    fail(p.place(), fmt::format("{}: expected sizes above 0", p.what()));
-  }
-  const bool other_shape = choice.kind == FilterKind::mitchell && radius != 2.0f;
-  if (other_shape || p.number("yradius", radius) != radius) {
-    context.reporter.warn_once("filter radius", p.place(),
-                               fmt::format("{}: a radius of our own is used, the same along x and "
-                                           "y",
-                                           p.what()));
-  }
-  context.scene.defaults.filter = choice;
-  p.report_unused(context.reporter);
-}
-
-void read_sampler(Context& context, const Entity& sampler) {
-  const Parameters& p = sampler.parameters;
-  int count = p.integer("pixelsamples", 16);
-  if (sampler.type == "stratified") {
-    const std::int64_t product = std::int64_t{p.integer("xsamples", 4)} * p.integer("ysamples", 4);
-    count = static_cast<int>(std::clamp<std::int64_t>(product, -1, 1 << 30));
-  }
-  p.ignore({"seed", "randomization", "jitter"});
-  if (count < 1) fail(p.place(), fmt::format("{} samples a pixel; expected 1 or more", count));
-  context.scene.defaults.spp = count;
-  p.report_unused(context.reporter);
-}
-
-/// Ways to compute the light of all paths, which is what we compute: how is not the scene's affair.
-const std::set<std::string_view> light_transport = {"bdpt",          "lightpath",  "mlt",
-                                                    "path",          "randomwalk", "simplepath",
-                                                    "simplevolpath", "sppm",       "volpath"};
-
-/// pbrt counts where paths are scattered; we count rays, the camera's included.
-void read_integrator(Context& context, const Entity& integrator) {
-  const Parameters& p = integrator.parameters;
-  if (!light_transport.contains(integrator.type)) {
-    context.reporter.warn_once("integrator " + integrator.type, p.place(),
-                               fmt::format("integrator '{}' is not supported: the scene is "
-                                           "rendered by path tracing",
-                                           integrator.type));
-  }
-  const int depth = p.integer("maxdepth", 5);
-  if (depth < 0) fail(p.place(), fmt::format("maxdepth {}; expected 0 or more", depth));
-  context.scene.defaults.max_depth = std::min(depth, most_rays - 1) + 1;
-  p.ignore_all();  // the rest is about the method
 }
 
 }  // namespace

@@ -9,6 +9,11 @@ namespace pt::pbrt {
 /// scene's is left as it is.
 void read_view(Context& context);
 
+// Defaults of the scene.
+void read_filter(Context& context, const Entity& filter);
+void read_sampler(Context& context, const Entity& sampler);
+void read_integrator(Context& context, const Entity& integrator);
+
 /// The camera, into the scene; its shutter's time, which exposes the film.
 void read_camera(Context& context, const Entity& camera);
 
