@@ -4,8 +4,9 @@
 Strong scaling renders one image by more and more devices, weak scaling gives each of them the same
 number of samples. The efficiency is that of wall times against one device's. `uneven_ms` is how much
 longer the device with the most to do was busy than the mean; `outside_ms` what the wall time has
-beyond that device: units that were not there, films that came home. Scene, set-up and transfer come
-once for all renders and have columns of their own.
+beyond that device: units that were not there, films that came home. `predicted` is the efficiency
+that the simulation of --simulate expects of as many equal devices for an image that takes one of
+them as long. Scene, set-up and transfer come once for all renders and have columns of their own.
 
 --units measures, on one device, what dividing an image costs. --simulate asks how larger clusters
 would do, by lib/simulated_clusters.py.
@@ -18,6 +19,7 @@ from statistics import median
 from lib import harness, simulated_clusters
 from lib.harness import Configuration, Experiment, HarnessError, Plot
 from lib.intervals import bootstrap, in_rounds
+from lib.program import find_program, gpu_count
 from lib.sentences import in_groups, show
 
 IMAGE = "--scene dial:16:0:closed --width 1024 --height 1024 --max-depth 8 --mode wavefront"
@@ -35,8 +37,8 @@ def numbers(text):
 
 def add_arguments(parser):
     add = parser.add_argument
-    add("--devices", metavar="N,...", type=numbers, default=[1, 2, 4],
-        help="devices of this machine [1,2,4]")
+    add("--devices", metavar="N,...", type=numbers, default=None,
+        help="devices of this machine [1, 2, 4, ... and all GPUs; of CPUs 1,2,4]")
     add("--ranks", metavar="N,...", type=numbers, default=[],
         help="processes, started by --launcher [none]")
     add("--launcher", metavar="TEXT", default="mpirun -n {ranks}",
@@ -57,14 +59,20 @@ def image_of(arguments):
     return arguments.image or IMAGE, arguments.spp
 
 
-def threads_of(arguments):
-    most = max([*arguments.devices, *arguments.ranks, 1])
-    return arguments.threads or max((os.cpu_count() or 1) // most, 1)
+def device_counts(arguments, device):
+    if arguments.devices is not None:
+        return arguments.devices
+    count = 4 if device.kind == "cpu" else gpu_count(find_program(arguments.ptexp))
+    return sorted({2**i for i in range(count.bit_length())} | {count})
+
+
+def threads_of(arguments, counts):
+    return arguments.threads or max((os.cpu_count() or 1) // max([*counts, 1]), 1)
 
 
 def labels(panel, series, x):
     return {"panel": panel, "series": series, "x": x, "outside_ms": "",
-            **dict.fromkeys(EFFICIENCY, "")}
+            **dict.fromkeys([*EFFICIENCY, "predicted"], "")}
 
 
 def devices_text(kind, count):
@@ -89,8 +97,9 @@ def configurations(arguments, device):
     if arguments.units:
         return of_units(arguments, device)
     image, spp = image_of(arguments)
-    ways = [("devices", count) for count in arguments.devices]
+    ways = [("devices", count) for count in device_counts(arguments, device)]
     ways += [("ranks", count) for count in arguments.ranks]
+    threads = threads_of(arguments, [count for _, count in ways])
     rows = []
     for panel in ("strong", "weak"):
         for series, count in ways:
@@ -98,7 +107,7 @@ def configurations(arguments, device):
             options = f"{image} --spp {samples}"
             is_rank = series == "ranks"
             if device.kind == "cpu":
-                options += f" --threads {threads_of(arguments) * (1 if is_rank else count)}"
+                options += f" --threads {threads * (1 if is_rank else count)}"
             rows.append(Configuration(
                 f"{panel}: {count} {series}", options, labels(panel, series, count),
                 # A rank takes the GPU of its place.
@@ -123,7 +132,16 @@ def base_of(row, rows):
     return next((one for one in ones if one["series"] == row["series"]), ones[0] if ones else None)
 
 
-def finish(rows, _arguments):
+def prediction(row, base, arguments):
+    one_s = 1e-3 * float(base["wall_ms_median"])
+    if one_s <= 0:
+        return ""
+    size = int(row["width"]), int(row["height"])
+    over_links = row["series"] == "ranks"
+    return f"{simulated_clusters.predicted(int(row['x']), one_s, size, over_links, arguments):.4f}"
+
+
+def finish(rows, arguments):
     for row in rows:
         kernel = float(row["kernel_ms_median"])
         row["outside_ms"] = f"{float(row['wall_ms_median']) - kernel:.6f}"
@@ -138,6 +156,8 @@ def finish(rows, _arguments):
         value = efficiency([sum(rounds, []) for rounds in both])
         ends = bootstrap(both, efficiency) if base is not row else (1, 1)
         row.update({name: f"{number:.4f}" for name, number in zip(EFFICIENCY, [value, *ends])})
+        if row["panel"] == "strong" and base is not row:
+            row["predicted"] = prediction(row, base, arguments)
 
 
 def share(row, column, whole):
@@ -156,7 +176,9 @@ def conclude(rows, _arguments):
                 lost.insert(0, f"uneven {share(row, 'uneven_ms_median', wall)}")
             lines.append(
                 f"{panel}, {row['x']} {series}: efficiency {show(float(row['efficiency_median']))} "
-                f"[{show(float(row['efficiency_low']))}, {show(float(row['efficiency_high']))}]; "
+                f"[{show(float(row['efficiency_low']))}, {show(float(row['efficiency_high']))}]"
+                + (f" (simulated: {show(float(row['predicted']))})" if row["predicted"] else "")
+                + "; "
                 f"of the wall time {', '.join(lost)}")
     return lines
 
@@ -175,7 +197,7 @@ EXPERIMENT = Experiment(
     "scaling", __doc__.splitlines()[0], configurations,
     Plot("lines", "Efficiency against one device", "devices or ranks", "efficiency", "efficiency",
          log_y=False, mark=1),
-    add_arguments, finish, ("efficiency_median", "uneven_ms_median", "outside_ms"), conclude)
+    add_arguments, finish, ("efficiency_median", "predicted", "uneven_ms_median", "outside_ms"), conclude)
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT, runner=run))

@@ -79,10 +79,18 @@ def failure_of(program, command, timeout_s):
     return f"exit code {run.returncode}: {run.stderr.strip()}" if run.returncode else None
 
 
+def devices_of(program):
+    lines = re.findall(r"(?m)^(\S+)\s+(.*) \((.*)\)$", output_of(program, "--list-devices"))
+    return [Device(*line) for line in lines]
+
+
+def gpu_count(program):
+    return sum(device.kind == "cuda" for device in devices_of(program))
+
+
 def find_device(program, wanted):
     """The device that --device names; auto: the first GPU if there is one, else the CPU."""
-    lines = re.findall(r"(?m)^(\S+)\s+(.*) \((.*)\)$", output_of(program, "--list-devices"))
-    devices = [Device(*line) for line in lines]
+    devices = devices_of(program)
     order = sorted(devices, key=lambda device: device.kind != "cuda")
     for device in order:
         if wanted in ("auto", device.choice, device.kind):

@@ -5,13 +5,14 @@ import shlex
 import sys
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from statistics import median
 
 from lib.description import HarnessError
 from lib.intervals import median_interval
 from lib.program import ROOT
 from lib.provenance import now
 from lib.sentences import in_groups
-from lib.simulate_ranks import Job, broadcast_s, cluster_of
+from lib.simulate_ranks import Cluster, Job, broadcast_s, cluster_of
 from lib.simulate_windows import WindowRule, simulate_windows
 from lib.table import write_table
 
@@ -101,21 +102,32 @@ def simulated(case, rule, nodes, seconds, maps, arguments):
         yield simulate_windows(job, cluster, WindowRule(WIDTH, HEIGHT, **rule), rows)
 
 
+def predicted(count, one_s, size, over_links, arguments):
+    """The efficiency to be expected of `count` equal devices of one machine for an image of so many
+    pixels that takes one of them one_s: the median over the maps. `over_links`: all but the first
+    are other ranks."""
+    network_of_ranks = network(arguments)
+    if not over_links:
+        network_of_ranks["service_s"] = 0
+    cluster = Cluster((1.0,) * count, local=1 if over_links else count, **network_of_ranks)
+    job = Job(one_s, overhead_s=1e-3 * arguments.unit_overhead,
+              film_bytes=arguments.pixel_bytes * size[0] * size[1])
+    return median(simulate_windows(job, cluster, WindowRule(*size), rows).efficiency
+                  for rows in cost_maps(arguments).values())
+
+
 def row_of(case, rule, nodes, seconds, outcomes):
     """The medians over the maps, and the range of the efficiency."""
-    def middle(values):
-        values = sorted(values)
-        return (values[(len(values) - 1) // 2] + values[len(values) // 2]) / 2
     efficiencies = tuple(outcome.efficiency for outcome in outcomes)
     low, high = median_interval((efficiencies,))
     row = {"experiment": "scaling", "name": f"{case.name}, {seconds:g} s, {nodes * PER_NODE} GPUs: "
            f"{rule}", "status": "measured", "series": rule, "panel": f"{case.name}, {seconds:g} s",
            "x": nodes * PER_NODE, "seconds": f"{seconds:g}",
-           "efficiency_median": f"{middle(efficiencies):.4f}", "efficiency_low": f"{low:.4f}",
+           "efficiency_median": f"{median(efficiencies):.4f}", "efficiency_low": f"{low:.4f}",
            "efficiency_high": f"{high:.4f}", "efficiency_worst": f"{min(efficiencies):.4f}"}
     for name in outcomes[0].losses:
-        row[f"lost_{name}"] = f"{middle([outcome.losses[name] for outcome in outcomes]):.4f}"
-    row["units"] = f"{middle([outcome.units for outcome in outcomes]):.0f}"
+        row[f"lost_{name}"] = f"{median([outcome.losses[name] for outcome in outcomes]):.4f}"
+    row["units"] = f"{median([outcome.units for outcome in outcomes]):.0f}"
     row["rank_0_busy"] = f"{max(outcome.service for outcome in outcomes):.4f}"
     row["link_busy"] = f"{max(outcome.link for outcome in outcomes):.4f}"
     return row

@@ -1,5 +1,6 @@
 """The first section: which mode for my scene, which block size, what does each idea give."""
 from .html import html_table, paragraph, verdict_cell
+from .scaling import several_devices
 from .tables import in_groups, interval, number
 from .words import change, quotient, relation, show, with_interval
 
@@ -176,4 +177,5 @@ def each_idea(device):
 
 
 QUESTIONS = (("Which mode for my scene?", which_mode), ("Which block size?", which_block),
-             ("What does each idea give?", each_idea))
+             ("What does each idea give?", each_idea),
+             ("What do several devices give?", several_devices))

@@ -48,8 +48,8 @@ def html_table(heads, rows, name="", caption="", rich=""):
             f"<tbody>\n{body}</tbody></table></div>")
 
 
-def verdict_cell(word):
-    name = {"slower": "bad", "faster": "good", "refuted": "bad", "confirmed": "good",
+def verdict_cell(word, name=""):
+    name = name or {"slower": "bad", "faster": "good", "refuted": "bad", "confirmed": "good",
             "depends": "mixed"}.get(word, "good" if word.startswith("yes") else "quiet")
     return f'<td><span class="verdict {name}">{escape(word)}</span></td>'
 

@@ -1,4 +1,5 @@
 """What a plot's numbers mean, in sentences. A difference is one only where intervals are apart."""
+from .scaling import about_scaling, is_scaling
 from .tables import in_groups, interval, is_measured, number, style_of
 from .words import (change, exponent, listed, plain, relation, show, unit_of, versus,
                     with_interval)
@@ -165,6 +166,8 @@ def meaning(table):
         found = about_gains(table)
     elif {"gain", "panel"} <= set(table.columns):
         found = list(about_steps(table))
+    elif is_scaling(table):
+        found = list(about_scaling(table))
     elif table.plot and table.plot.get("mark") is not None:
         found = list(about_mark(table))
     elif table.plot:

@@ -213,28 +213,50 @@ class Checkpoints(Parts):
         self.assertEqual(self.files(), ["a.exr", "c.exr"])
         self.render("resume", "c.exr", "--spp", 3)
 
+    def killed_at(self, seconds, arguments):
+        """Whether the process had not ended before."""
+        process = subprocess.Popen([PTEXP, *map(str, arguments)], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            _, errors = process.communicate(timeout=seconds)
+            self.assertEqual(process.returncode, 0, errors)
+            return False
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.communicate()
+            return True
+
     def test_killed_at_any_moment(self):
-        """The file is the old one or the new one, whole, and goes on to the same bits."""
-        scene = [*SMALL, "--scene", "boxes", "--spp", 60, "--device", "cpu:2"]
-        self.render(*scene, "-o", "whole.exr")
+        """The file is the old one or the new one, whole, and goes on to the same bits. Moments are
+        drawn from the time that a whole render takes here; one that was completed is begun anew."""
+        checkpoint = self.folder / "c.exr"
+        scene = [*SMALL, "--scene", "statue:30K", "--spp", 8, "--device", "cpu:2", "--width", 192,
+                 "--height", 144, "--aov", "albedo,variance"]
+        saved = ["--checkpoint", "c.exr,0.02", "-o", "b.exr"]
+        begin = time.monotonic()
+        self.render(*scene, *saved)
+        whole_s = time.monotonic() - begin
+        (self.folder / "b.exr").rename(self.folder / "whole.exr")
+        checkpoint.unlink()
         random.seed(1)
         kills = int(os.environ.get("PTEXP_TEST_KILLS", "12"))
-        begun = killed = 0
+        found = dict.fromkeys(("no checkpoint", "a checkpoint", "one being written", "completed"), 0)
         for _ in range(kills):
-            arguments = (["resume", "c.exr", "--checkpoint", "c.exr,0.02"] if begun else
-                         [*scene, "--checkpoint", "c.exr,0.02"])
-            process = subprocess.Popen([PTEXP, *map(str, arguments), "-o", "b.exr"], cwd=self.folder,
-                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-            try:
-                process.communicate(timeout=random.uniform(0, 0.35))
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.communicate()
-                killed += 1
-            begun = (self.folder / "c.exr").exists()
-        self.assertGreater(killed, 0)
-        self.render(*(["resume", "c.exr"] if begun else [*scene, "--checkpoint", "c.exr"]), "-o",
-                    "b.exr")
+            arguments = ["resume", "c.exr"] if checkpoint.exists() else scene
+            if self.killed_at(random.uniform(0, whole_s), [*arguments, *saved]):
+                is_torn = any(name.endswith(".tmp") for name in self.files())
+                found["one being written" if is_torn else
+                      "a checkpoint" if checkpoint.exists() else "no checkpoint"] += 1
+            else:
+                self.assert_same_image("b.exr", "whole.exr")
+                self.assertEqual(self.files(), ["b.exr", "c.exr", "whole.exr"])
+                checkpoint.unlink()
+                found["completed"] += 1
+        print(f"{kills} runs: {found}")
+        self.assertGreater(found["a checkpoint"] + found["one being written"], 0)
+        if kills >= 100:
+            self.assertTrue(all(found.values()), found)
+        self.render(*(["resume", "c.exr"] if checkpoint.exists() else scene), *saved)
         self.assert_same_image("b.exr", "whole.exr")
         self.assertEqual(self.files(), ["b.exr", "c.exr", "whole.exr"])  # no temporary file stays
 

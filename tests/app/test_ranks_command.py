@@ -5,6 +5,7 @@ The environment variable PTEXP names the executable; MPIRUN, where it is set, th
 import os
 import random
 import re
+import resource
 import shutil
 import signal
 import subprocess
@@ -88,6 +89,17 @@ class Ranks(unittest.TestCase):
                     self.assertEqual(run.stdout.count("wrote ranks.exr"), 1, run.stdout)
                     rows = re.findall(r"^(?:cpu:0|rank \d+ \(.+\) cpu:0) ", run.stdout, re.M)
                     self.assertEqual(len(rows), ranks if ranks > 1 else 0, run.stdout)
+
+    def test_ranks_that_compute_seldom_wake(self):
+        """Threads that wait take the core on which their device computes: 10,000 looks per second
+        cost a fifth of it."""
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_nvcsw
+        begin = time.monotonic()
+        run = self.run_ranks(2, *SMALL, "--scene", "boxes", "--spp", 600, "-o", "a.exr")
+        seconds = time.monotonic() - begin
+        self.assertEqual(run.returncode, 0, run.stderr)
+        wakes = resource.getrusage(resource.RUSAGE_CHILDREN).ru_nvcsw - before
+        self.assertLess(wakes / seconds, 8000)  # of all threads; it was 20,000
 
     def test_scene_files_come_from_the_first_rank(self):
         (self.folder / "more").mkdir()

@@ -34,16 +34,6 @@ TEST(LocalDevices, AreSharedAsTheTableSays) {
   }
 }
 
-TEST(LocalDevices, ThoseThatABatchSystemGaveToOneRankAreItsOwn) {
-  const std::vector<std::vector<std::string>> own{{"a", "b"}, {"c", "d"}};
-  EXPECT_EQ(local_devices(0, own), (Ordinals{0, 1}));
-  EXPECT_EQ(local_devices(1, own), (Ordinals{0, 1}));
-  const std::vector<std::vector<std::string>> pairs{{"a", "b"}, {"c"}, {"a", "b"}, {"c"}};
-  EXPECT_EQ(local_devices(0, pairs), Ordinals{0});
-  EXPECT_EQ(local_devices(2, pairs), Ordinals{1});
-  EXPECT_EQ(local_devices(3, pairs), Ordinals{0});
-}
-
 TEST(Launcher, IsKnownByItsEnvironment) {
   const auto processes = [](std::map<std::string, const char*> environment) {
     return launched_processes([&](const char* name) {

@@ -265,6 +265,29 @@ class Experiments(unittest.TestCase):
             self.assertTrue(all((row["rng"] == "xorwow") == (row["set_up_ms"] != "")
                                 for row in rows))
 
+    def test_scaling_in_the_report(self):
+        """A small table of devices of the CPU, measured, predicted, judged and shown."""
+        run = subprocess.run(
+            [sys.executable, ROOT / "experiments" / "scaling.py", "--device", "cpu", "--ptexp", PTEXP,
+             "--devices", "1,2,3", "--threads", "1", "--repeat", "3", "--rounds", "1", "--warmup", "0",
+             "--image", "--scene cornell --width 32 --height 24 --mode wavefront", "--spp", "4",
+             "--output", self.folder / "out"],
+            capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        for row in self.rows("scaling"):
+            is_predicted = row["panel"] == "strong" and row["x"] != "1"
+            self.assertEqual(row["predicted"] != "", is_predicted, row["name"])
+            self.assertTrue(not is_predicted or 0 < float(row["predicted"]) <= 1, row["predicted"])
+            walls = [float(wall) for wall in row["wall_ms_runs"].split(";")]
+            self.assertAlmostEqual(sorted(walls)[1], float(row["wall_ms_median"]), places=5)
+        folder = self.result(name="scaling").parent
+        subprocess.run([sys.executable, ROOT / "scripts" / "report", folder], check=True,
+                       capture_output=True)
+        text = (folder / "report.html").read_text(encoding="utf-8")
+        answer = text[text.index("What do several devices give"):].partition("</article>")[0]
+        self.assertIn("One image (cornell, 32x24, 4 samples)", answer)
+        self.assertIn("3 devices", answer)
+
     def test_every_experiment_has_its_files(self):
         self.assertLessEqual({"block_size", "image_size", "speed_targets", "toggles"}, set(SCRIPTS))
         readme = (ROOT / "experiments" / "README.md").read_text(encoding="utf-8")

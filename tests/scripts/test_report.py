@@ -401,6 +401,57 @@ class Report(unittest.TestCase):
                       "triangles^1.00)", text)
         self.assertRegex(text, r'class="axis middle"[^>]*>triangles</text>')
 
+    def scaling_rows(self):
+        rows = []
+        for panel, series, count, wall, efficiency, expected in (
+                ("strong", "devices", 1, 100, (1, 1, 1), ""),
+                ("strong", "devices", 2, 52, (0.95, 0.96, 0.97), 0.98),
+                ("strong", "devices", 4, 26, (0.9, 0.96, 0.99), 0.95),
+                ("strong", "ranks", 2, 54, (0.91, 0.92, 0.93), 0.9),
+                ("weak", "devices", 2, 104, (0.95, 0.96, 0.97), "")):
+            low, middle, high = efficiency
+            rows.append({
+                **toggle("wavefront", count, 0.9 * wall, wall, wall), "experiment": "scaling",
+                "name": f"{panel}: {count} {series}", "panel": panel, "series": series,
+                "efficiency_low": low, "efficiency_median": middle, "efficiency_high": high,
+                "predicted": expected, "outside_ms": 0.1 * wall, "wall_ms_median": wall,
+                "wall_ms_low": 0.9 * wall, "wall_ms_high": wall, "scene": "boxes", "spp": 9})
+        return rows
+
+    def test_several_devices_beside_their_prediction(self):
+        plot = {"kind": "lines", "title": "Efficiency", "x_label": "devices or ranks",
+                "y_label": "efficiency", "y": "efficiency", "log_y": False, "mark": 1}
+        write(self.folder, "scaling", self.scaling_rows(), facts("scaling", plot))
+        self.run_report(self.folder)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.check_well_formed(text)
+        self.assertIn("Efficiency against one device: 0.960 [0.950, 0.970] with 2 (simulated 0.980: "
+                      "worse than predicted) and 0.960 [0.900, 0.990] with 4 (simulated 0.950: as "
+                      "predicted).", text)
+        self.assertIn("0.920 [0.910, 0.930] with 2 (simulated 0.900: better than predicted)", text)
+        self.assertIn("<b>weak, devices.</b> Efficiency against one device: 0.960 [0.950, 0.970] with "
+                      "2.<", text)
+        answer = re.search("What do several devices give.*?</article>", text, re.S)[0]
+        self.assertIn("One image (boxes, 600x300, 9 samples)", answer)
+        self.assertEqual(re.findall(r'<th scope="row">([^<]*)<', answer),
+                         ["2 devices", "4 devices", "2 ranks"])
+        self.assertEqual(re.findall(r'class="verdict \w+">([^<]*)<', answer),
+                         ["worse than predicted", "as predicted", "better than predicted"])
+        self.assertEqual(answer.count("10.0 %"), 3)
+
+    def test_several_devices_that_nobody_measured(self):
+        simulated = [{"experiment": "scaling", "name": "8 GPUs", "status": "measured", "x": 8,
+                      "panel": "a", "series": "b", "efficiency_median": 0.9}]
+        for rows, description in (([], None), (simulated, {"experiment": "scaling",
+                                                           "simulated": True})):
+            text = self.make(toggles=toggles())
+            if rows:
+                write(self.folder, "scaling", rows, description)
+                self.run_report(self.folder)
+                text = (self.folder / "report.html").read_text(encoding="utf-8")
+            self.check_well_formed(text)
+            self.assertIn("there is no table of scaling", text)
+
     def test_quick_tables_are_shown_but_not_judged(self):
         write(self.folder, "toggles", toggles(), facts("toggles", TOGGLES, quick=True))
         self.run_report(self.folder)

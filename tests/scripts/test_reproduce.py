@@ -13,14 +13,21 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp")).resolve()
 REPRODUCE = ROOT / "scripts" / "reproduce"
-# The first two need another build, the last one several devices.
-NOT_IN_IT = {"compare_builds", "divergence", "scaling"}
+# They need another build.
+NOT_IN_IT = {"compare_builds", "divergence"}
 BUDGET_S = 25 * 60  # of all on one H200
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.
 PARTLY_BROKEN = """#!/bin/sh
 case "$*" in *"--rng xorwow"*) [ -e '{folder}/mended' ] || exit 3 ;; esac
 exec '{program}' "$@"
+"""
+# A ptexp on a machine of so many GPUs.
+WITH_GPUS = """#!/bin/sh
+[ "$1" = --list-devices ] && for i in {numbers}; do echo "cuda:$i     Fake (2 units)"; done
+[ "$1" != --list-devices ] || exit 0
+echo "ptexp: error: nothing renders here" >&2
+exit 2
 """
 
 
@@ -46,6 +53,20 @@ class Reproduce(unittest.TestCase):
                  "--quick", "--output", tempfile.gettempdir()],
                 capture_output=True, text=True, check=False)
             self.assertEqual(listed.returncode, 0, listed.stderr)
+
+    def test_scaling_wants_several_gpus(self):
+        with tempfile.TemporaryDirectory(prefix="ptexp reproduce ") as name:
+            program = Path(name) / "ptexp"
+            for numbers, outcome in (("0", "needs several GPUs"), ("0 1 2", "FAILED, exit code 2")):
+                program.write_text(WITH_GPUS.format(numbers=numbers), encoding="utf-8")
+                program.chmod(0o755)
+                done = reproduce("--only", "scaling", "--ptexp", program, "--output", name)
+                self.assertRegex(done.stdout, rf"(?m)^scaling +\d+ s  {outcome}$")
+            listed = subprocess.run(
+                [sys.executable, ROOT / "experiments" / "scaling.py", "--list", "--ptexp", program],
+                capture_output=True, text=True, check=True).stdout
+            self.assertEqual(re.findall(r"--device (\S+)", listed),
+                             2 * ["cuda:0", "cuda:0,1", "cuda:0,1,2"])
 
     def test_what_it_does_not_know(self):
         for arguments, text in ((["--only", "toggles,nothing"], "expected some of speed_targets"),

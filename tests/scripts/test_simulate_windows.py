@@ -110,6 +110,21 @@ class Study(unittest.TestCase):
             low, middle, high = (float(row[f"efficiency_{end}"]) for end in ("low", "median", "high"))
             self.assertTrue(0 < low <= middle <= high <= 1, row)
 
+    def test_predictions_for_one_machine(self):
+        """Films that take as long as the image of two devices halve the efficiency, or nearly."""
+        arguments = harness.parse_arguments(scaling.EXPERIMENT, [
+            "--unit-overhead", "0", "--latency", "0", "--service", "0", "--copy-bandwidth", "1e9",
+            "--bandwidth", "0.001", "--pixel-bytes", "100"])  # 1 MB/s
+        arguments.cost_maps = []
+        size = 100, 100  # 1 MB, half of it from the other rank
+        self.assertGreater(clusters.predicted(1, 1.0, size, True, arguments), 0.999)
+        local = clusters.predicted(2, 1.0, size, False, arguments)
+        self.assertTrue(0.95 < local <= 1, local)
+        over_links = clusters.predicted(2, 1.0, size, True, arguments)
+        self.assertTrue(0.5 < over_links < 0.8 * local, over_links)
+        # An image that takes longer hides them.
+        self.assertGreater(clusters.predicted(2, 100.0, size, True, arguments), 0.95)
+
     def test_95_percent_of_1024_gpus(self):
         arguments = harness.parse_arguments(scaling.EXPERIMENT, [])
         maps = {"spheres": clusters.cost_maps(arguments)["spheres"]}

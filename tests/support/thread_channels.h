@@ -47,7 +47,7 @@ class ThreadChannel : public Channel {
     inbox.pop_front();
     return message;
   }
-  void close() override {}
+  void close(int) override {}
   void abort(int code) override {
     const std::lock_guard lock(hub_.mutex);
     hub_.abort_code = code;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <utility>
 
@@ -21,7 +22,11 @@ constexpr std::uint64_t first_unit_factor = 64;
 // A render that takes longer grows evenly until so much is left.
 constexpr double even_s = 20;
 // Between two looks at the time, at interruptions and at workers without a bell.
-constexpr double poll_s = 2e-4, bell_s = 0.02;
+constexpr double poll_s = 2e-4, poll_most_s = 2e-3, bell_s = 0.02;
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
 
 int windows_per_worker() {
   const char* const text = std::getenv(units_variable);
@@ -139,13 +144,19 @@ bool GroupRenderer::complete(std::uint32_t end, const RenderHooks& hooks, Render
   UnitQueue queue(parts, end);
   const std::uint64_t total = queue.paths_left();
   bool is_interrupted = false;
-  for (;;) {
+  for (auto active = std::chrono::steady_clock::now();;) {
     if (!is_interrupted) hand_out(queue);
     const bool is_idle =
         std::ranges::all_of(members_, [](const Member& m) { return m.ids.empty(); });
     if (is_idle && (is_interrupted || queue.is_done())) break;
     if (is_idle) throw Error("no device is left that could go on");
-    if (!collect(queue, run)) bell_ ? bell_->wait(bell_s) : ResultBell().wait(poll_s);
+    if (collect(queue, run)) {
+      active = std::chrono::steady_clock::now();
+    } else if (bell_) {
+      bell_->wait(bell_s);
+    } else {  // a hundredth of the time in which nothing came: this takes a core from a device
+      ResultBell().wait(std::clamp(0.01 * seconds_since(active), poll_s, poll_most_s));
+    }
     if (hooks.progress) hooks.progress(total - queue.paths_left(), total);
     if (!is_interrupted && hooks.stop && hooks.stop()) {
       is_interrupted = true;

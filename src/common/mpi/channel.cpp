@@ -24,7 +24,7 @@ class LoneChannel : public Channel {
   void send(int, MessageKind, std::shared_ptr<const std::string>) override {}
   void flush(std::uint64_t) override {}
   std::optional<Message> receive(std::chrono::microseconds) override { return std::nullopt; }
-  void close() override {}
+  void close(int) override {}
   void abort(int code) override { std::_Exit(code); }
 
  private:

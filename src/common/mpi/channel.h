@@ -54,8 +54,9 @@ class Channel {
   virtual void flush(std::uint64_t unsent_bytes) = 0;
   /// The next message, if one comes within that time.
   virtual std::optional<Message> receive(std::chrono::microseconds wait) = 0;
-  /// After the last message: all ranks do this together.
-  virtual void close() = 0;
+  /// After the last message: all ranks do this together. Where MPI does not come to an end, the
+  /// process ends with `code`.
+  virtual void close(int code) = 0;
   /// Ends all ranks at once.
   [[noreturn]] virtual void abort(int code) = 0;
 };

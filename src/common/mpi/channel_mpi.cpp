@@ -48,10 +48,10 @@ std::optional<Message> MpiChannel::receive(std::chrono::microseconds wait) {
   return message;
 }
 
-void MpiChannel::close() {
+void MpiChannel::close(int code) {
   {
     const std::lock_guard lock(mutex_);
-    is_closing_ = true;
+    is_closing_ = true, end_code_ = code;
     wake_.notify_one();
   }
   thread_.join();

@@ -21,7 +21,7 @@ class MpiChannel : public Channel {
   void send(int to, MessageKind kind, std::shared_ptr<const std::string> bytes) override;
   void flush(std::uint64_t unsent_bytes) override;
   std::optional<Message> receive(std::chrono::microseconds wait) override;
-  void close() override;
+  void close(int code) override;
   [[noreturn]] void abort(int code) override;
 
  private:
@@ -46,7 +46,7 @@ class MpiChannel : public Channel {
   std::condition_variable changed_, wake_;
   std::exception_ptr problem_;
   bool is_open_ = false, is_closing_ = false;
-  int abort_code_ = 0;
+  int abort_code_ = 0, end_code_ = 2;
   std::uint64_t unsent_bytes_ = 0;
   std::vector<Outgoing> outbox_;
   std::deque<Message> inbox_;

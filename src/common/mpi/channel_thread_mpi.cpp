@@ -110,7 +110,12 @@ void MpiChannel::run(int processes) {
   } catch (const std::exception& error) {  // no memory for a message
     end_all(*traffic, 2, fmt::format("{}: {}", ranks_[rank_].name(), error.what()));
   }
-  traffic->finalize();
+  int code = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    code = end_code_;
+  }
+  traffic->finalize(code);
 }
 
 }  // namespace pt

@@ -114,7 +114,7 @@ int Ranks::finish(int code) {
     }
     say_goodbye();
   }
-  channel_->close();
+  channel_->close(*end_code_);
   is_closed_ = true;
   return *end_code_;
 }

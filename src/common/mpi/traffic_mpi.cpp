@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
@@ -18,7 +19,16 @@ int tag_of(MessageKind kind, bool is_last) { return 2 * static_cast<int>(kind) +
 bool is_last(int tag) { return tag % 2 != 0; }
 MessageKind kind_of(int tag) { return static_cast<MessageKind>(tag / 2); }
 
-constexpr unsigned grace_s = 10;  ///< for MPI to end; then the process is killed
+constexpr unsigned grace_s = 10;  ///< for MPI to end; then the process does
+
+volatile std::sig_atomic_t end_code = 0;
+
+void end_within_grace(int code) {
+  std::fflush(nullptr);
+  end_code = code;
+  std::signal(SIGALRM, [](int) { ::_exit(end_code); });
+  ::alarm(grace_s);
+}
 
 }  // namespace
 
@@ -31,7 +41,7 @@ MpiTraffic::MpiTraffic(std::uint64_t chunk_bytes, int processes)
   find_ranks();
   if (static_cast<int>(ranks_.size()) == processes) return;
   const std::size_t connected = ranks_.size();
-  finalize();
+  finalize(2);
   throw Error(
       fmt::format("a launcher has started {} processes, but MPI connects {} of them: expected "
                   "mpirun of the MPI that this program was built with, or srun --mpi=pmix",
@@ -122,16 +132,17 @@ bool MpiTraffic::turn(const std::function<void(int)>& heard,
   return moved;
 }
 
-void MpiTraffic::finalize() {
-  ::alarm(grace_s);  // in case that a rank is gone
+// A rank may be gone; and MPICH over UCX by TCP hangs here more often than not where messages were
+// large (https://github.com/openucx/ucx/issues/8738). All work is done: the code shall say so.
+void MpiTraffic::finalize(int code) {
+  end_within_grace(code);
   MPI_Comm_free(&comm_);
   MPI_Finalize();
   ::alarm(0);
 }
 
 void MpiTraffic::abort(int code) {
-  std::fflush(nullptr);
-  ::alarm(grace_s);
+  end_within_grace(code);
   MPI_Abort(MPI_COMM_WORLD, code);
   std::_Exit(code);
 }

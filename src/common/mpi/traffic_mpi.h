@@ -32,8 +32,8 @@ class MpiTraffic {
   bool has_sent_all() const { return sending_.empty(); }
   bool is_receiving() const { return !receiving_.empty(); }
 
-  /// Once no rank sends any more.
-  void finalize();
+  /// Once no rank sends any more. Where MPI hangs then, the process ends with `code`.
+  void finalize(int code);
   [[noreturn]] void abort(int code);
 
  private:

@@ -90,6 +90,11 @@ TEST(MitsubaXml, includesThatDoNotEndAreErrors) {
   expect_error([&] { load_mitsuba_xml(path); }, "deeper than 16");
 }
 
+TEST(MitsubaXml, aFileNameThatIsTooLongIsAnError) {
+  expect_error([] { load_xml("<include filename=\"" + std::string(5000, 'x') + "\"/>"); },
+               "File name too long");
+}
+
 TEST(MitsubaXml, referencesAndAliases) {
   const LoadedScene loaded = load_xml(
       "<alias id=\"a\" as=\"b\"/><shape type=\"sphere\"><ref id=\"b\"/></shape>"

@@ -37,6 +37,13 @@ class SourceFile {
   std::vector<std::size_t> line_ends_;
 };
 
+/// Of a name that the system does not take, being too long, that name: opening it is the error.
+std::filesystem::path without_links(const std::filesystem::path& path) {
+  std::error_code refused;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(path, refused);
+  return refused ? path : found;
+}
+
 class DocumentReader {
  public:
   explicit DocumentReader(const LoadOptions& options)
@@ -50,7 +57,7 @@ class DocumentReader {
 
  private:
   Element read_file(const std::filesystem::path& path) {
-    stack_.push_back(std::filesystem::weakly_canonical(path));
+    stack_.push_back(without_links(path));
     pugi::xml_document document;
     const SourceFile source = parse(path, document);
     Element root = element_of(document.document_element(), source, 0);
@@ -107,8 +114,7 @@ class DocumentReader {
 
   Element include(const Element& element) {
     const std::filesystem::path path = included_path(element);
-    const std::filesystem::path canonical = std::filesystem::weakly_canonical(path);
-    if (std::find(stack_.begin(), stack_.end(), canonical) != stack_.end()) {
+    if (std::find(stack_.begin(), stack_.end(), without_links(path)) != stack_.end()) {
       fail(element, fmt::format("{} includes itself", path.string()));
     }
     if (stack_.size() >= max_include_depth) {
