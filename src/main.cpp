@@ -7,6 +7,7 @@
 
 #include "app/compact_command.h"
 #include "app/compare_command.h"
+#include "app/doctor_command.h"
 #include "app/interrupt.h"
 #include "app/merge_command.h"
 #include "app/options/command_line.h"
@@ -42,6 +43,8 @@ int execute(const TraceCommand& command) { return trace_command(command); }
 int execute(const RaysCommand& command) { return rays_command(command); }
 
 int execute(const CompactCommand& command) { return compact_command(command); }
+
+int execute(const DoctorCommand& command) { return doctor_command(command); }
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())

@@ -41,6 +41,9 @@ constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* compact_text =
     "Measures the wavefront's compaction strategies alone, and a copy for comparison.\n"
     "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
+constexpr const char* doctor_text =
+    "Tells what would run on this machine, what not, and the remedy.\n"
+    "Exit code 0: all that it was built for works, 1: something is missing.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by\n"
@@ -56,6 +59,7 @@ struct Parser {
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   Subcommand<CompactCommand> compact{app, "compact", compact_text, compact_options()};
+  Subcommand<DoctorCommand> doctor{app, "doctor", doctor_text, doctor_options()};
   CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
   CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;
@@ -299,6 +303,10 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     CompactCommand command = parser.compact.parse();
     command.command_line = shell_text(arguments);
     return command;
+  }
+  if (parser.doctor.is_parsed()) {
+    check_alone(parser, "doctor", nullptr);
+    return parser.doctor.parse();
   }
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},

@@ -7,6 +7,7 @@
 
 #include "app/options/check_options.h"
 #include "app/options/compact_options.h"
+#include "app/options/doctor_options.h"
 #include "app/options/option_list.h"
 #include "app/options/trace_options.h"
 #include "common/options/options.h"
@@ -45,9 +46,10 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
-                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+using Command =
+    std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand,
+                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, ListScenesCommand,
+                 ListDevicesCommand, VersionCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.
