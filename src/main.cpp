@@ -11,6 +11,7 @@
 #include "app/interrupt.h"
 #include "app/merge_command.h"
 #include "app/options/command_line.h"
+#include "app/reference/reference.h"
 #include "app/render_command.h"
 #include "app/resume_command.h"
 #include "app/standard_output.h"
@@ -63,6 +64,16 @@ int execute(const VersionCommand&) {
   fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
              build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
              mpi_version());
+  return 0;
+}
+
+int execute(const CompletionCommand& command) {
+  fmt::print("{}", completion_text(command));
+  return 0;
+}
+
+int execute(const ReferenceCommand& command) {
+  fmt::print("{}", reference_text(command));
   return 0;
 }
 

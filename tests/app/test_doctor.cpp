@@ -16,7 +16,8 @@ namespace {
 /// One H200, for which this program was built, and nothing wrong.
 Machine healthy() {
   Machine machine;
-  machine.build = {"0.1.0", "abc", "Release", "GNU 12.2.0", "13.0.88, architectures 90", false};
+  machine.build = {
+      "0.1.0", "abc", "2025-01-31", "Release", "GNU 12.2.0", "13.0.88, architectures 90", false};
   machine.driver = {"580.95.05", {"NVIDIA H200"}, true, false};
   machine.cuda.is_built = true;
   machine.cuda.built = machine.cuda.runtime = machine.cuda.driver = 13000;
