@@ -9,9 +9,10 @@ import sys
 from pathlib import Path
 
 SIZE = ["--width", "320", "--height", "180", "--device", "cpu", "--quiet"]
+MLT = ["--integrator", "mlt", "--max-depth", "12", "--bootstrap", "65536"]
 OPTIONS = {"furnace": ["--spp", "1"], "terrain": ["--scene", "terrain:50K"],
-           "statue": ["--scene", "statue:50K"], "ajar": ["--spp", "128"],
-           "caustic": ["--spp", "128"]}
+           "statue": ["--scene", "statue:50K"], "boxes": ["--max-depth", "8"], "ajar": MLT,
+           "caustic": MLT, "dial": ["--scene", "dial:8:1:open", "--max-depth", "8"]}
 FIRST = """# Gallery
 
 The scenes that ptexp makes itself, rendered on the CPU with {spp} samples per pixel unless stated. They
@@ -50,8 +51,8 @@ def main():
         options = ["--scene", name, "--spp", spp, *OPTIONS.get(name, [])]
         picture = f"gallery/{name}.png"
         subprocess.run([ptexp, *SIZE, *options, "--output", folder / picture], check=True)
-        shown = " ".join(["ptexp", *OPTIONS.get(name, [])] if "--scene" in OPTIONS.get(name, [])
-                         else ["ptexp", "--scene", name, *OPTIONS.get(name, [])])
+        own = OPTIONS.get(name, [])
+        shown = " ".join(["ptexp", *([] if "--scene" in own else ["--scene", name]), *own])
         page += f"## {name}\n\n![{name}]({picture})\n\n`{shown}`: {description}.\n\n"
     (folder / "gallery.md").write_text(page + LAST, encoding="utf-8")
 

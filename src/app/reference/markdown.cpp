@@ -6,9 +6,9 @@
 namespace pt {
 namespace {
 
-/// Nothing of a help's text is meant as Markdown.
+/// Nothing of a help's text is meant as Markdown but what is in backticks.
 std::string plain(std::string text) {
-  for (const char* c : {"\\", "*", "_", "<", "[", "]", "`"})
+  for (const char* c : {"\\", "*", "_", "<", "[", "]"})
     text = replaced(text, c, std::string("\\") + c);
   return text;
 }
