@@ -4,4 +4,9 @@ execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=
 if(NOT commit)
   set(commit unknown)
 endif()
+execute_process(COMMAND git -C ${SOURCE_DIR} log -1 --format=%cs
+                OUTPUT_VARIABLE date OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT date)
+  set(date unknown)
+endif()
 configure_file(${SOURCE_DIR}/cmake/build_info.cpp.in ${OUTPUT} @ONLY)

@@ -50,9 +50,9 @@ install_missing() {
     apt-get install --yes --no-install-recommends "${missing[@]}"
 }
 
-# has_requirements PYTHON: whether it has the packages of tests/requirements.txt.
+# has_requirements PYTHON [FILE]: whether it has the packages of a file, tests/requirements.txt.
 has_requirements() {
-  "$1" - "$root/tests/requirements.txt" 2>/dev/null <<'PYTHON'
+  "$1" - "${2:-$root/tests/requirements.txt}" 2>/dev/null <<'PYTHON'
 import importlib.metadata, re, sys
 for line in open(sys.argv[1]):
     name, operator, version = re.fullmatch(r"([\w-]*)([=<>]*)(.*)\n?", line).groups()
@@ -80,6 +80,16 @@ set_test_python() {
   [[ -z ${PTEXP_NEEDS_MITSUBA:-} ]] || die "the packages of tests/requirements.txt are not there"
   printf 'Without the packages of tests/requirements.txt: tests against Mitsuba skip\n' >&2
   PTEXP_TEST_PYTHON=$(command -v python3)
+}
+
+# set_site_python: build/site_python becomes a Python with the packages of docs/requirements.txt.
+set_site_python() {
+  local folder=$root/build/site_python file=$root/docs/requirements.txt
+  if [[ -x $folder/bin/python3 ]] && has_requirements "$folder/bin/python3" "$file"; then return; fi
+  printf 'Installing the packages of docs/requirements.txt into %s\n' "$folder"
+  install_missing python3-venv python3-pip
+  python3 -m venv "$folder"
+  "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check --requirement "$file"
 }
 
 # build PRESET [TARGET]: installs what is missing, configures and builds in build/PRESET below the

@@ -7,9 +7,11 @@
 
 #include "app/compact_command.h"
 #include "app/compare_command.h"
+#include "app/doctor_command.h"
 #include "app/interrupt.h"
 #include "app/merge_command.h"
 #include "app/options/command_line.h"
+#include "app/reference/reference.h"
 #include "app/render_command.h"
 #include "app/resume_command.h"
 #include "app/standard_output.h"
@@ -43,6 +45,8 @@ int execute(const RaysCommand& command) { return rays_command(command); }
 
 int execute(const CompactCommand& command) { return compact_command(command); }
 
+int execute(const DoctorCommand& command) { return doctor_command(command); }
+
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())
     fmt::print("{:<13} {}\n", scene.usage(), scene.description);
@@ -60,6 +64,16 @@ int execute(const VersionCommand&) {
   fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
              build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
              mpi_version());
+  return 0;
+}
+
+int execute(const CompletionCommand& command) {
+  fmt::print("{}", completion_text(command));
+  return 0;
+}
+
+int execute(const ReferenceCommand& command) {
+  fmt::print("{}", reference_text(command));
   return 0;
 }
 

@@ -16,6 +16,15 @@
 #include "common/error/error.h"
 
 namespace pt {
+
+template <>
+inline constexpr auto enum_names<Shell> = std::to_array<EnumName<Shell>>({{Shell::bash, "bash"},
+                                                                          {Shell::zsh, "zsh"},
+                                                                          {Shell::fish, "fish"}});
+template <>
+inline constexpr auto enum_names<ReferencePage> = std::to_array<EnumName<ReferencePage>>(
+    {{ReferencePage::man, "man"}, {ReferencePage::markdown, "markdown"}});
+
 namespace {
 
 constexpr const char* program_text =
@@ -41,6 +50,9 @@ constexpr const char* rays_text = "Makes a file of rays for `ptexp trace`.";
 constexpr const char* compact_text =
     "Measures the wavefront's compaction strategies alone, and a copy for comparison.\n"
     "Exit code 0: done, 2: an error, or a strategy whose result is wrong.";
+constexpr const char* doctor_text =
+    "Tells what would run on this machine, what not, and the remedy.\n"
+    "Exit code 0: all that it was built for works, 1: something is missing.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by\n"
@@ -53,9 +65,11 @@ struct Parser {
   CLI::App app{program_text, "ptexp"};
   std::vector<std::pair<const OptionEntry*, CLI::Option*>> options;
   CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *version = nullptr;
+  CLI::Option *completion = nullptr, *reference = nullptr;
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   Subcommand<CompactCommand> compact{app, "compact", compact_text, compact_options()};
+  Subcommand<DoctorCommand> doctor{app, "doctor", doctor_text, doctor_options()};
   CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
   CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;
@@ -101,7 +115,12 @@ Parser::Parser() {
   list_scenes = add_flag(app, "--list-scenes", "Names and describes the scenes");
   list_devices = add_flag(app, "--list-devices", "Names the devices that --device can take");
   version = add_flag(app, "--version", "Prints version, commit and build options");
-  for (CLI::Option* option : {list_scenes, list_devices, version}) option->group("Information");
+  completion = add_text(app, "--completion", "Prints the completion of options for a shell");
+  completion->type_name(joined_names<Shell>("|"));
+  reference = add_text(app, "--reference", "Prints all of this help as a page");
+  reference->type_name(joined_names<ReferencePage>("|"));
+  for (CLI::Option* option : {list_scenes, list_devices, version, completion, reference})
+    option->group("Information");
   app.allow_extras();
 
   add_film_commands();
@@ -247,6 +266,15 @@ std::string help_text(const CLI::App& app) {
   return text;
 }
 
+CommandText describe_program(const Parser& parser) {
+  CommandText program = describe(parser.app);
+  for (CommandText& one : program.subcommands) {
+    for (const CLI::App* renders : {parser.resume, parser.verify})
+      one.takes_render_options |= one.name == renders->get_name();
+  }
+  return program;
+}
+
 void check_extras(const Parser& parser) {
   const auto extras = parser.app.remaining(true);
   if (extras.empty()) return;
@@ -300,6 +328,10 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     command.command_line = shell_text(arguments);
     return command;
   }
+  if (parser.doctor.is_parsed()) {
+    check_alone(parser, "doctor", nullptr);
+    return parser.doctor.parse();
+  }
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},
       {parser.list_devices, ListDevicesCommand{}},
@@ -308,6 +340,16 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     if (option->count() == 0) continue;
     check_alone(parser, option->get_name(), option);
     return command;
+  }
+  if (parser.completion->count() > 0) {
+    check_alone(parser, "--completion", parser.completion);
+    const std::string shell = last_value(*parser.completion);
+    return CompletionCommand{parse_name<Shell>("completion", shell), describe_program(parser)};
+  }
+  if (parser.reference->count() > 0) {
+    check_alone(parser, "--reference", parser.reference);
+    const std::string page = last_value(*parser.reference);
+    return ReferenceCommand{parse_name<ReferencePage>("reference", page), describe_program(parser)};
   }
   return parse_render(parser);
 }

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "app/options/check_options.h"
+#include "app/options/command_text.h"
 #include "app/options/compact_options.h"
+#include "app/options/doctor_options.h"
 #include "app/options/option_list.h"
 #include "app/options/trace_options.h"
 #include "common/options/options.h"
@@ -41,13 +43,24 @@ struct CompareCommand {
 struct ListScenesCommand {};
 struct ListDevicesCommand {};
 struct VersionCommand {};
+enum class Shell { bash, zsh, fish };
+struct CompletionCommand {
+  Shell shell;
+  CommandText program;
+};
+enum class ReferencePage { man, markdown };
+struct ReferenceCommand {
+  ReferencePage page;
+  CommandText program;
+};
 struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
 using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
                              CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             ListScenesCommand, ListDevicesCommand, VersionCommand, HelpCommand>;
+                             DoctorCommand, ListScenesCommand, ListDevicesCommand, VersionCommand,
+                             CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

@@ -77,8 +77,11 @@ std::unique_ptr<Channel> open_channel(ChannelSettings settings = channel_setting
 /// The processes that a launcher has started; 0: there is no launcher. `variable` is getenv.
 int launched_processes(const std::function<const char*(const char*)>& variable);
 
-/// Which MPI the program was built with, a line; "off": none.
+/// Which MPI is loaded, a line; "off": the program was built without.
 std::string mpi_version();
+
+/// Which MPI's headers the program was built with, e.g. "Open MPI 4.1.4"; "off": none.
+std::string mpi_built_with();
 
 /// By MPI, or an Error in a build without it.
 std::unique_ptr<Channel> open_mpi_channel(ChannelSettings settings, int processes);

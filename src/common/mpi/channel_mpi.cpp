@@ -1,5 +1,7 @@
 #include "common/mpi/channel_mpi.h"
 
+#include <fmt/format.h>
+
 #include <csignal>
 
 namespace pt {
@@ -72,6 +74,17 @@ std::string mpi_version() {
   MPI_Get_library_version(text, &length);  // may be called before MPI_Init
   const std::string all(text, static_cast<std::size_t>(length));
   return all.substr(0, all.find_first_of(",\n"));
+}
+
+std::string mpi_built_with() {
+#if defined(OMPI_MAJOR_VERSION)
+  return fmt::format("Open MPI {}.{}.{}", OMPI_MAJOR_VERSION, OMPI_MINOR_VERSION,
+                     OMPI_RELEASE_VERSION);
+#elif defined(MPICH_VERSION)
+  return "MPICH " MPICH_VERSION;
+#else
+  return fmt::format("an MPI of standard {}.{}", MPI_VERSION, MPI_SUBVERSION);
+#endif
 }
 
 std::unique_ptr<Channel> open_mpi_channel(ChannelSettings settings, int processes) {

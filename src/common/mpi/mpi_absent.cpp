@@ -8,6 +8,8 @@ namespace pt {
 
 std::string mpi_version() { return "off"; }
 
+std::string mpi_built_with() { return "off"; }
+
 std::unique_ptr<Channel> open_mpi_channel(ChannelSettings, int processes) {
   throw Error(fmt::format(
       "a launcher has started {} processes, but this program was built without MPI: build it with "

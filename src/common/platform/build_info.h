@@ -8,6 +8,7 @@ namespace pt {
 struct BuildInfo {
   std::string version;     ///< e.g. "0.1.0"
   std::string commit;      ///< git describe, "-dirty" appended for uncommitted changes
+  std::string date;        ///< of the commit, e.g. "2025-01-31"
   std::string build_type;  ///< e.g. "Release", or "Release with divergence counters"
   std::string compiler;    ///< e.g. "GNU 12.2.0"
   std::string cuda;        ///< e.g. "13.0.88, architectures 90"; "off" in a CPU-only build
