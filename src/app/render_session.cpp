@@ -56,6 +56,10 @@ struct RenderSession::Prepared {
   std::unique_ptr<Rendering> rendering;
 };
 
+RenderSession::RenderSession(SceneData scene) : source_(std::move(scene)) {}
+
+RenderSession::~RenderSession() = default;
+
 RenderSession::RenderSession(const RenderCommand& command, const Warn& warn) {
   Options options = command.options;
   const auto devices = choose_render_devices(options, command.given);

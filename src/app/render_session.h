@@ -31,7 +31,8 @@ class RenderSession {
   /// Loads the scene that the options name. Throws Error.
   RenderSession(const RenderCommand& command, const Warn& warn);
   /// Of a scene that somebody has made.
-  explicit RenderSession(SceneData scene) : source_(std::move(scene)) {}
+  explicit RenderSession(SceneData scene);
+  ~RenderSession();
 
   /// As loaded: not prepared.
   const SceneData& scene() const { return source_; }
