@@ -24,4 +24,7 @@ add_custom_command(OUTPUT ${package}/py.typed
   DEPENDS ${python_sources})
 add_custom_target(ptexp_python_sources ALL DEPENDS ${package}/py.typed)
 add_dependencies(_ptexp ptexp_python_sources)
+nanobind_add_stub(ptexp_python_stub MODULE _ptexp OUTPUT ${package}/_ptexp.pyi
+                  PYTHON_PATH ${package} DEPENDS _ptexp)
+install(FILES ${package}/_ptexp.pyi DESTINATION ptexp COMPONENT python EXCLUDE_FROM_ALL)
 install(TARGETS _ptexp LIBRARY DESTINATION ptexp COMPONENT python EXCLUDE_FROM_ALL)

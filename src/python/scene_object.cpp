@@ -1,6 +1,7 @@
 #include "python/scene_object.h"
 
 #include <fmt/format.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <cmath>

@@ -30,7 +30,7 @@ class SceneObject {
     list_parameters();
   }
 
-  /// As RenderSession::render, interruptible. None where Ctrl-C... raises.
+  /// As RenderSession::render, interruptible.
   std::unique_ptr<ImageObject> render(const Words& words, nanobind::object progress);
   std::vector<Decision> plan(const Words& words);
 
