@@ -38,6 +38,8 @@ def _words(option: dict, value: Any) -> List[str]:
             raise OptionError(f"--{option['name']} {value!r}: expected True or False")
         return ["on"] if value else []
     if option["form"] == "list":
+        if not hasattr(value, "items"):
+            raise OptionError(f"--{option['name']} {value!r}: expected a dictionary")
         return [f"{k}={_number(v)}" for k, v in value.items()]
     if isinstance(value, os.PathLike):
         return [os.fspath(value)]

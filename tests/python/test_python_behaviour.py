@@ -66,7 +66,7 @@ class Errors(TestCase):
         for options, message in (({"max_dept": 3}, "max_depth"), ({"max_depth": 0}, "--max-depth 0"),
                                  ({"mode": "fast"}, "--mode fast"), ({"strict": True}, "ptexp.load"),
                                  ({"kernel": "loop", "mode": "wavefront"}, "--kernel"),
-                                 ({"counters": 1}, "--counters"), ({"look_from": (1, 2)}, "--look-from"),
+                                 ({"counters": 1}, "--counters"), ({"define": "a=1"}, "--define"), ({"look_from": (1, 2)}, "--look-from"),
                                  ({"output": "image.gif"}, "gif")):
             with self.subTest(options), self.assertRaisesRegex(ptexp.Error, message):
                 ptexp.render(scene, **options)
