@@ -27,6 +27,8 @@ COMMON = ["rays", "device", "build_cuda", "cuda", "render", "film", "trace_cuda"
 SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
+    # The Python module, which is given what the program is.
+    ("python", ["python/*"], ["app", "edit", "distribute", *SCHEDULES, *COMMON]),
     # The program: commands, the command line, reports.
     ("app", ["app/*"], ["mpi", "distribute", *SCHEDULES, *COMMON]),
     # Processes of one job, whose devices work for the first one.
@@ -48,6 +50,8 @@ LAYERS = [
     ("loaders", ["common/scene/load/*"], ["builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
     ("builtin", ["common/scene/builtin/*"], ["prepare", "scene", *BUILDERS]),
     ("prepare", ["common/scene/prepare/*"], ["scene", "plan", "image", *BUILDERS]),
+    # What of a scene can be changed, by name.
+    ("edit", ["common/scene/edit/*"], ["scene", *SCENE_PARTS, *HOST]),
     ("scene", ["common/scene/data/*"], ["plan", "image", *BUILDERS]),
     # What options leave open is decided here, from facts of the scene and the device.
     ("plan", ["common/plan/*"], BUILDERS),
@@ -95,7 +99,7 @@ MPI_FILES = ["common/mpi/*_mpi.*"]
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
 BUILD_CONDITION_FILES = ["app/make_renderer.cpp", "app/compact_command.cpp",
-                         "app/trace_command.cpp",
+                         "app/trace_mesh.cpp",
                          "common/device/devices*.cpp"]
 
 SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}
@@ -144,7 +148,7 @@ def own_path(source, header, path):
     for candidate in (source / header, (source / path).parent / header):
         if candidate.is_file():
             return candidate.resolve().relative_to(source).as_posix()
-    return header if header.split("/")[0] in ["app", "common", *SCHEDULES] else None
+    return header if header.split("/")[0] in ["app", "common", "python", *SCHEDULES] else None
 
 
 def check_include(source, path, layer, quoted, angled):

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
 #include <vector>
 
 #include "common/error/error.h"
@@ -21,17 +20,6 @@ ImageDifference compare_files(const std::string& a, const Image& image_a, const 
   } catch (const Error& error) {
     throw Error(fmt::format("cannot compare {} with {}: {}", a, b, error.what()));
   }
-}
-
-/// Where no pixel differs nothing is seen, which need not be computed.
-std::vector<float> flip_of(const Image& a, const Image& b, bool is_hdr,
-                           const ImageDifference& difference) {
-  if (difference.differing_pixels == 0) return std::vector<float>(b.rgb.size() / 3, 0.0f);
-  return is_hdr ? hdr_flip(a, b) : ldr_flip(a, b);
-}
-
-double mean_of(const std::vector<float>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace

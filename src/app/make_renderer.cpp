@@ -54,11 +54,15 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
 }
 
-SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
-  SceneData scene = load_scene(options, device, warn);
+void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device) {
   const bool is_on_gpu =
       device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
   prepare_scene(scene, options, is_on_gpu ? device.properties : cpu_properties(options.threads));
+}
+
+SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
+  SceneData scene = load_scene(options, device, warn);
+  prepare_scene_for(scene, options, device);
   return scene;
 }
 
@@ -89,7 +93,8 @@ std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const Sc
     own.memory_halvings = halvings;
     return make_renderer(own, scene, device);
   });
-  if (const std::string warning = share.take_warning(); !warning.empty()) warn(warning);
+  const std::string warning = share.take_warning();
+  if (warn && !warning.empty()) warn(warning);
   return renderer;
 }
 

@@ -18,7 +18,11 @@ using Warn = std::function<void(const std::string&)>;
 /// Error.
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
-/// The same, prepared for rendering.
+/// Prepares a scene for rendering by these options, which no longer leave anything to the scene's
+/// defaults (scene_defaults.h). Throws Error.
+void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device);
+
+/// Both, for options that say all themselves.
 SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
 /// `scene` must outlive the renderer. Throws Error when the options ask for something that the
@@ -26,7 +30,7 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device, const
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
                                         const DeviceInfo& device);
 
-/// The same with less memory where the device runs out of it, which is said.
+/// The same with less memory where the device runs out of it, which `warn` is told (empty: nobody).
 std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
                                                 const DeviceInfo& device, const Warn& warn);
 

@@ -13,13 +13,9 @@ std::string label(const Options& options, int index) {
 
 }  // namespace
 
-Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
-                    const std::function<bool()>& stop) {
-  const RenderHooks hooks{
-      [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); },
-      stop,
-      {options.time_limit, options.target_error, {}},
-      stop};
+Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& own) {
+  const auto& stop = own.stop;
+  const RenderHooks hooks{own.progress, stop, {options.time_limit, options.target_error, {}}, stop};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {
@@ -28,7 +24,7 @@ Measurement measure(Renderer& renderer, const Options& options, Progress& progre
       if (i > 0 && measurement.runs.empty()) measurement.runs = {last};
       break;
     }
-    progress.begin(label(options, i));
+    if (own.begin) own.begin(label(options, i));
     const double begin_s = Progress::steady_seconds();
     last = renderer.render(hooks);
     last.wall_ms = 1e3 * (Progress::steady_seconds() - begin_s);
@@ -38,6 +34,16 @@ Measurement measure(Renderer& renderer, const Options& options, Progress& progre
     }
     if (i >= options.warmup) measurement.runs.push_back(last);
   }
+  return measurement;
+}
+
+Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
+                    const std::function<bool()>& stop) {
+  MeasureHooks hooks;
+  hooks.begin = [&](const std::string& text) { progress.begin(text); };
+  hooks.progress = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+  hooks.stop = stop;
+  const Measurement measurement = measure(renderer, options, hooks);
   progress.finish();
   return measurement;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "app/progress.h"
@@ -17,7 +18,18 @@ struct Measurement {
   bool interrupted = false;
 };
 
-/// `stop` is asked between batches and between renders.
+/// What a measurement tells and asks meanwhile. `stop` must be there.
+struct MeasureHooks {
+  /// A render begins: "rendering", "warm-up 1 of 2".
+  std::function<void(const std::string& label)> begin;
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< as RenderHooks
+  /// Asked between batches and between renders, and while a batch is traced, by any thread.
+  std::function<bool()> stop;
+};
+
+Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& hooks);
+
+/// Of a render whose progress is shown.
 Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
                     const std::function<bool()>& stop);
 

@@ -86,16 +86,16 @@ void check_ranks(Ranks& ranks, const Options& options, const DeviceInfo& device)
                {"options", shared_text(options)}});
 }
 
-SceneData make_shared_scene(Ranks& ranks, const Options& options, const DeviceInfo& device,
+SceneData load_shared_scene(Ranks& ranks, const Options& options, const DeviceInfo& device,
                             const Warn& warn) {
-  if (ranks.count() == 1) return make_scene_for(options, device, warn);
+  if (ranks.count() == 1) return load_scene(options, device, warn);
   if (options.scene_from_disk) {
-    SceneData scene = make_scene_for(options, device, warn);
+    SceneData scene = load_scene(options, device, warn);
     ranks.agree({{"scene hash", scene.source_hash}});
     return scene;
   }
   if (ranks.is_first()) {
-    SceneData scene = make_scene_for(options, device, warn);
+    SceneData scene = load_scene(options, device, warn);
     const std::vector<fs::path> paths(scene.source_files.begin(), scene.source_files.end());
     ByteWriter writer;
     writer.text(scene.source_files.empty() ? "" : fs::absolute(options.scene).string());
@@ -115,7 +115,7 @@ SceneData make_shared_scene(Ranks& ranks, const Options& options, const DeviceIn
     own.scene = (folder.path() / fs::path(scene_path).relative_path()).string();
   }
   bytes.clear(), bytes.shrink_to_fit();
-  SceneData scene = make_scene_for(own, device, warn);
+  SceneData scene = load_scene(own, device, warn);
   ranks.agree({{"scene hash", scene.source_hash}});
   return scene;
 }

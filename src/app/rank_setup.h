@@ -17,9 +17,9 @@ std::vector<DeviceInfo> choose_rank_devices(Options& options, const RankInfo& ra
 /// options and kind of device.
 void check_ranks(Ranks& ranks, const Options& options, const DeviceInfo& device);
 
-/// Collective. make_scene_for of the same files on all ranks: the first one reads them, and the
-/// others get their bytes, unless Options::scene_from_disk.
-SceneData make_shared_scene(Ranks& ranks, const Options& options, const DeviceInfo& device,
+/// Collective. load_scene of the same files on all ranks: the first one reads them, and the others
+/// get their bytes, unless Options::scene_from_disk.
+SceneData load_shared_scene(Ranks& ranks, const Options& options, const DeviceInfo& device,
                             const Warn& warn);
 
 }  // namespace pt

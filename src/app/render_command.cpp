@@ -3,27 +3,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <limits>
-#include <memory>
 #include <optional>
 
-#include "app/checkpoint_keeper.h"
-#include "app/film_header.h"
 #include "app/interrupt.h"
-#include "app/make_group.h"
 #include "app/make_renderer.h"
-#include "app/measure.h"
 #include "app/progress.h"
 #include "app/rank_setup.h"
-#include "app/report/csv_file.h"
-#include "app/report/report.h"
+#include "app/render_devices.h"
+#include "app/render_outputs.h"
 #include "app/resume_command.h"
+#include "app/scene_defaults.h"
 #include "app/standard_output.h"
-#include "common/device/devices.h"
-#include "common/error/error.h"
-#include "common/image/atomic_file.h"
-#include "common/image/codecs/image_io.h"
-#include "common/image/measure_exposure.h"
 #include "common/mpi/serve_units.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
@@ -40,110 +30,53 @@ double timed_ms(const Work& work) {
   return 1e3 * (Progress::steady_seconds() - begin_s);
 }
 
-void check_outputs(const Options& options) {
-  check_image_path(options.output);
-  if (!options.stats_file.empty()) check_writable(options.stats_file);
-  if (!options.checkpoint.file.empty()) check_writable(options.checkpoint.file);
-  if (!options.csv_file.empty()) check_csv(options.csv_file, report_csv_row(options, {}));
-}
-
 /// Finds the devices for the options and says which. The options then name these.
 std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given,
                                      const Ranks& ranks) {
   using Kind = DeviceChoice::Kind;
-  const bool is_serial = options.mode == Mode::serial;  // one CPU thread, GPU or not
-  if (is_serial) options.device = {Kind::cpu, 0};
-  const DeviceChoice wanted = options.device;
-  const std::vector<DeviceInfo> devices = ranks.count() > 1
-                                              ? choose_rank_devices(options, ranks.own())
-                                              : choose_devices(wanted, options.threads);
-  check_applicable(options, given, devices.front().choice.kind);
-  if (!options.quiet) {
-    for (const DeviceInfo& device : devices) {
-      fmt::print("device {}: {} ({})\n", to_string(device.choice), device.name, device.detail);
-    }
-    const bool is_gpu = devices.front().choice.kind == Kind::cuda;
-    const std::size_t gpus =
-        wanted.kind == Kind::automatic && is_gpu ? list_devices().size() - 1 : 0;
-    if (gpus > 1 && ranks.count() == 1)
-      fmt::print("{} GPUs are here; --device cuda:all renders on all of them\n", gpus);
-    flush_output();  // before the wait, even into a pipe
+  const Kind wanted = options.device.kind;
+  std::vector<DeviceInfo> devices = choose_render_devices(options, given, &ranks);
+  if (options.quiet) return devices;
+  for (const DeviceInfo& device : devices) {
+    fmt::print("device {}: {} ({})\n", to_string(device.choice), device.name, device.detail);
   }
-  options.device = devices.front().choice;
-  for (std::size_t i = 1; i < devices.size(); ++i) {
-    options.device.more.push_back(devices[i].choice.index);
-  }
+  const bool is_gpu = devices.front().choice.kind == Kind::cuda;
+  const std::size_t gpus = wanted == Kind::automatic && is_gpu ? list_devices().size() - 1 : 0;
+  if (gpus > 1 && ranks.count() == 1)
+    fmt::print("{} GPUs are here; --device cuda:all renders on all of them\n", gpus);
+  flush_output();  // before the wait, even into a pipe
   return devices;
-}
-
-/// The stops for a format that has no place for radiance.
-std::optional<float> exposure_of(const Options& options, const Image& image, bool by_default) {
-  using Kind = ExposureChoice::Kind;
-  const std::string ending = image_ending(options.output);
-  if (ending == ".exr") return std::nullopt;
-  const bool measured = options.exposure.kind == Kind::measured ||
-                        (options.exposure.kind == Kind::scene && by_default && ending == ".png");
-  const float stops = measured ? measure_exposure(image) : options.exposure.stops;
-  if (measured && !options.quiet) {
-    fmt::print("exposure {:+.2f} stops, measured; --exposure sets another\n", stops);
-  }
-  return stops;
 }
 
 void warn(const std::string& message) { fmt::print(stderr, "ptexp: warning: {}\n", message); }
 
-/// What could not be counted is no reason to lose what was rendered.
-HardwareCounters count(Renderer& renderer) {
-  try {
-    return renderer.count_hardware();
-  } catch (const Error& error) {
-    warn(std::string("--counters: ") + error.what());
-    HardwareCounters none;
-    none.problem = error.what();
-    return none;
-  }
+/// The stops for the image's format, which are said where they were measured.
+std::optional<float> choose_exposure(const Options& options, const Image& image, bool by_default) {
+  const auto exposure = exposure_for(options.output, options.exposure, image, by_default);
+  if (!exposure) return std::nullopt;
+  if (exposure->is_measured && !options.quiet)
+    fmt::print("exposure {:+.2f} stops, measured; --exposure sets another\n", exposure->stops);
+  return exposure->stops;
 }
 
 /// The image, then what there is to tell about it; in between what a profiler does to the process.
-/// CSV rows are for comparing: complete runs only.
 void write_outputs(const Options& options, const Image& image, const std::string& scene_hash,
                    Renderer& renderer, RenderReport& report) {
   const bool is_part = options.part.count > 1;  // its film is in the checkpoint
   const ToneMapping tone_mapping{report.exposure.value_or(0.0f)};
   if (!is_part) {
-    ImageMetadata metadata = report_metadata(options, report);
-    metadata.merge(film_header(options, scene_hash, report.device_kind));
+    const ImageMetadata metadata = image_header(options, report, scene_hash);
     report.image_write_ms =
         timed_ms([&] { write_image(options.output, image, metadata, tone_mapping); });
   }
-  if (options.counters && is_complete(options, report)) report.counters = count(renderer);
+  if (options.counters && is_complete(options, report))
+    report.counters = count_hardware(renderer, warn);
   if (!options.quiet) {
     fmt::print("{}wrote {}\n", report_table(options, report),
                is_part ? options.checkpoint.file : options.output);
     std::fflush(stdout);  // whether it could be written is asked when all files are there
   }
-  if (!options.stats_file.empty())
-    write_file_atomically(options.stats_file, report_json(options, report));
-  if (!options.csv_file.empty() && is_complete(options, report))
-    append_csv_row(options.csv_file, report_csv_row(options, report));
-}
-
-/// What the scene's file asks for holds where the command line says nothing.
-void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options) {
-  const auto apply = [&](const char* name, const std::optional<int>& value, int Options::*field) {
-    if (value && !given.contains(name)) options.*field = *value;
-  };
-  apply("width", defaults.width, &Options::width);
-  apply("height", defaults.height, &Options::height);
-  apply("spp", defaults.spp, &Options::spp);
-  apply("max-depth", defaults.max_depth, &Options::max_depth);
-  apply("rr", defaults.rr_depth, &Options::rr_depth);
-  if (!options.crop) options.crop = defaults.crop;
-  if (!options.filter) options.filter = defaults.filter;
-  check_crop(options);
-  // A stop is asked to decide: the number of samples does only where it is given.
-  const bool has_stop = options.time_limit > 0 || options.target_error > 0;
-  if (has_stop && !given.contains("spp")) options.spp = std::numeric_limits<int>::max();
+  write_statistics(options, report);
 }
 
 void say_interrupted(const Options& options, const Measurement& measurement, bool has_image) {
@@ -158,12 +91,6 @@ void say_interrupted(const Options& options, const Measurement& measurement, boo
              options.csv_file.empty() ? "" : "; no row appended to " + options.csv_file);
 }
 
-std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& workers) {
-  std::vector<std::string> names;
-  for (const auto& worker : workers) names.push_back(worker->name());
-  return names;
-}
-
 /// Of a rank but the first: its devices work for that one until it needs them no more.
 void serve(Ranks& ranks, const Options& options, const SceneData& scene,
            const std::vector<DeviceInfo>& devices) {
@@ -173,76 +100,13 @@ void serve(Ranks& ranks, const Options& options, const SceneData& scene,
   serve_units(ranks, workers);
 }
 
-/// One device's renderer, or a group whose film may be kept.
-class Rendering {
- public:
-  Rendering(const Options& options, const SceneData& scene, const std::vector<DeviceInfo>& devices,
-            Ranks& ranks, const Resumption* resumption)
-      : options_(options) {
-    const bool has_ranks = ranks.count() > 1 && !options.explain;
-    if (!needs_group(options, devices) && !has_ranks) {
-      single_ = make_fitting_renderer(options, scene, devices.front(), warn);
-      return;
-    }
-    filter_ = scene.filter;
-    header_ = film_header(options, scene.source_hash, to_string(devices.front().choice.kind));
-    bell_ = std::make_shared<ResultBell>();
-    if (!options.checkpoint.file.empty()) {
-      keeper_ = std::make_unique<CheckpointKeeper>(
-          options.checkpoint.interval_s, [this](const ImageFilm& film) { save(film); },
-          [](const std::string& message) { warn("--checkpoint: " + message); });
-    }
-    GroupHooks hooks;
-    hooks.warn = warn;
-    if (keeper_) hooks.film_grew = [this](const ImageFilm& film) { keeper_->film_grew(film); };
-    auto workers = make_workers(options, scene, devices, *bell_);
-    if (has_ranks) {
-      ranks.announce(names_of(workers));
-      const std::uint64_t least_paths = workers.front()->least_paths();
-      for (auto& remote : remote_workers(ranks, least_paths)) workers.push_back(std::move(remote));
-    }
-    // Nobody rings for what comes from other ranks.
-    const std::shared_ptr<ResultBell> bell = has_ranks ? nullptr : bell_;
-    group_ =
-        std::make_unique<GroupRenderer>(options, scene.filter, std::move(workers), bell, hooks);
-    if (resumption != nullptr) group_->start_from(resumption->checkpoint.film);
-    group_->restrict_to(part_windows(options));
-  }
-
-  Renderer& renderer() { return group_ ? *group_ : *single_; }
-
-  /// What was rendered is in the checkpoint, whatever ended the render.
-  void keep() {
-    if (keeper_) keeper_->finish(group_->film());
-  }
-
- private:
-  void save(const ImageFilm& film) const {
-    write_checkpoint(options_.checkpoint.file, {film, header_}, filter_,
-                     {0, 0, options_.width, options_.height});
-  }
-
-  const Options& options_;
-  PixelFilter filter_{};
-  ImageMetadata header_;
-  std::unique_ptr<Renderer> single_;
-  std::shared_ptr<ResultBell> bell_;
-  std::unique_ptr<CheckpointKeeper> keeper_;
-  std::unique_ptr<GroupRenderer> group_;
-};
-
-Measurement measure_and_keep(Rendering& rendering, const Options& options) {
+Measurement measure_and_show(Rendering& rendering, const Options& options) {
   Progress progress(stderr, progress_style(stderr, options.quiet));
-  try {
-    Measurement measurement = measure(rendering.renderer(), options, progress, interrupted);
-    rendering.keep();
-    return measurement;
-  } catch (const std::exception& error) {
-    progress.finish();
-    if (options.checkpoint.file.empty()) throw;
-    rendering.keep();
-    throw Error(fmt::format("{}; ptexp resume {} goes on", error.what(), options.checkpoint.file));
-  }
+  MeasureHooks hooks;
+  hooks.begin = [&](const std::string& label) { progress.begin(label); };
+  hooks.progress = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+  hooks.stop = interrupted;
+  return rendering.measure(hooks);
 }
 
 }  // namespace
@@ -259,9 +123,10 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   RenderReport report;
   SceneData scene;
   report.scene_ms = timed_ms([&] {
-    scene = make_shared_scene(ranks, options, devices.front(), is_first ? Warn(warn) : Warn());
+    scene = load_shared_scene(ranks, options, devices.front(), is_first ? Warn(warn) : Warn());
+    apply_defaults(scene.defaults, command.given, options);
+    prepare_scene_for(scene, options, devices.front());
   });
-  apply_defaults(scene.defaults, command.given, options);
   if (!is_first) {
     if (!options.explain) serve(ranks, options, scene, devices);
     return 0;
@@ -273,7 +138,7 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
     fmt::print("{}", scene_text(report.scene));
     std::fflush(stdout);
   }
-  Rendering rendering(options, scene, devices, ranks, resumption);
+  Rendering rendering(options, scene, devices, {&ranks, resumption, warn});
   Renderer& renderer = rendering.renderer();
 
   if (options.explain) {
@@ -283,7 +148,7 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   }
 
   note_signals(!options.checkpoint.file.empty());
-  const Measurement measurement = measure_and_keep(rendering, options);
+  const Measurement measurement = measure_and_show(rendering, options);
   const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   if (has_image) {
     const Image image = renderer.image();
@@ -291,7 +156,7 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
     renderer.describe(report);
     if (is_new && !options.quiet) fmt::print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
-    report.exposure = exposure_of(options, image, scene.defaults.measure_exposure);
+    report.exposure = choose_exposure(options, image, scene.defaults.measure_exposure);
     write_outputs(options, image, scene.source_hash, renderer, report);
   }
   if (!measurement.interrupted) return 0;

@@ -6,6 +6,7 @@
 #include "app/report/csv_file.h"
 #include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
+#include "app/trace_mesh.h"
 #include "app/trace_scene.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/check_builder.h"
@@ -102,16 +103,17 @@ int print_comparison(const TraceCommand& command, const HitComparison& c) {
   return c.agrees() ? 0 : 1;
 }
 
+TreeOptions tree_options_of(const TraceCommand& command) {
+  TreeOptions options;
+  options.accel = command.accel;
+  options.builder = command.builder;
+  return options;
+}
+
 void check_command(const TraceCommand& command, const DeviceInfo& device) {
   if (!command.output.empty()) check_writable(command.output);
   if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
-  const bool is_cpu = device.choice.kind == DeviceChoice::Kind::cpu;
-  check_builder(command.builder, command.accel, !is_cpu);
-  if (command.accel == AccelKind::brute && command.builder != TreeBuilder::automatic)
-    throw Error(fmt::format("--builder {}: has no effect with --accel brute: there is no tree",
-                            to_string(command.builder)));
-  if (is_cpu && command.runs.variant != TraceVariant::automatic)
-    throw Error("--variant: has no effect on the CPU");
+  check_tracing(tree_options_of(command), command.runs, device);
 }
 
 HitSet read_reference(const TraceCommand& command, const RaySet& rays) {
@@ -119,30 +121,6 @@ HitSet read_reference(const TraceCommand& command, const RaySet& rays) {
   if (hits.hits.size() != rays.rays.size() || hits.type != rays.type)
     throw Error(fmt::format("{}: is not of the rays in {}", command.hits, command.rays));
   return hits;
-}
-
-TraceResult trace(const DeviceInfo& device, const TriangleTreeData& tree, const RaySet& rays,
-                  const TraceRuns& runs) {
-#ifdef PTEXP_CUDA
-  if (device.choice.kind == DeviceChoice::Kind::cuda)
-    return trace_rays_cuda(tree, rays, runs, device.choice.index);
-#endif
-  (void)device;  // without CUDA there is only one
-  return trace_rays_cpu(tree, rays, runs);
-}
-
-BuiltTrace build_and_trace(const TraceCommand& command, const DeviceInfo& device,
-                           const SceneData& scene, const RaySet& rays) {
-  TreeOptions options;
-  options.accel = command.accel;
-  options.builder = command.builder;
-#ifdef PTEXP_CUDA
-  if (is_device_builder(command.builder))
-    return build_and_trace_cuda(scene.meshes, scene.instances, options, rays, command.runs,
-                                device.choice.index);
-#endif
-  const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
-  return {trace(device, tree, rays, command.runs), summarize(tree)};
 }
 
 }  // namespace
@@ -156,7 +134,8 @@ int trace_command(const TraceCommand& given) {
   const RaySet rays = read_rays(command.rays);
   HitSet reference;
   if (!command.hits.empty()) reference = read_reference(command, rays);
-  const auto [result, tree] = build_and_trace(command, device, scene, rays);
+  const auto [result, tree] =
+      build_and_trace(scene, tree_options_of(command), rays, command.runs, device);
   TraceReport report;
   report.device = device;
   report.triangles = scene.triangle_count();

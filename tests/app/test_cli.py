@@ -203,6 +203,26 @@ class Images(CommandLine):
         self.assertEqual(run.stdout + run.stderr, "")
 
 
+class SceneFile(CommandLine):
+    # Above the camera, nearer than the near plane, in sight in a tall image alone.
+    SCENE = """<scene version="3.0.0">
+      <sensor type="perspective"><float name="fov" value="40"/><string name="fov_axis" value="x"/>
+        <float name="near_clip" value="2.5"/>
+        <transform name="to_world"><lookat origin="0, 0, 5" target="0, 0, 0" up="0, 1, 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="20"/><integer name="height" value="60"/></film>
+      </sensor>
+      <shape type="sphere"><float name="radius" value="0.2"/><point name="center" x="0" y="2.2" z="2.9"/></shape>
+      <shape type="cube"><transform name="to_world"><scale value="0.5"/></transform></shape>
+      <emitter type="constant"/></scene>"""
+
+    def test_its_image_has_the_size_for_which_it_is_prepared(self):
+        (self.folder / "tall.xml").write_text(self.SCENE)
+        scene = ["--scene", "tall.xml", "--device", "cpu", "--spp", 4, "--quiet"]
+        self.run_ok(*scene, "--output", "file.exr")
+        self.run_ok(*scene, "--width", 20, "--height", 60, "--output", "given.exr")
+        self.run_ok("compare", "file.exr", "given.exr")
+
+
 class Compare(CommandLine):
     def compare(self, *arguments):
         return self.run_ptexp("compare", *arguments)

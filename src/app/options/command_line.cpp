@@ -231,20 +231,6 @@ VerifyCommand parse_verify(const Parser& parser) {
   return command;
 }
 
-RenderCommand parse_render(const Parser& parser) {
-  RenderCommand command;
-  for (const auto& [entry, value] : given_settings(parser)) {
-    entry->set(command.options, value);
-    command.given.insert(entry->name);
-  }
-  check_consistent(command.options, command.given);
-  std::optional<DeviceChoice::Kind> device;
-  if (command.options.device.kind != DeviceChoice::Kind::automatic)
-    device = command.options.device.kind;
-  check_applicable(command.options, command.given, device);
-  return command;
-}
-
 /// A command other than rendering stands alone: nothing that the user wrote is ignored.
 void check_alone(const Parser& parser, const std::string& command, const CLI::Option* self) {
   for (const CLI::Option* option : parser.app.get_options())
@@ -284,6 +270,20 @@ void check_extras(const Parser& parser) {
 }
 
 }  // namespace
+
+RenderCommand make_render_command(const std::vector<Setting>& settings) {
+  RenderCommand command;
+  for (const auto& [entry, value] : settings) {
+    entry->set(command.options, value);
+    command.given.insert(entry->name);
+  }
+  check_consistent(command.options, command.given);
+  std::optional<DeviceChoice::Kind> device;
+  if (command.options.device.kind != DeviceChoice::Kind::automatic)
+    device = command.options.device.kind;
+  check_applicable(command.options, command.given, device);
+  return command;
+}
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
   Parser parser;
@@ -351,7 +351,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     const std::string page = last_value(*parser.reference);
     return ReferenceCommand{parse_name<ReferencePage>("reference", page), describe_program(parser)};
   }
-  return parse_render(parser);
+  return make_render_command(given_settings(parser));
 }
 
 }  // namespace pt

@@ -62,6 +62,10 @@ using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyC
                              DoctorCommand, ListScenesCommand, ListDevicesCommand, VersionCommand,
                              CompletionCommand, ReferenceCommand, HelpCommand>;
 
+/// Options of rendering from their settings, of which a later one overrides an earlier one. Throws
+/// Error for everything that can be refused without a device or a scene.
+RenderCommand make_render_command(const std::vector<Setting>& settings);
+
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -125,27 +125,36 @@ Mesh read_trace_mesh(const std::string& path) {
   mesh.triangles.resize(header.triangles);
   input.read(mesh.positions.data(), mesh.positions.size() * sizeof(Vec3));
   input.read(mesh.triangles.data(), mesh.triangles.size() * sizeof(TriangleIndices));
+  check_trace_mesh(mesh, path);
+  return mesh;
+}
+
+void check_trace_mesh(const Mesh& mesh, const std::string& name) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
-    if (!is_finite(mesh.positions[i])) fail(path, fmt::format("vertex {} is not finite", i));
+    if (!is_finite(mesh.positions[i])) fail(name, fmt::format("vertex {} is not finite", i));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i].v)
-      if (v >= header.vertices)
-        fail(path, fmt::format("triangle {} has vertex {}: there are {}", i, v, header.vertices));
-  return mesh;
+      if (v >= mesh.positions.size())
+        fail(name,
+             fmt::format("triangle {} has vertex {}: there are {}", i, v, mesh.positions.size()));
+}
+
+void check_rays(const RaySet& set, const std::string& name) {
+  for (std::size_t i = 0; i < set.rays.size(); ++i) {
+    const RayRecord& ray = set.rays[i];
+    if (!is_finite(ray.origin) || !is_finite(ray.direction))
+      fail(name, fmt::format("ray {} is not finite", i));
+    if (!is_traceable(ray.ray())) fail(name, fmt::format("ray {} has no direction", i));
+    if (!(ray.t_min >= 0.0f) || std::isnan(ray.t_max))
+      fail(name, fmt::format("ray {} is from {} to {}: expected 0 or more to a number", i,
+                             ray.t_min, ray.t_max));
+  }
 }
 
 RaySet read_rays(const std::string& path) {
   RaySet set;
   set.rays = read_set<RayRecord>(path, rays_magic, set.type);
-  for (std::size_t i = 0; i < set.rays.size(); ++i) {
-    const RayRecord& ray = set.rays[i];
-    if (!is_finite(ray.origin) || !is_finite(ray.direction))
-      fail(path, fmt::format("ray {} is not finite", i));
-    if (!is_traceable(ray.ray())) fail(path, fmt::format("ray {} has no direction", i));
-    if (!(ray.t_min >= 0.0f) || std::isnan(ray.t_max))
-      fail(path, fmt::format("ray {} is from {} to {}: expected 0 or more to a number", i,
-                             ray.t_min, ray.t_max));
-  }
+  check_rays(set, path);
   return set;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/image/compare/flip_filters.h"
 #include "common/image/compare/flip_tiles.h"
@@ -209,6 +210,16 @@ std::vector<float> hdr_flip(const Image& test, const Image& reference, const Fli
     }
     return errors;
   });
+}
+
+std::vector<float> flip_of(const Image& test, const Image& reference, bool is_hdr,
+                           const ImageDifference& difference) {
+  if (difference.differing_pixels == 0) return std::vector<float>(reference.rgb.size() / 3, 0.0f);
+  return is_hdr ? hdr_flip(test, reference) : ldr_flip(test, reference);
+}
+
+double mean_of(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 }  // namespace pt

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "common/image/compare/compare.h"
 #include "common/image/image.h"
 
 namespace pt {
@@ -34,5 +35,11 @@ std::vector<float> ldr_flip(const Image& test, const Image& reference, const Fli
 /// Of linear radiance: the largest LDR-FLIP of all exposures, tone mapped by the ACES curve. What
 /// is negative or not a number counts as 0.
 std::vector<float> hdr_flip(const Image& test, const Image& reference, const FlipView& view = {});
+
+/// The one or the other. Where no pixel differs nothing is seen, which is not computed.
+std::vector<float> flip_of(const Image& test, const Image& reference, bool is_hdr,
+                           const ImageDifference& difference);
+
+double mean_of(const std::vector<float>& values);
 
 }  // namespace pt

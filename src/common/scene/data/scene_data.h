@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,6 +40,13 @@ struct SceneDefaults {
   bool measure_exposure = false;
 };
 
+/// What files call their parts; those without a name are not in it.
+struct SceneNames {
+  std::map<std::uint32_t, std::string> materials;     ///< by material
+  std::map<std::uint32_t, std::string> emitters;      ///< what a material emits, by material
+  std::map<std::uint32_t, std::string> delta_lights;  ///< by its index
+};
+
 /// The memory behind a LightSelector and a LightMap.
 struct LightListData {
   std::vector<Light> lights;
@@ -56,6 +64,7 @@ struct SceneData {
   std::string source_hash;                ///< of the files that it was read from; empty: of none
   std::vector<std::string> source_files;  ///< by absolute path
   std::string name;
+  SceneNames names;
   SceneDefaults defaults;
   CameraParameters camera;
   Sky sky;

@@ -97,6 +97,7 @@ SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options
   std::vector<std::uint32_t> numbers;
   for (const ObjMaterial& material : file.materials) {
     numbers.push_back(add_obj_material(material, textures, scene));
+    if (!material.name.empty()) scene.names.materials[numbers.back()] = material.name;
   }
   scene.meshes = std::move(file.meshes);
   VertexColors colors(scene, options);

@@ -20,15 +20,28 @@ void prepare_primitives_only(SceneData& scene, Accel accel) {
                   scene.lights.empty() ? Lighting::sky : Lighting::emitters};
 }
 
+void set_camera(SceneData& scene, const CameraParameters& camera, const Options& options) {
+  scene.camera = camera;
+  override_camera(scene.camera, options.camera);
+  check_camera(scene.camera);
+  drop_idle_clips(scene, options.width, options.height);
+}
+
 }  // namespace
+
+bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options) {
+  if (scene.primitive_count() > 0) return false;  // their bounds and scans depend on its place
+  const bool was_orthographic = scene.camera.orthographic;
+  set_camera(scene, camera, options);
+  return scene.camera.orthographic == was_orthographic &&
+         is_limited(scene.camera) == scene.properties.limits_camera_rays;
+}
 
 void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
-  override_camera(scene.camera, options.camera);
-  check_camera(scene.camera);
-  drop_idle_clips(scene, options.width, options.height);
+  set_camera(scene, scene.camera, options);
   prepare_materials(scene, options.multiple_scattering);
   prepare_filter(scene, filter_of(options, scene));
   scene.properties = properties_of(scene);

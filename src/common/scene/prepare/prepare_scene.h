@@ -12,6 +12,11 @@ namespace pt {
 /// Its structure is what a plan for this device says (plan/execution_plan.h).
 void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device);
 
+/// Of a scene that is prepared: gives it this camera, by these options. False: the scene has to be
+/// prepared anew, since its structure was chosen for cameras of another kind; it is of no use then.
+/// Throws Error as prepare_scene does.
+bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options);
+
 /// For the kind of device that the options name, of the usual properties.
 void prepare_scene(SceneData& scene, const Options& options);
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/error/error.h"
+#include "common/geometry/mesh.h"
 
 namespace pt {
 
@@ -13,6 +14,8 @@ struct LoadOptions {
   std::map<std::string, std::string> definitions;  ///< -D name=value; for formats with variables
   bool strict = false;  ///< an Error instead of each warning: nothing is replaced or ignored
   std::function<void(const std::string&)> warn;  ///< called with one line; empty: silence
+  /// Of a scene that is described in memory: what its shapes of the type "mesh" name as their data.
+  std::map<std::string, Mesh> meshes{};
 
   /// For what a loader replaces or ignores. `message` names the file, the place, and what is used
   /// instead.

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::atomic<SceneFiles*> current{nullptr};
+std::mutex one_at_a_time;
 
 fs::path normal(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
@@ -58,7 +59,7 @@ class Unpacker {
 
 }  // namespace
 
-SceneFiles::SceneFiles() { current = this; }
+SceneFiles::SceneFiles() : turn_(one_at_a_time) { current = this; }
 SceneFiles::~SceneFiles() { current = nullptr; }
 
 void SceneFiles::note(const fs::path& path, std::string_view bytes) {

@@ -12,8 +12,8 @@
 
 namespace pt {
 
-/// Notes every file that loaders read while it exists. One at a time; loaders of several threads
-/// may read at once.
+/// Notes every file that loaders read while it exists. One at a time: another thread waits to make
+/// its own. Loaders of several threads may read at once.
 class SceneFiles {
  public:
   SceneFiles();
@@ -33,6 +33,7 @@ class SceneFiles {
  private:
   void add(const std::filesystem::path& path, std::string_view bytes);
 
+  std::unique_lock<std::mutex> turn_;
   mutable std::mutex mutex_;
   std::map<std::filesystem::path, std::string> hashes_;  ///< by absolute path
 };

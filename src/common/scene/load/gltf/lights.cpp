@@ -72,6 +72,8 @@ void add_lights(File& file, const std::vector<PlacedNode>& nodes, SceneData& sce
     const std::string place = fmt::format("extensions.KHR_lights_punctual.lights[{}]", index);
     const DeltaLight made = make_light(file, light, node.to_world, place);
     if (is_black(made.intensity)) continue;
+    if (!light.name.empty())
+      scene.names.delta_lights[static_cast<std::uint32_t>(scene.delta_lights.size())] = light.name;
     scene.delta_lights.push_back(made);
     scene.defaults.measure_exposure = true;
   }

@@ -51,6 +51,7 @@ std::uint32_t Materials::material_index(int index, const std::string& place) {
     const std::string material_place = fmt::format(
         "materials[{}]{}", index, source.name.empty() ? "" : fmt::format(" '{:.60}'", source.name));
     result = add(source, material_place);
+    if (!source.name.empty()) scene_.names.materials[result] = source.name;
   }
   numbers_.emplace(index, result);
   return result;

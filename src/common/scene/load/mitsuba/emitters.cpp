@@ -106,7 +106,11 @@ void add_emitter(Context& context, const Object& emitter) {
     context.warn_once("emitter " + type, emitter.element(), why_left_out(type));
     return context.add_left_out(emitter);
   }
+  auto& lights = context.scene.delta_lights;
+  const std::size_t before = lights.size();
   adder->second(context, emitter);
+  if (lights.size() > before && !emitter.id().empty())
+    context.scene.names.delta_lights[static_cast<std::uint32_t>(before)] = emitter.id();
   context.add_lit();
 }
 

@@ -47,20 +47,26 @@ void load_objects(Context& context, const Object& root) {
 
 }  // namespace
 
-SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options) {
-  const mitsuba::Element root = mitsuba::read_document(path, options);
+SceneData load_mitsuba_scene(const mitsuba::Element& root, const std::string& name,
+                             const LoadOptions& options) {
   const mitsuba::ObjectGraph graph(root, options);
   SceneData scene;
-  // Many scenes are FOLDER/scene.xml.
-  const std::string stem = path.stem().string();
-  scene.name =
-      stem == "scene" && path.has_parent_path() ? path.parent_path().filename().string() : stem;
+  scene.name = name;
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
   context.colors.finish();
   context.add_studio_if_dark();
   context.report_unused();
   return scene;
+}
+
+SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options) {
+  const mitsuba::Element root = mitsuba::read_document(path, options);
+  // Many scenes are FOLDER/scene.xml.
+  const std::string stem = path.stem().string();
+  const bool is_in_folder = stem == "scene" && path.has_parent_path();
+  return load_mitsuba_scene(root, is_in_folder ? path.parent_path().filename().string() : stem,
+                            options);
 }
 
 }  // namespace pt

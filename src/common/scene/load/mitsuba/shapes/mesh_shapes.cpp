@@ -45,4 +45,11 @@ void add_file(Context& context, const Object& shape, const Target& target) {
   add_mesh(context, shape, target, std::move(mesh), to_world);
 }
 
+/// A mesh of LoadOptions::meshes.
+void add_memory(Context& context, const Object& shape, const Target& target) {
+  const Mesh* mesh = context.memory_mesh(shape.text("data", ""));
+  if (!mesh) fail(shape.element(), "shape 'mesh': expected vertices and triangles");
+  add_mesh(context, shape, target, *mesh, shape.transform("to_world"));
+}
+
 }  // namespace pt::mitsuba

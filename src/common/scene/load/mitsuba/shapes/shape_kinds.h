@@ -22,6 +22,7 @@ void add_mesh(Context& context, const Object& shape, const Target& target, Mesh 
               const Affine& to_world);
 
 void add_file(Context& context, const Object& shape, const Target& target);
+void add_memory(Context& context, const Object& shape, const Target& target);
 void add_rectangle(Context& context, const Object& shape, const Target& target);
 void add_cube(Context& context, const Object& shape, const Target& target);
 void add_sphere(Context& context, const Object& shape, const Target& target);

@@ -35,6 +35,21 @@ void add_emission(Context& context, const Object& emitter, Surface& surface) {
   }
 }
 
+/// By their ids; what has none is its shape's.
+void name_material(SceneData& scene, std::uint32_t material, const Object& shape,
+                   const Object* bsdf, const Object* emitter) {
+  const std::string own = shape.id();
+  const auto name_of = [&](const Object* object, const char* part) {
+    const std::string id = object ? object->id() : "";
+    return !id.empty() || own.empty() ? id : own + part;
+  };
+  if (const std::string name = name_of(bsdf, ".bsdf"); !name.empty())
+    scene.names.materials[material] = name;
+  if (!emitter) return;
+  if (const std::string name = name_of(emitter, ""); !name.empty())
+    scene.names.emitters[material] = name;
+}
+
 const Object* emitter_of(Context& context, const Object& shape, std::uint32_t group) {
   const Object* emitter = shape.child("emitter");
   if (!emitter) emitter = shape.child("luminaire");
@@ -65,6 +80,7 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
     if (emitter) add_emission(context, *emitter, surface);
     if (!surface.invisible) {
       entry->second = context.scene.add_material(surface.material);
+      name_material(context.scene, entry->second, shape, bsdf, emitter);
     }
   }
   return entry->second == invisible ? std::nullopt : std::optional(entry->second);

@@ -14,9 +14,15 @@ using Adder = void (*)(Context&, const Object&, const Target&);
 
 const std::map<std::string_view, Adder>& adders() {
   static const std::map<std::string_view, Adder> table = {
-      {"obj", add_file},      {"ply", add_file},          {"serialized", add_file},
-      {"sphere", add_sphere}, {"cube", add_cube},         {"rectangle", add_rectangle},
-      {"disk", add_disk},     {"cylinder", add_cylinder},
+      {"obj", add_file},
+      {"ply", add_file},
+      {"serialized", add_file},
+      {"mesh", add_memory},
+      {"sphere", add_sphere},
+      {"cube", add_cube},
+      {"rectangle", add_rectangle},
+      {"disk", add_disk},
+      {"cylinder", add_cylinder},
   };
   return table;
 }

@@ -32,4 +32,10 @@ Surface read_surface(Context& context, const Object& bsdf) {
   return diffuse_of({Color(0.5f)});
 }
 
+std::vector<std::string> surface_types() {
+  std::vector<std::string> types;
+  for (const auto& entry : readers()) types.emplace_back(entry.first);
+  return types;
+}
+
 }  // namespace pt::mitsuba

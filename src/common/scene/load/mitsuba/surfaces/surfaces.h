@@ -21,4 +21,7 @@ float relative_ior(const Object& bsdf, std::string_view inside = "bk7");
 /// ext_eta of conductors in 0.x, likewise; 1 where there is none.
 float outside_ior(const Object& bsdf);
 
+/// All types of bsdfs that are read.
+std::vector<std::string> surface_types();
+
 }  // namespace pt::mitsuba

@@ -35,6 +35,11 @@ void Context::warn_once(const std::string& kind, const Element& at, const std::s
   if (warned_.insert(kind).second) options_.report(at.place() + ": " + message);
 }
 
+const Mesh* Context::memory_mesh(const std::string& name) const {
+  const auto found = options_.meshes.find(name);
+  return found == options_.meshes.end() ? nullptr : &found->second;
+}
+
 void Context::note(const Element& at, const std::string& message) const {
   if (options_.warn) options_.warn(at.place() + ": " + message);
 }

@@ -37,6 +37,9 @@ class Context {
   /// the first of these, for an error that names it.
   std::filesystem::path resolve(const Element& at, const std::string& name);
 
+  /// Of the scene's description in memory; nullptr: there is none of that name.
+  const Mesh* memory_mesh(const std::string& name) const;
+
   /// An emitter becomes a light, or it is left out; add_studio_if_dark() needs to know.
   void add_lit() { lit_ = true; }
   void add_left_out(const Object& emitter) { left_out_.push_back(&emitter); }

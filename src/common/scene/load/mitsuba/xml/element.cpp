@@ -16,7 +16,9 @@ const std::string& Element::required(std::string_view name) const {
   fail(*this, fmt::format("<{}> has no attribute '{}'", tag, name));
 }
 
-std::string Element::place() const { return fmt::format("{}:{}", file->string(), line); }
+std::string Element::place() const {
+  return line == 0 ? file->string() : fmt::format("{}:{}", file->string(), line);
+}
 
 void fail(const Element& element, const std::string& message) {
   throw Error(element.place() + ": " + message);

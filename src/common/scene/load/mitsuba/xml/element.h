@@ -17,13 +17,13 @@ struct Element {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::vector<Element> children;
   std::shared_ptr<const std::filesystem::path> file;
-  int line = 0;
+  int line = 0;  ///< 0: of no file; `file` says where it is
 
   /// The value of an attribute, or nullptr.
   const std::string* attribute(std::string_view name) const;
   /// The same; throws Error where the element has none.
   const std::string& required(std::string_view name) const;
-  /// "file:line".
+  /// "file:line", or the file alone.
   std::string place() const;
 };
 

@@ -30,6 +30,11 @@ std::string Object::type() const {
   return type ? *type : std::string();
 }
 
+std::string Object::id() const {
+  const std::string* id = element_->attribute("id");
+  return id ? *id : std::string();
+}
+
 bool Object::add_property(const Element& element) {
   const std::string name = snake_case(element.required("name"));
   return properties_.insert_or_assign(name, Property{&element}).second;

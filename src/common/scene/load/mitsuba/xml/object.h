@@ -39,6 +39,7 @@ class Object {
   const Element& element() const { return *element_; }
   const std::string& tag() const { return element_->tag; }
   std::string type() const;  ///< empty where the element says none
+  std::string id() const;    ///< likewise
   std::string place() const { return element_->place(); }
 
   // Properties. All throw Error for a value that is not of the kind asked for.

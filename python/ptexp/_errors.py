@@ -1,0 +1,47 @@
+"""What goes wrong, as exceptions and warnings."""
+import re
+import sys
+import warnings
+from pathlib import Path
+
+__all__ = ["Error", "OptionError", "SceneWarning"]
+
+
+class Error(RuntimeError):
+    """Something that the user can mend: a file, a scene, a size, a device, too little memory.
+
+    Attributes:
+        file: the file that the message begins with, or None.
+        line: the line there, from 1, or None.
+    """
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(message)
+        place = re.match(r"(?P<file>[^\n]+?):(?P<line>\d+): ", message)
+        self.file = place["file"] if place else None
+        self.line = int(place["line"]) if place else None
+
+
+class OptionError(Error, ValueError):
+    """An option that does not exist, has a wrong value, or has no effect together with the others.
+
+    Messages name options as the command line does: ``--max-depth`` is the keyword ``max_depth``.
+    """
+
+
+class SceneWarning(UserWarning):
+    """What a scene file asks for and ptexp does otherwise; and what a render could not do besides."""
+
+
+def error_of(message: str) -> Error:
+    """The exception for a message of the program."""
+    return (OptionError if message.startswith("--") else Error)(message)
+
+
+def warn(message: str) -> None:
+    """A SceneWarning at the line that called the package."""
+    folder = str(Path(__file__).parent)
+    frame, level = sys._getframe(1), 2
+    while frame and frame.f_code.co_filename.startswith(folder):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, SceneWarning, stacklevel=level)

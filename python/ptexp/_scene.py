@@ -1,0 +1,199 @@
+"""Scenes in memory, and rendering them."""
+import os
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Union
+
+from . import _ptexp
+from ._dict import to_elements
+from ._image import Image
+from ._options import as_documentation, check_of_render, to_words
+from ._params import Params
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+
+class Scene:
+    """A scene in memory, which :func:`load` or :meth:`from_dict` makes.
+
+    It is read once, and prepared (acceleration structure, lights) when a render needs another
+    preparation than the one before. One render of a scene at a time: others wait. The scene is kept
+    twice, as it was read and as it was prepared.
+    """
+
+    def __init__(self, native: "_ptexp.Scene", options: Dict[str, Any]) -> None:
+        self._native = native
+        self._options = options
+        self._params: Optional[Params] = None
+
+    @classmethod
+    def from_dict(cls, scene: Dict[str, Any], *, name: str = "dictionary", strict: bool = False, **options: Any) -> "Scene":
+        """Makes a scene of dictionaries, in the form of Mitsuba 3's ``load_dict``.
+
+        Args:
+            scene: ``{"type": "scene", "sensor": {"type": "perspective", "fov": 40, ...}, ...}``:
+                what a Mitsuba file can have (docs/scenes.md), by the same names. Lists of three are
+                vectors or linear RGB; 4x4 lists or arrays are transforms; ``{"type": "ref",
+                "id": "red"}`` refers to what has the key "red". A shape of the type "mesh" has
+                ``vertices`` (n, 3), ``triangles`` (m, 3) and may have ``normals`` (n, 3) and
+                ``uvs`` (n, 2), as arrays.
+            name: for statistics.
+            strict: what ptexp lacks is an Error, not a SceneWarning.
+            **options: those of :func:`render`, for all renders of the scene.
+
+        Raises:
+            Error: it is no scene; the message says where: ``scene['box']['bsdf']: ...``.
+        """
+        check_of_render(options)
+        to_words(options)
+        root, meshes = to_elements(scene)
+        return cls(_ptexp.from_elements(root, meshes, name, strict), {**options, "scene": name})
+
+    @property
+    def name(self) -> str:
+        """As statistics call it."""
+        return self._native.name
+
+    @property
+    def options(self) -> Dict[str, Any]:
+        """The keywords that it was loaded with: they hold for all renders that say nothing else."""
+        return dict(self._options)
+
+    @property
+    def defaults(self) -> Dict[str, int]:
+        """What its file asks for: width, height, spp, max_depth, rr."""
+        return self._native.defaults()
+
+    @property
+    def params(self) -> Params:
+        """Camera, materials, lights and instances, to be changed between renders."""
+        if self._params is None:
+            self._params = Params(self._native)
+        return self._params
+
+    def render(self, **options: Any) -> Image:
+        """:func:`render` of this scene."""
+        return render(self, **options)
+
+    def __repr__(self) -> str:
+        return f"<ptexp.Scene {self.name!r}>"
+
+
+def load(scene: PathLike, **options: Any) -> Scene:
+    """Loads a scene.
+
+    Args:
+        scene: a file (Mitsuba .xml, .gltf, .glb, .obj, .ply) or the name of a built-in scene, with
+            its parameter: ``"spheres"``, ``"terrain:100000"``; see :func:`scenes`.
+        **options: those of :func:`render`, for all renders of the scene, and ``define={...}``,
+            ``strict=True``, ``spheres=N``, which say what is read.
+
+    Returns:
+        The scene. ``scene.render()`` renders it.
+
+    Raises:
+        OptionError: an option is wrong.
+        Error: the file is missing or wrong; ``error.file`` and ``error.line`` say where.
+
+    Warns:
+        SceneWarning: what the file asks for and ptexp does otherwise (``strict=True``: an Error).
+    """
+    given = {**options, "scene": os.fspath(scene)}
+    return Scene(_ptexp.load(to_words(given)), given)
+
+
+def render(
+    scene: Union[Scene, PathLike],
+    *,
+    progress: Optional[Callable[[int, int], Any]] = None,
+    **options: Any,
+) -> Image:
+    """Renders a scene.
+
+    Args:
+        scene: a :class:`Scene`, or what :func:`load` takes; a Scene is rendered again without
+            being read again.
+        progress: called with the samples done and wanted, of all pixels, up to 20 times a second,
+            in the thread that called. What it raises ends the render.
+        **options: every option of the command line, as listed below. Flags are bools; on/off
+            options take bools, too; several values are tuples: ``look_from=(0, 1, 5)``,
+            ``crop=(0, 0, 64, 64)``, ``block=(16, 8)``, ``part=(1, 4)``,
+            ``aov=("depth", "albedo")``; ``define`` and ``stage_block`` dictionaries. None is as
+            good as not given. ``output=`` also writes the image, ``stats=`` and ``csv=`` what they
+            do on the command line; ``quiet=False`` prints the table.
+
+    Returns:
+        The image: the same bits as the program's.
+
+    Raises:
+        OptionError: an option is wrong, or has no effect in this mode or on this device.
+        Error: what else the user can mend.
+        KeyboardInterrupt: Ctrl-C, at once on the CPU and after the batch on a GPU. The samples are
+            lost, unless ``checkpoint=`` was given.
+
+    The interpreter's lock is released meanwhile.
+    """
+    if not isinstance(scene, Scene):
+        return render(load(scene, **options), progress=progress)
+    check_of_render(options)
+    merged = {**scene._options, **options}
+    output = merged.pop("output", None)
+    quiet = merged.pop("quiet", True)
+    if merged.pop("explain", False):
+        raise TypeError("render has no use for explain: ptexp.explain(scene, ...) returns the plan")
+    words = to_words(merged)
+    if output is not None:
+        _ptexp.check_output(os.fspath(output))
+    image = Image(scene._native.render(words, progress))
+    if output is not None and image._native.has_image:
+        image.save(output)
+    image._native.write_statistics()
+    if not quiet:
+        print(image._native.table(), end="")
+    return image
+
+
+def explain(scene: Union[Scene, PathLike], **options: Any) -> List[Dict[str, str]]:
+    """How a render would be executed, and why: ``{"option", "value", "reason"}`` of each choice.
+
+    Args and errors are those of :func:`render`, which it prepares but does not begin.
+    """
+    if not isinstance(scene, Scene):
+        return explain(load(scene, **options))
+    check_of_render(options)
+    merged = {**scene._options, **options}
+    for name in ("output", "quiet", "explain"):
+        merged.pop(name, None)
+    return scene._native.plan(to_words(merged))
+
+
+class SceneInfo(NamedTuple):
+    """A built-in scene."""
+
+    name: str  #: for :func:`load`
+    parameter: str  #: what may follow the name and a colon, in a word; empty: nothing
+    description: str
+
+
+class DeviceInfo(NamedTuple):
+    """A device of this machine."""
+
+    name: str  #: for ``device=``
+    model: str
+    detail: str
+
+
+def scenes() -> List[SceneInfo]:
+    """The built-in scenes."""
+    return [SceneInfo(*scene) for scene in _ptexp.scenes()]
+
+
+def devices() -> List[DeviceInfo]:
+    """The CPU, then the GPUs that can be used."""
+    return [DeviceInfo(*device) for device in _ptexp.devices()]
+
+
+def options() -> List[Dict[str, str]]:
+    """The table of options: keyword, name on the command line, placeholder, group, help, default."""
+    return _ptexp.options()
+
+
+render.__doc__ = f"{render.__doc__}\n{as_documentation()}\n" if render.__doc__ else None

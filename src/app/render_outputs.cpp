@@ -1,0 +1,54 @@
+#include "app/render_outputs.h"
+
+#include "app/film_header.h"
+#include "app/report/csv_file.h"
+#include "common/error/error.h"
+#include "common/image/atomic_file.h"
+#include "common/image/measure_exposure.h"
+
+namespace pt {
+
+void check_outputs(const Options& options) {
+  check_image_path(options.output);
+  if (!options.stats_file.empty()) check_writable(options.stats_file);
+  if (!options.checkpoint.file.empty()) check_writable(options.checkpoint.file);
+  if (!options.csv_file.empty()) check_csv(options.csv_file, report_csv_row(options, {}));
+}
+
+std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoice& exposure,
+                                     const Image& image, bool by_default) {
+  using Kind = ExposureChoice::Kind;
+  const std::string ending = image_ending(path);
+  if (ending == ".exr") return std::nullopt;
+  const bool is_measured = exposure.kind == Kind::measured ||
+                           (exposure.kind == Kind::scene && by_default && ending == ".png");
+  return Exposure{is_measured ? measure_exposure(image) : exposure.stops, is_measured};
+}
+
+ImageMetadata image_header(const Options& options, const RenderReport& report,
+                           const std::string& scene_hash) {
+  ImageMetadata metadata = report_metadata(options, report);
+  metadata.merge(film_header(options, scene_hash, report.device_kind));
+  return metadata;
+}
+
+HardwareCounters count_hardware(Renderer& renderer,
+                                const std::function<void(const std::string&)>& warn) {
+  try {
+    return renderer.count_hardware();
+  } catch (const Error& error) {
+    if (warn) warn(std::string("--counters: ") + error.what());
+    HardwareCounters none;
+    none.problem = error.what();
+    return none;
+  }
+}
+
+void write_statistics(const Options& options, const RenderReport& report) {
+  if (!options.stats_file.empty())
+    write_file_atomically(options.stats_file, report_json(options, report));
+  if (!options.csv_file.empty() && is_complete(options, report))
+    append_csv_row(options.csv_file, report_csv_row(options, report));
+}
+
+}  // namespace pt

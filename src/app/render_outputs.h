@@ -1,0 +1,39 @@
+// What a render leaves behind: its image, and the statistics beside it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "app/report/report.h"
+#include "common/image/codecs/image_io.h"
+#include "common/render/renderer.h"
+
+namespace pt {
+
+/// Throws Error where one of the files that the options name could not be written.
+void check_outputs(const Options& options);
+
+struct Exposure {
+  float stops = 0;
+  bool is_measured = false;
+};
+
+/// Of an image of this format; none where it has a place for radiance (.exr). What `exposure`
+/// leaves open is measured in a .png if `by_default`.
+std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoice& exposure,
+                                     const Image& image, bool by_default);
+
+/// Options, device, times, and what makes an image one that can be verified.
+ImageMetadata image_header(const Options& options, const RenderReport& report,
+                           const std::string& scene_hash);
+
+/// Reads the hardware's counters. What could not be counted is no reason to lose what was rendered:
+/// it is a warning.
+HardwareCounters count_hardware(Renderer& renderer,
+                                const std::function<void(const std::string&)>& warn);
+
+/// The files of statistics that the options name. CSV rows are for comparing: complete runs only.
+void write_statistics(const Options& options, const RenderReport& report);
+
+}  // namespace pt

@@ -1,0 +1,78 @@
+// Image in Python.
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <filesystem>
+
+#include "common/error/error.h"
+#include "python/image_object.h"
+#include "python/module.h"
+
+namespace pt::python {
+namespace {
+
+namespace nb = nanobind;
+
+/// (height, width, 3)
+ArrayOut pixels(ImageObject& self) {
+  Image& image = self.image();
+  const std::size_t shape[] = {static_cast<std::size_t>(image.height),
+                               static_cast<std::size_t>(image.width), 3};
+  return ArrayOut(image.rgb.data(), 3, shape, nb::find(self), nullptr, nb::dtype<float>());
+}
+
+ArrayOut layer(ImageObject& self, const std::string& name) {
+  Image& image = self.image();
+  for (ImageLayer& one : image.layers) {
+    if (one.name != name) continue;
+    const std::size_t shape[] = {static_cast<std::size_t>(image.height),
+                                 static_cast<std::size_t>(image.width), one.channels.size()};
+    const std::size_t dimensions = one.channels.size() == 1 ? 2 : 3;
+    if (!one.numbers.empty())
+      return ArrayOut(one.numbers.data(), dimensions, shape, nb::find(self), nullptr,
+                      nb::dtype<std::uint32_t>());
+    return ArrayOut(one.values.data(), dimensions, shape, nb::find(self), nullptr,
+                    nb::dtype<float>());
+  }
+  throw nb::key_error(name.c_str());
+}
+
+std::vector<std::string> layer_names(const ImageObject& self) {
+  std::vector<std::string> names;
+  for (const ImageLayer& one : self.image().layers) names.push_back(one.name);
+  return names;
+}
+
+ImageObject* read(const std::string& path) {
+  ImageMetadata header;
+  Image image = [&] {
+    const nb::gil_scoped_release release;
+    return read_image(path, &header);
+  }();
+  return new ImageObject(std::move(image), std::move(header));
+}
+
+}  // namespace
+
+void add_image(nb::module_& m) {
+  nb::class_<ImageObject>(m, "Image")
+      .def_prop_ro("width", [](const ImageObject& self) { return self.image().width; })
+      .def_prop_ro("height", [](const ImageObject& self) { return self.image().height; })
+      .def("pixels", pixels)
+      .def("layer", layer)
+      .def("layer_names", layer_names)
+      .def("statistics", &ImageObject::statistics)
+      .def("table", &ImageObject::table)
+      .def("header", [](const ImageObject& self) { return self.result().header; })
+      .def_prop_ro("has_image", [](const ImageObject& self) { return self.result().has_image; })
+      .def_prop_ro("has_report",
+                   [](const ImageObject& self) { return !self.result().report.runs.empty(); })
+      .def("write_statistics", &ImageObject::write_statistics,
+           nb::call_guard<nb::gil_scoped_release>())
+      .def("save", &ImageObject::save, nb::arg("path"), nb::arg("exposure"),
+           nb::call_guard<nb::gil_scoped_release>());
+  m.def("read_image", read, nb::arg("path"));
+}
+
+}  // namespace pt::python

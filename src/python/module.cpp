@@ -1,0 +1,39 @@
+// The module ptexp._ptexp: what Python is given of the program. python/ptexp makes it what a user
+// sees.
+#include "python/module.h"
+
+#include <fmt/format.h>
+
+#include "common/error/error.h"
+
+namespace pt::python {
+
+namespace nb = nanobind;
+
+/// pt::Error becomes ptexp.Error or ptexp.OptionError; memory that is too little, a MemoryError.
+void add_errors(nb::module_&) {
+  nb::register_exception_translator([](const std::exception_ptr& problem, void*) {
+    try {
+      std::rethrow_exception(problem);
+    } catch (const Error& error) {
+      const nb::object made = nb::module_::import_("ptexp._errors").attr("error_of")(error.what());
+      PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
+    } catch (const std::length_error&) {  // of a vector
+      PyErr_SetString(PyExc_MemoryError, "not enough host memory for this scene and image size");
+    }
+  });
+}
+
+}  // namespace pt::python
+
+NB_MODULE(_ptexp, m) {
+  using namespace pt::python;
+  m.doc() = "What ptexp is made of in C++; use the package ptexp.";
+  add_errors(m);
+  add_tables(m);
+  add_image(m);
+  add_scene(m);
+  add_from_dict(m);
+  add_trace(m);
+  add_compare(m);
+}

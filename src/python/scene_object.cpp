@@ -1,0 +1,111 @@
+#include "python/scene_object.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error/error.h"
+#include "python/run_interruptible.h"
+
+namespace pt::python {
+
+namespace nb = nanobind;
+
+void Warnings::give() {
+  std::vector<std::string> messages;
+  {
+    const std::lock_guard lock(mutex_);
+    messages.swap(messages_);
+  }
+  if (messages.empty()) return;
+  const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
+  for (const std::string& message : messages) warn(message);
+}
+
+RenderCommand command_of(const Words& words) {
+  const auto& list = option_list();
+  std::vector<Setting> settings;
+  for (const auto& [keyword, value] : words) {
+    const auto entry = std::ranges::find(list, keyword, option_key);
+    if (entry == list.end()) throw Error(fmt::format("--{}: no such option", keyword));
+    settings.push_back({&*entry, value});
+  }
+  return make_render_command(settings);
+}
+
+std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
+  Warnings warnings;
+  std::unique_ptr<SceneObject> scene(new SceneObject);
+  {
+    const nb::gil_scoped_release release;
+    scene->session_ = std::make_unique<RenderSession>(command_of(words), warnings.collector());
+    scene->list_parameters();
+  }
+  warnings.give();
+  return scene;
+}
+
+std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object progress) {
+  const RenderCommand command = command_of(words);
+  Warnings warnings;
+  RenderResult result;
+  run_interruptible(
+      [&](WorkState& state) {
+        const std::lock_guard turn(mutex_);
+        MeasureHooks hooks;
+        hooks.progress = [&state](std::uint64_t done, std::uint64_t total) {
+          state.done = done, state.total = total;
+        };
+        hooks.stop = [&state] { return state.stop.load(); };
+        result = session_->render(command, hooks, warnings.collector());
+      },
+      std::move(progress));
+  warnings.give();
+  return std::make_unique<ImageObject>(std::move(result));
+}
+
+std::unique_lock<std::mutex> SceneObject::lock() {
+  const nb::gil_scoped_release release;  // a render may hold it for long
+  return std::unique_lock(mutex_);
+}
+
+std::vector<Decision> SceneObject::plan(const Words& words) {
+  const RenderCommand command = command_of(words);
+  const nb::gil_scoped_release release;
+  const std::lock_guard turn(mutex_);
+  return session_->plan(command);
+}
+
+std::vector<float> SceneObject::get(std::size_t parameter) {
+  const auto turn = lock();
+  return parameters_.at(parameter).get(session_->scene());
+}
+
+void SceneObject::set(std::size_t parameter, const std::vector<float>& values) {
+  const auto turn = lock();
+  const SceneParameter& p = parameters_.at(parameter);
+  const std::size_t wanted = p.get(session_->scene()).size();
+  if (values.size() != wanted)
+    throw Error(fmt::format("{}: {} numbers; expected {}", p.name, values.size(), wanted));
+  if (p.is_of_camera) {
+    SceneData copy;  // a setter takes a scene, of which it changes the camera alone
+    copy.camera = session_->scene().camera;
+    p.set(copy, values);
+    session_->change_camera() = copy.camera;
+  } else {
+    p.set(session_->change_scene(), values);
+  }
+}
+
+void SceneObject::report_defaults(nb::dict& defaults) const {
+  const SceneDefaults& d = session_->scene().defaults;
+  const auto note = [&](const char* name, const std::optional<int>& value) {
+    if (value) defaults[name] = *value;
+  };
+  note("width", d.width), note("height", d.height), note("spp", d.spp);
+  note("max_depth", d.max_depth), note("rr", d.rr_depth);
+}
+
+}  // namespace pt::python

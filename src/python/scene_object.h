@@ -1,0 +1,70 @@
+// A scene in memory as Python sees it.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/render_session.h"
+#include "common/scene/edit/scene_parameters.h"
+#include "python/image_object.h"
+
+namespace pt::python {
+
+/// (keyword, value) as the command line has them.
+using Words = std::vector<std::pair<std::string, std::string>>;
+
+/// Throws Error for one that is no option.
+RenderCommand command_of(const Words& words);
+
+class SceneObject {
+ public:
+  /// Loads, without the interpreter's lock; warnings are Python's.
+  static std::unique_ptr<SceneObject> load(const Words& words);
+  explicit SceneObject(SceneData scene)
+      : session_(std::make_unique<RenderSession>(std::move(scene))) {
+    list_parameters();
+  }
+
+  /// As RenderSession::render, interruptible.
+  std::unique_ptr<ImageObject> render(const Words& words, nanobind::object progress);
+  std::vector<Decision> plan(const Words& words);
+
+  std::string name() const { return session_->scene().name; }
+  const std::vector<SceneParameter>& parameters() const { return parameters_; }
+  std::vector<float> get(std::size_t parameter);
+  void set(std::size_t parameter, const std::vector<float>& values);
+  void report_defaults(nanobind::dict& defaults) const;
+
+ private:
+  SceneObject() = default;
+  void list_parameters() { parameters_ = scene_parameters(session_->scene()); }
+  std::unique_lock<std::mutex> lock();
+
+  std::mutex mutex_;  ///< one render or change at a time
+  std::unique_ptr<RenderSession> session_;
+  std::vector<SceneParameter> parameters_;
+};
+
+/// Collects warnings of any thread, to be given to Python when its lock is held.
+class Warnings {
+ public:
+  RenderSession::Warn collector() {
+    return [this](const std::string& message) {
+      const std::lock_guard lock(mutex_);
+      messages_.push_back(message);
+    };
+  }
+  /// Throws python_error where a filter makes them errors.
+  void give();
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::string> messages_;
+};
+
+}  // namespace pt::python

@@ -1,0 +1,83 @@
+// A scene that is rendered again: whatever was kept, the image is that of a scene loaded anew.
+#include <gtest/gtest.h>
+
+#include "app/render_session.h"
+#include "common/image/compare/compare.h"
+
+namespace {
+
+using namespace pt;
+
+using Words = std::vector<std::pair<std::string, std::string>>;
+
+RenderCommand command_of(const std::string& scene, const Words& more = {}) {
+  Words words{{"scene", scene}, {"width", "32"}, {"height", "24"}, {"spp", "2"}, {"device", "cpu"}};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<Setting> settings;
+  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
+  return make_render_command(settings);
+}
+
+RenderResult render(RenderSession& session, const RenderCommand& command) {
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  return session.render(command, hooks, {});
+}
+
+std::uint64_t differences(const Image& a, const Image& b) {
+  return compare_images(a, b, 0).differing_pixels;
+}
+
+/// Renders the scene by each of these, one after the other, and compares with a session each.
+void expect_same_as_anew(const std::string& scene, const std::vector<Words>& commands) {
+  RenderSession kept(command_of(scene), {});
+  for (const Words& words : commands) {
+    const RenderCommand command = command_of(scene, words);
+    RenderSession fresh(command, {});
+    const Image image = render(kept, command).image;
+    EXPECT_EQ(differences(image, render(fresh, command).image), 0u)
+        << scene << " --" << words.front().first << ' ' << words.front().second;
+  }
+}
+
+TEST(RenderSession, OptionsOfOneRenderDoNotStayInTheNext) {
+  expect_same_as_anew(
+      "cornell", {{{"seed", "1"}},
+                  {{"seed", "2"}},
+                  {{"mode", "megakernel"}},
+                  {{"look-from", "250,250,-700"}},
+                  {{"look-from", "250,250,-700"}, {"accel", "bvh2"}, {"kernel-set", "general"}},
+                  {{"filter", "gaussian"}},
+                  {{"crop", "3,4,20,20"}},
+                  {{"nee", "off"}},
+                  {{"kernel-set", "general"}},
+                  {{"kernel-set", "general"}, {"look-from", "250,250,-700"}},
+                  {{"seed", "1"}}});
+  expect_same_as_anew("spheres", {{{"seed", "1"}}, {{"look-from", "5,3,2"}}, {{"fov", "60"}}});
+}
+
+TEST(RenderSession, KeepsTheSceneOrItsTree) {
+  RenderSession session(command_of("terrain:2000"), {});
+  const RenderResult first = render(session, command_of("terrain:2000"));
+  EXPECT_GT(first.report.scene_ms, 0);
+  EXPECT_EQ(render(session, command_of("terrain:2000")).report.scene_ms, 0);
+  session.change_camera().fov_degrees = 20;
+  const RenderResult moved = render(session, command_of("terrain:2000"));
+  EXPECT_GT(differences(moved.image, first.image), 0u);
+  EXPECT_EQ(moved.report.scene.tree.build_ms, first.report.scene.tree.build_ms) << "built anew";
+  session.change_scene().sky.zenith = Color(0.0f);
+  EXPECT_NE(render(session, command_of("terrain:2000")).report.scene.tree.build_ms,
+            first.report.scene.tree.build_ms);
+}
+
+TEST(RenderSession, GoesOnAfterAnError) {
+  RenderSession session(command_of("cornell"), {});
+  const Image before = render(session, command_of("cornell")).image;
+  EXPECT_THROW(render(session, command_of("cornell", {{"crop", "0,0,33,5"}})), Error);
+  EXPECT_THROW(
+      render(session, command_of("cornell", {{"look-from", "1,1,1"}, {"look-at", "1,1,1"}})),
+      Error);
+  EXPECT_EQ(differences(render(session, command_of("cornell")).image, before), 0u);
+}
+
+}  // namespace
