@@ -11,7 +11,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 DOCKERFILE = (ROOT / "packaging" / "Dockerfile").read_text("utf-8")
 APPTAINER = (ROOT / "packaging" / "ptexp.def").read_text("utf-8")
-NOT_TO_BUILD = {"ccache", "python3", "libgtest-dev"}  # for tests, and for building again
+# For tests, the Python module, and for building again.
+NOT_TO_BUILD = {"ccache", "python3", "python3-dev", "python3-venv", "python3-pip", "libgtest-dev"}
 
 
 def installed(text):

@@ -111,10 +111,10 @@ class Study(unittest.TestCase):
             self.assertTrue(0 < low <= middle <= high <= 1, row)
 
     def test_predictions_for_one_machine(self):
-        """Films that take as long as the image of two devices halve the efficiency, or nearly."""
+        """Films that take longer than the image of two devices cost as much as they take."""
         arguments = harness.parse_arguments(scaling.EXPERIMENT, [
             "--unit-overhead", "0", "--latency", "0", "--service", "0", "--copy-bandwidth", "1e9",
-            "--bandwidth", "0.001", "--pixel-bytes", "100"])  # 1 MB/s
+            "--bandwidth", "0.0005", "--pixel-bytes", "100"])  # 0.5 MB/s
         arguments.cost_maps = []
         size = 100, 100  # 1 MB, half of it from the other rank
         self.assertGreater(clusters.predicted(1, 1.0, size, True, arguments), 0.999)
