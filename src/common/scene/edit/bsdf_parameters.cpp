@@ -34,7 +34,7 @@ std::vector<BsdfParameter> parameters_of() {
 }
 
 template <class Bsdf>
-  requires requires { Bsdf::Index::count; }
+requires requires { Bsdf::Index::count; }
 std::vector<BsdfParameter> parameters_of() {
   bool is_color[Bsdf::parameter_count + 1] = {};
   (void)Bsdf::make(Asked{is_color});
