@@ -567,8 +567,10 @@ class Interruption(CommandLine):
             with self.subTest(mode=mode):
                 process = self.start("--mode", mode, "--scene", "boxes", "--width", "32",
                                      "--height", "32", "--spp", "80000", "--output", f"{mode}.ppm")
-                self.end(process, signal.SIGINT)
-                self.assertIn(f"{mode}.ppm", self.files())
+                err = self.end(process, signal.SIGINT)
+                # A slow machine may be in its first batch.
+                none = "no sample was finished" in err
+                self.assertEqual(self.files().count(f"{mode}.ppm"), 0 if none else 1, err)
 
     def test_nor_is_the_turn_of_markov_chains(self):
         for mode in MODES:

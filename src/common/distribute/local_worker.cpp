@@ -84,10 +84,13 @@ void LocalWorker::wait_until_ready() {
 
 /// A render that throws leaves its film as it was.
 RenderRun LocalWorker::render_fitting(Film& film, int samples, const std::function<bool()>& stop) {
+  RenderHooks hooks;
+  hooks.stop = stop;
+  hooks.cancel = stop;
   for (;;) {
     try {
       if (renderer_ == nullptr) renderer_ = make_fitting(memory_, make_);
-      return renderer_->render(film, samples, {{}, stop, {}, stop});
+      return renderer_->render(film, samples, hooks);
     } catch (const OutOfMemory& error) {
       renderer_.reset();
       memory_.halve(error);

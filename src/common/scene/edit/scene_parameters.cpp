@@ -155,11 +155,9 @@ class Lister {
       add(
           name, {4, 4},
           [i](const SceneData& scene) {
-            std::vector<float> values;
-            for (const Vec4& row : scene.instances[i].to_world.row)
-              values.insert(values.end(), {row.x, row.y, row.z, row.w});
-            values.insert(values.end(), {0, 0, 0, 1});
-            return values;
+            const auto& [a, b, c] = scene.instances[i].to_world.row;
+            return std::vector{a.x, a.y, a.z, a.w, b.x,  b.y,  b.z,  b.w,
+                               c.x, c.y, c.z, c.w, 0.0f, 0.0f, 0.0f, 1.0f};
           },
           [i, name](SceneData& scene, Values v) {
             Affine map;
