@@ -15,7 +15,8 @@ std::string label(const Options& options, int index) {
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& own) {
   const auto& stop = own.stop;
-  const RenderHooks hooks{own.progress, stop, {options.time_limit, options.target_error, {}}, stop};
+  const RenderHooks hooks{
+      own.progress, stop, {options.time_limit, options.target_error, {}}, stop, own.watch};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {

@@ -25,6 +25,7 @@ struct MeasureHooks {
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< as RenderHooks
   /// Asked between batches and between renders, and while a batch is traced, by any thread.
   std::function<bool()> stop;
+  std::function<void(const std::function<Image()>& image)> watch{};  ///< as RenderHooks
 };
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& hooks);

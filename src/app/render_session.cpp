@@ -54,6 +54,16 @@ struct RenderSession::Prepared {
   double scene_ms = 0;
   Warn warn;  ///< of the render at work
   std::unique_ptr<Rendering> rendering;
+  int samples = 0;  ///< of the last pass, in all
+
+  void make_rendering() {
+    rendering.reset();  // its memory is needed
+    rendering = std::make_unique<Rendering>(
+        options, scene, devices,
+        Rendering::Surroundings{nullptr, nullptr, [this](const std::string& text) {
+                                  if (warn) warn(text);
+                                }});
+  }
 };
 
 RenderSession::RenderSession(SceneData scene) : source_(std::move(scene)) {}
@@ -82,32 +92,32 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   apply_defaults(source_.defaults, command.given, options);
   Keys keys = keys_of(options);
   const bool is_same = prepared_ && !camera_changed_ && prepared_->keys.renderer == keys.renderer;
-  if (!is_same) {
-    const double begin_s = Progress::steady_seconds();
-    std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
-    if (next) next->rendering.reset();                      // it views the scene
-    if (!next || next->keys.scene != keys.scene ||
-        !move_camera(next->scene, source_.camera, options)) {
-      next = std::make_unique<Prepared>();
-      next->scene = source_;
-      prepare_scene_for(next->scene, options, devices.front());
-    }
-    next->scene_ms = 1e3 * (Progress::steady_seconds() - begin_s);
-    const Prepared* const self = next.get();
-    const Rendering::Surroundings surroundings{nullptr, nullptr, [self](const std::string& text) {
-                                                 if (self->warn) self->warn(text);
-                                               }};
-    next->warn = warn;
-    next->rendering = std::make_unique<Rendering>(options, next->scene, devices, surroundings);
-    prepared_ = std::move(next);
-    camera_changed_ = false;
-  } else {
+  if (is_same) {
     prepared_->scene_ms = 0;
+    prepared_->warn = warn;
+    prepared_->options = options;
+    prepared_->keys = std::move(keys);
+    return *prepared_;
   }
-  prepared_->warn = warn;
-  prepared_->options = options;
-  prepared_->keys = std::move(keys);
-  prepared_->devices = std::move(devices);
+  const double begin_s = Progress::steady_seconds();
+  std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
+  if (next && next->keys.renderer != keys.renderer) next->rendering.reset();
+  if (!next || next->keys.scene != keys.scene ||
+      !move_camera(next->scene, source_.camera, options)) {
+    next = std::make_unique<Prepared>();
+    next->scene = source_;
+    prepare_scene_for(next->scene, options, devices.front());
+  }
+  next->scene_ms = 1e3 * (Progress::steady_seconds() - begin_s);
+  next->warn = warn;
+  next->options = options;
+  next->keys = std::move(keys);
+  next->devices = std::move(devices);
+  next->samples = 0;
+  const Camera camera = make_camera(next->scene.camera, options.width, options.height);
+  if (!next->rendering || !next->rendering->renderer().set_camera(camera)) next->make_rendering();
+  prepared_ = std::move(next);
+  camera_changed_ = false;
   return *prepared_;
 }
 
@@ -124,6 +134,7 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   const Measurement measurement = ready.rendering->measure(hooks);
   result.interrupted = measurement.interrupted;
   result.has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
+  ready.samples = result.has_image ? measurement.runs.back().samples_done : 0;
   if (!result.has_image) return result;
   Renderer& renderer = ready.rendering->renderer();
   result.image = renderer.image();
@@ -133,6 +144,20 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   if (ready.options.counters && is_complete(ready.options, report))
     report.counters = count_hardware(renderer, warn);
   return result;
+}
+
+RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
+                                   const RenderHooks& hooks, const Warn& warn) {
+  Prepared& ready = prepare(command, warn);
+  Renderer& renderer = ready.rendering->renderer();
+  RenderPass pass;
+  const double begin_s = Progress::steady_seconds();
+  pass.run = renderer.add(samples, hooks);
+  pass.run.wall_ms = 1e3 * (Progress::steady_seconds() - begin_s);
+  ready.samples += pass.run.samples_done;
+  pass.samples = ready.samples;
+  if (pass.samples > 0) pass.image = renderer.image();
+  return pass;
 }
 
 std::vector<Decision> RenderSession::plan(const RenderCommand& command) {

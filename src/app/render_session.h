@@ -24,6 +24,13 @@ struct RenderResult {
   bool measures_exposure = false;  ///< see exposure_for
 };
 
+/// Some samples of a progressive render.
+struct RenderPass {
+  RenderRun run;
+  int samples = 0;  ///< per pixel, in all that the image has
+  Image image;
+};
+
 class RenderSession {
  public:
   using Warn = std::function<void(const std::string&)>;
@@ -44,6 +51,10 @@ class RenderSession {
   /// Renders by these options, which name the same scene. Writes no image. Throws Error; the
   /// session is as it was then.
   RenderResult render(const RenderCommand& command, const MeasureHooks& hooks, const Warn& warn);
+  /// Adds samples to what the last pass has left, or to none after a change: of the scene, of its
+  /// camera, of the options. Throws Error.
+  RenderPass add_pass(const RenderCommand& command, int samples, const RenderHooks& hooks,
+                      const Warn& warn);
   /// How it would be rendered, and why.
   std::vector<Decision> plan(const RenderCommand& command);
 

@@ -155,6 +155,11 @@ void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
   build_graph(batch);
 }
 
+bool WavefrontCuda::set_camera(const Camera& camera) {
+  destroy_graph();  // its kernels have the scene
+  return CudaRenderer::set_camera(camera);
+}
+
 // A graph whose only node is a WHILE loop; its body is a few waves, recorded from the stream.
 void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaGraphCreate(&graph_, 0), "cudaGraphCreate");

@@ -12,6 +12,7 @@ class WavefrontCuda : public CudaRenderer {
  public:
   WavefrontCuda(const Options& options, const SceneData& scene, int device);
   ~WavefrontCuda() override;
+  bool set_camera(const Camera& camera) override;
 
   /// Enqueues one wave on stream(). `loop`: the handle of the graph's loop, 0 outside of one.
   /// `starts_paths`: see run_wave.

@@ -108,6 +108,7 @@ class FakeRenderer : public Renderer {
     return run;
   }
   RenderRun render(Film&, int, const RenderHooks& hooks) override { return render(hooks); }
+  RenderRun add(int, const RenderHooks& hooks) override { return render(hooks); }
   Image image() override { return {}; }
   void describe(RenderReport&) const override {}
 

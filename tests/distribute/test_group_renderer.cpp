@@ -300,6 +300,9 @@ class HungryRenderer : public Renderer {
     if (times_-- > 0) throw OutOfMemory("no room for a stack");
     return renderer_->render(film, samples, hooks);
   }
+  RenderRun add(int samples, const RenderHooks& hooks) override {
+    return renderer_->add(samples, hooks);
+  }
   Image image() override { return renderer_->image(); }
   void describe(RenderReport& report) const override { renderer_->describe(report); }
 

@@ -93,6 +93,13 @@ RenderRun GroupRenderer::render(Film& film, int samples, const RenderHooks& hook
   return run;
 }
 
+RenderRun GroupRenderer::add(int samples, const RenderHooks& hooks) {
+  const std::uint32_t before = film_.least_samples(windows_);
+  RenderRun run = add_samples(before + static_cast<std::uint32_t>(samples), hooks);
+  run.samples_done -= static_cast<int>(before);
+  return run;
+}
+
 // As of one device, samples are added by portions where something but their number may end the
 // render: all pixels then have the same.
 RenderRun GroupRenderer::add_samples(std::uint32_t end, const RenderHooks& hooks) {
@@ -110,7 +117,9 @@ RenderRun GroupRenderer::add_samples(std::uint32_t end, const RenderHooks& hooks
     const BatchRun batches = for_each_batch(
         static_cast<int>(end - begin), static_cast<int>(end - begin), pixels, hooks,
         [&](int first, int count) {
-          return complete(begin + static_cast<std::uint32_t>(first + count), {{}, hooks.stop}, run);
+          RenderHooks watched;
+          watched.stop = hooks.stop, watched.watch = hooks.watch;
+          return complete(begin + static_cast<std::uint32_t>(first + count), watched, run);
         },
         [&] { return estimate_error(); }, &pace);
     run.ended_by = batches.ended_by;
@@ -151,6 +160,7 @@ bool GroupRenderer::complete(std::uint32_t end, const RenderHooks& hooks, Render
     if (is_idle && (is_interrupted || queue.is_done())) break;
     if (is_idle) throw Error("no device is left that could go on");
     if (collect(queue, run)) {
+      if (hooks.watch) hooks.watch([this] { return image(); });
       active = std::chrono::steady_clock::now();
     } else if (bell_) {
       bell_->wait(bell_s);

@@ -44,6 +44,7 @@ class GroupRenderer : public Renderer {
   /// Throws Error, too, where no worker is left; film() then has what was done.
   RenderRun render(const RenderHooks& hooks) override;
   RenderRun render(Film& film, int samples, const RenderHooks& hooks) override;
+  RenderRun add(int samples, const RenderHooks& hooks) override;
   Image image() override;
   void describe(RenderReport& report) const override;
 

@@ -20,14 +20,16 @@ struct FilmMemory {
 };
 
 /// How large batches are, so that whoever waits for the end of one does not wait long: as many
-/// samples as take half a second at the rate of the last batch. Images do not depend on it.
+/// samples as take so long at the rate of the last batch. Images do not depend on it.
 class BatchPace {
  public:
+  static constexpr double usual_s = 0.5;
+
   /// `first_paths`: while the rate is not known.
   explicit BatchPace(std::uint64_t first_paths) : first_paths_(first_paths) {}
 
   /// Samples of the next batch, at least one; `left` of them if these take little longer.
-  int next(int left, std::uint64_t pixels) const;
+  int next(int left, std::uint64_t pixels, double batch_s = usual_s) const;
   void note(std::uint64_t paths, double seconds) {
     if (seconds > 0) paths_per_s_ = static_cast<double>(paths) / seconds;
   }

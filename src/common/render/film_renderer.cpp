@@ -49,16 +49,31 @@ void FilmRenderer::describe_plan(RenderReport& report) const {
 RenderRun FilmRenderer::render(const RenderHooks& hooks) {
   Film film;
   film.window = image_window_;
-  return add_samples(film, options_.spp, hooks);
+  return start(film, options_.spp, hooks);
 }
 
 RenderRun FilmRenderer::render(Film& film, int samples, const RenderHooks& hooks) {
   check(film, samples);
-  const RenderRun run = add_samples(film, samples, hooks);
+  const RenderRun run = start(film, samples, hooks);
   read_film(film);
   film.next_sample += static_cast<std::uint32_t>(run.samples_done);
   film.parts = {film.window};
   return run;
+}
+
+RenderRun FilmRenderer::add(int samples, const RenderHooks& hooks) {
+  if (has_chains()) {
+    throw Error(
+        "--integrator mlt: its chains end with their render; expected path, whose samples "
+        "can be added to");
+  }
+  if (pixel_samples_ == 0) {
+    Film film;
+    film.window = image_window_;
+    return start(film, samples, hooks);
+  }
+  begin_render(nullptr);
+  return add_samples(samples, hooks);
 }
 
 void FilmRenderer::check(const Film& film, int samples) const {
@@ -94,22 +109,27 @@ void FilmRenderer::check(const Film& film, int samples) const {
   }
 }
 
-RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderHooks& hooks) {
+RenderRun FilmRenderer::start(const Film& film, int samples, const RenderHooks& hooks) {
   window_ = film.window;
   if (has_chains()) return add_mutations(film, samples, hooks);
+  first_sample_ = film.first_sample;
+  pixel_samples_ = film.next_sample - film.first_sample;
+  begin_render(&film);
+  return add_samples(samples, hooks);
+}
+
+RenderRun FilmRenderer::add_samples(int samples, const RenderHooks& hooks) {
   const std::uint64_t pixels = window_.pixel_count();
-  const std::uint32_t before = film.next_sample - film.first_sample;
   const int largest = batch_samples(samples, pixels, batch_paths_);
-  begin_render(film);
   RenderRun run;
   const BatchRun batches = for_each_batch(
       samples, largest, pixels, hooks,
-      [&](int first, int count) {
-        const std::uint32_t first_sample = film.next_sample + static_cast<std::uint32_t>(first);
-        const SampleBuffer batch{samples_, window_, first_sample,
-                                 static_cast<std::uint32_t>(count)};
+      [&](int, int count) {
+        const auto next_sample = static_cast<std::uint32_t>(first_sample_ + pixel_samples_);
+        const SampleBuffer batch{samples_, window_, next_sample, static_cast<std::uint32_t>(count)};
         if (!render_batch(batch, run, hooks.cancel)) return false;
-        pixel_samples_ = before + static_cast<std::uint32_t>(first + count);
+        pixel_samples_ += static_cast<std::uint64_t>(count);
+        if (hooks.watch) hooks.watch([this] { return image(); });
         return true;
       },
       [&] { return estimate_error(); }, &pace_);
@@ -122,7 +142,7 @@ RenderRun FilmRenderer::add_samples(const Film& film, int samples, const RenderH
 
 // The chains' sums become the device's film when they have ended.
 RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const RenderHooks& hooks) {
-  begin_render(film);
+  begin_render(&film);
   Film result;
   result.window = film.window;
   RenderRun run =

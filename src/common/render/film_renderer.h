@@ -17,6 +17,7 @@ class FilmRenderer : public Renderer {
  public:
   RenderRun render(const RenderHooks& hooks) final;
   RenderRun render(Film& film, int samples, const RenderHooks& hooks) final;
+  RenderRun add(int samples, const RenderHooks& hooks) final;
   Image image() override;
 
  protected:
@@ -52,6 +53,8 @@ class FilmRenderer : public Renderer {
 
   /// The samples that each pixel has after the last render.
   std::uint64_t pixel_samples() const { return pixel_samples_; }
+  /// add() then begins with none.
+  void forget_film() { pixel_samples_ = 0; }
   /// What films there are: parts of the crop window, or of the whole image.
   const Window& image_window() const { return image_window_; }
   /// `sums` as an image, of the window of the last render.
@@ -62,8 +65,8 @@ class FilmRenderer : public Renderer {
 
   /// Takes the film to the device (no pixels: black ones).
   virtual void store_film(const Film& film) = 0;
-  /// The same, and begins to measure.
-  virtual void begin_render(const Film& film) = 0;
+  /// The same, and begins to measure. Null: the film is that of the last render.
+  virtual void begin_render(const Film* film) = 0;
   /// Traces the batch, adds it to the device's film and its time to `run`. False: `cancel`, a hook,
   /// abandoned it, and the film is as before.
   virtual bool render_batch(const SampleBuffer& batch, RenderRun& run,
@@ -84,12 +87,14 @@ class FilmRenderer : public Renderer {
 
  private:
   void check(const Film& film, int samples) const;
-  RenderRun add_samples(const Film& film, int samples, const RenderHooks& hooks);
+  RenderRun start(const Film& film, int samples, const RenderHooks& hooks);
+  RenderRun add_samples(int samples, const RenderHooks& hooks);
   RenderRun add_mutations(const Film& film, int samples, const RenderHooks& hooks);
   double estimate_error();
 
   Window image_window_;
   Window window_;
+  std::uint32_t first_sample_ = 0;
   std::uint64_t pixel_samples_ = 0;
   std::uint64_t batch_paths_ = 0;
   BatchPace pace_{1};

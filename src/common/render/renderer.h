@@ -10,6 +10,7 @@
 #include "common/image/image.h"
 #include "common/options/options.h"
 #include "common/options/stats.h"
+#include "common/scene/data/camera.h"
 
 namespace pt {
 
@@ -31,6 +32,10 @@ struct RenderHooks {
   /// Polled while a batch is traced, by any thread; true abandons it: its samples are lost, and the
   /// render ends with those that it had before. May be empty. CUDA finishes its batch.
   std::function<bool()> cancel{};
+  /// Called between batches whenever the image has more samples; `image()` is their mean, at the
+  /// cost of a copy from the device. May be empty; else batches are shorter, and the first one has
+  /// one sample per pixel. Markov chains have no image before they end.
+  std::function<void(const std::function<Image()>& image)> watch{};
 };
 
 class Renderer {
@@ -46,6 +51,15 @@ class Renderer {
   /// CUDA, between devices of one kind. Throws Error for a window that is no part of the image and
   /// for a film that lacks some of its pixels.
   virtual RenderRun render(Film& film, int samples, const RenderHooks& hooks) = 0;
+
+  /// Adds the next `samples` samples of each pixel to the film of the last render, of which the
+  /// device still has the sums; to none at first. Many of them give the bits of one render. Throws
+  /// Error, also for Markov chains, which end with their render.
+  virtual RenderRun add(int samples, const RenderHooks& hooks) = 0;
+
+  /// Looks at the same scene through another camera of its kind (move_camera), and forgets the last
+  /// render. False: it cannot, and has to be made anew.
+  virtual bool set_camera(const Camera&) { return false; }
 
   /// The mean of all samples of the film of the last render.
   virtual Image image() = 0;

@@ -104,6 +104,12 @@ void CpuRenderer::note_memory(const char* name, std::uint64_t size_bytes) {
 
 Image CpuRenderer::image() { return develop_window(sums_); }
 
+bool CpuRenderer::set_camera(const Camera& camera) {
+  scene_.camera = camera;
+  forget_film();
+  return true;
+}
+
 void CpuRenderer::store_film(const Film& film) {
   if (film.is_empty()) {
     sums_.reset(plan_, film.window.pixel_count());
@@ -114,8 +120,8 @@ void CpuRenderer::store_film(const Film& film) {
   tally_ = film.tally;
 }
 
-void CpuRenderer::begin_render(const Film& film) {
-  store_film(film);
+void CpuRenderer::begin_render(const Film* film) {
+  if (film != nullptr) store_film(*film);
   timer_.reset();
   waves_ = 0;
 }

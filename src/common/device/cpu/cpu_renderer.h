@@ -42,6 +42,7 @@ class CpuRenderer : public FilmRenderer {
   CpuRenderer(const Options& options, const SceneData& scene, int threads);
 
   Image image() override;  ///< without a copy of the film
+  bool set_camera(const Camera& camera) override;
   void describe(RenderReport& report) const override;
 
  protected:
@@ -65,7 +66,7 @@ class CpuRenderer : public FilmRenderer {
   int threads() const { return threads_; }
 
   const SceneTraits traits_;
-  const Scene scene_;
+  Scene scene_;
   StageTimer timer_;
   std::uint64_t waves_ = 0;
   std::uint64_t pool_size_ = 0;
@@ -75,7 +76,7 @@ class CpuRenderer : public FilmRenderer {
 
   ChainDevice& chain_device() override { return *chains_; }
   void store_film(const Film& film) override;
-  void begin_render(const Film& film) override;
+  void begin_render(const Film* film) override;
   bool render_batch(const SampleBuffer& batch, RenderRun& run,
                     const std::function<bool()>& cancel) override;
   void end_render(RenderRun& run) override;

@@ -28,6 +28,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   CudaRenderer(const Options& options, const SceneData& scene, int device);
   ~CudaRenderer() override;
 
+  bool set_camera(const Camera& camera) override;
   void describe(RenderReport& report) const override;
   HardwareCounters count_hardware() override;
 
@@ -77,7 +78,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   void allocate_planes(std::uint64_t pixels);
   void load_kernels();
   void store_film(const Film& film) override;
-  void begin_render(const Film& film) override;
+  void begin_render(const Film* film) override;
   bool render_batch(const SampleBuffer& batch, RenderRun& run,
                     const std::function<bool()>& cancel) override;
   void end_render(RenderRun& run) override;

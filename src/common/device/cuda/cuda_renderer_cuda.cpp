@@ -114,7 +114,7 @@ HardwareCounters CudaRenderer::count_hardware() {
   Film film;
   film.window = image_window();
   HardwareCounters result = count_launches([&] {
-    begin_render(film);
+    begin_render(&film);
     RenderRun run;
     render_batch(batch, run, {});
     take_wave_count();
@@ -191,6 +191,12 @@ void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) cons
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 
+bool CudaRenderer::set_camera(const Camera& camera) {
+  scene_.camera = camera;
+  forget_film();
+  return true;
+}
+
 void CudaRenderer::store_film(const Film& film) {
   film_.first_sample = film.first_sample;
   const auto upload_plane = [&](auto* place, const auto& values, std::uint64_t planes) {
@@ -209,10 +215,10 @@ void CudaRenderer::store_film(const Film& film) {
   check_cuda(cudaStreamSynchronize(stream()), "uploading the film");
 }
 
-void CudaRenderer::begin_render(const Film& film) {
+void CudaRenderer::begin_render(const Film* film) {
   check_cuda(cudaSetDevice(device()), "cudaSetDevice");
   if (load_ms_ == 0) load_kernels();
-  store_film(film);
+  if (film != nullptr) store_film(*film);
   reset_clock();
   if (lane_counts_ != nullptr) {
     check_cuda(cudaMemsetAsync(lane_counts_, 0, sizeof(LaneCounts), stream()), "cudaMemset");
