@@ -56,6 +56,37 @@ TEST(RenderSession, OptionsOfOneRenderDoNotStayInTheNext) {
   expect_same_as_anew("spheres", {{{"seed", "1"}}, {{"look-from", "5,3,2"}}, {{"fov", "60"}}});
 }
 
+// Whatever changes between two passes, the second one's image is that of a session that never
+// rendered anything else.
+TEST(RenderSession, PassesAddSamplesUntilSomethingChanges) {
+  for (const std::string device : {"cpu", "cpu:2"}) {
+    SCOPED_TRACE(device);
+    const Words words{{"device", device}};
+    RenderSession session(command_of("terrain:2000", words), {});
+    const auto expect_pass = [&](const Words& more, int samples, int in_all) {
+      Words all = words;
+      all.insert(all.end(), more.begin(), more.end());
+      const RenderPass pass = session.add_pass(command_of("terrain:2000", all), samples, {}, {});
+      EXPECT_EQ(pass.run.samples_done, samples);
+      EXPECT_EQ(pass.samples, in_all);
+      all.emplace_back("spp", std::to_string(in_all));
+      RenderSession fresh(command_of("terrain:2000", all), {});
+      fresh.change_camera() = session.scene().camera;
+      EXPECT_EQ(differences(pass.image, render(fresh, command_of("terrain:2000", all)).image), 0u);
+    };
+    expect_pass({}, 1, 1);
+    expect_pass({}, 1, 2);
+    expect_pass({}, 2, 4);
+    session.change_camera().look_from.x += 0.1f;
+    expect_pass({}, 2, 2);
+    expect_pass({}, 1, 3);
+    expect_pass({{"mode", "megakernel"}}, 1, 1);
+    expect_pass({{"mode", "megakernel"}}, 1, 2);
+    render(session, command_of("terrain:2000", words));  // two samples
+    expect_pass({}, 1, 3);
+  }
+}
+
 TEST(RenderSession, KeepsTheSceneOrItsTree) {
   RenderSession session(command_of("terrain:2000"), {});
   const RenderResult first = render(session, command_of("terrain:2000"));
