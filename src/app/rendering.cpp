@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
+#include "app/display/display.h"
 #include "app/film_header.h"
 #include "app/make_renderer.h"
 #include "common/error/error.h"
@@ -18,7 +21,7 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& wo
 
 Rendering::Rendering(const Options& options, const SceneData& scene,
                      const std::vector<DeviceInfo>& devices, const Surroundings& surroundings)
-    : options_(options) {
+    : options_(options), warn_(surroundings.warn) {
   const Ranks* const ranks = surroundings.ranks;
   const bool has_ranks = ranks != nullptr && ranks->count() > 1 && !options.explain;
   if (needs_group(options, devices) || has_ranks) {
@@ -62,7 +65,9 @@ void Rendering::make_group(const SceneData& scene, const std::vector<DeviceInfo>
 
 Measurement Rendering::measure(const MeasureHooks& hooks) {
   try {
-    Measurement measurement = pt::measure(renderer(), options_, hooks);
+    Measurement measurement = options_.display.host.empty()
+                                  ? pt::measure(renderer(), options_, hooks)
+                                  : measure_shown(hooks);
     keep();
     return measurement;
   } catch (const std::exception& error) {
@@ -70,6 +75,17 @@ Measurement Rendering::measure(const MeasureHooks& hooks) {
     keep();
     throw Error(fmt::format("{}; ptexp resume {} goes on", error.what(), options_.checkpoint.file));
   }
+}
+
+Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
+  Display display(options_.display, std::filesystem::path(options_.output).filename().string(),
+                  warn_);
+  MeasureHooks shown = hooks;
+  shown.watch = [&](const std::function<Image()>& image) { display.watch(image); };
+  Measurement measurement = pt::measure(renderer(), options_, shown);
+  if (!measurement.runs.empty() && measurement.runs.back().samples_done > 0)
+    display.finish(renderer().image());
+  return measurement;
 }
 
 void Rendering::keep() {

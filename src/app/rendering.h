@@ -43,10 +43,13 @@ class Rendering {
  private:
   void make_group(const SceneData& scene, const std::vector<DeviceInfo>& devices,
                   const Surroundings& surroundings);
+  /// In a viewer, too.
+  Measurement measure_shown(const MeasureHooks& hooks);
   void save(const ImageFilm& film) const;
   void keep();
 
   const Options options_;
+  const std::function<void(const std::string&)> warn_;
   PixelFilter filter_{};
   ImageMetadata header_;
   std::unique_ptr<Renderer> single_;

@@ -97,6 +97,7 @@ const std::map<std::string, std::string>& other_values() {
       {"counters", "on"},
       {"stats", "run.json"},
       {"csv", "runs.csv"},
+      {"display", "localhost:5000"},
       {"explain", "on"},
       {"quiet", "on"}};
   return values;

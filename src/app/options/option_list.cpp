@@ -433,6 +433,12 @@ void add_measurement(std::vector<OptionEntry>& list) {
            "Appends the same as one row, below a header if the file is\n"
            "new; a file with other columns is refused")
       .add(custom(
+               "display", OptionForm::text, "HOST[:PORT]",
+               [](Options& o, const std::string& s) { o.display = parse_display("display", s); },
+               [](const Options& o) { return display_text(o.display); }),
+           "Shows the render at work in the viewer tev, which listens\n"
+           "there, by default at port 14158")
+      .add(custom(
                "explain", OptionForm::flag, "",
                [](Options& o, const std::string&) { o.explain = true; },
                [](const Options& o) { return o.explain ? "on" : "off"; }),

@@ -67,6 +67,12 @@ struct CheckpointChoice {
   float interval_s = 300.0f;
 };
 
+/// Of a viewer that shows the render at work.
+struct DisplayAddress {
+  std::string host;  ///< empty: nowhere
+  std::uint16_t port = 0;
+};
+
 struct BlockSize {
   int x = 16;
   int y = 16;
@@ -141,6 +147,8 @@ struct Options {
   /// Pools and samples take no more than the free memory / 2^this allows. No option of the command
   /// line: a device that has run out of memory is tried again with less.
   int memory_halvings = 0;
+
+  DisplayAddress display;
 
   // What is kept, and what is left to others
   CheckpointChoice checkpoint;
