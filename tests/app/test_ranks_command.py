@@ -71,6 +71,13 @@ class Ranks(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         return run
 
+    def wait_for(self, name):
+        """Until the render at work has written the file, however busy the machine is."""
+        end = time.monotonic() + TIMEOUT_S
+        while not (self.folder / name).exists():
+            self.assertLess(time.monotonic(), end, f"no {name}")
+            time.sleep(0.01)
+
     def assert_same_image(self, a, b):
         run = self.run_one("compare", a, b)
         self.assertRegex(run.stdout, r"differing pixels +0\b")
@@ -146,7 +153,7 @@ class Ranks(unittest.TestCase):
         process = subprocess.Popen(self.command(3, [*scene, "--checkpoint", "c.exr,0.2", "-o", "a.exr"]),
                                    cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
-        time.sleep(2.0)
+        self.wait_for("c.exr")
         process.send_signal(signal.SIGUSR1)  # mpirun passes it on
         process.communicate(timeout=TIMEOUT_S)
         self.assertEqual(process.returncode, 128 + signal.SIGUSR1)
@@ -161,7 +168,7 @@ class Ranks(unittest.TestCase):
         process = subprocess.Popen(self.command(4, [*scene, "--checkpoint", "c.exr,0.1", "-o", "a.exr"]),
                                    cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.DEVNULL)
-        time.sleep(2.5)
+        self.wait_for("c.exr")
         of_ours = subprocess.run(["pgrep", "-f", f"^{PTEXP} .*--seed 4"], capture_output=True,
                                  text=True, check=False).stdout.split()
         self.assertEqual(len(of_ours), 4)
