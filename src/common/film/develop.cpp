@@ -47,8 +47,8 @@ Image develop(std::span<const FilmPixel> film, int width, int height) {
   Image image{width, height, {}};
   image.rgb.reserve(3 * film.size());
   for (const FilmPixel& pixel : film) {
-    const double scale = pixel.samples == 0 ? 0.0 : 1.0 / static_cast<double>(pixel.samples);
-    for (const double sum : pixel.sum) image.rgb.push_back(static_cast<float>(sum * scale));
+    const double to_mean = pixel.to_mean();
+    for (const double sum : pixel.sum) image.rgb.push_back(static_cast<float>(sum * to_mean));
   }
   return image;
 }

@@ -84,6 +84,9 @@ struct SampleBuffer {
 struct FilmPixel {
   double sum[3] = {0, 0, 0};
   std::uint64_t samples = 0;
+
+  /// What makes a sum the mean; 0 without samples.
+  PT_HD double to_mean() const { return samples == 0 ? 0.0 : 1.0 / static_cast<double>(samples); }
 };
 
 inline constexpr int path_length_bins = 128;  ///< the last one also counts all longer paths

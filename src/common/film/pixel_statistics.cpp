@@ -19,15 +19,14 @@ std::array<double, 2> sign_weights(const PixelFilter& filter, std::uint64_t posi
 
 std::array<double, 3> PixelReader::value(std::uint64_t pixel) const {
   const FilmPixel& positive = sums_.pixels[pixel];
-  const auto scale = [](std::uint64_t n) { return n == 0 ? 0.0 : 1.0 / static_cast<double>(n); };
-  const double to_mean = scale(positive.samples);
+  const double to_mean = positive.to_mean();
   std::array<double, 3> value{};
   for (std::size_t c = 0; c < 3; ++c) value[c] = positive.sum[c] * to_mean;
   if (!plan_.two_signs) return value;
   const FilmPixel& negative = sums_.pixels[count_ + pixel];
   const auto weights = sign_weights(filter_, positive.samples, negative.samples);
   for (std::size_t c = 0; c < 3; ++c) {
-    value[c] = weights[0] * value[c] + weights[1] * (negative.sum[c] * scale(negative.samples));
+    value[c] = weights[0] * value[c] + weights[1] * (negative.sum[c] * negative.to_mean());
   }
   return value;
 }

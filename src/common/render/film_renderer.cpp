@@ -158,11 +158,22 @@ RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const Rende
   return run;
 }
 
+Image FilmRenderer::blank_image() const {
+  Image image{static_cast<int>(window_.width), static_cast<int>(window_.height),
+              std::vector<float>(3 * window_.pixel_count())};
+  image.place = place_of_window();
+  return image;
+}
+
 Image FilmRenderer::develop_window(const FilmSums& sums) const {
   Image image = develop(sums, plan_, filter_, window_, pixel_samples_);
-  image.place = {static_cast<int>(window_.x), static_cast<int>(window_.y), options_.width,
-                 options_.height};
+  image.place = place_of_window();
   return image;
+}
+
+ImagePlace FilmRenderer::place_of_window() const {
+  return {static_cast<int>(window_.x), static_cast<int>(window_.y), options_.width,
+          options_.height};
 }
 
 Image FilmRenderer::image() {

@@ -57,7 +57,9 @@ class FilmRenderer : public Renderer {
   void forget_film() { pixel_samples_ = 0; }
   /// What films there are: parts of the crop window, or of the whole image.
   const Window& image_window() const { return image_window_; }
-  /// `sums` as an image, of the window of the last render.
+  /// Black, of the window of the last render.
+  Image blank_image() const;
+  /// `sums` as an image of that window.
   Image develop_window(const FilmSums& sums) const;
   /// Paths of the largest batch.
   std::uint64_t batch_paths() const { return batch_paths_; }
@@ -91,6 +93,7 @@ class FilmRenderer : public Renderer {
   RenderRun add_samples(int samples, const RenderHooks& hooks);
   RenderRun add_mutations(const Film& film, int samples, const RenderHooks& hooks);
   double estimate_error();
+  ImagePlace place_of_window() const;
 
   Window image_window_;
   Window window_;

@@ -28,6 +28,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   CudaRenderer(const Options& options, const SceneData& scene, int device);
   ~CudaRenderer() override;
 
+  Image image() override;
   bool set_camera(const Camera& camera) override;
   void describe(RenderReport& report) const override;
   HardwareCounters count_hardware() override;

@@ -191,6 +191,24 @@ void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) cons
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 
+// Without layers, what the viewer of a render at work waits for is a third of the film.
+Image CudaRenderer::image() {
+  if (plan_.aovs != 0 || plan_.two_signs) return FilmRenderer::image();
+  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  const WallTimer transfer;
+  Image image = blank_image();
+  static_assert(sizeof(Sample) >= 3 * sizeof(float));
+  auto* const rgb = reinterpret_cast<float*>(samples());  // a batch has ended: they are in the film
+  develop_film(film_.pixels, rgb, static_cast<std::uint32_t>(image.rgb.size() / 3), stream());
+  check_cuda(cudaGetLastError(), "developing the film");
+  check_cuda(cudaMemcpyAsync(image.rgb.data(), rgb, image.rgb.size() * sizeof *rgb,
+                             cudaMemcpyDeviceToHost, stream()),
+             "downloading the image");
+  check_cuda(cudaStreamSynchronize(stream()), "downloading the image");
+  transfer_ms_ += transfer.ms();
+  return image;
+}
+
 bool CudaRenderer::set_camera(const Camera& camera) {
   scene_.camera = camera;
   forget_film();

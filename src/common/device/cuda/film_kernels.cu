@@ -52,6 +52,24 @@ __global__ void __launch_bounds__(1024)
   });
 }
 
+namespace {
+
+__global__ void develop_pixels(const FilmPixel* film, float* rgb, std::uint32_t pixel_count) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= pixel_count) return;
+  const double to_mean = film[i].to_mean();
+  for (int c = 0; c < 3; ++c)
+    rgb[3 * std::size_t{i} + c] = static_cast<float>(film[i].sum[c] * to_mean);
+}
+
+}  // namespace
+
+void develop_film(const FilmPixel* film, float* rgb, std::uint32_t pixel_count,
+                  cudaStream_t stream) {
+  constexpr std::uint32_t block = 256;
+  develop_pixels<<<(pixel_count + block - 1) / block, block, 0, stream>>>(film, rgb, pixel_count);
+}
+
 __global__ void start_clock(StageClock* clock) {
   std::uint64_t now;
   asm volatile("mov.u64 %0, %globaltimer;" : "=l"(now));

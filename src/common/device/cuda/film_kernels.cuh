@@ -26,6 +26,10 @@ __global__ void accumulate_planes(const __grid_constant__ FilmView film,
                                   const __grid_constant__ PixelFilter filter, SamplerSource source,
                                   PathTally* tally, StageClock* clock);
 
+/// Enqueues what writes each pixel's mean: 3 floats.
+void develop_film(const FilmPixel* film, float* rgb, std::uint32_t pixel_count,
+                  cudaStream_t stream);
+
 /// The stage clock runs between these two, of one thread each.
 __global__ void start_clock(StageClock* clock);
 __global__ void stop_clock(StageClock* clock);
