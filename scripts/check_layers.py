@@ -29,6 +29,8 @@ SCHEDULES = ["serial", "megakernel", "wavefront"]
 LAYERS = [
     # The Python module, which is given what the program is.
     ("python", ["python/*"], ["app", "edit", "distribute", *SCHEDULES, *COMMON]),
+    # The page of a render in progress.
+    ("view", ["view/*"], ["app", *SCHEDULES, *COMMON]),
     # The program: commands, the command line, reports.
     ("app", ["app/*"], ["mpi", "distribute", *SCHEDULES, *COMMON]),
     # Processes of one job, whose devices work for the first one.
@@ -78,7 +80,7 @@ LAYERS = [
     ("platform", ["common/platform/*"], []),
 ]
 MAIN = "main"  # main.cpp, alone in src/
-MAIN_MAY_INCLUDE = ["app", "mpi", "distribute", *SCHEDULES, *COMMON]
+MAIN_MAY_INCLUDE = ["view", "app", "mpi", "distribute", *SCHEDULES, *COMMON]
 
 # Who may know CUDA.
 CUDA_HEADER = re.compile(
@@ -94,6 +96,10 @@ PLATFORM_CUDA_HEADERS = ["cuda.h", "cuda_runtime.h", "cuda_runtime_api.h"]  # GL
 # Who may know MPI: a program without it lacks these files.
 MPI_HEADER = re.compile(r"mpi(cxx|-ext|_proto)?\.h$")
 MPI_FILES = ["common/mpi/*_mpi.*"]
+
+# Who may know HTTP, likewise.
+HTTP_HEADER = re.compile(r"httplib\.h$")
+HTTP_FILES = ["view/*_http.*"]
 
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
@@ -148,7 +154,7 @@ def own_path(source, header, path):
     for candidate in (source / header, (source / path).parent / header):
         if candidate.is_file():
             return candidate.resolve().relative_to(source).as_posix()
-    return header if header.split("/")[0] in ["app", "common", "python", *SCHEDULES] else None
+    return header if header.split("/")[0] in ["app", "common", "python", "view", *SCHEDULES] else None
 
 
 def check_include(source, path, layer, quoted, angled):
@@ -180,6 +186,8 @@ def check_include(source, path, layer, quoted, angled):
             yield f"only {', '.join(CUB_FILES)} include CUB: each such file takes long to compile"
     elif MPI_HEADER.match(header) and not fits(path, MPI_FILES):
         yield f"only {', '.join(MPI_FILES)} include MPI's headers"
+    elif HTTP_HEADER.match(header) and not fits(path, HTTP_FILES):
+        yield f"only {', '.join(HTTP_FILES)} include cpp-httplib"
     elif CUDA_HEADER.match(header) and not fits(path, CUDA_FILES):
         if path != PLATFORM:
             yield f"only CUDA files ({', '.join(CUDA_FILES)}) include CUDA's headers"

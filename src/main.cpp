@@ -23,6 +23,7 @@
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
 #include "common/scene/builtin/builtin_scenes.h"
+#include "view/view_command.h"
 
 namespace pt {
 namespace {
@@ -46,6 +47,8 @@ int execute(const RaysCommand& command) { return rays_command(command); }
 int execute(const CompactCommand& command) { return compact_command(command); }
 
 int execute(const DoctorCommand& command) { return doctor_command(command); }
+
+int execute(const ViewCommand& command) { return view_command(command); }
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())

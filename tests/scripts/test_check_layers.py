@@ -149,6 +149,12 @@ class CheckLayers(unittest.TestCase):
         self.assert_breach("app/x_mpi.cpp", "#include <mpi.h>\n", 1, "MPI")
         self.assert_sound({"common/mpi/x_mpi.cpp": "#include <mpi.h>\n"})
 
+    def test_only_http_files_of_the_view_include_http(self):
+        self.assert_breach("view/site.cpp", "#include <httplib.h>\n", 1, "cpp-httplib")
+        self.assert_breach("app/x_http.cpp", "#include <httplib.h>\n", 1, "cpp-httplib")
+        self.assert_sound({"view/x_http.cpp": "#include <httplib.h>\n"})
+        self.assert_breach("app/x.cpp", '#include "view/live_render.h"\n', 1, "app", "view")
+
     def test_one_file_asks_for_the_compiler(self):
         for condition in ["#ifdef __CUDACC__", "#ifndef __CUDA_ARCH__", "#if defined(__NVCC__)",
                           "#  if 1 && \\\n  defined(__CUDACC__)"]:

@@ -263,6 +263,12 @@ void check_crop(const Options& options) {
                             crop_text(options.crop), options.width, options.height));
 }
 
+bool has_effect(const OptionEntry& entry, const std::string& value, Mode mode) {
+  return std::ranges::all_of(entry.rules, [&](const OptionRule& rule) {
+    return !has_value(rule, value) || contains(rule.modes, mode);
+  });
+}
+
 void check_applicable(const Options& options, const GivenOptions& given,
                       std::optional<DeviceChoice::Kind> device) {
   for (const OptionEntry& entry : option_list()) {

@@ -9,6 +9,8 @@
 
 namespace pt {
 
+struct OptionEntry;
+
 /// The names of the options that the user gave, without dashes: defaults are never refused.
 using GivenOptions = std::set<std::string>;
 
@@ -17,6 +19,9 @@ void check_consistent(const Options& options, const GivenOptions& given);
 
 /// Throws Error when --crop, or a scene file's, is no part of the image.
 void check_crop(const Options& options);
+
+/// Whether a value of the option, as its `text` gives it, has an effect in a mode on any device.
+bool has_effect(const OptionEntry& entry, const std::string& value, Mode mode);
 
 /// Throws Error when a given option has no effect in the chosen mode, or none on `device`. The
 /// device is checked only where it is known: pass choose_device's answer to check all.

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -43,6 +44,9 @@ constexpr const char* merge_text =
 constexpr const char* verify_text =
     "Renders some of an image's pixels again, by the options in its header, and\n"
     "compares. Exit code 0: the bits are equal, 1: they differ, 2: an error.";
+constexpr const char* view_text =
+    "Shows the render in progress on a page for the browsers of this machine, where\n"
+    "camera, mode and exposure can be changed, until Ctrl-C.";
 constexpr const char* trace_text =
     "Traces rays from a file, measures the rate and compares with reference hits.\n"
     "Exit code 0: done, 1: hits differ from the reference, 2: an error.";
@@ -70,9 +74,10 @@ struct Parser {
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
   Subcommand<CompactCommand> compact{app, "compact", compact_text, compact_options()};
   Subcommand<DoctorCommand> doctor{app, "doctor", doctor_text, doctor_options()};
-  CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr;
+  CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr, *view = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
   CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;
+  CLI::Option *viewed = nullptr, *port = nullptr;
   CLI::App* compare = nullptr;
   CLI::Option *image_a = nullptr, *image_b = nullptr, *tolerance = nullptr, *difference = nullptr;
 
@@ -153,10 +158,14 @@ void Parser::add_film_commands() {
   verified = add_text(*verify, "IMAGE", "Image to verify, .exr or .png");
   share = add_text(*verify, "--share", "Share of the pixels, above 0, at most 1");
   share->type_name("X [0.01]");
-  for (CLI::Option* file : {checkpoint, merged, verified})
+  view = app.add_subcommand("view", view_text);
+  viewed = add_text(*view, "SCENE", "Built-in scene or file, as --scene takes it");
+  port = add_text(*view, "--port", "Of the page's address; 0: any that is free");
+  port->type_name("N [8080]");
+  for (CLI::Option* file : {checkpoint, merged, verified, viewed})
     file->type_name("")->multi_option_policy(CLI::MultiOptionPolicy::Throw);
   parts->type_name("");
-  for (CLI::App* command : {resume, merge, verify}) command->allow_extras()->fallthrough();
+  for (CLI::App* command : {resume, merge, verify, view}) command->allow_extras()->fallthrough();
 }
 
 /// Of an option that is given more than once the last holds, as in other programs: so a script's
@@ -231,6 +240,28 @@ VerifyCommand parse_verify(const Parser& parser) {
   return command;
 }
 
+/// What a page shows is neither a file nor one render.
+ViewCommand parse_view(const Parser& parser) {
+  const std::string scene = file_of(parser.viewed, "ptexp view SCENE");
+  ViewCommand command;
+  if (parser.port->count() > 0)
+    command.port = static_cast<int>(parse_integer("port", last_value(*parser.port), 0, 65535));
+  command.settings = {{&find_option("scene"), scene}, {&find_option("output"), "page.png"}};
+  for (const Setting& setting : given_settings(parser)) {
+    const OptionEntry& entry = *setting.entry;
+    constexpr std::array refused = {"scene",      "output",     "aov",         "stats", "csv",
+                                    "repeat",     "warmup",     "counters",    "part",  "explain",
+                                    "checkpoint", "time-limit", "target-error"};
+    if (std::ranges::find(refused, entry.name) != refused.end())
+      throw Error(fmt::format("--{}: has no effect together with view", entry.name));
+    if (entry.name == "quiet") command.is_quiet = true;
+    command.settings.push_back(setting);
+  }
+  if (make_render_command(command.settings).options.integrator == IntegratorKind::mlt)
+    throw Error("--integrator mlt: has no image before it ends; view expects path");
+  return command;
+}
+
 /// A command other than rendering stands alone: nothing that the user wrote is ignored.
 void check_alone(const Parser& parser, const std::string& command, const CLI::Option* self) {
   for (const CLI::Option* option : parser.app.get_options())
@@ -255,7 +286,7 @@ std::string help_text(const CLI::App& app) {
 CommandText describe_program(const Parser& parser) {
   CommandText program = describe(parser.app);
   for (CommandText& one : program.subcommands) {
-    for (const CLI::App* renders : {parser.resume, parser.verify})
+    for (const CLI::App* renders : {parser.resume, parser.verify, parser.view})
       one.takes_render_options |= one.name == renders->get_name();
   }
   return program;
@@ -308,6 +339,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   }
   if (parser.merge->parsed()) return parse_merge(parser);
   if (parser.verify->parsed()) return parse_verify(parser);
+  if (parser.view->parsed()) return parse_view(parser);
   if (parser.compare->parsed()) {
     check_alone(parser, "compare", nullptr);
     return parse_compare(parser);

@@ -35,6 +35,12 @@ struct VerifyCommand {
   double share = 0.01;  ///< of the pixels, in (0, 1]
   std::vector<Setting> settings;
 };
+/// Of a page for browsers.
+struct ViewCommand {
+  int port = 8080;                ///< 0: any that is free
+  bool is_quiet = false;          ///< prints the address alone
+  std::vector<Setting> settings;  ///< the scene's name, too
+};
 struct CompareCommand {
   std::string a, b;
   double tolerance = 0;
@@ -59,7 +65,7 @@ struct HelpCommand {
 
 using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
                              CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             DoctorCommand, ListScenesCommand, ListDevicesCommand, VersionCommand,
+                             DoctorCommand, ViewCommand, ListScenesCommand, ListDevicesCommand, VersionCommand,
                              CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// Options of rendering from their settings, of which a later one overrides an earlier one. Throws

@@ -30,6 +30,9 @@ extern const ImageCodec exr_codec;  ///< float, ZIP-compressed, metadata as stri
 extern const ImageCodec png_codec;  ///< sRGB, metadata as text chunks
 extern const ImageCodec ppm_codec;  ///< gamma 2, no metadata
 
+/// As png_codec, for who waits: a larger file, several times as fast. Throws Error.
+std::string encode_png_fast(const Image& image, const ToneMapping& tone_mapping);
+
 /// Throws Error unless a file of `file_bytes` can hold an image of this size: at most 65535 pixels
 /// a side, `decoded_bytes` of pixels as the file stores them, decompressed.
 void check_image_size(std::int64_t width, std::int64_t height, double decoded_bytes,

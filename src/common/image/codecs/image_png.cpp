@@ -30,12 +30,15 @@ std::vector<png_text> text_chunks(const ImageMetadata& metadata) {
   return chunks;
 }
 
-std::string encode_png(const Image& image, const ImageMetadata& metadata,
-                       const ToneMapping& tone_mapping) {
+/// `prepare`(png) may choose how it is compressed.
+template <class Prepare>
+std::string encode(const Image& image, const ImageMetadata& metadata,
+                   const ToneMapping& tone_mapping, Prepare prepare) {
   const std::string samples = quantize(image, tone_mapping, srgb_curve);
   const std::vector<png_text> texts = text_chunks(metadata);
   PngWriter writer;
   attempt(writer, [&](png_structp png, png_infop info) {
+    prepare(png);
     png_set_IHDR(png, info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -46,6 +49,11 @@ std::string encode_png(const Image& image, const ImageMetadata& metadata,
     png_write_end(png, info);
   });
   return std::move(writer.session.output);
+}
+
+std::string encode_png(const Image& image, const ImageMetadata& metadata,
+                       const ToneMapping& tone_mapping) {
+  return encode(image, metadata, tone_mapping, [](png_structp) {});
 }
 
 /// libpng allocates what the length of a chunk announces: refuses lengths past the file's end.
@@ -125,6 +133,13 @@ Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
 }
 
 }  // namespace
+
+std::string encode_png_fast(const Image& image, const ToneMapping& tone_mapping) {
+  return encode(image, {}, tone_mapping, [](png_structp png) {
+    png_set_compression_level(png, 1);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  });
+}
 
 Rgba8Image decode_png_rgba8(std::string_view bytes) {
   check_chunks(bytes);

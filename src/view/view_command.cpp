@@ -1,0 +1,40 @@
+#include "view/view_command.h"
+
+#include <fmt/format.h>
+
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "app/standard_output.h"
+#include "view/http_server.h"
+#include "view/live_render.h"
+#include "view/view_site.h"
+
+namespace pt {
+
+int view_command(const ViewCommand& command) {
+  HttpServer server(command.port);  // before the scene, which may take long
+  const std::string token = random_token();
+  LiveRender live(command.settings, [](const std::string& message) {
+    fmt::print(stderr, "ptexp: warning: {}\n", message);
+  });
+  ViewSite site(live, token, server.port(), Progress::steady_seconds);
+  const std::string address = fmt::format("http://127.0.0.1:{}/{}/", server.port(), token);
+  if (!command.is_quiet) {
+    fmt::print("{} on {}: open this address in a browser of this machine; Ctrl-C ends\n",
+               live.scene(), live.device());
+  }
+  fmt::print("{}\n", address);
+  flush_output();
+
+  note_signals();
+  server.serve(site, [&] {
+    site.look_for_viewers();
+    if (!interrupted()) return true;
+    live.end();  // who waits is answered
+    return false;
+  });
+  fmt::print(stderr, "ptexp: interrupted\n");
+  return exit_code_of_signal();
+}
+
+}  // namespace pt

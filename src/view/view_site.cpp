@@ -1,0 +1,210 @@
+#include "view/view_site.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "common/image/codecs/image_codec.h"
+#include "common/options/option_names.h"
+#include "view/change_settings.h"
+#include "view/page.h"
+
+namespace pt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// An answer that waits for news tells the same again after this: so a viewer who is gone is missed
+/// soon.
+constexpr double longest_wait_s = 1.0;
+constexpr std::size_t longest_name = 64;
+
+HttpReply text(int status, const std::string& line) {
+  return {.status = status, .body = line + "\n"};
+}
+
+HttpReply nothing_there() { return text(404, "nothing is here"); }
+
+/// Takes as long for any other token as for the right one.
+bool is_same_token(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) difference |= static_cast<unsigned>(a[i] ^ b[i]);
+  return difference == 0;
+}
+
+/// A browser leaves out port 80.
+std::vector<std::string> hosts_of(int port) {
+  std::vector<std::string> hosts;
+  for (const char* const name : {"127.0.0.1", "localhost"}) {
+    hosts.push_back(fmt::format("{}:{}", name, port));
+    if (port == 80) hosts.push_back(name);
+  }
+  return hosts;
+}
+
+bool contains(const std::vector<std::string>& list, std::string_view text) {
+  return std::ranges::find(list, text) != list.end();
+}
+
+std::string parameter(const HttpRequest& request, const char* name) {
+  const auto found = request.query.find(name);
+  return found == request.query.end() ? "" : found->second;
+}
+
+const char* name_of_status(LiveStatus status) {
+  constexpr const char* names[] = {"rendering", "idle", "done", "failed"};
+  return names[static_cast<int>(status)];
+}
+
+Json view_json(const LiveView& view) {
+  return {{"mode", to_string(view.mode)}, {"samples", view.samples},
+          {"image", view.image_number},   {"pass_samples", view.pass_samples},
+          {"pass_ms", view.pass_ms},      {"msamples_per_s", view.msamples_per_s}};
+}
+
+std::string state_json(const LiveState& state, const LiveRender& live) {
+  Json views = Json::array();
+  for (const LiveView& view : state.views) views.push_back(view_json(view));
+  const Orbit& orbit = state.settings.orbit;
+  const PitchRange pitch = pitch_range(live.camera());
+  const Json json = {{"version", state.version},
+                     {"scene", live.scene()},
+                     {"device", live.device()},
+                     {"spp", live.samples_wanted()},
+                     {"status", name_of_status(state.status)},
+                     {"error", state.error},
+                     {"mode", mode_name(state.settings.modes)},
+                     {"exposure", state.exposure},
+                     {"orbit", {{"yaw", orbit.yaw}, {"pitch", orbit.pitch}, {"zoom", orbit.zoom}}},
+                     {"pitch_range", {pitch.least, pitch.most}},
+                     {"views", views}};
+  // A file's name need not be UTF-8.
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string random_token() {
+  unsigned char bytes[16];
+  if (getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
+    throw Error("view: the system gave no random numbers for the page's address");
+  std::string token;
+  for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);
+  return token;
+}
+
+ViewSite::ViewSite(LiveRender& live, std::string token, int port, std::function<double()> clock)
+    : live_(live), token_(std::move(token)), hosts_(hosts_of(port)), clock_(std::move(clock)) {}
+
+/// The address below /TOKEN/; "/" where it is not below that.
+std::string ViewSite::name_of(const HttpRequest& request) const {
+  const std::string_view path = request.path;
+  const std::size_t length = token_.size() + 2;
+  if (path.size() < length || path.front() != '/' || path[length - 1] != '/' ||
+      !is_same_token(path.substr(1, token_.size()), token_))
+    return "/";
+  return std::string(path.substr(length));
+}
+
+std::optional<HttpReply> ViewSite::refuse(const HttpRequest& request) {
+  if (!contains(hosts_, request.host))
+    return text(403, fmt::format("Host: expected {}", hosts_.front()));
+  const std::string name = name_of(request);
+  const bool is_get =
+      request.method == "GET" && (name.empty() || name == "state" || name == "image");
+  const bool is_post = request.method == "POST" && (name == "settings" || name == "leave");
+  if (!is_get && !is_post) return nothing_there();
+  constexpr std::string_view scheme = "http://";
+  const bool is_own =
+      request.origin.starts_with(scheme) && contains(hosts_, request.origin.substr(scheme.size()));
+  if (is_post && !request.origin.empty() && !is_own)
+    return text(403, "Origin: expected the page itself");
+  return std::nullopt;
+}
+
+HttpReply ViewSite::answer(const HttpRequest& request) {
+  const std::string name = name_of(request);
+  if (name.empty()) return page();
+  if (name == "state") return state(request);
+  if (name == "image") return image(request);
+  if (name == "settings") return settings(request);
+  return name == "leave" ? leave(request) : nothing_there();
+}
+
+HttpReply ViewSite::page() const {
+  const std::string nonce = random_token();
+  std::string html(page_html());
+  constexpr std::string_view placeholder = "NONCE";
+  for (std::size_t at = 0; (at = html.find(placeholder, at)) != std::string::npos;)
+    html.replace(at, placeholder.size(), nonce);
+  const std::string policy = fmt::format(
+      "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; "
+      "img-src data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+      nonce);
+  return {200, "text/html; charset=utf-8", html, {{"Content-Security-Policy", policy}}};
+}
+
+HttpReply ViewSite::state(const HttpRequest& request) {
+  const std::string viewer = parameter(request, "viewer"), after = parameter(request, "after");
+  std::uint64_t version = 0;
+  const auto [end, error] = std::from_chars(after.data(), after.data() + after.size(), version);
+  if (!after.empty() && (error != std::errc() || end != after.data() + after.size()))
+    return text(400, "after: expected the version of a state");
+  if (viewer.size() > longest_name)
+    return text(400, fmt::format("viewer: expected at most {} characters", longest_name));
+  if (!viewer.empty()) {
+    const std::lock_guard lock(viewers_mutex_);
+    viewers_.saw(viewer, clock_());
+    live_.set_watched(true);
+  }
+  const LiveState now = after.empty() ? live_.state() : live_.wait(version, longest_wait_s);
+  return {200, "application/json", state_json(now, live_)};
+}
+
+HttpReply ViewSite::image(const HttpRequest& request) {
+  const LiveState now = live_.state();
+  const std::string mode = parameter(request, "mode");
+  const auto view = std::ranges::find_if(
+      now.views, [&](const LiveView& one) { return to_string(one.mode) == mode; });
+  if (view == now.views.end() || !view->image) return nothing_there();
+  const std::lock_guard lock(pictures_mutex_);
+  Picture& picture = pictures_[view->mode];
+  if (picture.image_number != view->image_number || picture.exposure != now.exposure) {
+    picture = {view->image_number, now.exposure,
+               encode_png_fast(*view->image, {.exposure = now.exposure})};
+  }
+  return {200, "image/png", picture.png};
+}
+
+HttpReply ViewSite::settings(const HttpRequest& request) {
+  SettingsChange change;
+  try {
+    change = read_change(request.body);
+  } catch (const Error& error) {
+    return text(400, error.what());
+  }
+  const std::lock_guard lock(settings_mutex_);
+  LiveSettings settings = live_.state().settings;
+  if (change.orbit) settings.orbit = *change.orbit;
+  if (change.modes) settings.modes = *change.modes;
+  live_.change(settings);
+  if (change.exposure) live_.change_exposure(*change.exposure);
+  return {.status = 204};
+}
+
+HttpReply ViewSite::leave(const HttpRequest& request) {
+  const std::lock_guard lock(viewers_mutex_);
+  viewers_.left(parameter(request, "viewer"));
+  live_.set_watched(viewers_.any(clock_()));
+  return {.status = 204};
+}
+
+void ViewSite::look_for_viewers() {
+  const std::lock_guard lock(viewers_mutex_);
+  live_.set_watched(viewers_.any(clock_()));
+}
+
+}  // namespace pt

@@ -1,0 +1,205 @@
+// A render that somebody watches: its images are those of a render at once.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "app/progress.h"
+#include "common/image/compare/compare.h"
+#include "view/live_render.h"
+
+namespace {
+
+using namespace pt;
+
+using Words = std::vector<std::pair<std::string, std::string>>;
+
+constexpr double patience_s = 120;  // a machine may be busy
+
+std::vector<Setting> settings_of(const Words& more = {}) {
+  Words words{{"scene", "cornell"}, {"output", "page.png"}, {"width", "32"},
+              {"height", "24"},     {"device", "cpu"},      {"spp", "13"}};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<Setting> settings;
+  for (const auto& [name, value] : words) settings.push_back({&find_option(name), value});
+  return settings;
+}
+
+/// What a session of its own renders at once, through a camera that was moved.
+Image rendered(const Words& more, const Orbit& orbit = {}) {
+  const RenderCommand command = make_render_command(settings_of(more));
+  RenderSession session(command, {});
+  if (orbit != Orbit()) session.change_camera() = orbit_camera(session.scene().camera, orbit);
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  return session.render(command, hooks, {}).image;
+}
+
+template <class Holds>
+LiveState wait_until(const LiveRender& live, Holds holds) {
+  const double begin_s = Progress::steady_seconds();
+  LiveState state = live.state();
+  while (!holds(state) && Progress::steady_seconds() - begin_s < patience_s)
+    state = live.wait(state.version, 0.1);
+  EXPECT_TRUE(holds(state)) << "waited in vain";
+  return state;
+}
+
+bool is_done(const LiveState& state) { return state.status == LiveStatus::done; }
+
+void expect_same(const Image& a, const Image& b) {
+  ASSERT_EQ(a.width, b.width);
+  ASSERT_EQ(a.height, b.height);
+  EXPECT_EQ(compare_images(a, b, 0).differing_pixels, 0u);
+}
+
+TEST(NextPass, DoublesTheSamplesWithinItsTime) {
+  EXPECT_EQ(next_pass(0, 100, 0), 1);
+  EXPECT_EQ(next_pass(1, 100, 1), 1);
+  EXPECT_EQ(next_pass(2, 100, 1), 2);
+  EXPECT_EQ(next_pass(32, 100, 1), 32);
+  EXPECT_EQ(next_pass(64, 100, 1), 36) << "no more than is wanted";
+  EXPECT_EQ(next_pass(64, 1000, 10), 20) << "a fifth of a second";
+  EXPECT_EQ(next_pass(64, 1000, 5000), 1) << "nor less than one";
+}
+
+TEST(LiveRender, HasTheBitsOfARenderAtOnce) {
+  for (const char* const mode : {"serial", "megakernel", "wavefront"}) {
+    LiveRender live(settings_of({{"mode", mode}}), {});
+    live.set_watched(true);
+    const LiveState state = wait_until(live, is_done);
+    ASSERT_EQ(state.views.size(), 1u);
+    EXPECT_EQ(state.views.front().samples, 13);
+    expect_same(*state.views.front().image, rendered({{"mode", mode}}));
+  }
+}
+
+TEST(LiveRender, KeepsTheCamerasOptions) {
+  const Words words{{"look-from", "250,250,-700"}, {"fov", "50"}};
+  LiveRender live(settings_of(words), {});
+  live.set_watched(true);
+  expect_same(*wait_until(live, is_done).views.front().image, rendered(words));
+}
+
+TEST(LiveRender, BeginsAnewWhereTheCameraMoves) {
+  LiveRender live(settings_of(), {});
+  live.set_watched(true);
+  wait_until(live, is_done);
+  const LiveSettings moved{live.state().settings.modes, {30, 10, 0.8}};
+  live.change(moved);
+  const LiveState begun = live.state();
+  EXPECT_LT(begun.views.front().samples, 13);
+  const LiveState state = wait_until(live, is_done);
+  expect_same(*state.views.front().image, rendered({}, moved.orbit));
+  live.change({moved.modes, {}});  // back to rest, by a camera that has moved
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
+}
+
+TEST(LiveRender, OnlyTheLastOfManyCamerasIsFinished) {
+  LiveRender live(settings_of(), {});
+  live.set_watched(true);
+  const std::vector<Mode> modes = live.state().settings.modes;
+  for (int i = 1; i <= 40; ++i) live.change({modes, {i * 2.0, 0, 1}});
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({}, {80, 0, 1}));
+}
+
+TEST(LiveRender, RendersNothingWhileNobodyWatches) {
+  LiveRender live(settings_of({{"spp", "1000000"}}), {});
+  EXPECT_EQ(live.wait(live.state().version, 0.3).status, LiveStatus::idle);
+  EXPECT_EQ(live.state().views.front().samples, 0);
+  live.set_watched(true);
+  wait_until(live, [](const LiveState& state) { return state.views.front().samples > 2; });
+  live.set_watched(false);
+  live.wait(live.state().version, 0.3);  // the pass that was at work
+  const LiveState idle = live.state();
+  EXPECT_EQ(idle.status, LiveStatus::idle);
+  EXPECT_EQ(live.wait(idle.version, 0.3).version, idle.version);
+  live.set_watched(true);
+  wait_until(live, [&](const LiveState& state) {
+    return state.views.front().samples > idle.views.front().samples;
+  });
+}
+
+TEST(LiveRender, APauseLeavesNoTraceInTheImage) {
+  LiveRender live(settings_of({{"spp", "60"}}), {});
+  while (!is_done(live.state())) {
+    live.set_watched(true);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+    live.set_watched(false);
+    if (live.state().views.front().samples > 30) live.set_watched(true);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  expect_same(*live.state().views.front().image, rendered({{"spp", "60"}}));
+}
+
+TEST(LiveRender, TwoModesRenderTheSameImageByTurns) {
+  LiveRender live(settings_of(), {});
+  live.change({{Mode::wavefront, Mode::megakernel}, {}});
+  std::atomic<bool> ends{false};
+  int furthest = 0;
+  std::thread watcher([&] {  // by passes that double, one view has twice the other's at most
+    LiveState state = live.state();
+    while (!ends) {
+      state = live.wait(state.version, 0.05);
+      const int a = state.views.front().samples, b = state.views.back().samples;
+      if (std::min(a, b) > 0) furthest = std::max(furthest, std::max(a, b) / std::min(a, b));
+    }
+  });
+  live.set_watched(true);
+  const LiveState state = wait_until(live, is_done);
+  ends = true;
+  watcher.join();
+  EXPECT_LE(furthest, 2);
+  ASSERT_EQ(state.views.size(), 2u);
+  EXPECT_EQ(state.views.front().mode, Mode::wavefront);
+  EXPECT_EQ(state.views.back().mode, Mode::megakernel);
+  for (const LiveView& view : state.views) {
+    EXPECT_EQ(view.samples, 13);
+    expect_same(*view.image, rendered({}));
+  }
+}
+
+TEST(LiveRender, TakesOptionsOfOneModeInAll) {
+  const Words words{{"mode", "wavefront"}, {"pool-size", "1000"}};
+  LiveRender live(settings_of(words), {});
+  live.set_watched(true);
+  live.change({{Mode::serial}, {}});
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
+}
+
+TEST(LiveRender, AnotherExposureRendersNothing) {
+  LiveRender live(settings_of({{"exposure", "1.5"}}), {});
+  EXPECT_EQ(live.state().exposure, 1.5f);
+  live.set_watched(true);
+  const LiveState before = wait_until(live, is_done);
+  live.change_exposure(-2);
+  const LiveState after = live.state();
+  EXPECT_EQ(after.exposure, -2);
+  EXPECT_NE(after.version, before.version);
+  EXPECT_EQ(after.views.front().image_number, before.views.front().image_number);
+}
+
+TEST(LiveRender, SaysWhatCannotBeRendered) {
+  EXPECT_THROW(LiveRender(settings_of({{"scene", "no-such-scene"}}), {}), Error);
+  EXPECT_THROW(LiveRender(settings_of({{"look-from", "1,1,1"}, {"look-at", "1,1,1"}}), {}), Error);
+  LiveRender live(settings_of({{"device", "cpu:2"}}), {});  // serial has one
+  live.set_watched(true);
+  live.change({{Mode::serial}, {}});
+  const LiveState failed =
+      wait_until(live, [](const LiveState& state) { return state.status == LiveStatus::failed; });
+  EXPECT_NE(failed.error.find("--mode serial"), std::string::npos) << failed.error;
+  live.change({{Mode::wavefront}, {}});
+  expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
+}
+
+TEST(LiveRender, EndsAtOnceAndAnswersWhoWaits) {
+  LiveRender live(settings_of({{"spp", "1000000"}}), {});
+  live.set_watched(true);
+  std::thread waiter([&] {
+    for (std::uint64_t version = 0, i = 0; i < 3; ++i) version = live.wait(version, 1).version;
+  });
+  live.end();
+  waiter.join();
+}
+
+}  // namespace
