@@ -251,7 +251,7 @@ ViewCommand parse_view(const Parser& parser) {
     const OptionEntry& entry = *setting.entry;
     constexpr std::array refused = {"scene",      "output",     "aov",         "stats", "csv",
                                     "repeat",     "warmup",     "counters",    "part",  "explain",
-                                    "checkpoint", "time-limit", "target-error"};
+                                    "checkpoint", "time-limit", "target-error", "display"};
     if (std::ranges::find(refused, entry.name) != refused.end())
       throw Error(fmt::format("--{}: has no effect together with view", entry.name));
     if (entry.name == "quiet") command.is_quiet = true;
