@@ -65,8 +65,8 @@ struct HelpCommand {
 
 using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
                              CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             DoctorCommand, ViewCommand, ListScenesCommand, ListDevicesCommand, VersionCommand,
-                             CompletionCommand, ReferenceCommand, HelpCommand>;
+                             DoctorCommand, ViewCommand, ListScenesCommand, ListDevicesCommand,
+                             VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// Options of rendering from their settings, of which a later one overrides an earlier one. Throws
 /// Error for everything that can be refused without a device or a scene.
