@@ -5,13 +5,16 @@
 
 #include "app/display/tev_packets.h"
 #include "app/options/option_values.h"
-#include "app/progress.h"
 #include "common/error/error.h"
 
 namespace pt {
 namespace {
 
 constexpr double connect_s = 2, last_image_s = 1;
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -43,7 +46,7 @@ Display::~Display() {
 }
 
 void Display::watch(const std::function<Image()>& image) {
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = seconds_now();
   if (!connection_ || !pace_.is_due(begin_s)) return;
   double others_s = 0;
   std::string problem;
@@ -55,7 +58,7 @@ void Display::watch(const std::function<Image()>& image) {
   }
   if (!problem.empty()) return give_up(problem);
   Image taken = image();
-  pace_.note(begin_s, Progress::steady_seconds(), others_s);
+  pace_.note(begin_s, seconds_now(), others_s);
   {
     const std::lock_guard lock(mutex_);
     next_ = std::move(taken);
@@ -95,7 +98,7 @@ void Display::run() {
     next_.reset();
     is_sending_ = true;
     lock.unlock();
-    const double begin_s = Progress::steady_seconds();
+    const double begin_s = seconds_now();
     std::string problem;
     try {
       send(image);
@@ -104,7 +107,7 @@ void Display::run() {
     }
     lock.lock();
     is_sending_ = false;
-    send_s_ = Progress::steady_seconds() - begin_s;
+    send_s_ = seconds_now() - begin_s;
     problem_ = problem;
     changed_.notify_all();
     if (!problem.empty()) return;
