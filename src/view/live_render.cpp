@@ -214,11 +214,18 @@ void LiveRender::arrange_workers(const Task& task) {
 RenderPass LiveRender::do_pass(const Task& task) {
   if (arranged_ != task.number) arrange_workers(task);
   const double begin_s = Progress::steady_seconds();
-  RenderHooks hooks;
-  hooks.cancel = [&] {
+  const auto is_unwanted = [&] {
     if (ends_ || !is_watched_) return true;
     return number_ != task.number &&
            (!task.is_first || Progress::steady_seconds() - begin_s > grace_s);
+  };
+  // What some threads were told must hold for all, though a viewer comes back meanwhile: a batch of
+  // which they left a part is no whole one.
+  std::atomic<bool> is_abandoned{false};
+  RenderHooks hooks;
+  hooks.cancel = [&] {
+    if (!is_abandoned && is_unwanted()) is_abandoned = true;
+    return is_abandoned.load();
   };
   hooks.stop = hooks.cancel;
   const Worker& worker = workers_[task.view];
