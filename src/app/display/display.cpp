@@ -10,7 +10,7 @@
 namespace pt {
 namespace {
 
-constexpr double connect_s = 2, last_image_s = 1;
+constexpr double connect_s = 2, last_image_s = 2;
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
