@@ -94,6 +94,7 @@ class Program(unittest.TestCase):
         text = self.process.stderr.read()
         if "built without the library cpp-httplib" in text:
             self.assertIn("install libcpp-httplib-dev", text)
+            self.assertNotEqual(os.environ.get("PTEXP_NEEDS_CHROMIUM"), "1", text)
             self.skipTest("the program has no HTTP, and says so")
         self.fail(f"no address: {text}")
 
