@@ -97,14 +97,35 @@ class Viewer:
 
     def close(self):
         self.thread.join(timeout=TIMEOUT_S)
+        if self.reads == 0:
+            self.kept.close()
         self.listener.close()
 
 
-def write_pfm(path, width, height, values):
-    rows = [values[3 * width * y:3 * width * (y + 1)] for y in reversed(range(height))]
-    floats = [value for row in rows for value in row]
-    path.write_bytes(f"PF\n{width} {height}\n-1.0\n".encode() +
-                     struct.pack(f"<{len(floats)}f", *floats))
+def write_exr(path, width, height, values):
+    """Of 32-bit floats, without compression."""
+    def attribute(name, kind, data):
+        return f"{name}\0{kind}\0".encode() + struct.pack("<i", len(data)) + data
+
+    channels = b"".join(c + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for c in (b"B", b"G", b"R"))
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    header = b"\x76\x2f\x31\x01\x02\0\0\0" + b"".join([
+        attribute("channels", "chlist", channels + b"\0"),
+        attribute("compression", "compression", b"\0"),
+        attribute("dataWindow", "box2i", window),
+        attribute("displayWindow", "box2i", window),
+        attribute("lineOrder", "lineOrder", b"\0"),
+        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1))]) + b"\0"
+    size = 8 + 12 * width
+    begin = len(header) + 8 * height
+    with open(path, "wb") as file:
+        file.write(header + struct.pack(f"<{height}Q", *(begin + size * y for y in range(height))))
+        for y in range(height):
+            row = values[3 * width * y:3 * width * (y + 1)]
+            file.write(struct.pack(f"<2i{3 * width}f", y, 12 * width,
+                                   *row[2::3], *row[1::3], *row[0::3]))
 
 
 class Display(unittest.TestCase):
@@ -113,12 +134,12 @@ class Display(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def command(self, viewer, *arguments):
+    def command(self, port, *arguments):
         return [str(word) for word in (PTEXP, "--device", "cpu", "--display",
-                                       f"127.0.0.1:{viewer.port}", *arguments)]
+                                       f"127.0.0.1:{port}", *arguments)]
 
     def run_shown(self, viewer, *arguments):
-        run = subprocess.run(self.command(viewer, *arguments), cwd=self.folder, text=True,
+        run = subprocess.run(self.command(viewer.port, *arguments), cwd=self.folder, text=True,
                              capture_output=True, check=False, timeout=TIMEOUT_S)
         self.assertEqual(run.returncode, 0, run.stderr)
         viewer.close()
@@ -136,8 +157,8 @@ class Display(unittest.TestCase):
             values = [v for y in range(y0, y1)
                       for v in values[3 * (y * width + x0):3 * (y * width + x1)]]
             width, height = x1 - x0, y1 - y0
-        write_pfm(self.folder / "shown.pfm", width, height, values)
-        run = subprocess.run([PTEXP, "compare", "shown.pfm", file], cwd=self.folder, text=True,
+        write_exr(self.folder / "shown.exr", width, height, values)
+        run = subprocess.run([PTEXP, "compare", "shown.exr", file], cwd=self.folder, text=True,
                              capture_output=True, check=False)
         self.assertRegex(run.stdout, r"differing pixels +0\b", run.stderr)
 
@@ -176,10 +197,11 @@ class Display(unittest.TestCase):
     def test_the_render_goes_on_without_a_viewer(self):
         arguments = ["--width", "40", "--height", "40", "--spp", "4", "-o", "n.exr", "-q"]
         with self.subTest("nobody listens"):
-            viewer = Viewer()
-            viewer.listener.close()
-            run = subprocess.run(self.command(viewer, *arguments), cwd=self.folder, text=True,
+            silent = socket.socket()
+            silent.bind(("127.0.0.1", 0))  # so that nobody else does
+            run = subprocess.run(self.command(silent.getsockname()[1], *arguments), cwd=self.folder, text=True,
                                  capture_output=True, check=False, timeout=TIMEOUT_S)
+            silent.close()
             self.assertEqual(run.returncode, 0)
             self.assertRegex(run.stderr, r"^ptexp: warning: --display 127\.0\.0\.1:\d+: Connection "
                                          r"refused; the render is not shown\n$")
@@ -200,7 +222,7 @@ class Display(unittest.TestCase):
 
     def test_ctrl_c_is_not_kept_waiting(self):
         viewer = Viewer(reads=0)
-        process = subprocess.Popen(self.command(viewer, "--width", "1000", "--height", "1000",
+        process = subprocess.Popen(self.command(viewer.port, "--width", "1000", "--height", "1000",
                                                 "--spp", "1000000", "-o", "i.exr", "-q"),
                                    cwd=self.folder, stderr=subprocess.PIPE, text=True)
         time.sleep(4)
