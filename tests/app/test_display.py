@@ -46,6 +46,7 @@ class Viewer:
         self.port = self.listener.getsockname()[1]
         self.reads = reads  # so many packets, then it is gone; 0: none, but it stays
         self.image = None
+        self.kept = None  # a connection of which nothing is read
         self.updates = []  # (time in s, width, height)
         self.created = 0
         self.problem = None
@@ -97,7 +98,7 @@ class Viewer:
 
     def close(self):
         self.thread.join(timeout=TIMEOUT_S)
-        if self.reads == 0:
+        if self.kept:
             self.kept.close()
         self.listener.close()
 

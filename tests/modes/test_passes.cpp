@@ -130,7 +130,7 @@ TEST(Cameras, OfARendererCanBeChanged) {
   const Settings moved{{"look-from", "0.3,0.7,2.5"}, {"look-at", "0,0.4,0"}, {"fov", "50"}};
   for (const PassCase& one : pass_cases()) {
     if (one.scene != "boxes") continue;
-    for (const std::string accel : {"bvh2", "bvh8"}) {
+    for (const std::string accel : {"bvh2", "cwbvh"}) {
       PassCase general = one;
       general.scene = "terrain:2000";
       general.settings.emplace_back("accel", accel);

@@ -15,11 +15,11 @@
 namespace pt {
 
 /// When the next image is taken from a render that must not lose more than a fiftieth of its time
-/// by that.
+/// by that, shorter batches included.
 class DisplayPace {
  public:
   static constexpr double least_s = 0.25;  ///< between two images
-  static constexpr double share = 0.02;    ///< of the time that showing may take
+  static constexpr double share = 0.015;   ///< of the time that showing may take
 
   bool is_due(double now_s) const { return now_s >= due_s_; }
   /// An image was taken, which kept the render from `begin_s` to `end_s`; `others_s`: what the last

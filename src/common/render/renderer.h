@@ -29,8 +29,8 @@ struct RenderHooks {
   /// Polled between batches; true ends the render early with the samples that it has. May be empty.
   std::function<bool()> stop;
   StopRule stops{};
-  /// Polled while a batch is traced, by any thread; true abandons it: its samples are lost, and the
-  /// render ends with those that it had before. May be empty. CUDA finishes its batch.
+  /// Polled while a batch is traced, by any thread; true, which must last, abandons it: the render
+  /// ends with the samples that it had before. May be empty. CUDA finishes its batch.
   std::function<bool()> cancel{};
   /// Called between batches whenever the image has more samples; `image()` is their mean, at the
   /// cost of a copy from the device. May be empty; else batches are shorter, and the first one has

@@ -191,14 +191,16 @@ void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) cons
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 
-// Without layers, what the viewer of a render at work waits for is a third of the film.
+// Without layers, what the viewer of a render at work waits for is a third of the film. The samples
+// of a batch, which has ended, are in the film: their place holds the image's three floats a pixel.
+// That of Markov chains may be smaller.
 Image CudaRenderer::image() {
-  if (plan_.aovs != 0 || plan_.two_signs) return FilmRenderer::image();
+  if (plan_.aovs != 0 || plan_.two_signs || has_chains()) return FilmRenderer::image();
   check_cuda(cudaSetDevice(device()), "cudaSetDevice");
   const WallTimer transfer;
   Image image = blank_image();
   static_assert(sizeof(Sample) >= 3 * sizeof(float));
-  auto* const rgb = reinterpret_cast<float*>(samples());  // a batch has ended: they are in the film
+  auto* const rgb = reinterpret_cast<float*>(samples());
   develop_film(film_.pixels, rgb, static_cast<std::uint32_t>(image.rgb.size() / 3), stream());
   check_cuda(cudaGetLastError(), "developing the film");
   check_cuda(cudaMemcpyAsync(image.rgb.data(), rgb, image.rgb.size() * sizeof *rgb,
