@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <cctype>
-#include <new>
-#include <stdexcept>
 
 #include "app/compact_command.h"
 #include "app/compare_command.h"
@@ -18,6 +16,7 @@
 #include "app/trace_command.h"
 #include "app/verify_command.h"
 #include "common/device/devices.h"
+#include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
 #include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
@@ -96,19 +95,6 @@ void report_error(std::string message) {
   for (char& c : message)
     if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
   fmt::print(stderr, "ptexp: error: {}\n", message);
-}
-
-}  // namespace
-}  // namespace pt
-
-namespace pt {
-namespace {
-
-/// What a user is told of an exception.
-std::string message_of(const std::exception& error) {
-  const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
-                         dynamic_cast<const std::length_error*>(&error) != nullptr;  // of a vector
-  return is_memory ? "not enough host memory for this scene and image size" : error.what();
 }
 
 int run(Ranks& ranks, const std::vector<std::string>& arguments) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/platform/steady_seconds.h"
+
 namespace pt {
 namespace {
 
@@ -83,8 +85,6 @@ void Progress::finish() {
   bar_visible_ = false;
 }
 
-double Progress::steady_seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double Progress::steady_seconds() { return pt::steady_seconds(); }
 
 }  // namespace pt

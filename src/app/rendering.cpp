@@ -84,7 +84,7 @@ Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
   shown.watch = [&](const std::function<Image()>& image) { display.watch(image); };
   Measurement measurement = pt::measure(renderer(), options_, shown);
   if (!measurement.runs.empty() && measurement.runs.back().samples_done > 0)
-    display.finish(renderer().image());
+    display.finish([this] { return renderer().image(); });
   return measurement;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 
 namespace pt::python {
 
@@ -18,8 +19,8 @@ void add_errors(nb::module_&) {
     } catch (const Error& error) {
       const nb::object made = nb::module_::import_("ptexp._errors").attr("error_of")(error.what());
       PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
-    } catch (const std::length_error&) {  // of a vector
-      PyErr_SetString(PyExc_MemoryError, "not enough host memory for this scene and image size");
+    } catch (const std::length_error& error) {  // of a vector
+      PyErr_SetString(PyExc_MemoryError, message_of(error).c_str());
     }
   });
 }

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <new>
 
 #include "app/progress.h"
 #include "app/render_devices.h"
 #include "app/render_outputs.h"
 #include "app/scene_defaults.h"
+#include "common/error/host_memory.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "view/mode_command.h"
 
@@ -25,12 +25,6 @@ std::string names_of_devices(const std::vector<DeviceInfo>& devices) {
   std::string names = devices.front().name;
   if (devices.size() > 1) names = fmt::format("{} x {}", devices.size(), names);
   return names;
-}
-
-std::string message_of(const std::exception& error) {
-  return dynamic_cast<const std::bad_alloc*>(&error) != nullptr
-             ? "not enough host memory for this scene and image size"
-             : error.what();
 }
 
 double ms_per_sample(const LiveView& view) {

@@ -89,8 +89,9 @@ TEST(DisplayAddresses, AreHostAndPort) {
 TEST(Displays, AreNoReasonToLoseARender) {
   std::string warning;
   Display display({"127.0.0.1", 1}, "a", [&](const std::string& text) { warning = text; });
-  display.watch([]() -> Image { throw Error("nobody sees it"); });
-  display.finish(image_of(2, 2));
+  const auto image = []() -> Image { throw Error("nobody sees it"); };
+  display.watch(image);
+  display.finish(image);
   EXPECT_EQ(warning, "--display 127.0.0.1:1: Connection refused; the render is not shown");
 }
 

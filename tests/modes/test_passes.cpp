@@ -48,6 +48,18 @@ Options options_of(const PassCase& one, const Settings& more = {}) {
   return with(with(options, one.settings), more);
 }
 
+/// A renderer of these options, and the scene that it views.
+struct Ready {
+  explicit Ready(const Options& options)
+      : device(choose_device(options.device)),
+        scene(make_scene_for(options, device)),
+        renderer(make_renderer(options, scene, device)) {}
+
+  DeviceInfo device;
+  SceneData scene;
+  std::unique_ptr<Renderer> renderer;
+};
+
 Image at_once(const PassCase& one, const Settings& more = {}) {
   return render_options(options_of(one, more)).image;
 }
@@ -62,10 +74,8 @@ void expect_same_image(const Image& a, const Image& b) {
 TEST(Passes, GiveTheBitsOfOneRender) {
   for (const PassCase& one : pass_cases()) {
     SCOPED_TRACE(name_of(one));
-    const Options options = options_of(one);
-    const DeviceInfo device = choose_device(options.device);
-    const SceneData scene = make_scene_for(options, device);
-    const auto renderer = make_renderer(options, scene, device);
+    const Ready ready(options_of(one));
+    const auto& renderer = ready.renderer;
     int done = 0;
     for (const int samples : {1, 1, 2, 5}) {
       EXPECT_EQ(renderer->add(samples, {}).samples_done, samples);
@@ -83,10 +93,8 @@ TEST(Passes, GiveTheBitsOfOneRender) {
 TEST(Passes, GoOnAfterOneThatWasCutShort) {
   for (const PassCase& one : pass_cases()) {
     SCOPED_TRACE(name_of(one));
-    const Options options = options_of(one);
-    const DeviceInfo device = choose_device(options.device);
-    const SceneData scene = make_scene_for(options, device);
-    const auto renderer = make_renderer(options, scene, device);
+    const Ready ready(options_of(one));
+    const auto& renderer = ready.renderer;
     RenderHooks hooks;
     hooks.stop = [] { return true; };
     hooks.watch = [](const auto&) {};  // the first batch has one sample
@@ -97,20 +105,15 @@ TEST(Passes, GoOnAfterOneThatWasCutShort) {
 }
 
 TEST(Passes, OfMarkovChainsAreRefused) {
-  const Options options = options_of({"cpu", "megakernel", "cornell", {{"integrator", "mlt"}}});
-  const DeviceInfo device = choose_device(options.device);
-  const SceneData scene = make_scene_for(options, device);
-  const auto renderer = make_renderer(options, scene, device);
-  EXPECT_THROW(renderer->add(1, {}), Error);
+  const Ready ready(options_of({"cpu", "megakernel", "cornell", {{"integrator", "mlt"}}}));
+  EXPECT_THROW(ready.renderer->add(1, {}), Error);
 }
 
 TEST(Watchers, SeeTheImageOfTheSamplesSoFar) {
   for (const PassCase& one : pass_cases()) {
     SCOPED_TRACE(name_of(one));
-    const Options options = options_of(one);
-    const DeviceInfo device = choose_device(options.device);
-    const SceneData scene = make_scene_for(options, device);
-    const auto renderer = make_renderer(options, scene, device);
+    const Ready ready(options_of(one));
+    const auto& renderer = ready.renderer;
     std::vector<Image> seen;
     std::vector<std::uint64_t> paths;
     RenderHooks hooks;
@@ -135,15 +138,14 @@ TEST(Cameras, OfARendererCanBeChanged) {
       general.scene = "terrain:2000";
       general.settings.emplace_back("accel", accel);
       SCOPED_TRACE(name_of(general));
-      const Options options = options_of(general);
-      const DeviceInfo device = choose_device(options.device);
-      SceneData scene = make_scene_for(options, device);
-      const auto renderer = make_renderer(options, scene, device);
+      Ready ready(options_of(general));
+      const auto& renderer = ready.renderer;
       renderer->render({});
-      const CameraParameters first = scene.camera;
+      const CameraParameters first = ready.scene.camera;
       const Options after = options_of(general, moved);
-      ASSERT_TRUE(move_camera(scene, first, after));
-      ASSERT_TRUE(renderer->set_camera(make_camera(scene.camera, after.width, after.height)));
+      ASSERT_TRUE(move_camera(ready.scene, first, after));
+      const Camera camera = make_camera(ready.scene.camera, after.width, after.height);
+      ASSERT_TRUE(renderer->set_camera(camera));
       renderer->add(2, {});
       Settings two = moved;
       two.emplace_back("spp", "2");

@@ -6,15 +6,12 @@
 #include "app/display/tev_packets.h"
 #include "app/options/option_values.h"
 #include "common/error/error.h"
+#include "common/platform/steady_seconds.h"
 
 namespace pt {
 namespace {
 
 constexpr double connect_s = 2, last_image_s = 2;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 }  // namespace
 
@@ -46,7 +43,7 @@ Display::~Display() {
 }
 
 void Display::watch(const std::function<Image()>& image) {
-  const double begin_s = seconds_now();
+  const double begin_s = steady_seconds();
   if (!connection_ || !pace_.is_due(begin_s)) return;
   double others_s = 0;
   std::string problem;
@@ -58,7 +55,7 @@ void Display::watch(const std::function<Image()>& image) {
   }
   if (!problem.empty()) return give_up(problem);
   Image taken = image();
-  pace_.note(begin_s, seconds_now(), others_s);
+  pace_.note(begin_s, steady_seconds(), others_s);
   {
     const std::lock_guard lock(mutex_);
     next_ = std::move(taken);
@@ -66,14 +63,14 @@ void Display::watch(const std::function<Image()>& image) {
   changed_.notify_all();
 }
 
-void Display::finish(const Image& image) {
+void Display::finish(const std::function<Image()>& image) {
   if (!connection_) return;
   const auto is_idle = [this] { return (!next_ && !is_sending_) || !problem_.empty(); };
   const auto limit = std::chrono::duration<double>(last_image_s);
   std::unique_lock lock(mutex_);
   bool is_sent = changed_.wait_for(lock, limit, is_idle);
   if (is_sent && problem_.empty()) {
-    next_ = image;
+    next_ = image();
     changed_.notify_all();
     is_sent = changed_.wait_for(lock, limit, is_idle);
   }
@@ -98,7 +95,7 @@ void Display::run() {
     next_.reset();
     is_sending_ = true;
     lock.unlock();
-    const double begin_s = seconds_now();
+    const double begin_s = steady_seconds();
     std::string problem;
     try {
       send(image);
@@ -107,7 +104,7 @@ void Display::run() {
     }
     lock.lock();
     is_sending_ = false;
-    send_s_ = seconds_now() - begin_s;
+    send_s_ = steady_seconds() - begin_s;
     problem_ = problem;
     changed_.notify_all();
     if (!problem.empty()) return;

@@ -43,8 +43,8 @@ class Display {
   /// As RenderHooks::watch: takes the image if one is due and the last one was sent, and sends what
   /// changed in a thread of its own.
   void watch(const std::function<Image()>& image);
-  /// Sends the final image; waits for the viewer, but not long.
-  void finish(const Image& image);
+  /// Sends the final image, which is taken if somebody sees it; waits for the viewer, but not long.
+  void finish(const std::function<Image()>& image);
 
  private:
   void run();

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 #include <string_view>
 
 #include "common/error/memory_error.h"
@@ -82,6 +84,12 @@ std::uint64_t of_process() {
 
 std::uint64_t free_host_memory(const fs::path& root) {
   return std::min({of_machine(root), of_groups(root), of_process()});
+}
+
+std::string message_of(const std::exception& error) {
+  const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
+                         dynamic_cast<const std::length_error*>(&error) != nullptr;  // of a vector
+  return is_memory ? "not enough host memory for this scene and image size" : error.what();
 }
 
 void check_host_memory(std::uint64_t size_bytes, const std::string& purpose) {

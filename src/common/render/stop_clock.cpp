@@ -1,9 +1,10 @@
 #include "common/render/stop_clock.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+
+#include "common/platform/steady_seconds.h"
 
 namespace pt {
 namespace {
@@ -24,7 +25,7 @@ StopClock::StopClock(const StopRule& rule) : rule_(rule), begin_s_(now_s()) {}
 
 double StopClock::now_s() const {
   if (rule_.clock) return rule_.clock();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return steady_seconds();
 }
 
 double StopClock::elapsed_s() const { return now_s() - begin_s_; }
