@@ -155,7 +155,7 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
 
   Executor execute{view_, counters, batch.path_count, finish_paths, b.half_ring()};
   const StageContext<PhiloxSource> context{
-      b.pool, batch, source, &counters, b.queue(StageId::intersect), limits};
+      b.pool, batch, source, &counters, b.queue(StageId::intersect), limits, {}};
   for (bool starts = true; execute.more; starts = b.reuses_slots) {
     run_wave<Kind, Branching::divergent>(execute, b, context, starts);
   }

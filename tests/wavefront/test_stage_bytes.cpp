@@ -212,7 +212,7 @@ TEST(StageBytes, GenerateWritesThePredictedRecords) {
   counters.generate = counters.intersect = n;
   const SampleBuffer buffer(samples.data(), Window{0, 0, 8, 4}, 0, 1);
   const GeneratePaths<PhiloxSource> stage{
-      {marked.pool, buffer, PhiloxSource{1}, &counters, queue.data(), {}}, true};
+      {marked.pool, buffer, PhiloxSource{1}, &counters, queue.data(), {}, {}}, true};
   for (std::uint32_t slot = 0; slot < n; ++slot) stage(scene, slot, slot);
   WaveFlow flow;
   flow.generated = flow.rays = n;

@@ -43,8 +43,8 @@ void expect_same_ray(const Ray& a, const Ray& b) {
 /// Follows the path of this number; at each surface the stage does the same as shade_surface.
 void follow(const Scene& scene, const SamplerSource& source, const PathLimits& limits,
             std::uint32_t path_index, OneSlot& slot, Seen& seen) {
-  const StageContext<SamplerSource> context{slot.pool, slot.batch, source,
-                                            nullptr,   nullptr,    limits};
+  const StageContext<SamplerSource> context{slot.pool, slot.batch, source, nullptr,
+                                            nullptr,   limits,     {}};
   const ShadeSurface<Kind, Branching::divergent, SamplerSource, true> stage{context};
   auto random = source.open(slot.batch.id_of(path_index));
   PathState path;

@@ -79,7 +79,7 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   buffers.reuses_slots = reuses_slots;
   buffers.fused = fused;
   buffers.pool.slot_count = few_slots;
-  const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
+  const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}, {}};
   Notes<persistent> notes;
   notes.here = here;
   run_wave<Traits, branching>(notes, buffers, context, starts_paths);
@@ -110,7 +110,7 @@ struct OrderedWave {
     buffers.orders_surfaces = orders;
     buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
     buffers.ordered = ordered, buffers.kind_of_entry = kinds;
-    const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}};
+    const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}, {}};
     run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
   }
 };
