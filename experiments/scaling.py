@@ -41,7 +41,7 @@ def add_arguments(parser):
         help="devices of this machine [1, 2, 4, ... and all GPUs; of CPUs 1,2,4]")
     add("--ranks", metavar="N,...", type=numbers, default=[],
         help="processes, started by --launcher [none]")
-    add("--launcher", metavar="TEXT", default="mpirun -n {ranks}",
+    add("--launcher", metavar="TEXT", default="mpirun --bind-to none -n {ranks}",
         help="what starts them; in a job of Slurm: 'srun -n {ranks}' [%(default)s]")
     add("--image", metavar="TEXT", default="",
         help=f"ptexp's options of the image [{IMAGE}]")
@@ -82,6 +82,14 @@ def devices_text(kind, count):
     return "cuda:" + ",".join(map(str, range(count)))
 
 
+def launcher_of(arguments, device, count):
+    """Of a GPU for each rank: all of them else, shared by fewer ranks."""
+    text = arguments.launcher.format(ranks=count)
+    if device.kind == "cuda" and count < device.gpus:
+        return f"env CUDA_VISIBLE_DEVICES={','.join(map(str, range(count)))} {text}"
+    return text
+
+
 def of_units(arguments, device):
     image, spp = image_of(arguments)
     one = devices_text(device.kind, 1)
@@ -113,7 +121,7 @@ def configurations(arguments, device):
                 # A rank takes the GPU of its place.
                 device=("cpu" if device.kind == "cpu" else "auto") if is_rank
                 else devices_text(device.kind, count), same_image="image",
-                launcher=arguments.launcher.format(ranks=count) if is_rank else ""))
+                launcher=launcher_of(arguments, device, count) if is_rank else ""))
     return rows
 
 

@@ -16,6 +16,7 @@ class Device:
     choice: str  # as --device takes it
     name: str
     detail: str
+    gpus: int = 1  # of the machine
 
     @property
     def kind(self):

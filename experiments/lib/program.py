@@ -81,7 +81,8 @@ def failure_of(program, command, timeout_s):
 
 def devices_of(program):
     lines = re.findall(r"(?m)^(\S+)\s+(.*) \((.*)\)$", output_of(program, "--list-devices"))
-    return [Device(*line) for line in lines]
+    gpus = sum(choice.startswith("cuda") for choice, _, _ in lines)
+    return [Device(*line, gpus) for line in lines]
 
 
 def gpu_count(program):

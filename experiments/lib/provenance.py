@@ -39,8 +39,11 @@ def system_name():
 
 
 def device_folder(device):
-    """E.g. nvidia-h200, or cpu-amd-epyc-9654: a folder's results come from one kind of machine."""
+    """E.g. nvidia-h200, nvidia-h200-x2 for two of them, or cpu-amd-epyc-9654: a folder's results
+    come from one kind of machine."""
     name = device.name if device.kind == "cuda" else f"cpu {cpu_model()}"
+    if device.kind == "cuda" and device.gpus > 1:
+        name += f" x{device.gpus}"
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 

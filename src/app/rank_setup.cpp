@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 
-#include <algorithm>
 #include <filesystem>
 
 #include "app/options/option_list.h"
-#include "common/device/cpu/cpu_renderer.h"
 #include "common/distribute/bytes.h"
 #include "common/error/error.h"
 #include "common/mpi/local_devices.h"
@@ -65,9 +63,7 @@ std::vector<DeviceInfo> choose_rank_devices(Options& options, const RankInfo& ra
   const int gpus = static_cast<int>(list_devices().size()) - 1;
   const bool wants_gpus = choice.kind == Kind::cuda || (choice.kind == Kind::automatic && gpus > 0);
   if (!wants_gpus) {
-    if (options.threads == 0) {
-      options.threads = std::max(1, cpu_threads(0) / rank.local_ranks);
-    }
+    if (options.threads == 0) options.threads = rank.threads;
     return choose_devices(choice, options.threads);
   }
   const bool is_listed = choice.kind == Kind::cuda && (choice.index > 0 || !choice.more.empty());
@@ -76,6 +72,15 @@ std::vector<DeviceInfo> choose_rank_devices(Options& options, const RankInfo& ra
     choice = {Kind::cuda, own.front(), {own.begin() + 1, own.end()}};
   }
   return choose_devices(choice, options.threads);
+}
+
+std::string binding_warning(const RankInfo& rank) {
+  const int used = rank.local_ranks * rank.threads;
+  if (rank.idle_processors < used) return "";
+  return fmt::format(
+      "the launcher has bound the {} ranks of this machine to {} of its {} processors: render "
+      "with 'mpirun --bind-to none', or the like, to use all",
+      rank.local_ranks, used, used + rank.idle_processors);
 }
 
 void check_ranks(Ranks& ranks, const Options& options, const DeviceInfo& device) {

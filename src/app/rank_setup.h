@@ -1,6 +1,7 @@
 // What the ranks of a job that is rendered together need of each other before they begin.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/make_renderer.h"
@@ -12,6 +13,10 @@ namespace pt {
 /// The devices of this rank: those that the options name; of GPUs that they do not name one by one,
 /// and of the CPU's threads, its share among the ranks of its machine.
 std::vector<DeviceInfo> choose_rank_devices(Options& options, const RankInfo& rank);
+
+/// Where the launcher has left half of the machine's processors idle or more, a sentence about it;
+/// else none. Open MPI binds each of two ranks to one core unless it is told otherwise.
+std::string binding_warning(const RankInfo& rank);
 
 /// Collective. Throws Error, naming rank and what differs, unless all ranks have the same program,
 /// options and kind of device.

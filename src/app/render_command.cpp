@@ -118,6 +118,7 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   options.quiet |= !is_first;
   const std::vector<DeviceInfo> devices = find_devices(options, command.given, ranks);
   if (ranks.count() > 1) check_ranks(ranks, options, devices.front());
+  if (const std::string text = binding_warning(ranks.own()); is_first && !text.empty()) warn(text);
   if (is_first) end_on_signal(": no sample was finished, no image written");
 
   RenderReport report;

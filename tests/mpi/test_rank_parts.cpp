@@ -4,6 +4,7 @@
 #include "common/mpi/channel.h"
 #include "common/mpi/heartbeats.h"
 #include "common/mpi/local_devices.h"
+#include "common/mpi/processors.h"
 #include "gtest/gtest.h"
 
 namespace pt {
@@ -32,6 +33,49 @@ TEST(LocalDevices, AreSharedAsTheTableSays) {
           << "rank " << rank << " of " << row.ranks << ", " << row.gpus << " GPUs";
     }
   }
+}
+
+ProcessorSet processors(std::initializer_list<int> numbers) {
+  ProcessorSet set;
+  for (const int number : numbers) set.set(number);
+  return set;
+}
+
+TEST(Processors, AreSharedByThoseWhoMayUseThem) {
+  struct Row {
+    std::vector<ProcessorSet> ranks;
+    std::vector<int> shares;  ///< [local rank]
+    int idle;                 ///< of 0 to 7
+  };
+  const ProcessorSet all = processors({0, 1, 2, 3, 4, 5, 6, 7});
+  const ProcessorSet low = processors({0, 1, 2, 3}), high = processors({4, 5, 6, 7});
+  const std::vector<Row> table{
+      {{all}, {8}, 0},
+      {{all, all}, {4, 4}, 0},
+      {{all, all, all}, {2, 2, 2}, 0},
+      {{low, high}, {4, 4}, 0},  // bound by the launcher: no share of a share
+      {{low, low, high, high}, {2, 2, 2, 2}, 0},
+      {{low, low, low, high}, {1, 1, 1, 4}, 0},
+      {{processors({0}), processors({1})}, {1, 1}, 6},
+      {{processors({5}), processors({5}), processors({5})}, {1, 1, 1}, 7},
+      {{processors({0, 1, 2}), processors({0, 1, 2}), processors({0, 1, 2})}, {1, 1, 1}, 5},
+      {{low, all}, {2, 6}, 0},
+      {{{}, {}}, {1, 1}, 0}};  // not known
+  for (const Row& row : table) {
+    for (int rank = 0; rank < static_cast<int>(row.ranks.size()); ++rank) {
+      EXPECT_EQ(processor_share(row.ranks, rank), row.shares[rank])
+          << "row " << &row - table.data() << ", rank " << rank;
+    }
+    EXPECT_EQ(idle_processors(row.ranks, all), row.idle) << "row " << &row - table.data();
+  }
+}
+
+TEST(Processors, OnesOwnAreLeftAsTheyWere) {
+  const ProcessorSet before = own_processors();
+  ASSERT_TRUE(before.any());
+  const ProcessorSet free = free_processors();
+  EXPECT_EQ(free & before, before);
+  EXPECT_EQ(own_processors(), before);
 }
 
 TEST(Launcher, IsKnownByItsEnvironment) {

@@ -35,6 +35,8 @@ struct RankInfo {
   int rank = 0;
   std::string host;
   int local_rank = 0, local_ranks = 1;  ///< among those of the same machine
+  int threads = 1;                      ///< its share of that machine's processors
+  int idle_processors = 0;              ///< of the machine: where its launcher has bound no rank
   std::vector<std::string> devices;     ///< once all have announced them
 
   /// "rank 3 (host7)"

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/error/error.h"
+#include "common/mpi/processors.h"
 
 namespace pt {
 namespace {
@@ -56,17 +57,23 @@ void MpiTraffic::find_ranks() {
   MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &machine);
   struct {
     char host[MPI_MAX_PROCESSOR_NAME] = {};
-    int local_rank = 0, local_ranks = 1;
+    int local_rank = 0, local_ranks = 1, threads = 1, idle_processors = 0;
   } own;
   MPI_Get_processor_name(own.host, &length);
   MPI_Comm_rank(machine, &own.local_rank);
   MPI_Comm_size(machine, &own.local_ranks);
+  const ProcessorSet mine = own_processors();
+  std::vector<ProcessorSet> bound(own.local_ranks);
+  MPI_Allgather(&mine, sizeof mine, MPI_BYTE, bound.data(), sizeof mine, MPI_BYTE, machine);
+  own.threads = processor_share(bound, own.local_rank);
+  own.idle_processors = idle_processors(bound, free_processors());
   MPI_Comm_free(&machine);
   std::vector all(count, own);
   MPI_Allgather(&own, sizeof own, MPI_BYTE, all.data(), sizeof own, MPI_BYTE, comm_);
   for (const auto& one : all) {
     const int rank = static_cast<int>(ranks_.size());
-    ranks_.push_back({rank, one.host, one.local_rank, one.local_ranks, {}});
+    ranks_.push_back(
+        {rank, one.host, one.local_rank, one.local_ranks, one.threads, one.idle_processors, {}});
   }
 }
 
