@@ -92,10 +92,10 @@ set_site_python() {
   "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check --requirement "$file"
 }
 
-# build PRESET [TARGET [CMAKE_OPTION...]]: installs what is missing, configures and builds in
-# build/PRESET below the repository.
+# build PRESET [TARGET]: installs what is missing, configures and builds in build/PRESET below the
+# repository.
 build() {
-  local options=("${@:3}")
+  local options=()
   install_missing "${ptexp_packages[@]}"
   if [[ -n ${PTEXP_CUDA_ARCHITECTURES:-} ]]; then
     options+=("-DCMAKE_CUDA_ARCHITECTURES=$PTEXP_CUDA_ARCHITECTURES")
