@@ -44,7 +44,9 @@ class Image:
 
     ``numpy.asarray(image)``, ``torch.from_dlpack(image)``, ``cupy.from_dlpack``,
     ``jax.dlpack.from_dlpack`` take it without a copy. The memory is the host's, whatever device
-    rendered it.
+    rendered it, unless ``on_device=True`` left it in that of a GPU: DLPack and CUDA's array
+    interface then give the GPU's, which is complete and which no later render touches; numpy,
+    ``array`` and ``save`` a copy of it in the host's, made once. Layers are always the host's.
     """
 
     def __init__(self, native: "_ptexp.Image") -> None:
@@ -86,10 +88,18 @@ class Image:
         return array.copy() if copy else array
 
     def __dlpack__(self, **arguments: Any) -> Any:
-        return self._native.pixels().__dlpack__(**arguments)
+        return self._native.device_pixels().__dlpack__(**arguments)
 
     def __dlpack_device__(self) -> tuple:
-        return self._native.pixels().__dlpack_device__()
+        return self._native.device_pixels().__dlpack_device__()
+
+    @property
+    def __cuda_array_interface__(self) -> Dict[str, Any]:
+        pointer = self._native.device_pointer()
+        if not pointer:
+            raise AttributeError("the image is in the host's memory: on_device=True leaves it on the GPU")
+        return {"shape": self.shape, "typestr": "<f4", "data": (pointer, False), "version": 3,
+                "strides": None, "stream": None}
 
     @property
     def stats(self) -> Dict[str, Any]:

@@ -104,6 +104,7 @@ def render(
     scene: Union[Scene, PathLike],
     *,
     progress: Optional[Callable[[int, int], Any]] = None,
+    on_device: bool = False,
     **options: Any,
 ) -> Image:
     """Renders a scene.
@@ -113,6 +114,8 @@ def render(
             being read again.
         progress: called with the samples done and wanted, of all pixels, up to 20 times a second,
             in the thread that called. What it raises ends the render.
+        on_device: a GPU's image stays in its memory, for ``torch.from_dlpack(image)`` and the like
+            (see :class:`Image`); the CPU's is in its memory anyway.
         **options: every option of the command line, as listed below. Flags are bools; on/off
             options take bools, too; several values are tuples: ``look_from=(0, 1, 5)``,
             ``crop=(0, 0, 64, 64)``, ``block=(16, 8)``, ``part=(1, 4)``,
@@ -125,14 +128,15 @@ def render(
 
     Raises:
         OptionError: an option is wrong, or has no effect in this mode or on this device.
-        Error: what else the user can mend.
+        Error: what else the user can mend; also ``on_device`` with several devices, ``checkpoint``
+            or ``part``, whose images the host puts together.
         KeyboardInterrupt: Ctrl-C, at once on the CPU and after the batch on a GPU. The samples are
             lost, unless ``checkpoint=`` was given.
 
     The interpreter's lock is released meanwhile.
     """
     if not isinstance(scene, Scene):
-        return render(load(scene, **options), progress=progress)
+        return render(load(scene, **options), progress=progress, on_device=on_device)
     check_of_render(options)
     merged = {**scene._options, **options}
     output = merged.pop("output", None)
@@ -142,7 +146,7 @@ def render(
     words = to_words(merged)
     if output is not None:
         _ptexp.check_output(os.fspath(output))
-    image = Image(scene._native.render(words, progress))
+    image = Image(scene._native.render(words, progress, on_device))
     if output is not None and image._native.has_image:
         image.save(output)
     image._native.write_statistics()

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "app/make_group.h"
 #include "app/make_renderer.h"
 #include "app/progress.h"
 #include "app/render_devices.h"
 #include "app/render_outputs.h"
 #include "app/scene_defaults.h"
+#include "common/error/error.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/prepare_scene.h"
 
@@ -51,6 +53,7 @@ struct RenderSession::Prepared {
   Keys keys;
   std::vector<DeviceInfo> devices;
   SceneData scene;
+  SceneFacts facts;
   double scene_ms = 0;
   Warn warn;  ///< of the render at work
   std::unique_ptr<Rendering> rendering;
@@ -107,6 +110,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
     next = std::make_unique<Prepared>();
     next->scene = source_;
     prepare_scene_for(next->scene, options, devices.front());
+    describe_scene(next->scene, next->facts);  // goes through the tree
   }
   next->scene_ms = 1e3 * (Progress::steady_seconds() - begin_s);
   next->warn = warn;
@@ -122,22 +126,28 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
 }
 
 RenderResult RenderSession::render(const RenderCommand& command, const MeasureHooks& hooks,
-                                   const Warn& warn) {
+                                   const Warn& warn, bool stays_on_device) {
   Prepared& ready = prepare(command, warn);
+  if (stays_on_device && needs_group(ready.options, ready.devices)) {
+    throw Error(
+        "on_device: several devices, a checkpoint or a part put the image together in the host's "
+        "memory; expected one GPU, or on_device=False");
+  }
   RenderResult result;
   result.options = ready.options;
   result.measures_exposure = source_.defaults.measure_exposure;
   RenderReport& report = result.report;
   report.scene_ms = ready.scene_ms;
   report.primitives = ready.scene.primitive_count() + ready.scene.triangle_count();
-  describe_scene(ready.scene, report.scene);
+  report.scene = ready.facts;
   const Measurement measurement = ready.rendering->measure(hooks);
   result.interrupted = measurement.interrupted;
   result.has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   ready.samples = result.has_image ? measurement.runs.back().samples_done : 0;
   if (!result.has_image) return result;
   Renderer& renderer = ready.rendering->renderer();
-  result.image = renderer.image();
+  if (stays_on_device) result.device_image = renderer.device_image();
+  result.image = result.device_image ? result.device_image->frame() : renderer.image();
   renderer.describe(report);
   report.runs = measurement.runs;
   result.header = image_header(ready.options, report, ready.scene.source_hash);

@@ -17,7 +17,8 @@ namespace pt {
 struct RenderResult {
   bool has_image = false;  ///< else it was interrupted before its first sample
   bool interrupted = false;
-  Image image;
+  Image image;  ///< where device_image is not null, its layers alone, and no rgb
+  std::shared_ptr<const DeviceImage> device_image;
   Options options;  ///< with what the scene and the device decided
   RenderReport report;
   ImageMetadata header;
@@ -48,9 +49,11 @@ class RenderSession {
   /// The same of its camera alone, after which its acceleration structure is kept.
   CameraParameters& change_camera();
 
-  /// Renders by these options, which name the same scene. Writes no image. Throws Error; the
-  /// session is as it was then.
-  RenderResult render(const RenderCommand& command, const MeasureHooks& hooks, const Warn& warn);
+  /// Renders by these options, which name the same scene. Writes no image. `stays_on_device`: a
+  /// GPU's image stays there; Error for that of several. Throws Error; the session is as it was
+  /// then.
+  RenderResult render(const RenderCommand& command, const MeasureHooks& hooks, const Warn& warn,
+                      bool stays_on_device = false);
   /// Adds samples to what the last pass has left, or to none after a change: of the scene, of its
   /// camera, of the options. Throws Error.
   RenderPass add_pass(const RenderCommand& command, int samples, const RenderHooks& hooks,

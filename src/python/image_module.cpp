@@ -14,16 +14,32 @@ namespace {
 
 namespace nb = nanobind;
 
-/// (height, width, 3)
+/// (height, width, 3), in memory of that kind.
+ArrayOut array_of(ImageObject& self, float* rgb, int device_type, int device) {
+  const std::size_t shape[] = {static_cast<std::size_t>(self.frame().height),
+                               static_cast<std::size_t>(self.frame().width), 3};
+  return ArrayOut(rgb, 3, shape, nb::find(self), nullptr, nb::dtype<float>(), device_type, device);
+}
+
 ArrayOut pixels(ImageObject& self) {
-  Image& image = self.image();
-  const std::size_t shape[] = {static_cast<std::size_t>(image.height),
-                               static_cast<std::size_t>(image.width), 3};
-  return ArrayOut(image.rgb.data(), 3, shape, nb::find(self), nullptr, nb::dtype<float>());
+  return array_of(self, self.image().rgb.data(), nb::device::cpu::value, 0);
+}
+
+/// Where they were rendered.
+ArrayOut device_pixels(ImageObject& self) {
+  const DeviceImage* const image = self.device_image();
+  if (image == nullptr) return pixels(self);
+  return array_of(self, image->rgb(), nb::device::cuda::value, image->device());
+}
+
+/// 0: in the host's memory.
+std::uintptr_t device_pointer(const ImageObject& self) {
+  const DeviceImage* const image = self.device_image();
+  return image == nullptr ? 0 : reinterpret_cast<std::uintptr_t>(image->rgb());
 }
 
 ArrayOut layer(ImageObject& self, const std::string& name) {
-  Image& image = self.image();
+  Image& image = self.frame();
   for (ImageLayer& one : image.layers) {
     if (one.name != name) continue;
     const std::size_t shape[] = {static_cast<std::size_t>(image.height),
@@ -40,7 +56,7 @@ ArrayOut layer(ImageObject& self, const std::string& name) {
 
 std::vector<std::string> layer_names(const ImageObject& self) {
   std::vector<std::string> names;
-  for (const ImageLayer& one : self.image().layers) names.push_back(one.name);
+  for (const ImageLayer& one : self.frame().layers) names.push_back(one.name);
   return names;
 }
 
@@ -57,9 +73,11 @@ ImageObject* read(const std::string& path) {
 
 void add_image(nb::module_& m) {
   nb::class_<ImageObject>(m, "Image")
-      .def_prop_ro("width", [](const ImageObject& self) { return self.image().width; })
-      .def_prop_ro("height", [](const ImageObject& self) { return self.image().height; })
+      .def_prop_ro("width", [](const ImageObject& self) { return self.frame().width; })
+      .def_prop_ro("height", [](const ImageObject& self) { return self.frame().height; })
       .def("pixels", pixels)
+      .def("device_pixels", device_pixels)
+      .def("device_pointer", device_pointer)
       .def("layer", layer)
       .def("layer_names", layer_names)
       .def("statistics", &ImageObject::statistics)

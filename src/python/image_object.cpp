@@ -8,6 +8,13 @@
 
 namespace pt::python {
 
+Image& ImageObject::image() {
+  const std::lock_guard lock(mutex_);
+  if (result_.device_image && result_.image.rgb.empty())
+    result_.image.rgb = result_.device_image->download();
+  return result_.image;
+}
+
 std::string ImageObject::statistics() const {
   return result_.report.runs.empty() ? "" : report_json(result_.options, result_.report);
 }

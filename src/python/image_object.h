@@ -1,10 +1,11 @@
-// An image in memory as Python sees it.
+// An image in memory, the host's or a GPU's, as Python sees it.
 #pragma once
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,8 @@
 
 namespace pt::python {
 
-/// On the CPU, without a copy; lives as long as anybody refers to it.
-using ArrayOut = nanobind::ndarray<nanobind::array_api, nanobind::device::cpu>;
+/// Without a copy; lives as long as anybody refers to it.
+using ArrayOut = nanobind::ndarray<nanobind::array_api>;
 
 class ImageObject {
  public:
@@ -26,8 +27,13 @@ class ImageObject {
   }
 
   const RenderResult& result() const { return result_; }
-  const Image& image() const { return result_.image; }
-  Image& image() { return result_.image; }
+  /// Size and layers; pixels() has the rest.
+  const Image& frame() const { return result_.image; }
+  Image& frame() { return result_.image; }
+  /// In the host's memory: of a GPU's image a copy, made when it is first asked for.
+  Image& image();
+  /// Null: the host's memory is the only one.
+  const DeviceImage* device_image() const { return result_.device_image.get(); }
 
   std::string statistics() const;  ///< JSON; empty: of an image that was read
   std::string table() const;
@@ -37,6 +43,7 @@ class ImageObject {
   void write_statistics() const;
 
  private:
+  std::mutex mutex_;  ///< of the host's copy
   RenderResult result_;
 };
 

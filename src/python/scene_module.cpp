@@ -47,7 +47,8 @@ nb::dict defaults(const SceneObject& self) {
 
 void add_scene(nb::module_& m) {
   nb::class_<SceneObject>(m, "Scene")
-      .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none())
+      .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none(),
+           nb::arg("on_device"))
       .def("plan", plan)
       .def_prop_ro("name", &SceneObject::name)
       .def("defaults", defaults)

@@ -47,7 +47,8 @@ std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
   return scene;
 }
 
-std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object progress) {
+std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object progress,
+                                                 bool on_device) {
   const RenderCommand command = command_of(words);
   Warnings warnings;
   RenderResult result;
@@ -59,7 +60,7 @@ std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object 
           state.done = done, state.total = total;
         };
         hooks.stop = [&state] { return state.stop.load(); };
-        result = session_->render(command, hooks, warnings.collector());
+        result = session_->render(command, hooks, warnings.collector(), on_device);
       },
       std::move(progress));
   warnings.give();

@@ -31,7 +31,8 @@ class SceneObject {
   }
 
   /// As RenderSession::render, interruptible.
-  std::unique_ptr<ImageObject> render(const Words& words, nanobind::object progress);
+  std::unique_ptr<ImageObject> render(const Words& words, nanobind::object progress,
+                                      bool on_device);
   std::vector<Decision> plan(const Words& words);
 
   std::string name() const { return session_->scene().name; }

@@ -97,6 +97,8 @@ TEST(UnitMessage, AUnitWithoutSamplesIsSmall) {
   EXPECT_LT(bytes.size(), 1300u);
   ByteReader reader(bytes);
   expect_same(read_unit(reader).film, unit.film);
+  unit.film.pixels.resize(1 << 16);  // of another film, to be used again
+  EXPECT_EQ(bytes_of(unit), bytes);
 }
 
 TEST(UnitMessage, ResultsStayAsTheyAre) {

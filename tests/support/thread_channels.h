@@ -15,7 +15,7 @@ struct ThreadHub {
 
   explicit ThreadHub(int count) : inboxes(count) {
     for (int rank = 0; rank < count; ++rank) {
-      infos.push_back({rank, "host" + std::to_string(rank / 2), rank % 2, 2, {}});
+      infos.push_back({rank, "host" + std::to_string(rank / 2), rank % 2, 2, 1, 0, {}});
     }
   }
   std::mutex mutex;

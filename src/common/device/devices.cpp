@@ -25,7 +25,14 @@ Devices find_devices() {
   cpu.properties = cpu_properties(threads);
   devices.list.push_back(cpu);
 #ifdef PTEXP_CUDA
-  devices.about_gpus = append_cuda_devices(devices.list);
+  // Which GPUs a process sees never changes, and asking takes a millisecond for each.
+  static const Devices gpus = [] {
+    Devices found;
+    found.about_gpus = append_cuda_devices(found.list);
+    return found;
+  }();
+  devices.list.insert(devices.list.end(), gpus.list.begin(), gpus.list.end());
+  devices.about_gpus = gpus.about_gpus;
 #else
   devices.about_gpus = "this ptexp was built without CUDA";
 #endif

@@ -94,7 +94,9 @@ void write(ByteWriter& writer, const Film& film) {
   writer.number(film.first_sample), writer.number(film.next_sample);
   writer.raw(&film.tally, 1);
   writer.list(film.parts, [&](const Window& part) { write(writer, part); });
-  writer.array(film.pixels), writer.array(film.moments), writer.array(film.features);
+  const FilmSums none;
+  const FilmSums& sums = film.is_empty() ? none : film;
+  writer.array(sums.pixels), writer.array(sums.moments), writer.array(sums.features);
 }
 
 Film read_film(ByteReader& reader) {

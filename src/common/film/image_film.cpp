@@ -86,7 +86,6 @@ Film ImageFilm::take(const Window& part, FilmSums&& memory) const {
   }
   Film film;
   static_cast<FilmSums&>(film) = std::move(memory);
-  film.pixels.clear(), film.moments.clear(), film.features.clear();
   film.window = part;
   std::uint64_t covered = 0;
   for (const FilmPart& own : parts) {

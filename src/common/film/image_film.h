@@ -27,8 +27,9 @@ struct ImageFilm : FilmSums {
   ImageFilm(const Window& window, const FilmPlan& plan);
 
   /// The pixels of `part`, to be continued. Its tally is zero: it will count what is added. Throws
-  /// Error unless all of them have the same samples, or none. `memory` is used again: pages that
-  /// are new to a process take longer than the copy.
+  /// Error unless all of them have the same samples, or none. `memory` is used again, and
+  /// what it holds means nothing in a film without samples: pages that are new to a process, and
+  /// zeros, take longer than the copy.
   Film take(const Window& part, FilmSums&& memory = {}) const;
   /// Replaces the pixels of the film's window by the film's, and adds its tally.
   void put(const Film& film);

@@ -158,10 +158,16 @@ RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const Rende
   return run;
 }
 
-Image FilmRenderer::blank_image() const {
-  Image image{static_cast<int>(window_.width), static_cast<int>(window_.height),
-              std::vector<float>(3 * window_.pixel_count())};
+Image FilmRenderer::frame() const {
+  Image image;
+  image.width = static_cast<int>(window_.width), image.height = static_cast<int>(window_.height);
   image.place = place_of_window();
+  return image;
+}
+
+Image FilmRenderer::blank_image() const {
+  Image image = frame();
+  image.rgb.resize(3 * window_.pixel_count());
   return image;
 }
 

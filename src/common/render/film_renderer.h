@@ -57,7 +57,8 @@ class FilmRenderer : public Renderer {
   void forget_film() { pixel_samples_ = 0; }
   /// What films there are: parts of the crop window, or of the whole image.
   const Window& image_window() const { return image_window_; }
-  /// Black, of the window of the last render.
+  /// An image of the window of the last render, without pixels, and a black one.
+  Image frame() const;
   Image blank_image() const;
   /// `sums` as an image of that window.
   Image develop_window(const FilmSums& sums) const;

@@ -7,7 +7,7 @@
 
 #include "common/error/error.h"
 #include "common/film/film_data.h"
-#include "common/image/image.h"
+#include "common/image/device_image.h"
 #include "common/options/options.h"
 #include "common/options/stats.h"
 #include "common/scene/data/camera.h"
@@ -63,6 +63,9 @@ class Renderer {
 
   /// The mean of all samples of the film of the last render.
   virtual Image image() = 0;
+  /// The same, its pixels left in the memory of the GPU that has rendered them. Null: the host has
+  /// them, since CPUs or several devices have rendered them. Throws Error.
+  virtual std::unique_ptr<DeviceImage> device_image() { return nullptr; }
 
   /// Fills in all fields of `report` that the renderer knows (device, counts of the film of the
   /// last render, memory, kernels, set-up and transfer times). Leaves `runs`, `scene_ms` and

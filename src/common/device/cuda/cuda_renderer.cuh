@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/cuda/cuda_check.cuh"
+#include "common/cuda/cuda_download.cuh"
 #include "common/cuda/cuda_memory.cuh"
 #include "common/device/cuda/cuda_chains.cuh"
 #include "common/device/cuda/cuda_launcher.cuh"
@@ -29,6 +30,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   ~CudaRenderer() override;
 
   Image image() override;
+  std::unique_ptr<DeviceImage> device_image() override;
   bool set_camera(const Camera& camera) override;
   void describe(RenderReport& report) const override;
   HardwareCounters count_hardware() override;
@@ -87,6 +89,9 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   template <class SomeFilm, class Function>
   void for_each_film_array(SomeFilm& film, Function&& function) const;
   void accumulate(const SampleBuffer& batch);
+  /// Whether the image is nothing but the film's means, so that the device can make it.
+  bool develops_here() const { return plan_.aovs == 0 && !plan_.two_signs && !has_chains(); }
+  void develop_into(float* rgb);
   PathTally read_tally() const;
   std::vector<LaneHistogram> read_lane_counts() const;
 
@@ -95,6 +100,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   TreeFacts tree_facts_;  ///< of a tree built on the device
   std::vector<HalfSpheres> half_spheres_;
   FilmView film_;  ///< of the film that is rendered, the first of the arrays' elements
+  CudaDownload download_;
   PathTally* tally_ = nullptr;
   std::unique_ptr<CudaChains> chains_;  ///< only with --integrator mlt
   CurandState* states_ = nullptr;

@@ -4,6 +4,7 @@
 
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
+#include "common/device/cuda/cuda_image.cuh"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "common/device/cuda/feature_kernels.cuh"
 #include "common/device/cuda/film_kernels.cuh"
@@ -191,24 +192,44 @@ void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) cons
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 
+// Enqueues it.
+void CudaRenderer::develop_into(float* rgb) {
+  const Image image = frame();
+  develop_film(film_.pixels, rgb, static_cast<std::uint32_t>(image.width * image.height), stream());
+  check_cuda(cudaGetLastError(), "developing the film");
+}
+
 // Without layers, what the viewer of a render at work waits for is a third of the film. The samples
 // of a batch, which has ended, are in the film: their place holds the image's three floats a pixel.
 // That of Markov chains may be smaller.
 Image CudaRenderer::image() {
-  if (plan_.aovs != 0 || plan_.two_signs || has_chains()) return FilmRenderer::image();
+  if (!develops_here()) return FilmRenderer::image();
   check_cuda(cudaSetDevice(device()), "cudaSetDevice");
   const WallTimer transfer;
   Image image = blank_image();
   static_assert(sizeof(Sample) >= 3 * sizeof(float));
   auto* const rgb = reinterpret_cast<float*>(samples());
-  develop_film(film_.pixels, rgb, static_cast<std::uint32_t>(image.rgb.size() / 3), stream());
-  check_cuda(cudaGetLastError(), "developing the film");
-  check_cuda(cudaMemcpyAsync(image.rgb.data(), rgb, image.rgb.size() * sizeof *rgb,
-                             cudaMemcpyDeviceToHost, stream()),
-             "downloading the image");
-  check_cuda(cudaStreamSynchronize(stream()), "downloading the image");
+  develop_into(rgb);
+  download_.copy(image.rgb.data(), rgb, image.rgb.size() * sizeof *rgb, stream());
   transfer_ms_ += transfer.ms();
   return image;
+}
+
+std::unique_ptr<DeviceImage> CudaRenderer::device_image() {
+  check_cuda(cudaSetDevice(device()), "cudaSetDevice");
+  if (develops_here()) {
+    auto result = std::make_unique<CudaImage>(frame(), device());
+    develop_into(result->rgb());
+    check_cuda(cudaStreamSynchronize(stream()), "developing the film");
+    return result;
+  }
+  Image image = FilmRenderer::image();
+  const std::vector<float> rgb = std::move(image.rgb);
+  auto result = std::make_unique<CudaImage>(std::move(image), device());
+  check_cuda(
+      cudaMemcpy(result->rgb(), rgb.data(), rgb.size() * sizeof(float), cudaMemcpyHostToDevice),
+      "uploading the image");
+  return result;
 }
 
 bool CudaRenderer::set_camera(const Camera& camera) {
@@ -254,9 +275,7 @@ void CudaRenderer::read_film(Film& film) {
   const WallTimer transfer;
   for_each_film_array(film, [&](auto* place, auto& values, std::uint64_t planes) {
     values.resize(planes * film.window.pixel_count());
-    check_cuda(
-        cudaMemcpy(values.data(), place, values.size() * sizeof *place, cudaMemcpyDeviceToHost),
-        "downloading the film");
+    download_.copy(values.data(), place, values.size() * sizeof *place, stream());
   });
   transfer_ms_ += transfer.ms();
   film.tally = read_tally();
