@@ -19,7 +19,6 @@ from statistics import median
 from lib import harness, simulated_clusters
 from lib.harness import Configuration, Experiment, HarnessError, Plot
 from lib.intervals import bootstrap, in_rounds
-from lib.program import find_program, gpu_count
 from lib.sentences import in_groups, show
 
 IMAGE = "--scene dial:16:0:closed --width 1024 --height 1024 --max-depth 8 --mode wavefront"
@@ -62,7 +61,7 @@ def image_of(arguments):
 def device_counts(arguments, device):
     if arguments.devices is not None:
         return arguments.devices
-    count = 4 if device.kind == "cpu" else gpu_count(find_program(arguments.ptexp))
+    count = 4 if device.kind == "cpu" else device.gpus
     return sorted({2**i for i in range(count.bit_length())} | {count})
 
 

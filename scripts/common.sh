@@ -92,10 +92,10 @@ set_site_python() {
   "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check --requirement "$file"
 }
 
-# build PRESET [TARGET]: installs what is missing, configures and builds in build/PRESET below the
+# build PRESET [TARGET...]: installs what is missing, configures and builds in build/PRESET below the
 # repository.
 build() {
-  local options=()
+  local options=() targets=("${@:2}")
   install_missing "${ptexp_packages[@]}"
   if [[ -n ${PTEXP_CUDA_ARCHITECTURES:-} ]]; then
     options+=("-DCMAKE_CUDA_ARCHITECTURES=$PTEXP_CUDA_ARCHITECTURES")
@@ -107,6 +107,6 @@ build() {
   if grep -qs '^CMAKE_CUDA_COMPILER:.*NOTFOUND$' "$root/build/$1/CMakeCache.txt"; then
     options+=(-UCMAKE_CUDA_COMPILER)
   fi
-  cmake -S "$root" --preset "$1" "${options[@]}"
-  cmake --build "$root/build/$1" --target "${2:-all}"
+  cmake -S "$root" --preset "$1" "${options[@]}" || return
+  cmake --build "$root/build/$1" --target "${targets[@]:-all}"
 }

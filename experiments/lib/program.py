@@ -85,10 +85,6 @@ def devices_of(program):
     return [Device(*line, gpus) for line in lines]
 
 
-def gpu_count(program):
-    return sum(device.kind == "cuda" for device in devices_of(program))
-
-
 def find_device(program, wanted):
     """The device that --device names; auto: the first GPU if there is one, else the CPU."""
     devices = devices_of(program)

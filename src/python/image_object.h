@@ -27,7 +27,7 @@ class ImageObject {
   }
 
   const RenderResult& result() const { return result_; }
-  /// Size and layers; pixels() has the rest.
+  /// Size and layers; image() has the pixels.
   const Image& frame() const { return result_.image; }
   Image& frame() { return result_.image; }
   /// In the host's memory: of a GPU's image a copy, made when it is first asked for.

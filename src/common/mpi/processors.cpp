@@ -3,6 +3,7 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace pt {
 namespace {
@@ -26,7 +27,7 @@ ProcessorSet own_processors() {
 ProcessorSet free_processors() {
   cpu_set_t own, all;
   if (::sched_getaffinity(0, sizeof own, &own) != 0) return {};
-  for (int i = 0; i < CPU_SETSIZE; ++i) CPU_SET(i, &all);
+  std::memset(&all, 0xff, sizeof all);
   // The kernel takes those that there are and that the job may use.
   if (::sched_setaffinity(0, sizeof all, &all) != 0) return to_set(own);
   const ProcessorSet free = own_processors();
