@@ -18,6 +18,7 @@ file(GLOB module_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/python/*.cp
 nanobind_add_module(_ptexp NB_STATIC ${module_sources})
 target_include_directories(_ptexp SYSTEM PRIVATE ${NB_DIR}/include)  # no warnings from there
 target_link_libraries(_ptexp PRIVATE ptexp_app)
+ptexp_unite(_ptexp)
 set_target_properties(_ptexp PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${package})
 add_custom_command(OUTPUT ${package}/py.typed
   COMMAND ${CMAKE_COMMAND} -E copy_if_different ${python_sources} ${package}

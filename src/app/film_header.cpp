@@ -54,8 +54,8 @@ Options options_in_header(const ImageMetadata& header, const std::string& file) 
   for (const auto& [key, value] : header) {
     if (!key.starts_with("ptexp.option.")) continue;
     const auto& list = option_list();
-    const auto entry = std::find_if(list.begin(), list.end(),
-                                    [&](const OptionEntry& e) { return key_of(e) == key; });
+    const auto entry = std::find_if(
+        list.begin(), list.end(), [&key = key](const OptionEntry& e) { return key_of(e) == key; });
     if (entry == list.end()) {
       throw Error(fmt::format("{}: {}: this program has no such option", file, key));
     }

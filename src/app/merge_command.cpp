@@ -19,7 +19,7 @@
 namespace pt {
 namespace {
 
-std::string text(const Window& w) {
+std::string pixels_of(const Window& w) {
   return fmt::format("{}x{} pixels at {},{}", w.width, w.height, w.x, w.y);
 }
 
@@ -76,8 +76,8 @@ class Joiner {
 
   void check_same_size(const ImageFilm& film, const std::string& file) const {
     if (film.window == film_->window && film.plan == film_->plan) return;
-    throw Error(fmt::format("{}: is of {}, with other sums than {}, of {}", file, text(film.window),
-                            files_.front(), text(film_->window)));
+    throw Error(fmt::format("{}: is of {}, with other sums than {}, of {}", file,
+                            pixels_of(film.window), files_.front(), pixels_of(film_->window)));
   }
 
   void add_part(const ImageFilm& film, const FilmPart& part) {
@@ -104,7 +104,7 @@ class Joiner {
       throw Error(
           fmt::format("{}: has {} samples of {}, but {} has {}; ptexp resume goes on with "
                       "the one that has fewer",
-                      b, theirs.next_sample - theirs.first_sample, text(window), a,
+                      b, theirs.next_sample - theirs.first_sample, pixels_of(window), a,
                       ours.next_sample - ours.first_sample));
     }
     for (std::size_t i = 0; i < ours.pixels.size(); ++i) {
@@ -122,7 +122,7 @@ class Joiner {
       return !std::ranges::equal(ours_bytes, theirs_bytes);
     };
     if (differ(ours.moments, theirs.moments) || differ(ours.features, theirs.features)) {
-      throw Error(fmt::format("{}: other layers than in {} of {}", b, a, text(window)));
+      throw Error(fmt::format("{}: other layers than in {} of {}", b, a, pixels_of(window)));
     }
   }
 
@@ -143,10 +143,10 @@ void check_whole(const Joiner& joiner, int spp, bool allow_missing) {
   const auto lacking = joiner.film().lacking(joiner.film().window, static_cast<std::uint32_t>(spp));
   if (lacking.empty()) return;
   const std::vector<int> parts = joiner.missing_parts();
-  const std::string which = parts.empty()
-                                ? fmt::format("{} have {} of {} samples", text(lacking[0].window),
-                                              lacking[0].next_sample - lacking[0].first_sample, spp)
-                                : fmt::format("no file of --part {}", fmt::join(parts, ", "));
+  const std::string which =
+      parts.empty() ? fmt::format("{} have {} of {} samples", pixels_of(lacking[0].window),
+                                  lacking[0].next_sample - lacking[0].first_sample, spp)
+                    : fmt::format("no file of --part {}", fmt::join(parts, ", "));
   const double percent = 100 * missing_share(joiner.film(), spp);
   if (!allow_missing) {
     throw Error(

@@ -25,6 +25,10 @@ struct HttpReply {
   std::map<std::string, std::string> headers{};  ///< besides those of the body
 };
 
+inline HttpReply text_reply(int status, const std::string& line) {
+  return {.status = status, .body = line + "\n"};
+}
+
 /// What is asked, by several threads at once.
 class HttpSite {
  public:

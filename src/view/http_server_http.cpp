@@ -52,25 +52,22 @@ void write(const HttpReply& reply, httplib::Response& response) {
   if (!reply.body.empty()) response.set_content(reply.body, reply.type.c_str());
 }
 
-HttpReply text(int status, const std::string& line) {
-  return {.status = status, .body = line + "\n"};
-}
-
 /// The library would read bodies of any length to their ends, and unpack them.
 std::optional<HttpReply> refuse_body(const httplib::Request& request) {
   const bool has_length = request.has_header("Content-Length");
   if (request.method != "POST") return std::nullopt;  // read from none else
   if (request.has_header("Transfer-Encoding") || !has_length)
-    return text(411, "a body: expected Content-Length");
+    return text_reply(411, "a body: expected Content-Length");
   const std::string length = header(request, "Content-Length");
   std::size_t bytes = 0;
   const auto [end, error] = std::from_chars(length.data(), length.data() + length.size(), bytes);
   if (error == std::errc::invalid_argument || end != length.data() + length.size())
-    return text(400, "Content-Length: expected one number of bytes");
+    return text_reply(400, "Content-Length: expected one number of bytes");
   if (error != std::errc() || bytes > HttpServer::most_body_bytes)
-    return text(413, fmt::format("a body: expected at most {} bytes", HttpServer::most_body_bytes));
+    return text_reply(
+        413, fmt::format("a body: expected at most {} bytes", HttpServer::most_body_bytes));
   if (request.has_header("Content-Encoding") || request.is_multipart_form_data())
-    return text(415, "a body: expected JSON, neither compressed nor in several parts");
+    return text_reply(415, "a body: expected JSON, neither compressed nor in several parts");
   return std::nullopt;
 }
 
@@ -131,7 +128,7 @@ void HttpServer::serve(HttpSite& site, const std::function<bool()>& goes_on) {
   });
   server.Post("/.*", answer);
   server.set_exception_handler([](const auto&, auto& response, std::exception_ptr) {
-    write(text(500, "ptexp could not answer"), response);
+    write(text_reply(500, "ptexp could not answer"), response);
   });
 
   bool is_sound = true;

@@ -14,18 +14,14 @@
 namespace pt {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// An answer that waits for news tells the same again after this: so a viewer who is gone is missed
 /// soon.
 constexpr double longest_wait_s = 1.0;
 constexpr std::size_t longest_name = 64;
 
-HttpReply text(int status, const std::string& line) {
-  return {.status = status, .body = line + "\n"};
-}
-
-HttpReply nothing_there() { return text(404, "nothing is here"); }
+HttpReply nothing_there() { return text_reply(404, "nothing is here"); }
 
 /// Takes as long for any other token as for the right one.
 bool is_same_token(std::string_view a, std::string_view b) {
@@ -59,30 +55,31 @@ const char* name_of_status(LiveStatus status) {
   return names[static_cast<int>(status)];
 }
 
-Json view_json(const LiveView& view) {
+OrderedJson view_json(const LiveView& view) {
   return {{"mode", to_string(view.mode)}, {"samples", view.samples},
           {"image", view.image_number},   {"pass_samples", view.pass_samples},
           {"pass_ms", view.pass_ms},      {"msamples_per_s", view.msamples_per_s}};
 }
 
 std::string state_json(const LiveState& state, const LiveRender& live) {
-  Json views = Json::array();
+  OrderedJson views = OrderedJson::array();
   for (const LiveView& view : state.views) views.push_back(view_json(view));
   const Orbit& orbit = state.settings.orbit;
   const PitchRange pitch = pitch_range(live.camera());
-  const Json json = {{"version", state.version},
-                     {"scene", live.scene()},
-                     {"device", live.device()},
-                     {"spp", live.samples_wanted()},
-                     {"status", name_of_status(state.status)},
-                     {"error", state.error},
-                     {"mode", mode_name(state.settings.modes)},
-                     {"exposure", state.exposure},
-                     {"orbit", {{"yaw", orbit.yaw}, {"pitch", orbit.pitch}, {"zoom", orbit.zoom}}},
-                     {"pitch_range", {pitch.least, pitch.most}},
-                     {"views", views}};
+  const OrderedJson json = {
+      {"version", state.version},
+      {"scene", live.scene()},
+      {"device", live.device()},
+      {"spp", live.samples_wanted()},
+      {"status", name_of_status(state.status)},
+      {"error", state.error},
+      {"mode", mode_name(state.settings.modes)},
+      {"exposure", state.exposure},
+      {"orbit", {{"yaw", orbit.yaw}, {"pitch", orbit.pitch}, {"zoom", orbit.zoom}}},
+      {"pitch_range", {pitch.least, pitch.most}},
+      {"views", views}};
   // A file's name need not be UTF-8.
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace
@@ -111,7 +108,7 @@ std::string ViewSite::name_of(const HttpRequest& request) const {
 
 std::optional<HttpReply> ViewSite::refuse(const HttpRequest& request) {
   if (!contains(hosts_, request.host))
-    return text(403, fmt::format("Host: expected {}", hosts_.front()));
+    return text_reply(403, fmt::format("Host: expected {}", hosts_.front()));
   const std::string name = name_of(request);
   const bool is_get =
       request.method == "GET" && (name.empty() || name == "state" || name == "image");
@@ -121,7 +118,7 @@ std::optional<HttpReply> ViewSite::refuse(const HttpRequest& request) {
   const bool is_own =
       request.origin.starts_with(scheme) && contains(hosts_, request.origin.substr(scheme.size()));
   if (is_post && !request.origin.empty() && !is_own)
-    return text(403, "Origin: expected the page itself");
+    return text_reply(403, "Origin: expected the page itself");
   return std::nullopt;
 }
 
@@ -152,9 +149,9 @@ HttpReply ViewSite::state(const HttpRequest& request) {
   std::uint64_t version = 0;
   const auto [end, error] = std::from_chars(after.data(), after.data() + after.size(), version);
   if (!after.empty() && (error != std::errc() || end != after.data() + after.size()))
-    return text(400, "after: expected the version of a state");
+    return text_reply(400, "after: expected the version of a state");
   if (viewer.size() > longest_name)
-    return text(400, fmt::format("viewer: expected at most {} characters", longest_name));
+    return text_reply(400, fmt::format("viewer: expected at most {} characters", longest_name));
   if (!viewer.empty()) {
     const std::lock_guard lock(viewers_mutex_);
     viewers_.saw(viewer, clock_());
@@ -184,7 +181,7 @@ HttpReply ViewSite::settings(const HttpRequest& request) {
   try {
     change = read_change(request.body);
   } catch (const Error& error) {
-    return text(400, error.what());
+    return text_reply(400, error.what());
   }
   const std::lock_guard lock(settings_mutex_);
   LiveSettings settings = live_.state().settings;

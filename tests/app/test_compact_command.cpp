@@ -13,16 +13,16 @@
 namespace pt {
 namespace {
 
-CompactCommand parse(std::vector<std::string> arguments) {
+CompactCommand parse_compact(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), "compact");
   return std::get<CompactCommand>(parse_command_line(arguments));
 }
 
 TEST(CompactCommandLine, ReadsAllOptions) {
-  const CompactCommand c =
-      parse({"--items",  "1,5K,2M", "--density", "0,0.25,1",   "--run",    "2K",       "--queues",
-             "2,1",      "--cache", "warm",      "--strategy", "none,cub", "--device", "cuda:1",
-             "--repeat", "5",       "--warmup",  "0",          "--csv",    "c",        "--quiet"});
+  const CompactCommand c = parse_compact(
+      {"--items",  "1,5K,2M", "--density", "0,0.25,1",   "--run",    "2K",       "--queues",
+       "2,1",      "--cache", "warm",      "--strategy", "none,cub", "--device", "cuda:1",
+       "--repeat", "5",       "--warmup",  "0",          "--csv",    "c",        "--quiet"});
   EXPECT_EQ(c.items, (std::vector<std::uint32_t>{1, 5 << 10, 2 << 20}));
   EXPECT_EQ(c.densities, (std::vector<float>{0.0f, 0.25f, 1.0f}));
   EXPECT_EQ(c.run_length, 2048u);
@@ -34,12 +34,12 @@ TEST(CompactCommandLine, ReadsAllOptions) {
   EXPECT_EQ(c.runs.warmup, 0);
   EXPECT_EQ(c.csv, "c");
   EXPECT_TRUE(c.quiet);
-  EXPECT_EQ(parse({"--items", "64K"}).command_line, "compact --items 64K");
+  EXPECT_EQ(parse_compact({"--items", "64K"}).command_line, "compact --items 64K");
 }
 
 // What the help says of them.
 TEST(CompactCommandLine, HasDefaults) {
-  const CompactCommand c = parse({});
+  const CompactCommand c = parse_compact({});
   EXPECT_EQ(c.items, (std::vector<std::uint32_t>{1 << 20, 4 << 20, 16 << 20}));
   EXPECT_EQ(c.densities, (std::vector<float>{0.1f, 0.5f, 0.9f}));
   EXPECT_EQ(c.queues, (std::vector<int>{1, 2}));
@@ -53,7 +53,7 @@ TEST(CompactCommandLine, HasDefaults) {
 
 TEST(CompactCommandLine, RefusesWhatItCannotDo) {
   const auto refuse = [](const std::vector<std::string>& arguments, const std::string& part) {
-    expect_error([&] { parse(arguments); }, part);
+    expect_error([&] { parse_compact(arguments); }, part);
   };
   refuse({"--items", "0"}, "--items 0: expected a number of slots from 1 to 1,073,741,824");
   refuse({"--items", "1M,"}, "--items ''");

@@ -15,14 +15,14 @@
 namespace pt {
 namespace {
 
-const std::string all_aovs = aov_names(",");
+const std::string all_names = aov_names(",");
 
 class AovPlanes : public testing::TestWithParam<Settings> {
  protected:
   static Options options(const Settings& more) {
-    const Settings small{{"device", "cpu"}, {"width", "19"},    {"height", "11"},
-                         {"spp", "5"},      {"threads", "2"},   {"max-depth", "5"},
-                         {"aov", all_aovs}, {"output", "a.exr"}};
+    const Settings small{{"device", "cpu"},  {"width", "19"},    {"height", "11"},
+                         {"spp", "5"},       {"threads", "2"},   {"max-depth", "5"},
+                         {"aov", all_names}, {"output", "a.exr"}};
     return with(with(with(Options(), small), GetParam()), more);
   }
 };
@@ -112,7 +112,7 @@ TEST(Aovs, OfTheCornellBoxFitTogether) {
                                      {"width", "32"},
                                      {"height", "32"},
                                      {"spp", "1"},
-                                     {"aov", all_aovs}});
+                                     {"aov", all_names}});
   const DeviceInfo device = choose_device(o.device);
   const SceneData scene = make_scene_for(o, device);
   const Vec3 eye = scene.camera.look_from;

@@ -14,7 +14,8 @@
 namespace pt {
 namespace {
 
-const FilmPlan plans[] = {{}, {0, true, false}, {0, false, true}, {all_aovs, true, true}};
+const FilmPlan checkpoint_plans[] = {
+    {}, {0, true, false}, {0, false, true}, {all_aovs, true, true}};
 
 class Checkpoints : public testing::Test {
  protected:
@@ -42,7 +43,7 @@ class Checkpoints : public testing::Test {
 };
 
 TEST_F(Checkpoints, KeepEveryBit) {
-  for (const FilmPlan& plan : plans) {
+  for (const FilmPlan& plan : checkpoint_plans) {
     for (const Window& window : {Window{0, 0, 33, 17}, Window{5, 9, 8, 8}, Window{0, 0, 1, 1}}) {
       const ImageFilm film = random_film(window, plan, 5);
       const ImageMetadata metadata{{"ptexp.option.spp", "64"}, {"note", "x = y"}};
@@ -97,7 +98,7 @@ TEST_F(Checkpoints, AreRefusedWhereTheHeaderIsWrong) {
 
 // A value that another program has changed, in a file that is whole.
 TEST_F(Checkpoints, ChangedSumsAreRefused) {
-  for (const FilmPlan& plan : plans) {
+  for (const FilmPlan& plan : checkpoint_plans) {
     write_checkpoint(path(), {random_film({0, 0, 8, 8}, plan, 10), {}}, {});
     ImageMetadata header;
     const Image image = read_image_with_numbers(path(), "film.", header);

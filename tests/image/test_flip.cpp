@@ -14,7 +14,7 @@
 namespace pt {
 namespace {
 
-constexpr int width = 40, height = 30;
+constexpr int flip_width = 40, flip_height = 30;
 
 using ValueAt = std::function<double(int x, int y, int c)>;
 
@@ -29,9 +29,9 @@ double test_value(int x, int y, int c) {
 }
 
 Image make_image(const ValueAt& value, bool radiance) {
-  Image image{width, height, {}};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
+  Image image{flip_width, flip_height, {}};
+  for (int y = 0; y < flip_height; ++y) {
+    for (int x = 0; x < flip_width; ++x) {
       for (int c = 0; c < 3; ++c) {
         const float v = static_cast<float>(value(x, y, c));
         image.rgb.push_back(radiance ? std::exp(4 * v - 2) : v);
@@ -44,11 +44,12 @@ Image make_image(const ValueAt& value, bool radiance) {
 constexpr int places[6][2] = {{0, 0}, {7, 3}, {20, 15}, {31, 22}, {39, 29}, {12, 25}};
 
 void expect_errors(const std::vector<float>& errors, double mean, const double (&expected)[6]) {
-  ASSERT_EQ(errors.size(), static_cast<std::size_t>(width * height));
-  EXPECT_NEAR(std::accumulate(errors.begin(), errors.end(), 0.0) / (width * height), mean, 2e-6);
+  ASSERT_EQ(errors.size(), static_cast<std::size_t>(flip_width * flip_height));
+  EXPECT_NEAR(std::accumulate(errors.begin(), errors.end(), 0.0) / (flip_width * flip_height), mean,
+              2e-6);
   for (int i = 0; i < 6; ++i) {
     const auto [x, y] = places[i];
-    EXPECT_NEAR(errors[static_cast<std::size_t>(y * width + x)], expected[i], 1e-5)
+    EXPECT_NEAR(errors[static_cast<std::size_t>(y * flip_width + x)], expected[i], 1e-5)
         << x << ' ' << y;
   }
 }
@@ -70,7 +71,7 @@ TEST(Flip, OfEqualImagesIsZeroAndOfBadValuesFinite) {
   const Image reference = image;
   image.rgb[0] = NAN, image.rgb[4] = INFINITY, image.rgb[8] = -INFINITY;
   for (const float error : hdr_flip(image, reference)) ASSERT_TRUE(error >= 0 && error <= 1);
-  const Image black{width, height, std::vector<float>(image.rgb.size())};
+  const Image black{flip_width, flip_height, std::vector<float>(image.rgb.size())};
   for (const float error : hdr_flip(image, black)) ASSERT_TRUE(error >= 0 && error <= 1);
 }
 
@@ -125,7 +126,7 @@ TEST(DifferencePicture, OfAnExrIsTheDifference) {
   const Image difference = read_image(folder.file("d.exr"));
   for (std::size_t i = 0; i < a.rgb.size(); ++i) ASSERT_EQ(difference.rgb[i], a.rgb[i] - b.rgb[i]);
   write_difference(folder.file("d.png"), a, b, hdr_flip(a, b));
-  EXPECT_EQ(read_image(folder.file("d.png")).width, width);
+  EXPECT_EQ(read_image(folder.file("d.png")).width, flip_width);
 }
 
 }  // namespace

@@ -12,17 +12,10 @@
 namespace pt {
 namespace {
 
-using Bytes = std::vector<int>;
-
 Bytes texels_of(const TextureImage& image) {
   Bytes values;
   for (const std::byte b : image.texels) values.push_back(std::to_integer<int>(b));
   return values;
-}
-
-ByteWriter& put_bytes(ByteWriter& out, const Bytes& bytes) {
-  for (const int b : bytes) out.put(static_cast<std::uint8_t>(b));
-  return out;
 }
 
 /// Two columns, two rows: red, green; blue, (10, 20, 30).

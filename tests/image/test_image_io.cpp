@@ -13,8 +13,8 @@ namespace pt {
 namespace {
 
 using Names = std::vector<std::string>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float inf = std::numeric_limits<float>::infinity();
+constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
 
 const char* const endings[] = {".exr", ".png", ".ppm"};
 const ImageMetadata some_metadata{{"ptexp seed", "1"},
@@ -55,9 +55,8 @@ void expect_quantized(const std::string& path, const Image& image, double (*curv
 TEST(ImageIo, ExrKeepsEveryBit) {
   const TempFolder folder;
   Image image = ramp(37, 19);
-  const float special[] = {
-      1e30f,     -1e30f, 3.4028235e38f, 1.17549435e-38f, 1e-45f, -1e-42f, -0.0f, infinity,
-      -infinity, nan,    -nan,          65504.0f,        1e6f,   0.1f};
+  const float special[] = {1e30f, -1e30f, 3.4028235e38f, 1.17549435e-38f, 1e-45f,   -1e-42f, -0.0f,
+                           inf,   -inf,   not_a_number,  -not_a_number,   65504.0f, 1e6f,    0.1f};
   std::copy(std::begin(special), std::end(special), image.rgb.begin() + 100);
   image.rgb[0] = std::bit_cast<float>(0x7fc12345u);  // a NaN with a payload
   write_image(folder.file("a.exr"), image, {});
@@ -88,7 +87,7 @@ TEST(ImageIo, PpmFollowsGamma2) {
 
 TEST(ImageIo, PpmBytes) {
   const TempFolder folder;
-  const Image image{2, 1, {0, 0.25f, 1, 0.0625f, nan, 7}};
+  const Image image{2, 1, {0, 0.25f, 1, 0.0625f, not_a_number, 7}};
   write_image(folder.file("a.ppm"), image, {});
   EXPECT_EQ(read_text(folder.file("a.ppm")),
             std::string("P6\n2 1\n255\n\x00\x80\xff\x40\x00\xff", 17));
@@ -106,7 +105,7 @@ TEST(ImageIo, EightBitCodesSurviveASecondRoundTrip) {
 
 TEST(ImageIo, EightBitFormatsClampAndTurnNanBlack) {
   const TempFolder folder;
-  const Image image{3, 1, {nan, -nan, -1, -infinity, infinity, 1.5f, 1e30f, -0.0f, 1e-45f}};
+  const Image image{3, 1, {not_a_number, -not_a_number, -1, -inf, inf, 1.5f, 1e30f, -0.0f, 1e-45f}};
   for (const char* name : {"a.png", "a.ppm"}) {
     write_image(folder.file(name), image, {});
     EXPECT_EQ(read_image(folder.file(name)).rgb, (std::vector<float>{0, 0, 0, 0, 1, 1, 1, 0, 0}));

@@ -11,13 +11,6 @@
 namespace pt {
 namespace {
 
-using Bytes = std::vector<int>;
-
-ByteWriter& put_bytes(ByteWriter& out, const Bytes& bytes) {
-  for (const int b : bytes) out.put(static_cast<std::uint8_t>(b));
-  return out;
-}
-
 /// 8x8 equal pixels of four components, 64 to 127 away from 128 each: a Huffman code for DC
 /// differences of 7 bits, one for the end of a block. `adobe`: the transform in Adobe's marker, -1:
 /// no marker.

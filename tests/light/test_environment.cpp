@@ -71,7 +71,7 @@ void for_sphere(int columns, int rows, Function&& function) {
   }
 }
 
-double luminance(const Color& c) {
+double brightness_of(const Color& c) {
   return 0.2126 * double{c.x} + 0.7152 * double{c.y} + 0.0722 * double{c.z};
 }
 
@@ -160,7 +160,7 @@ TEST(Environment, WhereThereIsRadianceThereIsDensity) {
     TestRandom random(6);
     for (int i = 0; i < 20'000; ++i) {
       const Vec3 w(random.direction());
-      const double brightness = luminance(environment_radiance(map.view(), w));
+      const double brightness = brightness_of(environment_radiance(map.view(), w));
       // At the corner of a cell at a pole half of the neighbour shines; on average over the cell,
       // 1/8 of 1/3.
       const double density = environment_pdf(map.view(), w) * 4 * pi_double * map.average;
@@ -218,13 +218,13 @@ TEST(Environment, ExpectationIsTheIntegralOverTheSphere) {
     const Vec3d axis = glm::normalize(Vec3d(0.3, 0.8, -0.5));
     const auto value = [&](const Vec3& w) {
       const double cosine = glm::dot(Vec3d(w), axis);
-      return luminance(environment_radiance(env, w)) * (0.2 + cosine * cosine);
+      return brightness_of(environment_radiance(env, w)) * (0.2 + cosine * cosine);
     };
     double integral = 0, power = 0;
     for_sphere(picture.width * 32, picture.height * 32, [&](const Vec3& local, double angle) {
       const Vec3 w = env.to_world.vector(local);
       integral += value(w) * angle;
-      power += luminance(environment_radiance(env, w)) * angle;
+      power += brightness_of(environment_radiance(env, w)) * angle;
     });
     MeanEstimate estimate;
     TestRandom random(seed++);

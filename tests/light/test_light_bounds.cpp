@@ -10,12 +10,6 @@
 namespace pt {
 namespace {
 
-Vec3 random_direction(TestRandom& random) { return normalize(Vec3(random.direction())); }
-
-Vec3 random_point(TestRandom& random, float size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
-
 /// A small square lamp, or a point without a normal.
 struct SmallLamp {
   Vec3 place, normal;
@@ -42,7 +36,7 @@ TEST(LightBounds, OfTwoSmallLampsEachHasItsShare) {
     SceneData scene;
     std::vector<SmallLamp> lamps;
     for (int k = 0; k < 2; ++k) {
-      lamps.push_back({random_point(random, 4), random_direction(random),
+      lamps.push_back({Vec3(random.point(4)), normalize(Vec3(random.direction())),
                        static_cast<float>(random.uniform(1, 5)), k == i % 2});
       const SmallLamp& lamp = lamps.back();
       if (lamp.is_point) {
@@ -64,7 +58,7 @@ TEST(LightBounds, OfTwoSmallLampsEachHasItsShare) {
     options.light_selection = LightSelection::tree;
     prepare_scene(scene, options);
     const LightSelector& selector = host_view(scene, 8, 8).light_selector;
-    const Vec3 from = random_point(random, 4), normal = random_direction(random);
+    const Vec3 from = Vec3(random.point(4)), normal = normalize(Vec3(random.direction()));
     const double first = irradiance_of(lamps[0], from, normal);
     const double second = irradiance_of(lamps[1], from, normal);
     if (!(std::min(first, second) > 0.02 * std::max(first, second))) continue;
@@ -114,7 +108,7 @@ TEST(LightBounds, BoundsOfAProjector) {
       double widest = 0;
       TestRandom random(2);
       for (int i = 0; i < 100'000; ++i) {
-        const Vec3 way = random_direction(random);
+        const Vec3 way = normalize(Vec3(random.direction()));
         if (project(light, way).factor <= 0) continue;
         widest = std::max(widest, std::acos(double{glm::dot(way, bounds.axis)}));
       }

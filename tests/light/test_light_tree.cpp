@@ -13,12 +13,6 @@ namespace {
 constexpr LightSelection all_selections[] = {LightSelection::uniform, LightSelection::power,
                                              LightSelection::tree};
 
-Vec3 random_direction(TestRandom& random) { return normalize(Vec3(random.direction())); }
-
-Vec3 random_point(TestRandom& random, float size) {
-  return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
-}
-
 /// Lights of all kinds, of very unequal sizes and strengths, one of them black.
 SceneData many_kinds(int count, bool map, LightSelection selection) {
   SceneData scene;
@@ -30,7 +24,7 @@ SceneData many_kinds(int count, bool map, LightSelection selection) {
     const auto strength = static_cast<float>(std::pow(10, random.uniform(-2, 2)));
     const Color radiance = strength * Color(1, 0.8f, 0.3f);
     const auto material = scene.add_material(make_diffuse(Color(0.0f), radiance));
-    const Vec3 place = random_point(random, 5), way = random_direction(random);
+    const Vec3 place = Vec3(random.point(5)), way = normalize(Vec3(random.direction()));
     const auto size = static_cast<float>(std::pow(10, random.uniform(-2, 0)));
     if (i % 4 == 0) {
       scene.add_sphere(place, size, material);
@@ -42,8 +36,8 @@ SceneData many_kinds(int count, bool map, LightSelection selection) {
       light.cos_outer = std::cos(0.5f + 0.5f * static_cast<float>(i % 5));
       scene.delta_lights.push_back(light);
     } else {
-      scene.meshes.push_back(
-          parallelogram({}, place, size * way, size * random_direction(random), material));
+      scene.meshes.push_back(parallelogram({}, place, size * way,
+                                           size * normalize(Vec3(random.direction())), material));
     }
   }
   DeltaLight far;
@@ -67,9 +61,10 @@ TEST(LightSelector, ProbabilitiesSumToOneAndAreThoseOfTheChoice) {
       const auto lights = static_cast<std::uint32_t>(data.light_list.lights.size());
       TestRandom random(3);
       for (int place = 0; place < 12; ++place) {
-        const Vec3 from = random_point(random, 6);
+        const Vec3 from = Vec3(random.point(6));
         const Receiver receiver =
-            place % 3 == 0 ? Receiver{} : make_receiver(random_direction(random), place % 3 == 1);
+            place % 3 == 0 ? Receiver{}
+                           : make_receiver(normalize(Vec3(random.direction())), place % 3 == 1);
         constexpr int samples = 40'000;
         std::vector<double> counts(lights + 1), expected(lights + 1);
         double sum = 0;
@@ -119,7 +114,7 @@ TEST(LightTree, WhatGivesLightCanBeChosen) {
   TestRandom random(4);
   int given = 0, impossible = 0;
   for (int place = 0; place < 300; ++place) {
-    const Vec3 from = random_point(random, 6), normal = random_direction(random);
+    const Vec3 from = Vec3(random.point(6)), normal = normalize(Vec3(random.direction()));
     const Receiver receiver = make_receiver(normal, false);
     for (std::uint32_t i = 0; i < data.light_list.lights.size(); ++i) {
       const bool possible = scene.light_selector.pmf(from, receiver, i) > 0;
@@ -157,7 +152,7 @@ TEST(Receiver, KeepsTheNormalAndTheSides) {
   TestRandom random(6);
   for (int i = 0; i < 100'000; ++i) {
     const Vec3 n = i < 6 ? Vec3(i / 2 == 0, i / 2 == 1, i / 2 == 2) * (i % 2 ? 1.0f : -1.0f)
-                         : random_direction(random);
+                         : normalize(Vec3(random.direction()));
     for (const bool both : {false, true}) {
       const Receiver receiver = make_receiver(n, both);
       ASSERT_NE(receiver.bits, 0u);

@@ -12,16 +12,16 @@ namespace pt {
 namespace {
 
 using Vec3d = glm::dvec3;
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
-TriangleLightSample sample(const Corners& t, const Vec3& from, TestRandom& random) {
+TriangleLightSample sample(const TriangleCorners& t, const Vec3& from, TestRandom& random) {
   const float u0 = random.unit();
   return sample_triangle(t[0], t[1] - t[0], t[2] - t[0], {1e-6f, light_rounding}, from, u0,
                          random.unit());
 }
 
 /// A triangle whose front faces the origin, neither thin nor too obliquely.
-Corners facing_triangle(TestRandom& random) {
+TriangleCorners facing_triangle(TestRandom& random) {
   for (;;) {
     const Vec3d center = random.log_uniform(0.5, 10) * random.direction();
     const double size = random.log_uniform(0.1, 3);
@@ -35,7 +35,7 @@ Corners facing_triangle(TestRandom& random) {
 }
 
 /// Van Oosterom and Strackee 1983, from the origin.
-double solid_angle(const Corners& t) {
+double solid_angle(const TriangleCorners& t) {
   const Vec3d a = glm::normalize(Vec3d(t[0])), b = glm::normalize(Vec3d(t[1])),
               c = glm::normalize(Vec3d(t[2]));
   return 2 * std::atan2(std::abs(glm::dot(a, glm::cross(b, c))),
@@ -43,7 +43,7 @@ double solid_angle(const Corners& t) {
 }
 
 /// Lambert's formula: a receiver at the origin with normal `n`, the triangle above its horizon.
-double triangle_irradiance(const Corners& t, const Vec3d& n) {
+double triangle_irradiance(const TriangleCorners& t, const Vec3d& n) {
   Vec3d sum(0);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3d v = glm::normalize(Vec3d(t[i])), w = glm::normalize(Vec3d(t[(i + 1) % 3]));
@@ -70,7 +70,7 @@ TEST(TriangleLight, PointsAreUniform) {
 TEST(TriangleLight, SamplesLieOnTheTriangleAndDensitiesAgree) {
   TestRandom random(2);
   for (int k = 0; k < 50; ++k) {
-    const Corners t = facing_triangle(random);
+    const TriangleCorners t = facing_triangle(random);
     const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
     MeanEstimate angle;
     for (int i = 0; i < 5000; ++i) {
@@ -99,7 +99,7 @@ TEST(TriangleLight, IrradianceIsLamberts) {
   TestRandom random(3);
   int tested = 0;
   for (int k = 0; k < 100; ++k) {
-    const Corners t = facing_triangle(random);
+    const TriangleCorners t = facing_triangle(random);
     const Vec3d n = random.direction();
     if (!std::all_of(t.begin(), t.end(), [&](const Vec3& v) { return glm::dot(Vec3d(v), n) > 0; }))
       continue;
@@ -120,7 +120,7 @@ TEST(TriangleLight, SamplesArePreciseFarFromTheOrigin) {
   TestRandom random(4);
   const Vec3 far(4096, -2048, 8192);
   for (int k = 0; k < 20; ++k) {
-    Corners t = facing_triangle(random);
+    TriangleCorners t = facing_triangle(random);
     const double angle = solid_angle(t);
     for (Vec3& v : t) v = far + v;  // rounds to 2^-10
     MeanEstimate estimate;

@@ -24,12 +24,6 @@ namespace {
 
 using Vec3d = glm::dvec3;
 
-SceneData build(const std::string& name) {
-  Options options;
-  options.scene = name;
-  return build_scene(options);
-}
-
 std::array<Vec3d, 3> corners(const Mesh& mesh, const TriangleIndices& t) {
   return {Vec3d(mesh.positions[t.v[0]]), Vec3d(mesh.positions[t.v[1]]),
           Vec3d(mesh.positions[t.v[2]])};
@@ -125,12 +119,13 @@ TEST(SceneName, Scales) {
 }
 
 TEST(GeneratedScenes, ErrorsOfNames) {
-  expect_error([] { build("cornell:3"); }, "--scene cornell:3: scene 'cornell' takes no parameter");
-  expect_error([] { build("mountain:3"); }, "--scene mountain:3: no such scene");
-  expect_error([] { build("terrain:1"); }, "--scene terrain:1: expected terrain:N");
-  expect_error([] { build("terrain:3G"); }, "from 2 to 2147483647");
-  expect_error([] { build("statue:99"); }, "from 100 to");
-  expect_error([] { build("instances:0"); }, "from 1 to 100000000");
+  expect_error([] { build_scene("cornell:3"); },
+               "--scene cornell:3: scene 'cornell' takes no parameter");
+  expect_error([] { build_scene("mountain:3"); }, "--scene mountain:3: no such scene");
+  expect_error([] { build_scene("terrain:1"); }, "--scene terrain:1: expected terrain:N");
+  expect_error([] { build_scene("terrain:3G"); }, "from 2 to 2147483647");
+  expect_error([] { build_scene("statue:99"); }, "from 100 to");
+  expect_error([] { build_scene("instances:0"); }, "from 1 to 100000000");
   expect_error([] { generate_terrain(1); }, "terrain of 1 triangles");
   expect_error([] { generate_terrain(std::uint64_t{1} << 31); }, "terrain of 2147483648");
   expect_error([] { generate_knot(99); }, "statue of 99 triangles");
@@ -141,7 +136,7 @@ TEST(GeneratedScenes, HaveWhatTheirDataRefersTo) {
   for (const SceneInfo& info : scene_list()) {
     if (info.parameter.empty()) continue;
     SCOPED_TRACE(info.name);
-    const SceneData scene = build(small_scene(info));
+    const SceneData scene = build_scene(small_scene(info));
     EXPECT_EQ(scene.name, small_scene(info));
     EXPECT_FALSE(scene.meshes.empty());
     std::uint32_t groups = 0;
@@ -175,7 +170,7 @@ TEST(GeneratedScenes, AreTheSameForAnyNumberOfThreads) {
     if (info.parameter.empty()) continue;
     SCOPED_TRACE(info.name);
     const auto with_threads = [&](int threads) {
-      return tbb::task_arena(threads).execute([&] { return build(small_scene(info)); });
+      return tbb::task_arena(threads).execute([&] { return build_scene(small_scene(info)); });
     };
     const SceneData one = with_threads(1), many = with_threads(2);
     ASSERT_EQ(one.meshes.size(), many.meshes.size());

@@ -13,12 +13,6 @@ namespace {
 
 using Vec3d = glm::dvec3;
 
-SceneData build(const std::string& name) {
-  Options options;
-  options.scene = name;
-  return build_scene(options);
-}
-
 /// Where the ray from `o` along `d` meets the quad, in units of `d`; infinite: nowhere.
 double distance_to(const Quad& quad, const Vec3d& o, const Vec3d& d) {
   const Vec3d a(quad.edge_a), b(quad.edge_b), from = o - Vec3d(quad.corner);  // Cramer's rule
@@ -57,7 +51,7 @@ const Quad& lamp_of(const SceneData& scene) {
 }
 
 TEST(Ajar, IsClosedAndItsRoomsMeetInTheDoorwayAlone) {
-  const SceneData scene = build("ajar");
+  const SceneData scene = build_scene("ajar");
   TestRandom random;
   int others = 0;
   constexpr int rays = 300'000;
@@ -97,7 +91,7 @@ std::pair<int, int> lamp_views(const SceneData& scene, double z_from, double z_t
 }
 
 TEST(Ajar, NoPointOfTheCamerasRoomSeesTheLamp) {
-  const SceneData scene = build("ajar");
+  const SceneData scene = build_scene("ajar");
   EXPECT_LT(lamp_of(scene).corner.z, 0.0f);
   EXPECT_GT(scene.camera.look_from.z, 0.0f);
   const auto [facing, free] = lamp_views(scene, 0.01, front_of(scene) - 0.01);
@@ -126,7 +120,7 @@ std::pair<double, double> light_of(const std::string& name, int max_depth) {
 }
 
 TEST(Ajar, FewPathsFindLight) {
-  const auto [share, mean] = light_of("ajar", *build("ajar").defaults.max_depth);
+  const auto [share, mean] = light_of("ajar", *build_scene("ajar").defaults.max_depth);
   EXPECT_GT(share, 0.002);
   EXPECT_LT(share, 0.05);
   EXPECT_GT(mean, 0.05);
@@ -162,7 +156,7 @@ double floor_radiance(const SceneData& scene, const Vec3d& p) {
 // A camera that sees nothing but the floor in the ball's shadow, whose darkest part is convex.
 TEST(Caustic, LightSamplingAloneLeavesTheShadowDark) {
   constexpr int size = 48, depth = 10;
-  SceneData scene = build("caustic");
+  SceneData scene = build_scene("caustic");
   const Vec3d ball(scene.spheres[0].center), lamp(lamp_of(scene).corner);
   const Vec3d focus = ball - ball.y / (lamp.y - ball.y) * (lamp - ball);  // on the floor
   scene.camera = {Vec3(focus) + Vec3(-0.8f, 0.5f, 0.5f), Vec3(focus), {0, 1, 0}, 12, 0, 1};
@@ -191,7 +185,7 @@ TEST(Caustic, LightSamplingAloneLeavesTheShadowDark) {
 // The ring's far side throws light back on the floor before it, which the lamp lights, too.
 TEST(Caustic, MirrorsAddLightWithinTheRing) {
   constexpr int size = 32;
-  SceneData scene = build("caustic");
+  SceneData scene = build_scene("caustic");
   Vec3d center(0);
   int mirrors = 0;
   for (std::size_t i = 0; i < scene.quads.size(); ++i) {

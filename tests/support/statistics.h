@@ -32,6 +32,11 @@ class TestRandom {
     const double z = uniform(-1, 1), phi = uniform(0, 2 * pi_double), r = std::sqrt(1 - z * z);
     return {r * std::cos(phi), r * std::sin(phi), z};
   }
+  /// In the cube [-size, size)^3.
+  glm::dvec3 point(double size) {
+    const double x = uniform(-size, size), y = uniform(-size, size);
+    return {x, y, uniform(-size, size)};
+  }
   std::uint32_t bits() { return static_cast<std::uint32_t>(engine_() >> 32); }
   std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(engine_() % n); }
 

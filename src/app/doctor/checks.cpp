@@ -72,7 +72,7 @@ Check check_folder(const std::string& name, const FolderFacts& folder, const cha
 
 enum class MpiKind { none, open_mpi, mpich, unknown };
 
-MpiKind kind_of(std::string text) {
+MpiKind mpi_kind_of(std::string text) {
   if (text.empty() || text == "off") return MpiKind::none;
   for (const char* word : {"Open MPI", "openmpi", "orterun", "prterun"})
     if (text.find(word) != std::string::npos) return MpiKind::open_mpi;
@@ -86,7 +86,7 @@ bool differ(MpiKind a, MpiKind b) {
 }
 
 Check check_mpi(const MpiFacts& mpi) {
-  const MpiKind built = kind_of(mpi.built), launcher = kind_of(mpi.launcher);
+  const MpiKind built = mpi_kind_of(mpi.built), launcher = mpi_kind_of(mpi.launcher);
   if (built == MpiKind::none) {
     return {"MPI", Health::warning, "this ptexp was built without it: one machine at a time",
             "for several machines, build with -DPTEXP_MPI=ON (docs/cluster.md)"};
@@ -95,7 +95,7 @@ Check check_mpi(const MpiFacts& mpi) {
               fmt::format("built with {}, loaded {}, {}", mpi.built, mpi.loaded,
                           mpi.launcher.empty() ? "no launcher" : "launched by " + mpi.launcher),
               ""};
-  if (differ(built, kind_of(mpi.loaded))) {
+  if (differ(built, mpi_kind_of(mpi.loaded))) {
     check.health = Health::missing;
     check.remedy = "the library that was loaded is another MPI's: mend LD_LIBRARY_PATH";
   } else if (launcher == MpiKind::none) {

@@ -6,18 +6,18 @@
 namespace pt {
 namespace {
 
-std::string quoted(const std::string& text) {
+std::string fish_quoted(const std::string& text) {
   return "'" + replaced(replaced(text, "\\", "\\\\"), "'", "\\'") + "'";
 }
 
 std::string line(const std::string& condition, const OptionText& option) {
-  std::string text = "complete -c ptexp -n " + quoted(condition);
+  std::string text = "complete -c ptexp -n " + fish_quoted(condition);
   for (const std::string& flag : option.flags)
     text += flag.starts_with("--") ? " -l " + flag.substr(2) : " -s " + flag.substr(1);
   if (!option.value.empty()) text += option.is_file() ? " -r -F" : " -x";
   if (const auto words = words_of(option); !words.empty())
-    text += " -a " + quoted(join(words, " "));
-  return text + " -d " + quoted(short_help(option.help)) + "\n";
+    text += " -a " + fish_quoted(join(words, " "));
+  return text + " -d " + fish_quoted(short_help(option.help)) + "\n";
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ std::string fish_completion(const CommandText& program) {
   for (const CommandText& one : program.subcommands) {
     if (!one.takes_render_options) others.push_back(one.name);
     text += fmt::format("complete -c ptexp -n __fish_use_subcommand -a {} -d {}\n", one.name,
-                        quoted(short_help(one.help)));
+                        fish_quoted(short_help(one.help)));
   }
   const std::string renders = "not __fish_seen_subcommand_from " + join(others, " ");
   for (const OptionText& option : program.options) text += line(renders, option);
@@ -38,7 +38,7 @@ std::string fish_completion(const CommandText& program) {
     const std::string condition = "__fish_seen_subcommand_from " + one.name;
     for (const OptionText& option : one.options) text += line(condition, option);
     if (!one.arguments.empty())
-      text += fmt::format("complete -c ptexp -n {} -F\n", quoted(condition));
+      text += fmt::format("complete -c ptexp -n {} -F\n", fish_quoted(condition));
   }
   return text;
 }

@@ -7,7 +7,7 @@
 namespace pt {
 namespace {
 
-std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
+std::string zsh_quoted(const std::string& text) { return "'" + replaced(text, "'", "'\\''") + "'"; }
 
 /// In a message or a description of _arguments.
 std::string escaped(std::string text) {
@@ -37,8 +37,8 @@ std::string specs(const std::vector<OptionText>& options) {
     for (const std::string& flag : option.flags) {
       const bool is_long = flag.starts_with("--") && !option.value.empty();
       text += "    " +
-              quoted(fmt::format("*{}{}[{}]{}", flag, is_long ? "=" : "",
-                                 escaped(short_help(option.help)), value_of(option))) +
+              zsh_quoted(fmt::format("*{}{}[{}]{}", flag, is_long ? "=" : "",
+                                     escaped(short_help(option.help)), value_of(option))) +
               "\n";
     }
   }
@@ -57,7 +57,7 @@ std::string zsh_completion(const CommandText& program) {
       "_ptexp() {\n  local context state state_descr line\n  typeset -A opt_args\n";
   text += array("render", program) + "  local -a commands=(\n";
   for (const CommandText& one : program.subcommands)
-    text += "    " + quoted(one.name + ":" + escaped(short_help(one.help))) + "\n";
+    text += "    " + zsh_quoted(one.name + ":" + escaped(short_help(one.help))) + "\n";
   text += "  )\n";
   text +=
       "  _arguments -S $render '1:command:->command' '*::argument:->argument' && return\n"

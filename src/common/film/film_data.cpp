@@ -9,10 +9,6 @@
 namespace pt {
 namespace {
 
-std::string text(const Window& w) {
-  return fmt::format("{}x{} at {},{}", w.width, w.height, w.x, w.y);
-}
-
 void check_merge(const Film& film, const Film& part) {
   if (!film.is_empty() &&
       (film.first_sample != part.first_sample || film.next_sample != part.next_sample)) {
@@ -63,6 +59,10 @@ void copy_planes(const Film& film, std::vector<T>& to, const Film& part, const s
 }
 
 }  // namespace
+
+std::string text(const Window& w) {
+  return fmt::format("{}x{} at {},{}", w.width, w.height, w.x, w.y);
+}
 
 void FilmSums::reset(const FilmPlan& plan, std::uint64_t pixel_count) {
   const std::uint64_t count = plan.signs() * pixel_count;

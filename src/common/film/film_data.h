@@ -2,11 +2,15 @@
 // and merged with others without changing a bit.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/film/film_planes.h"
 
 namespace pt {
+
+/// For messages, as "600x300 at 0,0".
+std::string text(const Window& window);
 
 /// The arrays of FilmView, owned.
 struct FilmSums {

@@ -48,10 +48,6 @@ void copy_in(const Window& image, std::vector<T>& to, const Window& part,
   });
 }
 
-std::string text(const Window& w) {
-  return fmt::format("{}x{} at {},{}", w.width, w.height, w.x, w.y);
-}
-
 }  // namespace
 
 Window intersect(const Window& a, const Window& b) {

@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(int error) { throw std::system_error(error, std::generic_category()); }
-
 struct Target {
   fs::path file;                 ///< links resolved, so that rename() does not replace a link
   std::optional<mode_t> mode{};  ///< permissions of the file to replace, if there is one
@@ -38,12 +36,12 @@ Target find_target(const std::string& path) {
   if (::stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) throw Error("it is a folder");
     // rename() would not mind, but whoever protects a file means it.
-    if (::access(path.c_str(), W_OK) != 0) fail(errno);
+    if (::access(path.c_str(), W_OK) != 0) throw_system_error(errno);
     target.is_special = !S_ISREG(status.st_mode);
     if (!target.is_special) target.file = fs::canonical(path);
     target.mode = status.st_mode & 0777;
   } else if (errno != ENOENT) {
-    fail(errno);
+    throw_system_error(errno);
   } else if (fs::is_symlink(path)) {  // rename() would replace the link, such as /dev/stdout
     throw Error("it is a link to nothing");
   }
@@ -93,16 +91,17 @@ void write_file_atomically(const std::string& path, std::string_view bytes) {
     const Target target = find_target(path);
     if (target.is_special) {
       Descriptor device(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
-      if (device.get() < 0) fail(errno);
+      if (device.get() < 0) throw_system_error(errno);
       device.write(bytes);
       return device.close();
     }
     TemporaryFile successor(target.file);
     Descriptor& descriptor = successor.descriptor();
     // File systems without permissions or without sync are no reason to lose the content.
-    if (target.mode && ::fchmod(descriptor.get(), *target.mode) != 0 && errno != EPERM) fail(errno);
+    if (target.mode && ::fchmod(descriptor.get(), *target.mode) != 0 && errno != EPERM)
+      throw_system_error(errno);
     descriptor.write(bytes);
-    if (::fsync(descriptor.get()) != 0 && errno != EINVAL) fail(errno);
+    if (::fsync(descriptor.get()) != 0 && errno != EINVAL) throw_system_error(errno);
     descriptor.close();
     successor.rename(target.file);
   });

@@ -20,8 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(int error) { throw std::system_error(error, std::generic_category()); }
-
 // For signal handlers, which may run beside the thread that writes: a name that is never freed.
 char unfinished[PATH_MAX];
 std::atomic<bool> is_unfinished{false};
@@ -65,7 +63,7 @@ int create(const fs::path& target, fs::path& path) {
     path = folder / fmt::format("{}{:08x}.tmp", prefix, random());
     Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (!file.is_open()) {
-      if (errno != EEXIST) fail(errno);
+      if (errno != EEXIST) throw_system_error(errno);
       continue;
     }
     note_unfinished(path);
@@ -77,13 +75,15 @@ int create(const fs::path& target, fs::path& path) {
 
 }  // namespace
 
+void throw_system_error(int error) { throw std::system_error(error, std::generic_category()); }
+
 void Descriptor::write(std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
     if (written >= 0) {
       bytes.remove_prefix(static_cast<std::size_t>(written));
     } else if (errno != EINTR) {
-      fail(errno);
+      throw_system_error(errno);
     }
   }
 }
@@ -95,7 +95,7 @@ Descriptor::~Descriptor() {
 int Descriptor::release() { return std::exchange(fd_, -1); }
 
 void Descriptor::close() {
-  if (::close(release()) != 0 && errno != EINTR) fail(errno);
+  if (::close(release()) != 0 && errno != EINTR) throw_system_error(errno);
 }
 
 TemporaryFile::TemporaryFile(const fs::path& target)
@@ -107,7 +107,7 @@ TemporaryFile::~TemporaryFile() {
 }
 
 void TemporaryFile::rename(const fs::path& target) {
-  if (::rename(path_.c_str(), target.c_str()) != 0) fail(errno);
+  if (::rename(path_.c_str(), target.c_str()) != 0) throw_system_error(errno);
   path_.clear();
 }
 

@@ -6,6 +6,9 @@
 
 namespace pt {
 
+/// Throws the std::system_error of a value of errno.
+[[noreturn]] void throw_system_error(int error);
+
 /// A file descriptor, closed at the end. Failures are std::system_errors.
 class Descriptor {
  public:

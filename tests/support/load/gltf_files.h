@@ -151,8 +151,4 @@ struct Loaded {
   }
 };
 
-inline void expect_near(const Vec3& actual, const Vec3& expected, float tolerance = 1e-5f) {
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(actual[i], expected[i], tolerance) << "axis " << i;
-}
-
 }  // namespace pt

@@ -1,8 +1,10 @@
-// Mesh files byte by byte, for tests that read them.
+// Files of meshes and images byte by byte, for tests that read them.
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <string>
+#include <vector>
 
 namespace pt {
 
@@ -26,5 +28,12 @@ class ByteWriter {
  private:
   bool big_endian_;
 };
+
+using Bytes = std::vector<int>;
+
+inline ByteWriter& put_bytes(ByteWriter& out, const Bytes& bytes) {
+  for (const int b : bytes) out.put(static_cast<std::uint8_t>(b));
+  return out;
+}
 
 }  // namespace pt

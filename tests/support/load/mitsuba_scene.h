@@ -1,6 +1,8 @@
 // For tests of the loader of Mitsuba's XML: scenes as strings, warnings as a list.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
@@ -37,8 +39,9 @@ inline LoadedScene load_xml(const std::string& inside, const std::string& versio
   return load_with_warnings(path, options);
 }
 
-inline void expect_near(const Vec3& a, const Vec3& b, float tolerance = 1e-5f) {
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "component " << i;
+/// <float name="..." value="..."/>
+inline std::string number(const char* name, double value) {
+  return fmt::format("<float name='{}' value='{}'/>", name, value);
 }
 
 }  // namespace pt

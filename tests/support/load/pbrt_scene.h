@@ -9,6 +9,11 @@
 
 namespace pt {
 
+/// A sky of ones, and a wall at z = 1.
+inline const std::string lit = "LightSource \"infinite\"\n";
+inline const std::string wall =
+    "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
+
 inline LoadedScene load_pbrt_file(const std::string& path, LoadOptions options = {}) {
   LoadedScene loaded;
   options.warn = [&](const std::string& message) { loaded.warnings.push_back(message); };

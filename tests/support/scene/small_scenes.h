@@ -14,6 +14,13 @@ inline std::string small_scene(const SceneInfo& info) {
   return info.parameter == "N" ? info.name + ":1K" : info.name;
 }
 
+/// By its name and default options.
+inline SceneData build_scene(const std::string& name) {
+  Options options;
+  options.scene = name;
+  return build_scene(options);
+}
+
 inline std::vector<std::string> small_scenes() {
   std::vector<std::string> names;
   for (const SceneInfo& info : scene_list()) names.push_back(small_scene(info));

@@ -7,6 +7,7 @@
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/load_scene.h"
 #include "common/texture/sample_texture.h"
+#include "load/expect_near.h"
 #include "load/gltf_files.h"
 #include "load/mesh_bytes.h"
 

@@ -1,5 +1,6 @@
 // The glTF loader: containers, accessors, meshes, nodes and instances.
 #include "common/scene/data/frame_scene.h"
+#include "load/expect_near.h"
 #include "load/gltf_files.h"
 #include "shared_file.h"
 

@@ -1,5 +1,6 @@
 // The glTF loader: materials.
 #include "common/texture/sample_texture.h"
+#include "load/expect_near.h"
 #include "load/gltf_files.h"
 
 namespace pt {

@@ -1,5 +1,6 @@
 // The glTF loader: lights and cameras.
 #include "common/light/spot_light.h"
+#include "load/expect_near.h"
 #include "load/gltf_files.h"
 
 namespace pt {

@@ -6,22 +6,19 @@
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/mask.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 #include "render_serial.h"
 
 namespace pt {
 namespace {
 
-std::string number(const char* name, double value) {
-  return fmt::format("<float name='{}' value='{}'/>", name, value);
-}
-
 std::string bsdf(const std::string& type, const std::string& inside = "") {
   return fmt::format("<bsdf type='{}'>{}</bsdf>", type, inside);
 }
 
 /// A picture of 2 x 1 texels, raw: 0.2 and 0.8 of 255.
-std::string picture(const std::string& name, const std::string& inside = "") {
+std::string picture_of(const std::string& name, const std::string& inside = "") {
   return fmt::format(
       "<texture type='bitmap' name='{}'><string name='filename' value='a.ppm'/>"
       "<boolean name='raw' value='true'/>{}</texture>",
@@ -65,8 +62,8 @@ float opacity_at_texel(const SceneData& scene, float u) {
 
 TEST(MitsubaTexture, ScalesAndOffsetsOfOldFilesHaveTwoAxes) {
   const Texture t =
-      texture_of(picture("reflectance", number("uscale", 2) + number("vscale", 3) +
-                                            number("uoffset", 0.1) + number("voffset", 0.2)),
+      texture_of(picture_of("reflectance", number("uscale", 2) + number("vscale", 3) +
+                                               number("uoffset", 0.1) + number("voffset", 0.2)),
                  "0.6.0");
   // In the file's coordinates, whose v goes down: (2 u + 0.1, 3 v + 0.2).
   const Vec2 mapped = map_coordinates(t, {0.3f, 1.0f - 0.4f});
@@ -79,7 +76,7 @@ TEST(MitsubaTexture, AxesWrapByThemselves) {
     const auto mode = [](const char* axis, const char* value) {
       return fmt::format("<string name='wrapMode{}' value='{}'/>", axis, value);
     };
-    const Texture t = texture_of(picture("reflectance", mode("U", u) + mode("V", v)), "0.6.0");
+    const Texture t = texture_of(picture_of("reflectance", mode("U", u) + mode("V", v)), "0.6.0");
     return std::pair(t.wrap_u, t.wrap_v);
   };
   EXPECT_EQ(wraps("clamp", "mirror"), std::pair(TextureWrap::clamp, TextureWrap::mirror));
@@ -88,8 +85,8 @@ TEST(MitsubaTexture, AxesWrapByThemselves) {
 
 TEST(MitsubaTexture, NearestIsNearest) {
   const std::string nearest = "<string name='filter_type' value='nearest'/>";
-  EXPECT_EQ(texture_of(picture("reflectance", nearest)).filter, TextureFilter::nearest);
-  EXPECT_EQ(texture_of(picture("reflectance")).filter, TextureFilter::bilinear);
+  EXPECT_EQ(texture_of(picture_of("reflectance", nearest)).filter, TextureFilter::nearest);
+  EXPECT_EQ(texture_of(picture_of("reflectance")).filter, TextureFilter::bilinear);
 }
 
 TEST(MitsubaTexture, CheckerboardsHaveMitsubasColors) {
@@ -102,12 +99,12 @@ TEST(MitsubaTexture, CheckerboardsMayHoldTextures) {
   const std::string inner =
       "<texture type='checkerboard' name='color1'><transform name='to_uv'><scale x='4'/>"
       "</transform><rgb name='color0' value='0.1 0.2 0.3'/>" +
-      picture("color1") + "</texture>";
+      picture_of("color1") + "</texture>";
   const SceneData scene =
       scene_of(bsdf("diffuse", "<texture type='checkerboard' name='reflectance'>" +
-                                   picture("color0",
-                                           "<transform name='to_uv'><scale x='0.5'/></transform>"
-                                           "<string name='filter_type' value='nearest'/>") +
+                                   picture_of("color0",
+                                              "<transform name='to_uv'><scale x='0.5'/></transform>"
+                                              "<string name='filter_type' value='nearest'/>") +
                                    inner + "</texture>"));
   const auto at = [&](float u, float v) {  // Mitsuba's v
     return sample_texture(scene.textures.data(), top_of(scene).parameters[0].texture,
@@ -123,8 +120,8 @@ TEST(MitsubaTexture, CheckerboardsMayHoldTextures) {
 TEST(MitsubaTexture, CheckerboardsOfNumbersMayHoldTextures) {
   const std::string nearest = "<string name='filter_type' value='nearest'/>";
   const SceneData scene = scene_of(bsdf(
-      "roughconductor", "<texture type='checkerboard' name='alpha'>" + picture("color0", nearest) +
-                            number("color1", 0.6) + "</texture>"));
+      "roughconductor", "<texture type='checkerboard' name='alpha'>" +
+                            picture_of("color0", nearest) + number("color1", 0.6) + "</texture>"));
   const auto at = [&](float u, float v) {
     return sample_texture(scene.textures.data(), top_of(scene).parameters[3].texture,
                           scene.texels.data(), {u, 1 - v});
@@ -146,7 +143,7 @@ TEST(MitsubaTexture, ColorsOfMeshesInACheckerboardAreReported) {
 TEST(MitsubaTexture, BitmapsHaveNoScale) {
   // Mitsuba 3.9.1: 'Found 1 unreferenced property in texture plugin of type "bitmap"'.
   const LoadedScene loaded =
-      load(square(bsdf("diffuse", picture("reflectance", number("scale", 2)))));
+      load(square(bsdf("diffuse", picture_of("reflectance", number("scale", 2)))));
   EXPECT_EQ(loaded.count("scale"), 1);
   EXPECT_EQ(loaded.scene.textures.at(0).color0, Color(1.0f));
 }
@@ -168,7 +165,7 @@ TEST(MitsubaSurface, TwoSidedKeepsTheMaskInside) {
 
 TEST(MitsubaSurface, HalfOfATexturedMaskIsHalf) {
   const std::string hole =
-      bsdf("blendbsdf", picture("weight") + bsdf("diffuse") + bsdf("null"));  // 1 - w is there
+      bsdf("blendbsdf", picture_of("weight") + bsdf("diffuse") + bsdf("null"));  // 1 - w is there
   const SceneData whole = scene_of(hole);
   EXPECT_NEAR(opacity_at_texel(whole, 0.25f), 0.8f, 1e-5f);
   EXPECT_NEAR(opacity_at_texel(whole, 0.75f), 0.2f, 1e-5f);
@@ -180,7 +177,7 @@ TEST(MitsubaSurface, HalfOfATexturedMaskIsHalf) {
 TEST(MitsubaSurface, BumpMapsHaveTheScaleOfTheirTexture) {
   const SceneData scene = scene_of(
       bsdf("bumpmap", number("scale", 3) + "<texture type='scale' name='map'>" +
-                          number("scale", 0.25) + picture("") + "</texture>" + bsdf("diffuse")),
+                          number("scale", 0.25) + picture_of("") + "</texture>" + bsdf("diffuse")),
       "0.6.0");
   EXPECT_EQ(top_of(scene).node, MaterialNode::bump_map);
   EXPECT_FLOAT_EQ(top_of(scene).parameters[0].value.x, 0.75f);
@@ -191,9 +188,9 @@ TEST(MitsubaSurface, MapsHaveTwoFlagsOfTheirOwn) {
     bool flips, shadows;
   };
   const auto flags = [](const char* map, const std::string& inside) {
-    const SceneData scene =
-        scene_of(bsdf(map, inside + picture(map == std::string("bumpmap") ? "map" : "normalmap") +
-                               bsdf("diffuse")));
+    const SceneData scene = scene_of(
+        bsdf(map, inside + picture_of(map == std::string("bumpmap") ? "map" : "normalmap") +
+                      bsdf("diffuse")));
     const Color value = top_of(scene).parameters[0].value;  // 1 is off: see turned_normal
     return Flags{value.z == 0.0f, value.y == 0.0f};
   };
@@ -224,8 +221,8 @@ TEST(MitsubaSurface, MetalsStandInWhatIsOutside) {
 }
 
 TEST(MitsubaSurface, WardsAxesHaveTexturesOfTheirOwn) {
-  const SceneData scene =
-      scene_of(bsdf("ward", picture("alphaU") + picture("alphaV", number("uscale", 3))), "0.6.0");
+  const SceneData scene = scene_of(
+      bsdf("ward", picture_of("alphaU") + picture_of("alphaV", number("uscale", 3))), "0.6.0");
   const MaterialDescription& ward = top_of(scene);
   EXPECT_EQ(scene.textures.at(ward.parameters[2].texture).u_row[0], 1.0f);
   EXPECT_EQ(scene.textures.at(ward.parameters[3].texture).u_row[0], 3.0f);

@@ -4,6 +4,7 @@
 
 #include "common/image/codecs/image_io.h"
 #include "common/texture/sample_texture.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 #include "shared_file.h"
 

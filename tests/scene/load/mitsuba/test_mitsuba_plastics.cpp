@@ -17,14 +17,14 @@ LoadedScene load_bsdf(const std::string& type, const std::string& inside,
 std::string rgb(const std::string& name, const std::string& value) {
   return "<rgb name=\"" + name + "\" value=\"" + value + "\"/>";
 }
-std::string number(const std::string& name, const std::string& value) {
+std::string number_of(const std::string& name, const std::string& value) {
   return "<float name=\"" + name + "\" value=\"" + value + "\"/>";
 }
 std::string checkerboard(const std::string& name) {
   return "<texture type=\"checkerboard\" name=\"" + name + "\"/>";
 }
 
-const std::string ior = number("int_ior", "1.5") + number("ext_ior", "1");
+const std::string ior = number_of("int_ior", "1.5") + number_of("ext_ior", "1");
 
 void expect_same(const MaterialDescription& a, const MaterialDescription& b) {
   EXPECT_EQ(a.kind, b.kind);
@@ -40,7 +40,7 @@ TEST(MitsubaPlastic, SmoothAndRough) {
   EXPECT_TRUE(smooth.warnings.empty());
   EXPECT_TRUE(smooth.scene.materials[0].one_sided);
   expect_same(smooth.scene.materials[0], make_plastic(body, coat, {1.5f, true}));
-  const LoadedScene rough = load_bsdf("roughplastic", colors + number("alpha", "0.3") +
+  const LoadedScene rough = load_bsdf("roughplastic", colors + number_of("alpha", "0.3") +
                                                           "<string name=\"distribution\" "
                                                           "value=\"ggx\"/>");
   EXPECT_TRUE(rough.warnings.empty());
@@ -67,7 +67,7 @@ TEST(MitsubaPlastic, TexturesOnEveryParameter) {
 // Beckmann's root mean square slope is sqrt(2) times the angle's standard deviation.
 TEST(MitsubaRoughDiffuse, IsOrenNayar) {
   const LoadedScene scene =
-      load_bsdf("roughdiffuse", rgb("reflectance", "0.3") + number("alpha", "0.4"), "0.6.0");
+      load_bsdf("roughdiffuse", rgb("reflectance", "0.3") + number_of("alpha", "0.4"), "0.6.0");
   EXPECT_TRUE(scene.warnings.empty());
   const MaterialDescription& material = scene.scene.materials[0];
   EXPECT_EQ(material.kind, kind_of<OrenNayar>);
@@ -79,7 +79,7 @@ TEST(MitsubaRoughDiffuse, IsOrenNayar) {
 
 TEST(MitsubaPhong, OfVersion06) {
   const LoadedScene scene =
-      load_bsdf("phong", rgb("diffuseReflectance", "0.3") + number("exponent", "50"), "0.6.0");
+      load_bsdf("phong", rgb("diffuseReflectance", "0.3") + number_of("exponent", "50"), "0.6.0");
   EXPECT_TRUE(scene.warnings.empty());
   expect_same(scene.scene.materials[0], describe_all<Phong>(0.3f, 0.2f, 50.0f));
 }
@@ -87,7 +87,7 @@ TEST(MitsubaPhong, OfVersion06) {
 TEST(MitsubaWard, OfVersion06) {
   const LoadedScene scene =
       load_bsdf("ward",
-                rgb("specularReflectance", "0.4") + number("alphaU", "0.2") +
+                rgb("specularReflectance", "0.4") + number_of("alphaU", "0.2") +
                     checkerboard("alphaV") + "<string name=\"variant\" value=\"ward\"/>",
                 "0.6.0");
   const MaterialDescription& material = scene.scene.materials[0];

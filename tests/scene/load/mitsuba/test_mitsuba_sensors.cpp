@@ -6,15 +6,12 @@
 #include "common/light/sky/environment.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_modes.h"
 #include "render_serial.h"
 
 namespace pt {
 namespace {
-
-std::string number(const char* name, double value) {
-  return fmt::format("<float name='{}' value='{}'/>", name, value);
-}
 
 std::string sensor(const std::string& type, const std::string& inside) {
   return fmt::format("<sensor type='{}'>{}</sensor>", type, inside);

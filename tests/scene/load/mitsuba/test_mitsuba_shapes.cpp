@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/data/camera.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 
 namespace pt {

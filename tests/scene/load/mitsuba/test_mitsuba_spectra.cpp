@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 
 namespace pt {

@@ -5,6 +5,7 @@
 
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/first_hit.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_modes.h"
 
 namespace pt {

@@ -4,6 +4,7 @@
 
 #include "common/scene/prepare/list_lights.h"
 #include "common/transport/sample_light.h"
+#include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 
 namespace pt {

@@ -4,6 +4,7 @@
 
 #include "common/light/sky/environment.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 #include "render_serial.h"
 
@@ -23,7 +24,6 @@ Color mean_color(const SceneData& loaded, int spp = 16, int depth = 2) {
 }
 
 /// A wall that fills the image, at a distance of 1, facing the camera at the origin.
-const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
 const std::string black = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n";
 const std::string white = "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n";
 

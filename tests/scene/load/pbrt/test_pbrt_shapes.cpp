@@ -4,12 +4,12 @@
 #include <zlib.h>
 
 #include "common/scene/load/pbrt/shapes/loop_subdivision.h"
+#include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 
 namespace pt {
 namespace {
 
-const std::string lit = "LightSource \"infinite\"\n";
 const std::string checks =
     "Texture \"t\" \"spectrum\" \"checkerboard\"\nMaterial \"diffuse\" \"texture reflectance\" "
     "\"t\"\n";

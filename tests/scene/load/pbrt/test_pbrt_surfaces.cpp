@@ -4,13 +4,12 @@
 
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/texture/sample_texture.h"
+#include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 #include "render_serial.h"
 
 namespace pt {
 namespace {
-
-const std::string lit = "LightSource \"infinite\"\n";
 
 SceneData with_material(const std::string& material) {
   return load_pbrt_silently(pbrt_world(lit + material + "\nShape \"sphere\""));
@@ -106,8 +105,6 @@ Color furnace(const std::string& material, const std::string& shape) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) sum[static_cast<int>(i % 3)] += image.rgb[i];
   return sum / 256.0f;
 }
-
-const std::string wall = "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
 
 TEST(PbrtSurfaces, DiffuseTransmissionSharesTheLight) {
   const std::string material =

@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 
 namespace pt {
 namespace {
-
-const std::string lit = "LightSource \"infinite\"\n";
 
 TEST(PbrtSyntax, WordsNeedNoSpaceAroundBracketsAndQuotes) {
   const SceneData scene = load_pbrt_silently(pbrt_world(

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::uint32_t task_min = 1024;  // references of a subtree that is worth a task
 
-class Builder {
+class SahBuilder {
  public:
-  explicit Builder(std::span<BuildReference> references)
+  explicit SahBuilder(std::span<BuildReference> references)
       : references_(references), nodes_(new Bvh2Node[references.size()]) {}
 
   std::unique_ptr<Bvh2Node[]> build(const ReferenceRange& all) {
@@ -79,7 +79,7 @@ BinaryTree build_sah(std::uint32_t count, const BoundsOf& bounds_of) {
   tree.bounds = all.bounds.bounds();
   tree.root = count == 1 ? make_leaf(0, 1) : 0;
   tree.node_capacity = count;
-  tree.nodes = Builder(references).build(all);
+  tree.nodes = SahBuilder(references).build(all);
   tree.order.resize(count);
   tbb::parallel_for(0u, count, [&](std::uint32_t i) { tree.order[i] = references[i].id(); });
   return tree;

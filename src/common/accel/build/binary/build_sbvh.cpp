@@ -13,8 +13,8 @@ namespace pt {
 
 namespace {
 
-constexpr std::uint32_t task_min = 512;  // references of a subtree that is worth a task
-constexpr float least_gain = 0.99f;      // of a spatial split's cost to an object split's
+constexpr std::uint32_t sbvh_task_min = 512;  // references of a subtree that is worth a task
+constexpr float least_gain = 0.99f;           // of a spatial split's cost to an object split's
 
 /// A subtree's references, and the room that it has for them and for more.
 struct Segment {
@@ -24,9 +24,10 @@ struct Segment {
   std::uint32_t room() const { return limit - range.end; }
 };
 
-class Builder {
+class SbvhBuilder {
  public:
-  Builder(std::span<BuildReference> references, const TriangleOf& triangle_of, float least_overlap)
+  SbvhBuilder(std::span<BuildReference> references, const TriangleOf& triangle_of,
+              float least_overlap)
       : references_(references),
         triangle_of_(triangle_of),
         least_overlap_(least_overlap),
@@ -52,7 +53,7 @@ class Builder {
     const auto build_right = [&, segment_right = right] {
       if (segment_right.range.size() > 1) build_node(segment_right, children[1], depth + 1);
     };
-    invoke_both(segment.range.size() >= task_min, build_left, build_right);
+    invoke_both(segment.range.size() >= sbvh_task_min, build_left, build_right);
   }
 
   // Shares the room out by the numbers of references.
@@ -128,7 +129,7 @@ BinaryTree build_sbvh(std::uint32_t count, const TriangleOf& triangle_of,
   tree.bounds = all.bounds.bounds();
   tree.root = count == 1 ? make_leaf(0, 1) : 0;
   tree.node_capacity = capacity;
-  tree.nodes = Builder(references, triangle_of, options.alpha * tree.bounds.half_area())
+  tree.nodes = SbvhBuilder(references, triangle_of, options.alpha * tree.bounds.half_area())
                    .build({all, capacity});
   tree.order.resize(capacity);
   tbb::parallel_for(0u, capacity, [&](std::uint32_t i) { tree.order[i] = references[i].id(); });

@@ -8,7 +8,7 @@ namespace pt {
 
 namespace {
 
-constexpr int task_depth = 10;  // so far down, the two children are tasks of their own
+constexpr int share_task_depth = 10;  // so far down, the two children are tasks of their own
 
 /// Of a subtree, in units of area: as many as a ray's expected visits times the root's.
 struct Costs {
@@ -32,7 +32,7 @@ Costs costs_of(const BinaryTree& tree, std::uint32_t subtree, double area, int d
     half[i] = costs_of(tree, node.child[i], areas[i], depth + 1);
   };
   invoke_both(
-      depth < task_depth, [&] { weigh(0); }, [&] { weigh(1); });
+      depth < share_task_depth, [&] { weigh(0); }, [&] { weigh(1); });
   const auto visits_per_ray = [&](int i) { return areas[i] > 0 ? half[i].visits / areas[i] : 0.0; };
   const double saved = shared_area(box[0], box[1]) * std::min(visits_per_ray(0), visits_per_ray(1));
   return {area + half[0].visits + half[1].visits, half[0].overlap + half[1].overlap + saved};

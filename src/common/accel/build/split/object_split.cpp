@@ -9,19 +9,19 @@ namespace pt {
 
 namespace {
 
-struct Bin : Box4 {
+struct ObjectBin : Box4 {
   std::uint32_t count = 0;
   void add(const BuildReference& r) { grow(r), ++count; }
-  void add(const Bin& b) { grow(b), count += b.count; }
+  void add(const ObjectBin& b) { grow(b), count += b.count; }
 };
 
 /// By axis. The number of bins is a type's, since making more than needed takes long for small
 /// nodes.
 template <int bin_count>
-struct Bins {
-  std::array<std::array<Bin, bin_count>, 3> of;
+struct ObjectBins {
+  std::array<std::array<ObjectBin, bin_count>, 3> of;
 
-  void add(const Bins& other) {
+  void add(const ObjectBins& other) {
     for (int axis = 0; axis < 3; ++axis) {
       for (int b = 0; b < bin_count; ++b) of[axis][b].add(other.of[axis][b]);
     }
@@ -30,7 +30,7 @@ struct Bins {
 
 template <int bin_count>
 void fill_bins(std::span<const BuildReference> references, const BinMapping& mapping,
-               Bins<bin_count>& bins) {
+               ObjectBins<bin_count>& bins) {
   for (const BuildReference& r : references) {
     const Int4 bin = mapping(r.twice_center());
     for (int axis = 0; axis < 3; ++axis) bins.of[axis][bin[axis]].add(r);
@@ -39,29 +39,30 @@ void fill_bins(std::span<const BuildReference> references, const BinMapping& map
 
 // Minima, maxima and integer sums do not depend on the order of the parts.
 template <int bin_count>
-Bins<bin_count> make_bins(std::span<const BuildReference> references, const BinMapping& mapping) {
+ObjectBins<bin_count> make_bins(std::span<const BuildReference> references,
+                                const BinMapping& mapping) {
   if (references.size() <= serial_range_max) {
-    Bins<bin_count> bins;
+    ObjectBins<bin_count> bins;
     fill_bins(references, mapping, bins);
     return bins;
   }
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, references.size(), range_block), Bins<bin_count>(),
-      [&](const auto& part, Bins<bin_count> bins) {
+      tbb::blocked_range<std::size_t>(0, references.size(), range_block), ObjectBins<bin_count>(),
+      [&](const auto& part, ObjectBins<bin_count> bins) {
         fill_bins(references.subspan(part.begin(), part.size()), mapping, bins);
         return bins;
       },
-      [&](Bins<bin_count> a, const Bins<bin_count>& b) {
+      [&](ObjectBins<bin_count> a, const ObjectBins<bin_count>& b) {
         a.add(b);
         return a;
       });
 }
 
 template <int bin_count>
-void try_axis(const std::array<Bin, bin_count>& bins, int axis, ObjectSplit& best) {
-  std::array<Bin, bin_count> left;  // of the bins below
+void try_axis(const std::array<ObjectBin, bin_count>& bins, int axis, ObjectSplit& best) {
+  std::array<ObjectBin, bin_count> left;  // of the bins below
   for (int b = 1; b < bin_count; ++b) left[b] = left[b - 1], left[b].add(bins[b - 1]);
-  Bin right;
+  ObjectBin right;
   for (int b = bin_count - 1; b >= 1; --b) {
     right.add(bins[b]);
     if (right.count == 0 || left[b].count == 0) continue;
@@ -74,7 +75,7 @@ void try_axis(const std::array<Bin, bin_count>& bins, int axis, ObjectSplit& bes
 template <int bin_count>
 ObjectSplit find_split(std::span<const BuildReference> references, const Box4& centers) {
   const BinMapping mapping(centers, bin_count);
-  const Bins<bin_count> bins = make_bins<bin_count>(references, mapping);
+  const ObjectBins<bin_count> bins = make_bins<bin_count>(references, mapping);
   ObjectSplit best;
   for (int axis = 0; axis < 3; ++axis) {
     if (!mapping.is_flat(axis)) try_axis<bin_count>(bins.of[axis], axis, best);

@@ -14,18 +14,18 @@ namespace {
 
 constexpr int bin_count = 16;
 
-struct Bin : Box4 {
+struct SpatialBin : Box4 {
   std::uint32_t entering = 0, leaving = 0;  // references whose first, whose last bin this is
 };
 
-struct Bins {
-  std::array<std::array<Bin, bin_count>, 3> of;
+struct SpatialBins {
+  std::array<std::array<SpatialBin, bin_count>, 3> of;
 
-  void add(const Bins& other) {
+  void add(const SpatialBins& other) {
     for (int axis = 0; axis < 3; ++axis) {
       for (int b = 0; b < bin_count; ++b) {
-        Bin& bin = of[axis][b];
-        const Bin& from = other.of[axis][b];
+        SpatialBin& bin = of[axis][b];
+        const SpatialBin& from = other.of[axis][b];
         bin.grow(from), bin.entering += from.entering, bin.leaving += from.leaving;
       }
     }
@@ -55,7 +55,7 @@ bool is_box(const Box4& box) {
 // Puts the parts of a triangle that spans several bins into them: its edges cross the planes in
 // between. Only an estimate, so that single precision will do.
 void add_parts(const Float4 (&v)[3], const BuildReference& r, const Planes& planes, int axis,
-               int first, int last, std::array<Bin, bin_count>& bins) {
+               int first, int last, std::array<SpatialBin, bin_count>& bins) {
   std::array<Box4, bin_count> part;
   std::fill(part.begin() + first, part.begin() + last + 1, Box4());
   for (int i = 0; i < 3; ++i) {
@@ -78,7 +78,7 @@ void add_parts(const Float4 (&v)[3], const BuildReference& r, const Planes& plan
 }
 
 void add_reference(const BuildReference& r, const Planes& planes, const TriangleOf& triangle_of,
-                   Bins& bins) {
+                   SpatialBins& bins) {
   bool loaded = false;
   Float4 v[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -97,9 +97,9 @@ void add_reference(const BuildReference& r, const Planes& planes, const Triangle
   }
 }
 
-Bins make_bins(std::span<const BuildReference> references, const ReferenceRange& range,
-               const Planes& planes, const TriangleOf& triangle_of) {
-  const auto fill = [&](const tbb::blocked_range<std::uint32_t>& part, Bins bins) {
+SpatialBins make_bins(std::span<const BuildReference> references, const ReferenceRange& range,
+                      const Planes& planes, const TriangleOf& triangle_of) {
+  const auto fill = [&](const tbb::blocked_range<std::uint32_t>& part, SpatialBins bins) {
     for (std::uint32_t i = part.begin(); i < part.end(); ++i) {
       add_reference(references[i], planes, triangle_of, bins);
     }
@@ -107,13 +107,13 @@ Bins make_bins(std::span<const BuildReference> references, const ReferenceRange&
   };
   const tbb::blocked_range<std::uint32_t> all(range.begin, range.end, range_block);
   if (range.size() <= range_block) return fill(all, {});
-  return tbb::parallel_reduce(all, Bins(), fill, [](Bins a, const Bins& b) {
+  return tbb::parallel_reduce(all, SpatialBins(), fill, [](SpatialBins a, const SpatialBins& b) {
     a.add(b);
     return a;
   });
 }
 
-void try_axis(const std::array<Bin, bin_count>& bins, const Planes& planes, int axis,
+void try_axis(const std::array<SpatialBin, bin_count>& bins, const Planes& planes, int axis,
               SpatialSplit& best) {
   std::array<Box4, bin_count + 1> right;
   std::array<std::uint32_t, bin_count + 1> right_count{};
@@ -197,7 +197,7 @@ void cut(BuildReference& r, const SpatialSplit& split, const TriangleOf& triangl
 SpatialSplit find_spatial_split(std::span<const BuildReference> references,
                                 const ReferenceRange& range, const TriangleOf& triangle_of) {
   const Planes planes(range.bounds);
-  const Bins bins = make_bins(references, range, planes, triangle_of);
+  const SpatialBins bins = make_bins(references, range, planes, triangle_of);
   SpatialSplit best;
   for (int axis = 0; axis < 3; ++axis) {
     if (planes.inverse[axis] > 0.0f) try_axis(bins.of[axis], planes, axis, best);

@@ -7,7 +7,7 @@
 namespace pt {
 namespace {
 
-constexpr std::size_t alignment = 16;  // of the first texel, bytes
+constexpr std::size_t atlas_alignment = 16;  // of the first texel, bytes
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void ColorAtlas::store(const std::vector<Color>& colors, Texture& texture,
   texture.wrap_u = texture.wrap_v = TextureWrap::clamp;
   texture.width = static_cast<std::uint32_t>(2 * per_row_);
   texture.height = static_cast<std::uint32_t>(2 * rows_);
-  texture.offset = (texels.size() + alignment - 1) / alignment * alignment;
+  texture.offset = (texels.size() + atlas_alignment - 1) / atlas_alignment * atlas_alignment;
   texels.resize(texture.offset + colors.size() * sizeof(Color));
   std::memcpy(&texels[texture.offset], colors.data(), colors.size() * sizeof(Color));
 }

@@ -52,7 +52,7 @@ Mesh read_text(std::string_view body, const PlyHeader& header) {
   }
 }
 
-Mesh decode(std::string_view file, const MeshFileOptions& options) {
+Mesh decode_file(std::string_view file, const MeshFileOptions& options) {
   const std::string_view bytes = without_byte_order_mark(file);
   const PlyHeader header = read_ply_header(bytes);
   const std::string_view body = bytes.substr(header.bytes);
@@ -70,12 +70,12 @@ Mesh decode(std::string_view file, const MeshFileOptions& options) {
 }  // namespace
 
 Mesh decode_ply(std::string_view bytes, const std::string& name, const MeshFileOptions& options) {
-  return explaining("cannot read " + name, [&] { return decode(bytes, options); });
+  return explaining("cannot read " + name, [&] { return decode_file(bytes, options); });
 }
 
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode(MappedFile(path).bytes(), options); });
+                    [&] { return decode_file(MappedFile(path).bytes(), options); });
 }
 
 }  // namespace pt

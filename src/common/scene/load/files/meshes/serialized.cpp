@@ -110,7 +110,7 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset, std::vector<std::s
   return mesh;
 }
 
-Mesh decode(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
+Mesh decode_shape(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
   Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index), options.warnings);
   finish_mesh(mesh, options);
   return mesh;
@@ -125,13 +125,13 @@ std::string cannot_read(int shape_index, const std::string& name) {
 Mesh decode_serialized(std::string_view bytes, const std::string& name, int shape_index,
                        const MeshFileOptions& options) {
   return explaining(cannot_read(shape_index, name),
-                    [&] { return decode(bytes, shape_index, options); });
+                    [&] { return decode_shape(bytes, shape_index, options); });
 }
 
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options) {
   return explaining(cannot_read(shape_index, path.string()),
-                    [&] { return decode(MappedFile(path).bytes(), shape_index, options); });
+                    [&] { return decode_shape(MappedFile(path).bytes(), shape_index, options); });
 }
 
 }  // namespace pt
