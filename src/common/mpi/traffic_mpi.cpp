@@ -18,7 +18,7 @@ namespace {
 // Part of a message, or its last part; so heartbeats can pass between parts.
 int tag_of(MessageKind kind, bool is_last) { return 2 * static_cast<int>(kind) + is_last; }
 bool is_last(int tag) { return tag % 2 != 0; }
-MessageKind kind_of(int tag) { return static_cast<MessageKind>(tag / 2); }
+MessageKind message_kind_of(int tag) { return static_cast<MessageKind>(tag / 2); }
 
 constexpr unsigned grace_s = 10;  ///< for MPI to end; then the process does
 
@@ -126,7 +126,7 @@ bool MpiTraffic::turn(const std::function<void(int)>& heard,
       if (!done) break;
       moved = true;
       heard(from);
-      const MessageKind kind = kind_of(part.tag);
+      const MessageKind kind = message_kind_of(part.tag);
       if (kind != MessageKind::heartbeat) {
         std::string& bytes = begun_[from];
         bytes.empty() ? bytes.swap(part.bytes) : void(bytes += part.bytes);
