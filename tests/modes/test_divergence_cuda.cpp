@@ -10,7 +10,7 @@
 namespace pt {
 namespace {
 
-constexpr int width = 64, height = 32, spp = 3;  // whole warps of camera rays
+constexpr int lanes_width = 64, lanes_height = 32, lanes_spp = 3;  // whole warps of camera rays
 
 struct Counted {
   RenderReport report;
@@ -41,9 +41,9 @@ class CudaDivergence : public CudaTest {
 
   static Counted render(const std::string& scene, const std::string& mode, Settings more = {}) {
     Settings settings{{"scene", scene},
-                      {"width", std::to_string(width)},
-                      {"height", std::to_string(height)},
-                      {"spp", std::to_string(spp)},
+                      {"width", std::to_string(lanes_width)},
+                      {"height", std::to_string(lanes_height)},
+                      {"spp", std::to_string(lanes_spp)},
                       {"max-depth", "6"}};
     settings.insert(settings.end(), more.begin(), more.end());
     const Options options = cuda_options(mode, settings);
@@ -59,7 +59,7 @@ class CudaDivergence : public CudaTest {
   }
 };
 
-constexpr std::uint64_t camera_rays = std::uint64_t{width} * height * spp;
+constexpr std::uint64_t camera_rays = std::uint64_t{lanes_width} * lanes_height * lanes_spp;
 
 /// Lanes in as few groups as there can be.
 std::uint64_t warps_of(std::uint64_t lanes) { return (lanes + 31) / 32; }
