@@ -9,8 +9,9 @@
 
 namespace pt {
 
-/// A sky of ones, and a wall at z = 1.
+/// A sky of ones.
 inline const std::string lit = "LightSource \"infinite\"\n";
+/// A wall that fills pbrt_world's image, at a distance of 1, facing the camera at the origin.
 inline const std::string wall =
     "Shape \"bilinearmesh\" \"point3 P\" [ -3 -3 1  -3 3 1  3 -3 1  3 3 1 ]\n";
 

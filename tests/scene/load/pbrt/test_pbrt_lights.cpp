@@ -23,7 +23,6 @@ Color mean_color(const SceneData& loaded, int spp = 16, int depth = 2) {
   return sum / 256.0f;
 }
 
-/// A wall that fills the image, at a distance of 1, facing the camera at the origin.
 const std::string black = "Material \"diffuse\" \"rgb reflectance\" [ 0 0 0 ]\n";
 const std::string white = "Material \"diffuse\" \"rgb reflectance\" [ 1 1 1 ]\n";
 
