@@ -18,7 +18,7 @@ PLAIN = ["platform", "choices"]
 MATHS = ["math", *PLAIN]
 SAMPLING = ["sampling", *MATHS]
 SHAPES = ["geometry", *SAMPLING]
-SCENE_PARTS = ["light", "material", "texture", "accel", *SHAPES]
+SCENE_PARTS = ["light", "material", "medium", "texture", "accel", *SHAPES]
 HOST = ["options", "error"]
 BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
 SCENE = ["loaders", "builtin", "prepare", "scene", "plan", "image", *BUILDERS]
@@ -66,6 +66,7 @@ LAYERS = [
     ("accel", ["common/accel/*"], [*SHAPES, *HOST]),
     ("light", ["common/light/*"], ["material", "texture", "error", *SHAPES]),
     ("material", ["common/material/*"], ["texture", *SHAPES]),
+    ("medium", ["common/medium/*"], SHAPES),
     ("texture", ["common/texture/*"], MATHS),
     ("geometry", ["common/geometry/*"], SAMPLING),
     ("sampling", ["common/sampling/*"], [*MATHS, "error"]),

@@ -40,12 +40,12 @@ PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuf
         if constexpr (branching == Branching::reduced) {
           meet_anything<Traits>(scene, ray, hit, path, limits, steps, registers);
         } else {
-          meet_surface<Traits>(scene, ray, hit, path, limits, steps, registers);
+          meet<Traits>(scene, ray, hit, path, limits, steps, registers);
         }
         ended = !registers.alive;
       }
       if (!ended) {
-        hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key(), path.rays));
+        hit = next_hit<Traits>(scene, ray, path_key(), path);
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
           leave_scene<Integrator, Traits::lighting>(scene, ray.direction, path, limits, registers);

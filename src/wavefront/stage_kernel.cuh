@@ -74,6 +74,14 @@ class BlockAppender {
   int buffer_ = 0;
 };
 
+/// Where all of these queues are there.
+template <StageId... ids, class Appender>
+__device__ void append_each(Appender& appender, const StageQueues& queues, bool done, StageId to,
+                            std::uint32_t slot) {
+  appender.append({(done && to == ids)...}, slot, {queues.next[queue_of<ids>]...},
+                  {(queues.waiting + queue_of<ids>)...});
+}
+
 /// Sends what a block has finished to the next queues. Called by all of its threads, with `done` in
 /// those that had a slot.
 template <class Stage, class Appender>
@@ -85,7 +93,16 @@ __device__ void append_next(Appender& appender, const StageQueues& queues, bool 
   constexpr int shadow = queue_of<StageId::shadow>;
   if (queues.next[a] == nullptr && queues.next[b] == nullptr) return;
   const bool to_b = done && !to_a && queues.next[b] != nullptr;
-  if constexpr (outcomes.casts_shadow_rays) {
+  if constexpr (outcomes.extra() > 0) {
+    static_assert(!outcomes.casts_shadow_rays);
+    if constexpr (outcomes.extra() == 1) {
+      append_each<outcomes.to[0], outcomes.to[1], outcomes.more[0]>(appender, queues, done, next.to,
+                                                                    slot);
+    } else {
+      append_each<outcomes.to[0], outcomes.to[1], outcomes.more[0], outcomes.more[1]>(
+          appender, queues, done, next.to, slot);
+    }
+  } else if constexpr (outcomes.casts_shadow_rays) {
     appender.append({to_a, to_b, done && next.shadow}, slot,
                     {queues.next[a], queues.next[b], queues.next[shadow]},
                     {queues.waiting + a, queues.waiting + b, queues.waiting + shadow});
@@ -114,7 +131,8 @@ __global__ void __launch_bounds__(block_max<Stage>())
   if constexpr (Stage::id == StageId::shade_surface && memory != SceneMemory::shared)
     asm volatile(".pragma \"enable_smem_spilling\";");
 #endif
-  using Appender = BlockAppender<Stage::outcomes.casts_shadow_rays ? 3 : 2>;
+  constexpr int extra = Stage::outcomes.casts_shadow_rays ? 1 : Stage::outcomes.extra();
+  using Appender = BlockAppender<2 + extra>;
   __shared__ typename Appender::Shared shared;
   stamp_first_thread(clock, id_of(stage));
   const std::uint32_t count = *queues.count;

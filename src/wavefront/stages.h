@@ -22,6 +22,9 @@ struct StageOutcomes {
   StageId to[2];
   bool sends;
   bool casts_shadow_rays;
+  StageId more[2] = {StageId::idle, StageId::idle};  ///< of one that casts no shadow rays; or idle
+
+  constexpr int extra() const { return (more[0] != StageId::idle) + (more[1] != StageId::idle); }
 };
 
 /// How a stage reads the spheres; where they may lie decides how many kernels it has.
@@ -77,6 +80,12 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   const Ray ray = begin_path(scene, id, random);
   context.source.close(id, random);
   context.pool.store_new_path(slot, ray, path_index);
+  if (context.pool.medium != nullptr) {
+    PathState path;
+    path.medium.index = static_cast<std::uint16_t>(scene.camera_medium);
+    context.pool.store_medium(slot, path);
+    context.pool.store_flight(slot, {});
+  }
 }
 
 PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
@@ -90,7 +99,7 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
 /// radiance in its sample. Without lights nothing is added before a path ends, and its sample need
 /// not be read. `streams`: takes results as shading finds them (StreamedSteps), to shorten live
 /// ranges.
-template <bool streams = false>
+template <bool streams = false, bool has_media = false>
 struct PoolSink {
   const PathPool& pool;
   const SampleBuffer& samples;
@@ -111,12 +120,17 @@ struct PoolSink {
   }
   PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
     if constexpr (!streams) pool.store_shadow_ray(slot, shadow, path);
-    pool.store_shadow_radiance(slot, shadow.radiance, path);
+    if constexpr (has_media) {
+      pool.store_shadow_radiance(slot, shadow, path);
+    } else {
+      pool.store_shadow_radiance(slot, shadow.radiance, path);
+    }
     next.shadow = true;
   }
   PT_HD void continue_path(const PathState& path, const Ray& ray) {
     if (has_lights) add_radiance(samples, path.index, emitted);
     pool.store_path(slot, ray, path);
+    if constexpr (has_media) pool.store_medium(slot, path);
     next.to = StageId::intersect;
   }
   PT_HD void end(const PathState& path) {
@@ -175,7 +189,7 @@ struct RepeatPaths {
 
 /// What tracing depends on: scenes that differ in their light alone share its kernels.
 template <class T>
-using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks>;
+using RayTraits = Traits<T::accel, T::geometry, Lighting::sky, T::has_masks, T::has_media>;
 
 /// The next rays of paths: what is traced, and what becomes of a path when its hit is known.
 struct PathRays {
@@ -195,9 +209,17 @@ struct PathRays {
 template <class Traits>
 struct IntersectRays : PathRays {
   static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr StageOutcomes outcomes = {
+      {StageId::shade_surface, StageId::shade_miss},
+      true,
+      false,
+      {Traits::has_media ? StageId::sample_medium : StageId::idle}};
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    if constexpr (Traits::has_media) {
+      if (pool.load_flight(slot).has_begun()) return {StageId::sample_medium};  // its hit is known
+    }
     std::uint32_t key = 0;
     if constexpr (Traits::has_masks) {
       const PathState path = pool.load_path_id(slot);
@@ -205,7 +227,51 @@ struct IntersectRays : PathRays {
     }
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
-    return finish(slot, intersect_closest<Traits>(scene, ray, key));
+    const Hit hit = intersect_closest<Traits>(scene, ray, key);
+    if constexpr (Traits::has_media) {
+      PathState path;
+      pool.load_medium(slot, path);
+      if (path.medium.index != no_medium) {
+        pool.store_hit(slot, hit);
+        return {StageId::sample_medium};
+      }
+    }
+    return finish(slot, hit);
+  }
+};
+
+/// The free flights of paths in media: to a collision, or to what their rays have hit. One that is
+/// not there after `collisions_max` null collisions goes on in the next wave.
+template <class Traits>
+struct SampleMedium {
+  static constexpr StageId id = StageId::sample_medium;
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr StageOutcomes outcomes = {{StageId::shade_surface, StageId::shade_miss},
+                                             true,
+                                             false,
+                                             {StageId::shade_medium, StageId::intersect}};
+  PathPool pool;
+  SampleBuffer samples;
+  std::uint32_t collisions_max;
+
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    Ray ray;
+    PathState path = pool.load_path(slot, ray);
+    set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
+    pool.load_medium(slot, path);
+    Hit hit = pool.load_hit(slot);
+    FreeFlight flight = pool.load_flight(slot);
+    const bool arrives = travel(scene, ray, mask_key<Traits>(scene, samples.id_of(path.index)),
+                                collisions_max, path, flight, hit);
+    pool.store_path(slot, ray, path);
+    pool.store_medium(slot, path);
+    pool.store_flight(slot, arrives ? FreeFlight() : flight);
+    if (!arrives) return {StageId::intersect};
+    if (hit.is_collision()) {
+      pool.store_hit(slot, hit);
+      return {StageId::shade_medium};
+    }
+    return {hit.is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };
 
@@ -265,9 +331,10 @@ struct ShadeSurface {
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
+    if constexpr (Traits::has_media) pool.load_medium(slot, path);
     ++path.rays;
     const Hit hit = pool.load_hit(slot);
-    PoolSink<streams> sink{pool, samples, slot, has_lights};
+    PoolSink<streams, Traits::has_media> sink{pool, samples, slot, has_lights};
     if constexpr (streams) {
       meet_surface<Traits>(scene, ray, hit, path, limits,
                            StreamedSteps{source, samples, path, sink}, sink);
@@ -282,6 +349,31 @@ struct ShadeSurface {
       }
       source.close(id_of_path, random);
     }
+    return sink.next;
+  }
+};
+
+/// Collisions in media, as ShadeSurface does surfaces.
+template <class Traits, class Source>
+struct ShadeMedium {
+  static constexpr StageId id = StageId::shade_medium;
+  static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, true};
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr int block_max = shading_block_max<Traits>;
+  StageContext<Source> context;
+
+  PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
+    Ray ray;
+    PathState path = pool.load_path(slot, ray);
+    pool.load_medium(slot, path);
+    ++path.rays;
+    PoolSink<false, true> sink{pool, samples, slot, true};
+    const PathId id_of_path = samples.id_of(path.index);
+    auto random = source.open(id_of_path);
+    collide<Traits>(scene, ray, pool.load_hit(slot).t, path, limits,
+                    draw_steps<Traits>(random, path), sink);
+    source.close(id_of_path, random);
     return sink.next;
   }
 };
@@ -310,6 +402,12 @@ struct TraceShadowRays : ShadowRays {
     if constexpr (Traits::has_masks) {
       key = shadow_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path_index)),
                            pool.load_shadow_rays(slot));
+    }
+    if constexpr (Traits::has_media) {
+      shadow.medium = pool.load_shadow_medium(slot);
+      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
+      shadow.radiance = multiply_rounded(shadow.radiance, passed);
+      return finish(path_index, shadow, false);
     }
     return finish(path_index, shadow, intersect_shadow<Traits>(scene, shadow, key));
   }
@@ -340,6 +438,7 @@ struct FollowPaths {
       path.index = slot;  // the pool holds the whole batch
     } else {
       path = pool.load_path(slot, ray);
+      if constexpr (Traits::has_media) pool.load_medium(slot, path);
     }
     const PathId id_of_path = samples.id_of(path.index);
     auto random = source.open(id_of_path);
@@ -349,9 +448,14 @@ struct FollowPaths {
     Color radiance(0.0f);
     if (has_lights && !starts_paths) radiance = load_wide(&samples.samples[path.index]).radiance;
     const std::uint32_t key = mask_key<Traits>(scene, id_of_path);
+    FreeFlight flight;
+    if constexpr (Traits::has_media) {
+      if (!starts_paths) flight = pool.load_flight(slot);
+    }
     bool alive = true;
     for (std::uint32_t traced = 0; alive && traced < rays_max; ++traced) {
-      alive = follow_ray<Traits>(scene, ray, path, radiance, limits, random, key);
+      alive = follow_ray<Traits>(scene, ray, path, radiance, limits, random, key, flight);
+      flight = {};
     }
     source.close(id_of_path, random);
     if (!alive) {
@@ -360,6 +464,7 @@ struct FollowPaths {
     }
     if (has_lights) store_wide(&samples.samples[path.index], Sample{radiance, 0});
     pool.store_path(slot, ray, path);
+    if constexpr (Traits::has_media) pool.store_medium(slot, path);
     return {StageId::intersect};
   }
 };

@@ -44,6 +44,8 @@ struct WaveBuffers {
   bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
   bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
   bool fused = false;           ///< --stages
+  bool has_media = false;       ///< the scene has
+  std::uint32_t wave_collisions = to_the_end;  ///< null ones that a flight has in a wave
   std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
   // Pools that share a batch whose paths repeat divide its indices among all of their slots:
   std::uint32_t first_slot = 0;  ///< this pool's, counted through all of them
@@ -129,11 +131,20 @@ struct WaveBuffers {
         return false;
       case StageId::shadow:
         return fused || !has_lights;
+      case StageId::sample_medium:
+      case StageId::shade_medium:
+        return fused || !has_media;
       default:
         return fused;
     }
   }
 };
+
+/// WaveBuffers::wave_collisions.
+inline std::uint32_t wave_collisions(const Options& options) {
+  return options.wave_collisions == 0 ? to_the_end
+                                      : static_cast<std::uint32_t>(options.wave_collisions);
+}
 
 // What follows is written for an Executor, the device's way to do it:
 //   compact(request)         a pass over the tags, where the strategy makes one
@@ -183,7 +194,8 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
 template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
                        const StageQueues& surfaces) {
-  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
+  constexpr bool streams =
+      Executor::streams_shading && Shading::lighting == Lighting::full && !Shading::has_media;
   execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
@@ -245,6 +257,17 @@ void bounce_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
               paths);
 }
 
+/// The free flights of paths in media. All paths then wait for what they have met.
+template <class Traits, class Executor>
+void sample_media(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
+  constexpr StageId id = StageId::sample_medium;
+  execute.compact(b.request<id>(b.pool.tag));
+  execute.run(SampleMedium<RayTraits<Traits>>{b.pool, samples, b.wave_collisions},
+              b.stage_queues(id, b.waiting(id), b.pool.tag));
+  execute.compact(
+      b.request<StageId::shade_miss, StageId::shade_surface, StageId::shade_medium>(b.pool.tag));
+}
+
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
 /// `starts_paths` it does not look for free slots.
 template <class Traits, Branching branching, class Source, class Executor>
@@ -267,7 +290,11 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   if (b.fused) return bounce_paths<Traits>(execute, b, context, all_new);
   trace_rays<Traits>(execute, b, context.samples, parts_misses);
 
-  execute.compact(b.request<shade_miss, shade_surface>(tags));
+  if constexpr (Traits::has_media) {
+    sample_media<Traits>(execute, b, context.samples);
+  } else {
+    execute.compact(b.request<shade_miss, shade_surface>(tags));
+  }
   if constexpr (parts_misses) {
     constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
     execute.run(ShadeMiss<typename Traits::Integrator, sky>{b.pool, context.samples, context.limits,
@@ -275,11 +302,18 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
                 b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
   using Shading = ShadingTraits<Traits>;
-  if (Traits::has_masks && b.only_triangles) {
-    // Masks make a scene `mixed` for its rays, but not for its surfaces.
-    shade_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
+  // Masks make a scene `mixed` for its rays, but not for its surfaces.
+  constexpr bool may_be_plain = Traits::has_masks && !Traits::has_media;
+  if (may_be_plain && b.only_triangles) {
+    using Plain = std::conditional_t<may_be_plain, TrianglesAlone<Shading>, Shading>;
+    shade_surfaces<Plain, branching>(execute, b, context);
   } else {
     shade_surfaces<Shading, branching>(execute, b, context);
+  }
+
+  if constexpr (Traits::has_media) {
+    execute.run(ShadeMedium<Shading, Source>{context},
+                b.stage_queues(shade_medium, b.waiting(shade_medium), tags));
   }
 
   if constexpr (Traits::has_lights) {

@@ -173,9 +173,11 @@ class WavefrontCpu : public CpuRenderer {
     common.compaction = compaction_info(options.compaction);
     common.fused = fused;
     common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
+    common.wave_collisions = wave_collisions(options);
     common.shades_by_kind = execution_.shades_by_kind;
     common.orders_surfaces = execution_.orders_surfaces;
     common.kinds = kinds_of(scene);
+    common.has_media = traits_.has_media;
     common.only_triangles = scene_.has_only_triangles();
     common.all_slots = static_cast<std::uint32_t>(pool_size_);
     const PathPool::Parts parts = {traits_.has_lights() && !fused,
@@ -183,7 +185,9 @@ class WavefrontCpu : public CpuRenderer {
                                    !common.compaction.appends,
                                    scene_.light_selector.has_tree(),
                                    options.layout,
-                                   !fused};
+                                   !fused,
+                                   traits_.has_media,
+                                   traits_.has_media && options.wave_collisions > 0};
     const std::uint64_t size_bytes =
         pool_size_ * (PathPool::bytes_per_slot(parts) + common.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));

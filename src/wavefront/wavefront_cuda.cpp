@@ -36,9 +36,11 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
+  buffers_.has_media = traits_.has_media;
   buffers_.only_triangles = scene_.has_only_triangles();
   buffers_.fused = execution_.fused;
   buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
+  buffers_.wave_collisions = wave_collisions(options_);
   buffers_.shades_by_kind = execution_.shades_by_kind;
   buffers_.orders_surfaces = execution_.orders_surfaces;
   parts_ = {traits_.has_lights() && !buffers_.fused,
@@ -46,7 +48,9 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
             !appends,
             scene_.light_selector.has_tree(),
             options_.layout,
-            !buffers_.fused};
+            !buffers_.fused,
+            traits_.has_media,
+            traits_.has_media && options_.wave_collisions > 0};
   const std::uint64_t bytes_per_slot =
       PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const int halvings = options_.pool_size == 0 ? options_.memory_halvings : 0;
@@ -128,6 +132,9 @@ template <class Function>
 void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function) {
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
+    if constexpr (std::is_same_v<Source, SamplerSource>) {
+      if (traits_.has_media) return function(MediaSceneKinds{}, context_of(batch, source));
+    }
     function(CudaKindsWith<Source, TriangleSceneKinds>{}, context_of(batch, source));
   });
 }
@@ -240,6 +247,7 @@ void WavefrontCuda::note_flow() {
 }
 
 void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
+  if (traits_.has_media) return;  // cells, voxels and pauses of flights are not foreseen
   WaveLayout layout;
   layout.parts = parts_;
   layout.parts.lights = traits_.has_lights();

@@ -34,7 +34,7 @@ class WavefrontCuda : public CudaRenderer {
   /// Wide trees, where a thread per ray would wait for the slowest of its warp. Scenes with spheres
   /// or masks are of the same kinds as some without.
   template <class Traits>
-  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
+  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh && !Traits::has_media;
   bool traces_queues_here() const { return execution_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);

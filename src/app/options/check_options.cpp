@@ -126,7 +126,7 @@ void check_stages(const Options& options, const GivenOptions& given) {
     if (given.contains("wave-rays")) refuse_with_stages(options, "wave-rays", Stages::fused);
     return;
   }
-  for (const char* name : {"shade", "persistent"}) {
+  for (const char* name : {"shade", "persistent", "wave-collisions"}) {
     if (given.contains(name)) refuse_with_stages(options, name, Stages::split);
   }
   if (options.order_surfaces == SurfaceOrdering::on)

@@ -342,6 +342,11 @@ void add_execution(std::vector<OptionEntry>& list) {
            "rays are cheap, in scenes of spheres and quads with --accel\n"
            "brute")
       .only(wavefront, any_device)
+      .add(integer("wave-collisions", &Options::wave_collisions, 0, 65535),
+           "wavefront, in media with grids: a path that has collided with\n"
+           "nothing so often waits for the next wave; 0: it loops until its\n"
+           "flight ends")
+      .only(wavefront, any_device)
       .add(integer("wave-rays", &Options::wave_rays, 1, 65535),
            "wavefront with --stages fused: rays per path and wave; with\n"
            "--max-depth rays it is nearly the megakernel")

@@ -46,6 +46,14 @@ struct Depth {
   static constexpr const char *name = "depth", *channels = "Z";
   static PT_HD float of(const FirstHit& hit) { return hit.distance; }
 };
+struct Collision {
+  static constexpr const char *name = "collision", *channels = "Z";
+  static PT_HD float of(const FirstHit& hit) { return hit.collision; }
+};
+struct Transmittance {
+  static constexpr const char *name = "transmittance", *channels = "RGB";
+  static PT_HD Vec3 of(const FirstHit& hit) { return hit.transmittance; }
+};
 struct Position {
   static constexpr const char *name = "position", *channels = "XYZ";
   static PT_HD Vec3 of(const FirstHit& hit) { return hit.position; }
@@ -88,7 +96,7 @@ struct Rays {
 /// Every AOV, once. Its index is its bit in Options::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
                       aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
-                      aov::Samples, aov::Bounces, aov::Rays>;
+                      aov::Samples, aov::Bounces, aov::Rays, aov::Collision, aov::Transmittance>;
 static_assert(Aovs::size <= 32);
 
 /// What an AOV is made of.

@@ -14,6 +14,8 @@ struct Ray {
 };
 
 inline constexpr std::uint32_t no_primitive = 0xffffffffu;
+/// Instead of one where a ray ends in a medium.
+inline constexpr std::uint32_t medium_collision = 0xfffffffeu;
 inline constexpr float infinite_distance = 3.0e38f;
 
 /// The nearest intersection. Primitives are numbered spheres first, then quads, then the slots of
@@ -24,6 +26,7 @@ struct Hit {
   std::uint32_t instance = 0;  ///< of the triangle, in scenes with instances
 
   PT_HD bool is_miss() const { return primitive == no_primitive; }
+  PT_HD bool is_collision() const { return primitive == medium_collision; }
 };
 
 /// A point on a surface, with what is needed to leave it.

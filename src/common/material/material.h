@@ -69,6 +69,8 @@ struct alignas(16) Material {
   static constexpr std::uint8_t textured = 4;   ///< some parameter, or the emission
   static constexpr std::uint8_t tangents = 8;   ///< needs a tangent along which u grows
   static constexpr std::uint8_t nested = 16;    ///< no BSDF, but a MaterialNode
+  static constexpr std::uint8_t boundary = 32;  ///< the media on its two sides are known
+  static constexpr std::uint8_t passes = 64;    ///< a boundary without a BSDF: light goes through
 
   MaterialKind kind = kind_of<Diffuse>;  ///< nested: of all that it may become, or several_kinds
   std::uint8_t flags = 0;

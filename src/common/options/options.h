@@ -181,6 +181,7 @@ struct Options {
   Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
   SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
+  int wave_collisions = 0;            ///< Stages::split: null ones of a flight in a wave, 0: all
   int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
   /// So many paths left are followed to their ends at once, 0: none; absent: automatic.
   std::optional<std::uint32_t> finish_paths;

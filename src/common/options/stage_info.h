@@ -18,8 +18,10 @@ namespace pt {
   STAGE(mutate, generate, true)             \
   STAGE(intersect, intersect, true)         \
   STAGE(route_hits, intersect, true)        \
+  STAGE(sample_medium, sample_medium, true) \
   STAGE(shade_miss, shade_miss, true)       \
   STAGE(shade_surface, shade_surface, true) \
+  STAGE(shade_medium, shade_medium, true)   \
   STAGE(shadow, shadow, true)               \
   STAGE(bounce, intersect, true)            \
   STAGE(finish, intersect, true)            \

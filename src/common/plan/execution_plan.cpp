@@ -88,6 +88,7 @@ class Planner {
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
       return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
+    if (scene_.has_media) return {loop, "the others know no media"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
@@ -136,7 +137,7 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
-    if (scene_.limits_camera_rays) return {Accel::bvh2, alone};
+    if (scene_.limits_camera_rays || scene_.has_media) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
       return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
@@ -161,7 +162,8 @@ class Planner {
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
-           !scene_.limits_camera_rays && (scene_.instances == 0 || !scene_.has_masks);
+           !scene_.limits_camera_rays && !scene_.has_media &&
+           (scene_.instances == 0 || !scene_.has_masks);
   }
 
   void choose_scene_memory() {

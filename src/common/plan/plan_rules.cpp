@@ -35,7 +35,8 @@ bool is_general(const SceneProperties& scene, const Options& o) {
 }
 
 bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return is_general(scene, o) && scene.has_only_triangles() && !scene.limits_camera_rays;
+  return is_general(scene, o) && scene.has_only_triangles() && !scene.limits_camera_rays &&
+         !scene.has_media;
 }
 
 bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
@@ -45,6 +46,8 @@ bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
 bool has_rough_conductors(const SceneProperties& scene, const Options&) {
   return scene.has_rough_conductors;
 }
+
+bool has_media(const SceneProperties& scene, const Options&) { return scene.has_media; }
 
 constexpr const char* paper =
     "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
@@ -67,7 +70,7 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::sort);
      },
      has_plain_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, masks, clip planes, hidden "
+     "traces triangles alone; scene '{}' has spheres, instances, masks, media, clip planes, hidden "
      "emitters or no triangles, expected auto or loop"},
     {"kernel",
      [](const Options& o) {
@@ -75,8 +78,8 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::vote);
      },
      has_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, clip planes, hidden emitters or "
-     "no triangles, expected auto or loop"},
+     "traces triangles alone; scene '{}' has spheres, instances, media, clip planes, hidden "
+     "emitters or no triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -94,6 +97,11 @@ constexpr SceneRule rules[] = {
      has_specialized_kernels, paper},
     {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); },
      has_specialized_kernels, paper},
+    {"wave-collisions",
+     [](const Options& o) {
+       return o.wave_collisions == 0 ? std::string() : std::to_string(o.wave_collisions);
+     },
+     has_media, "counts what free flights in media meet; scene '{}' has no media, expected 0"},
     {"multiple-scattering",
      [](const Options& o) { return std::string(o.multiple_scattering ? "on" : ""); },
      has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
@@ -155,6 +163,11 @@ void check_structure(const ExecutionPlan& plan, const Options& o, const ScenePro
         "cwbvh");
   const bool is_plain = scene.has_only_triangles() && !scene.has_masked_kernels();
   if (plan.accel != Accel::cwbvh || is_plain) return;
+  if (scene.has_media)
+    throw Error(
+        fmt::format("--accel cwbvh: scenes with media have kernels for binary trees alone on CUDA; "
+                    "scene '{}' has some, expected bvh2 or auto",
+                    scene.name));
   if (o.mode == Mode::megakernel && plan.megakernel == MegakernelKind::loop)
     throw Error(
         fmt::format("--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA; "

@@ -28,14 +28,17 @@ inline constexpr bool counts_lanes = false;
   POINT(intersect, "begin to trace a ray")                                 \
   POINT(node, "visit a node")                                              \
   POINT(primitive, "test a primitive, or the triangles of a leaf")         \
+  POINT(flight, "sample a collision in a grid, null or not")               \
   POINT(route_hits, "send a path to the stage that shades it")             \
   POINT(shade_miss, "shade a ray that left the scene")                     \
   POINT(shade_surface, "shade a surface")                                  \
+  POINT(shade_medium, "shade a collision in a medium")                     \
   POINT(light, "sample a light")                                           \
   POINT(bsdf, "evaluate and sample the same BSDF")                         \
   POINT(shadow, "begin to trace a shadow ray")                             \
   POINT(shadow_node, "visit a node for shadow rays")                       \
-  POINT(shadow_primitive, "test a primitive, or a leaf, for shadow rays")
+  POINT(shadow_primitive, "test a primitive, or a leaf, for shadow rays")  \
+  POINT(shadow_flight, "estimate a grid's transmittance")
 
 #define PT_LANE_POINT_ENUMERATOR(name, meaning) name,
 enum class LanePoint : std::uint8_t { PT_LANE_POINTS(PT_LANE_POINT_ENUMERATOR) };
@@ -94,6 +97,7 @@ class LaneCounterIf {
     if (point == LanePoint::intersect) return LanePoint::shadow;
     if (point == LanePoint::node) return LanePoint::shadow_node;
     if (point == LanePoint::primitive) return LanePoint::shadow_primitive;
+    if (point == LanePoint::flight) return LanePoint::shadow_flight;
     return point;
   }
 

@@ -39,7 +39,10 @@ void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator) {
       fmt::format("no kernel of --integrator {} for a scene with --accel {}, geometry: {}, lights: "
                   "{}{}; expected one of the kinds that this mode, device and --rng have",
                   to_string(integrator), accel_name(traits.accel), name_of(traits.geometry),
-                  name_of(traits.lighting), traits.has_masks ? ", masks" : ""));
+                  name_of(traits.lighting),
+                  traits.has_media   ? ", media"
+                  : traits.has_masks ? ", masks"
+                                     : ""));
 }
 
 }  // namespace pt

@@ -35,20 +35,27 @@ TypeList<Traits<TreeAccel::value, geometry, Lighting::full, has_masks>...> kinds
     TypeList<TreeAccel...>);
 template <Geometry geometry, bool has_masks = false>
 using KindsWithTrees = decltype(kinds_with_trees<geometry, has_masks>(TreeAccels{}));
+/// Of scenes with media, where threads follow rays alone.
+template <Accel accel>
+using MediaKind = Traits<accel, Geometry::mixed, Lighting::full, true, true>;
 using TriangleSceneKinds = decltype(concatenate(
     KindsWithTrees<Geometry::triangles>{},
     concatenate(KindsWithTrees<Geometry::mixed>{}, KindsWithTrees<Geometry::mixed, true>{})));
+using MediaSceneKinds = TypeList<MediaKind<Accel::bvh2>>;
 /// Those that a megakernel's loop traces on CUDA.
 using LoopTriangleKinds =
     decltype(concatenate(KindsWithTrees<Geometry::triangles>{},
                          TypeList<Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                  Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>>{}));
+                                  Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+                                  MediaKind<Accel::bvh2>>{}));
 using CpuTriangleSceneKinds = decltype(concatenate(
-    TriangleSceneKinds{}, TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
-                                   Traits<Accel::brute, Geometry::mixed, Lighting::full>,
-                                   Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,
-                                   Traits<Accel::embree, Geometry::mixed, Lighting::full>,
-                                   Traits<Accel::brute, Geometry::mixed, Lighting::full, true>>{}));
+    TriangleSceneKinds{},
+    TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
+             Traits<Accel::brute, Geometry::mixed, Lighting::full>,
+             Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,
+             Traits<Accel::embree, Geometry::mixed, Lighting::full>,
+             Traits<Accel::brute, Geometry::mixed, Lighting::full, true>, MediaKind<Accel::bvh2>,
+             MediaKind<Accel::cwbvh>, MediaKind<Accel::brute>>{}));
 using CpuSceneKinds = decltype(concatenate(SphereSceneKinds{}, CpuTriangleSceneKinds{}));
 
 /// The kinds of scenes that have kernels with this source: samplers are for all but the paper's

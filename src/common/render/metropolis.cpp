@@ -167,6 +167,10 @@ void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFi
     refuse("--filter",
            "a filter with negative parts is no density; expected box, tent or gaussian");
   }
+  if (traits.has_media) {
+    refuse("a scene with media",
+           "where a flight ends is no random number that a chain could keep; expected path");
+  }
   if (traits.has_masks) {
     refuse("a scene with masks, clip planes or hidden emitters",
            "whether a mask hides is no random number that a chain could keep; "

@@ -6,11 +6,16 @@
 #include "common/sampling/random.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/shade_surface.h"
+#include "common/transport/travel.h"
 
 namespace pt {
 
+/// Of the first surface with a BSDF: camera rays go through boundaries of media.
 struct FirstHit {
   float distance = 0.0f;  ///< along the ray, in scene units
+  /// To the path's collision with a medium before that, if it has one.
+  float collision = 0.0f;
+  Color transmittance = Color(1.0f);  ///< of the media before the surface; estimated
   Vec3 position = Vec3(0.0f);
   Vec3 normal = Vec3(0.0f);  ///< geometric, outward
   Vec3 shading_normal = Vec3(0.0f);
@@ -80,6 +85,48 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   return first;
 }
 
+/// What a camera ray meets behind boundaries of media without a BSDF.
+struct ViewThroughMedia {
+  Ray ray;                ///< from the last of them
+  float distance = 0.0f;  ///< from the camera to there
+  Hit hit;
+  Color transmittance = Color(1.0f);
+  bool collides = false;
+  float collision = 0.0f;  ///< distance of the path's collision
+};
+
+template <class Traits>
+PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_ray,
+                                          std::uint32_t path_key) {
+  ViewThroughMedia view{camera_ray};
+  PathState path;  // the flights of the path itself: their keys are the same
+  for (;; ++path.rays) {
+    const std::uint32_t ray_key = next_ray_key(scene, path_key, path.rays);
+    view.hit = intersect_closest<Traits>(scene, view.ray, ray_key);
+    Hit end = view.hit;
+    FreeFlight flight;
+    travel(scene, view.ray, path_key, to_the_end, path, flight, end);
+    if (end.is_collision() && !view.collides) {
+      view.collides = true, view.collision = view.distance + end.t;
+    }
+    if (path.medium.index != no_medium) {
+      view.transmittance = multiply_rounded(
+          view.transmittance,
+          estimate_transmittance(scene.grids, load_wide(&scene.media[path.medium.index]), view.ray,
+                                 view.hit.t, combine_hash(ray_key, 1)));
+    }
+    if (view.hit.is_miss()) return view;
+    const std::uint32_t material = material_index_at(scene, view.hit);
+    if (!scene.material(material).is(Material::passes)) return view;
+    const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit).point;
+    path.medium.index = static_cast<std::uint16_t>(
+        scene.boundaries[material].towards(view.ray.direction, point.normal));
+    const Ray next = spawn_ray(point, view.ray.direction);
+    view.distance += dot(next.origin - view.ray.origin, view.ray.direction);
+    view.ray = next;
+  }
+}
+
 /// The first hit of the camera ray that the path `id` has.
 template <class Traits, class Source>
 PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const PathId& id,
@@ -87,10 +134,20 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   auto random = source.open(id);
   const Vec4 u = random.draw(scatter_block(0));
   is_negative = scene.filter.is_negative(u.x, u.y);
-  const Ray ray = generate_camera_path(scene, id.pixel, u);
-  const Hit hit =
-      intersect_closest<Traits>(scene, ray, next_ray_key(scene, mask_key<Traits>(scene, id), 0));
-  return first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
+  Ray ray = generate_camera_path(scene, id.pixel, u);
+  const std::uint32_t key = mask_key<Traits>(scene, id);
+  if constexpr (Traits::has_media) {
+    ViewThroughMedia view = look_through_media<Traits>(scene, ray, key);
+    FirstHit first = first_hit<Traits>(scene, view.ray, view.hit, random.draw(scatter_block(1)));
+    if (!view.hit.is_miss()) first.distance += view.distance;
+    first.collision = view.collides ? view.collision : first.distance;
+    first.transmittance = view.transmittance;
+    return first;
+  }
+  const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, key, 0));
+  FirstHit first = first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
+  first.collision = first.distance;
+  return first;
 }
 
 }  // namespace pt

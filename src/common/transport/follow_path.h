@@ -6,20 +6,21 @@
 namespace pt {
 
 /// Traces one ray of a path, shades its hit, and adds to the path's radiance. Returns whether
-/// the path continues: `ray` is then its next one. `path_key` is mask_key().
+/// the path continues: `ray` is then its next one. `path_key` is mask_key(), `flight` where the
+/// ray's has got already.
 template <class Traits, class Stream>
 PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
-                      const PathLimits& limits, Stream& random, std::uint32_t path_key) {
+                      const PathLimits& limits, Stream& random, std::uint32_t path_key,
+                      const FreeFlight& flight = {}) {
   const auto key = [&] { return path_key; };
   PathRegisters<Traits, decltype(key)> registers{scene, key, radiance, ray};
-  const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays));
+  const Hit hit = next_hit<Traits>(scene, ray, path_key, path, flight);
   ++path.rays;
   if (hit.is_miss()) {
     leave_scene<typename Traits::Integrator, Traits::lighting>(scene, ray.direction, path, limits,
                                                                registers);
   } else {
-    meet_surface<Traits>(scene, ray, hit, path, limits, draw_steps<Traits>(random, path),
-                         registers);
+    meet<Traits>(scene, ray, hit, path, limits, draw_steps<Traits>(random, path), registers);
   }
   return registers.alive;
 }

@@ -18,8 +18,9 @@ struct BlockTraits {
 /// that nothing need be compiled for one ray as well.
 template <class Traits>
 inline constexpr bool traces_blocks =
-    Traits::has_masks ? Traits::accel == Accel::cwbvh
-                      : Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2;
+    !Traits::has_media &&
+    (Traits::has_masks ? Traits::accel == Accel::cwbvh
+                       : Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2);
 
 /// Of whose masks rays have keys (mask_key).
 using MaskedRays = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;

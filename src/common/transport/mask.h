@@ -7,28 +7,21 @@
 #pragma once
 
 #include "common/accel/triangle_query.h"
+#include "common/sampling/hash.h"
 #include "common/sampling/random.h"
 #include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {
 
-/// Mixes `value` into a hash; the finalizer is Murmur3's (Appleby 2011).
-PT_HD std::uint32_t combine_hash(std::uint32_t hash, std::uint32_t value) {
-  hash = (hash ^ value) + 0x9e3779b9u;
-  hash = (hash ^ hash >> 16) * 0x85ebca6bu;
-  hash = (hash ^ hash >> 13) * 0xc2b2ae35u;
-  return hash ^ hash >> 16;
-}
-
 inline std::uint32_t mask_seed(std::uint64_t seed) {
   return combine_hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
 }
 
-/// Of a path; 0 in scenes without masks.
+/// Of a path; 0 in scenes with neither masks nor media.
 template <class Traits>
 PT_HD std::uint32_t mask_key(const Scene& scene, const PathId& id) {
-  if constexpr (!Traits::has_masks) return 0;
+  if constexpr (!Traits::has_masks && !Traits::has_media) return 0;
   return combine_hash(combine_hash(scene.mask_seed, id.pixel), id.sample);
 }
 

@@ -3,6 +3,8 @@
 //   Color miss<lighting>(scene, direction, path, limits)   added to the sample; the path ends
 //   Scattering surface<Traits>(scene, ray, hit, path, limits, steps)
 //                                                          see shade_surface.h
+//   Scattering medium<Traits>(scene, ray, distance, path, limits, steps)
+//                                                          likewise of a collision in a medium
 // `path` may change in surface(), but not in miss(). `steps` (surface_steps.h) has the blocks of
 // random numbers of the ray that hit, and may take results before surface() returns.
 //
@@ -13,6 +15,7 @@
 
 #include "common/transport/shade_miss.h"
 #include "common/transport/shade_surface.h"
+#include "common/transport/travel.h"
 
 namespace pt {
 
@@ -28,6 +31,12 @@ struct PathIntegrator {
   PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
                                   PathState& path, const PathLimits& limits, const Steps& steps) {
     return shade_surface<Traits>(scene, ray, hit, path, limits, steps);
+  }
+
+  template <class Traits, class Steps>
+  PT_HD static Scattering medium(const Scene& scene, const Ray& ray, float distance,
+                                 PathState& path, const PathLimits& limits, const Steps& steps) {
+    return scatter_in_medium<Traits>(scene, ray, distance, path, limits, steps);
   }
 };
 

@@ -27,6 +27,14 @@ PT_HD PathRecord pack_shadow_origin(const ShadowRay& shadow) {
   return pack(shadow.ray.origin, float_to_bits(shadow.distance));
 }
 
+PT_HD PathRecord pack_medium(const PathMedium& m) {
+  return pack({m.travelled, m.densities.red, m.densities.green},
+              m.index | std::uint32_t{m.passed} << 16);
+}
+PT_HD PathMedium unpack_medium(const PathRecord& r) {
+  return {static_cast<std::uint16_t>(r.w), static_cast<std::uint16_t>(r.w >> 16), r.x, {r.y, r.z}};
+}
+
 PT_HD void unpack_throughput(const PathRecord& record, PathState& path) {
   path.beta = vec(record);
   path.rays = static_cast<std::uint16_t>(record.w);

@@ -9,8 +9,8 @@
 // or, instead of both,
 //   void continue_path_if(bool, const PathState&, const Ray&)
 //
-// A ray that leaves the scene: emit, end. One that meets a surface: emit, perhaps cast, then
-// continue_path or end. `path.rays` counts the ray that has ended.
+// A ray that leaves the scene: emit, end. One that meets a surface or collides in a medium: emit,
+// perhaps cast, then continue_path or end. `path.rays` counts the ray that has ended.
 #pragma once
 
 #include "common/transport/generate_camera_path.h"
@@ -58,6 +58,27 @@ PT_HD void meet_surface(const Scene& scene, const Ray& ray, const Hit& hit, Path
       sink);
 }
 
+/// The ray has collided in a medium.
+template <class Traits, class Steps, class Sink>
+PT_HD void collide(const Scene& scene, const Ray& ray, float distance, PathState& path,
+                   const PathLimits& limits, const Steps& steps, Sink& sink) {
+  follow_scattering<Traits>(
+      Traits::Integrator::template medium<Traits>(scene, ray, distance, path, limits, steps), path,
+      sink);
+}
+
+/// One or the other.
+template <class Traits, class Steps, class Sink>
+PT_HD void meet(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
+                const PathLimits& limits, const Steps& steps, Sink& sink) {
+  if constexpr (Traits::has_media) {
+    if (hit.is_collision()) {
+      return collide<Traits>(scene, ray, hit.t, path, limits, steps, sink);
+    }
+  }
+  meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
+}
+
 /// Both by one way through the code (shade_any.h).
 template <class Traits, class Sink>
 PT_HD void meet_anything(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
@@ -91,6 +112,11 @@ struct PathRegisters {
   }
   PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
     const std::uint32_t key = shadow_ray_key(scene, path_key(), path.rays);
+    if constexpr (Traits::has_media) {
+      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
+      radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, passed));
+      return;
+    }
     if (!intersect_shadow<Traits>(scene, shadow, key)) {
       radiance = add_rounded(radiance, shadow.radiance);
     }

@@ -44,7 +44,16 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   if constexpr (Traits::lighting == Lighting::full) {
     Le = textured_apart(scene, Le, emission.texture, surface.uv);
   }
-  const float pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
+  float pdf;
+  if constexpr (Traits::has_media) {  // seen from where the path was scattered last
+    Ray seen = ray;
+    Hit from_there = hit;
+    seen.origin = add_scaled(ray.origin, -path.medium.travelled, ray.direction);
+    from_there.t = add_rounded(hit.t, path.medium.travelled);
+    pdf = light_pdf<Traits>(scene, seen, path.receiver, from_there);
+  } else {
+    pdf = light_pdf<Traits>(scene, ray, path.receiver, hit);
+  }
   return path.beta * Le * direction_weight(mis, path.bsdf_pdf, pdf);
 }
 
@@ -92,6 +101,21 @@ PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& 
   steps.aim(shadow);
 }
 
+/// A surface without a BSDF between two media.
+PT_HD Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
+                               PathState& path) {
+  path.medium.index = static_cast<std::uint16_t>(
+      scene.boundaries[surface.material_index].towards(ray.direction, surface.point.normal));
+  ++path.medium.passed;
+  Scattering result;
+  result.alive = true;
+  result.ray = spawn_ray(surface.point, ray.direction);
+  set_lanes(result.ray, lanes_of(scene).at(path.rays));
+  path.medium.travelled =
+      add_rounded(path.medium.travelled, dot(result.ray.origin - ray.origin, ray.direction));
+  return result;
+}
+
 /// Around the shading normal, along dp_du where the material needs that.
 template <class Traits>
 PT_HD Frame shading_frame(const Vec3& normal, const Vec3& dp_du) {
@@ -113,11 +137,19 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   const DirectionSampling directions = full ? limits.directions : DirectionSampling::bsdf;
   lanes_of(ray).count(LanePoint::shade_surface);
   Surface surface = surface_at<Traits>(scene, ray, hit);
+  if constexpr (Traits::has_media) {
+    if (surface.material.is(Material::passes)) return pass_boundary(scene, ray, surface, path);
+  }
   Scattering result;
   if constexpr (has_lights) {
     result.emitted = steps.emit(emitted_radiance<Traits>(scene, ray, hit, path, surface, mis));
   }
-  if (path.rays >= limits.max_depth) return result;
+  if (path.depth<Traits>() >= limits.max_depth) return result;
+  MediumBoundary boundary{path.medium.index, path.medium.index};
+  if constexpr (Traits::has_media) {
+    if (surface.material.is(Material::boundary))
+      boundary = scene.boundaries[surface.material_index];
+  }
   float choice = 0.0f;
   const bool is_nested = full && surface.material.is(Material::nested);
   if (is_nested) choice = steps.scatter().w;
@@ -170,6 +202,11 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     } else {
       result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
     }
+    if constexpr (Traits::has_media) {
+      const Vec3& n = surface.point.normal;
+      result.shadow.medium =
+          static_cast<std::uint16_t>(boundary.towards(result.shadow.ray.direction, n));
+    }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
@@ -177,6 +214,11 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   if (limits.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
+  if constexpr (Traits::has_media) {
+    path.medium.index =
+        static_cast<std::uint16_t>(boundary.towards(result.ray.direction, surface.point.normal));
+    path.medium.travelled = 0.0f;
+  }
   set_lanes(result.ray, lanes_of(scene).at(path.rays));
   return result;
 }

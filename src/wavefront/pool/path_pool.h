@@ -9,6 +9,7 @@
 #include <cstddef>
 
 #include "common/film/film.h"
+#include "common/medium/free_flight.h"
 #include "common/options/options.h"
 #include "common/options/stage_info.h"
 #include "common/transport/path_records.h"
@@ -33,7 +34,7 @@ struct PathPool {
   /// values, so both layouts are one code: the address of an element is a product and a sum anyway.
   struct Strides {
     std::uint32_t ray = sizeof(PathRecord);  ///< of a record that is half of a ray
-    std::uint32_t record = sizeof(PathRecord), hit = sizeof(StoredHit),
+    std::uint32_t record = sizeof(PathRecord), hit = sizeof(StoredHit), flight = sizeof(FreeFlight),
                   word = sizeof(std::uint32_t);
   };
 
@@ -46,6 +47,8 @@ struct PathPool {
   StoredHit* hit = nullptr;
   std::uint32_t* hit_instance = nullptr;  ///< only in scenes with instances
   Receiver* receiver = nullptr;           ///< only for a light tree
+  PathRecord* medium = nullptr;           ///< only in scenes with media: pack_medium
+  FreeFlight* flight = nullptr;           ///< only where flights take several waves
   // Only in scenes with lights:
   PathRecord* shadow_origin = nullptr;     ///< ray origin, distance
   PathRecord* shadow_direction = nullptr;  ///< ray direction, index of the path
@@ -61,6 +64,8 @@ struct PathPool {
     bool lights, instances, tags, receivers;
     PoolLayout layout = PoolLayout::soa;
     bool hits = true;  ///< false: none is stored
+    bool media = false;
+    bool flights = false;
   };
 
   /// Sets what a pool of `slot_count` slots needs to allocate(T*{}, count), room for `count` of T,
@@ -70,7 +75,7 @@ struct PathPool {
     const std::uint64_t n = slot_count;
     if (parts.layout == PoolLayout::aos) {
       const std::uint32_t slot_bytes = fields_bytes(parts);
-      strides = {slot_bytes, slot_bytes, slot_bytes, slot_bytes};
+      strides = {slot_bytes, slot_bytes, slot_bytes, slot_bytes, slot_bytes};
       std::byte* const slot_0 = allocate(static_cast<std::byte*>(nullptr), n * slot_bytes);
       std::uint32_t end = 0;
       for_each_field(parts, [&]<class T>(T*& field) {
@@ -112,6 +117,9 @@ struct PathPool {
   PT_HD StoredHit* at(StoredHit* field, std::uint32_t slot) const {
     return step(field, slot, strides.hit);
   }
+  PT_HD FreeFlight* at(FreeFlight* field, std::uint32_t slot) const {
+    return step(field, slot, strides.flight);
+  }
   template <class Word>
   PT_HD Word* at(Word* field, std::uint32_t slot) const {
     static_assert(sizeof(Word) == sizeof(std::uint32_t));
@@ -139,6 +147,21 @@ struct PathPool {
     path.bsdf_pdf = bits_to_float(o.w);
     if (receiver != nullptr) path.receiver = *at(receiver, slot);
     return path;
+  }
+
+  // Of a scene with media:
+  PT_HD void load_medium(std::uint32_t slot, PathState& path) const {
+    path.medium = unpack_medium(load_wide(at(medium, slot)));
+  }
+  PT_HD void store_medium(std::uint32_t slot, const PathState& path) const {
+    store_wide(at(medium, slot), pack_medium(path.medium));
+  }
+  /// Where the flight of the path's next ray has got in earlier waves.
+  PT_HD FreeFlight load_flight(std::uint32_t slot) const {
+    return flight != nullptr ? *at(flight, slot) : FreeFlight();
+  }
+  PT_HD void store_flight(std::uint32_t slot, const FreeFlight& f) const {
+    if (flight != nullptr) *at(flight, slot) = f;
   }
 
   PT_HD void store_new_path(std::uint32_t slot, const Ray& ray, std::uint32_t path_index) const {
@@ -197,9 +220,18 @@ struct PathPool {
                                    const PathState& path) const {
     store_wide(at(shadow_radiance, slot), pack(radiance, path.rays));
   }
+  /// Of a scene with media, the one in which the shadow ray begins, too.
+  PT_HD void store_shadow_radiance(std::uint32_t slot, const ShadowRay& shadow,
+                                   const PathState& path) const {
+    store_wide(at(shadow_radiance, slot),
+               pack(shadow.radiance, path.rays | std::uint32_t{shadow.medium} << 16));
+  }
   /// Of the path when it cast the shadow ray.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
-    return at(shadow_radiance, slot)->w;
+    return at(shadow_radiance, slot)->w & 0xffffu;
+  }
+  PT_HD std::uint16_t load_shadow_medium(std::uint32_t slot) const {
+    return static_cast<std::uint16_t>(at(shadow_radiance, slot)->w >> 16);
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& path_index) const {
     const PathRecord o = load_wide(half_at(shadow_origin, slot));
@@ -216,6 +248,8 @@ struct PathPool {
     if (parts.hits) function(hit);
     if (parts.hits && parts.instances) function(hit_instance);
     if (parts.receivers) function(receiver);
+    if (parts.media) function(medium);
+    if (parts.flights) function(flight);
     if (!parts.lights) return;
     function(shadow_origin), function(shadow_direction), function(shadow_radiance);
   }

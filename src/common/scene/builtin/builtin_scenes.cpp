@@ -5,6 +5,7 @@
 #include "common/error/error.h"
 #include "common/scene/builtin/generate_dial.h"
 #include "common/scene/builtin/generated/generate_boxes.h"
+#include "common/scene/builtin/generated/generate_cloud.h"
 #include "common/scene/builtin/generated/generate_forest.h"
 #include "common/scene/builtin/generated/generate_statue.h"
 #include "common/scene/builtin/generated/generate_terrain.h"
@@ -86,6 +87,15 @@ const std::vector<SceneInfo>& scene_list() {
        [](const SceneRequest&) { return make_ajar_scene(); }},
       {"caustic", "", "light focused on a floor by a glass ball and a ring of mirrors",
        [](const SceneRequest&) { return make_caustic_scene(); }},
+      {"fog", "", "the Cornell Box filled with a homogeneous medium",
+       [](const SceneRequest&) { return make_fog_scene(); }},
+      {"cloud", "N:T:A",
+       "a cumulus on a grid of N^3 voxels (128), of optical depth T (10) and albedo A (0.999)",
+       [](const SceneRequest& request) {
+         const CloudSettings settings = parse_cloud(request.name);
+         check_cloud_memory(request, settings.side);
+         return make_cloud_scene(settings);
+       }},
       {"terrain", "N", "mountains of N triangles under a sky, 1M unless N is given", make_terrain},
       {"statue", "N", "a carved knot of N triangles under a sky and a lamp, 1M unless N is given",
        make_statue},

@@ -3,30 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
 #include "common/error/error.h"
+#include "common/scene/builtin/name_parts.h"
 #include "common/scene/builtin/shapes/sphere_world.h"
 
 namespace pt {
 namespace {
-
-/// The part up to the next colon, which is taken away with it.
-std::string_view next_part(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find(':'), rest.size());
-  const std::string_view part = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  return part;
-}
-
-/// A number in [least, most]; false for anything else.
-template <class Number>
-bool read(std::string_view text, Number least, Number most, Number& value) {
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop == end && value >= least && value <= most;
-}
 
 [[noreturn]] void refuse(const SceneName& scene, char part, std::string_view value,
                          std::string_view expected) {
@@ -42,13 +26,13 @@ DialSettings parse_dial(const SceneName& scene) {
   std::string_view rest = scene.parameter;
   const bool has_coherence = rest.find(':') != std::string_view::npos;
   const std::string_view materials = next_part(rest);
-  if (!read(materials, 1u, dial_materials_most, settings.materials)) {
+  if (!read_part(materials, 1u, dial_materials_most, settings.materials)) {
     refuse(scene, 'K', materials, "a whole number of materials from 1 to 32");
   }
   if (!has_coherence) return settings;
   const bool has_form = rest.find(':') != std::string_view::npos;
   const std::string_view coherence = next_part(rest);
-  if (!read(coherence, 0.0f, 1.0f, settings.coherence)) {
+  if (!read_part(coherence, 0.0f, 1.0f, settings.coherence)) {
     refuse(scene, 'C', coherence, "a coherence from 0 to 1");
   }
   if (!has_form) return settings;

@@ -3,6 +3,12 @@
 #include "common/scene/builtin/shapes/quad_shapes.h"
 
 namespace pt {
+namespace {
+
+constexpr float fog_extinction = 0.5f;  // so that the box is as deep as one mean free path
+
+}  // namespace
+
 SceneData make_cornell_scene() {
   SceneData scene;
   const auto white = scene.add_material(make_diffuse({0.73f, 0.73f, 0.73f}));
@@ -18,6 +24,21 @@ SceneData make_cornell_scene() {
   add_quad_box(scene, {-0.35f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, 17.0f, white);
   add_quad_box(scene, {0.35f, 0.3f, 0.35f}, {0.6f, 0.6f, 0.6f}, -17.0f, white);
   scene.camera = {{0, 1, 4.8f}, {0, 1, 0}, {0, 1, 0}, 30.0f, 0.0f, 4.8f};
+  return scene;
+}
+
+SceneData make_fog_scene() {
+  SceneData scene = make_cornell_scene();
+  Medium fog;
+  fog.extinction = Color(fog_extinction);
+  fog.albedo = {0.95f, 0.93f, 0.9f};
+  fog.phase = phase_kind_of<HenyeyGreenstein>;
+  fog.phase_parameter = 0.5f;
+  scene.media.push_back(fog);
+  MaterialDescription front;
+  front.is_boundary = front.passes = true;
+  front.media = {no_medium, 0};
+  scene.add_quad({-1, 0, 1}, {2, 0, 0}, {0, 2, 0}, scene.add_material(front));
   return scene;
 }
 

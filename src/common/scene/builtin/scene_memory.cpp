@@ -14,6 +14,7 @@ constexpr std::uint64_t sphere_bytes = 450, instance_bytes = 500;
 constexpr std::uint64_t mesh_bytes = 18;       // a triangle and half a vertex
 constexpr std::uint64_t slot_bytes = 48;       // in the order of the leaves
 constexpr std::uint64_t building_bytes = 100;  // a reference and a node besides the mesh
+constexpr std::uint64_t voxel_bytes = 8;       // as it is made, and in the scene
 
 std::uint64_t triangle_bytes(const Options& options) {
   if (is_device_builder(options.builder)) return mesh_bytes;
@@ -28,6 +29,10 @@ void check_triangle_memory(const SceneRequest& request, std::uint64_t count) {
 
 void check_instance_memory(const SceneRequest& request, std::uint64_t count) {
   check_host_memory(count * instance_bytes, "--scene " + request.name.full);
+}
+
+void check_cloud_memory(const SceneRequest& request, std::uint64_t side) {
+  check_host_memory(side * side * side * voxel_bytes, "--scene " + request.name.full);
 }
 
 void check_sphere_memory(std::uint64_t count) {

@@ -9,6 +9,7 @@ namespace pt {
 /// built. Throw Error that names the option.
 void check_triangle_memory(const SceneRequest& request, std::uint64_t count);
 void check_instance_memory(const SceneRequest& request, std::uint64_t count);
+void check_cloud_memory(const SceneRequest& request, std::uint64_t side);
 void check_sphere_memory(std::uint64_t count);
 
 }  // namespace pt

@@ -5,6 +5,7 @@
 #include "common/light/emission.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
+#include "common/medium/medium.h"
 
 namespace pt {
 
@@ -18,6 +19,9 @@ struct MaterialDescription {
   Opacity opacity;    ///< of the whole, whatever it is made of
   MaterialNode node = MaterialNode::none;
   std::uint32_t children[2] = {};  ///< of a node: earlier materials of the scene
+  bool is_boundary = false;        ///< `media` are on its two sides; else the same on both
+  bool passes = false;             ///< of a boundary: it has no BSDF, and light goes through
+  MediumBoundary media;
 
   // What a BSDF makes itself of, without textures.
   PT_HD const Color& color(int i) const { return parameters[i].value; }

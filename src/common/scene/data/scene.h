@@ -13,6 +13,7 @@
 #include "common/light/sun.h"
 #include "common/material/material.h"
 #include "common/material/opacity.h"
+#include "common/medium/medium.h"
 #include "common/sampling/pixel_filter.h"
 #include "common/scene/data/camera.h"
 
@@ -36,13 +37,17 @@ struct Scene {
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
-  const CornerAttributes* corners = nullptr;  ///< [triangle id]; null: no mesh has attributes
-  const Affine* to_world = nullptr;           ///< [InstanceRecord::number]
-  LightSelector light_selector;               ///< Lighting::full
-  LightMap light_map;                         ///< Lighting::full
-  Environment environment;                    ///< Lighting::full
-  const Opacity* opacities = nullptr;         ///< [material], in scenes with masks
-  std::uint32_t mask_seed = 0;                ///< of this render
+  const CornerAttributes* corners = nullptr;   ///< [triangle id]; null: no mesh has attributes
+  const Affine* to_world = nullptr;            ///< [InstanceRecord::number]
+  LightSelector light_selector;                ///< Lighting::full
+  LightMap light_map;                          ///< Lighting::full
+  Environment environment;                     ///< Lighting::full
+  const Opacity* opacities = nullptr;          ///< [material], in scenes with masks
+  std::uint32_t mask_seed = 0;                 ///< of this render
+  const Medium* media = nullptr;               ///< in scenes with media
+  VolumeGrids grids;                           ///< of media
+  const MediumBoundary* boundaries = nullptr;  ///< [material] likewise
+  std::uint32_t camera_medium = no_medium;     ///< in which the camera stands
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
   PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA
@@ -70,6 +75,7 @@ struct SceneTraits {
   Geometry geometry = Geometry::spheres_and_quads;
   Lighting lighting = Lighting::sky;
   bool has_masks = false;
+  bool has_media = false;
 
   bool operator==(const SceneTraits&) const = default;
   bool has_lights() const { return lighting != Lighting::sky; }
@@ -80,29 +86,34 @@ struct PathIntegrator;  // transport/path_integrator.h
 /// The same as a type, and the integrator, for all that is known of a path before its kernels are
 /// chosen. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
-          bool has_masks_value = false, class IntegratorType = PathIntegrator>
+          bool has_masks_value = false, bool has_media_value = false,
+          class IntegratorType = PathIntegrator>
 struct Traits {
   using Integrator = IntegratorType;
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
   static constexpr bool has_masks = has_masks_value;  ///< triangles that are there in part
+  static constexpr bool has_media = has_media_value;  ///< between surfaces; with has_masks alone
   static constexpr bool has_lights = lighting != Lighting::sky;
   static constexpr bool has_instances = geometry == Geometry::mixed;
   /// The BSDFs that a kernel shades.
   using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
-  static SceneTraits value() { return {accel, geometry, lighting, has_masks}; }
+  static SceneTraits value() { return {accel, geometry, lighting, has_masks, has_media}; }
 };
 
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
-using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, typename T::Integrator>;
+using ShadingTraits =
+    Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, typename T::Integrator>;
 
 /// The same of scenes that have triangles and nothing else.
 template <class T>
-using TrianglesAlone = std::conditional_t<
-    T::geometry == Geometry::mixed,
-    Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks, typename T::Integrator>, T>;
+using TrianglesAlone =
+    std::conditional_t<T::geometry == Geometry::mixed,
+                       Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks,
+                              T::has_media, typename T::Integrator>,
+                       T>;
 
 /// Of surfaces whose materials are all of one kind.
 template <class T, class Bsdf>

@@ -76,6 +76,10 @@ struct SceneData {
   std::vector<Mesh> meshes;         ///< those of group 0 in world space
   std::vector<Instance> instances;  ///< of the other groups
   std::vector<MaterialDescription> materials;
+  std::vector<Medium> media;
+  std::vector<VolumeGrid> grids;   ///< of media; add_grid() makes them
+  std::vector<float> grid_values;  ///< of all grids
+  std::uint32_t camera_medium = no_medium;  ///< in which the camera stands
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
   std::vector<std::uint32_t> sphere_material, quad_material;  ///< by sphere, by quad
@@ -89,6 +93,8 @@ struct SceneData {
   std::vector<Parameter> parameters;
   std::vector<Emission> emissions;
   std::vector<Opacity> opacities;          ///< by material; empty: there are no masks
+  std::vector<MediumBoundary> boundaries;  ///< by material; empty: there are no media
+  std::vector<float> majorants;            ///< of the grids of densities
   std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
   std::vector<std::uint32_t> material_of;  ///< by primitive
   std::vector<std::uint32_t> primitive_numbers;  ///< by primitive: as they were before

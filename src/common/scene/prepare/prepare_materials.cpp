@@ -56,7 +56,9 @@ void pack_bsdf(const MaterialDescription& source, bool multiple_scattering, Scen
 Material pack(const MaterialDescription& source, bool multiple_scattering, SceneData& scene) {
   Material material;
   material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
-                                             (source.is_textured() ? Material::textured : 0));
+                                             (source.is_textured() ? Material::textured : 0) |
+                                             (source.is_boundary ? Material::boundary : 0) |
+                                             (source.passes ? Material::passes : 0));
   if (source.node == MaterialNode::none) {
     pack_bsdf(source, multiple_scattering, scene, material);
   } else {
@@ -72,7 +74,7 @@ Material pack(const MaterialDescription& source, bool multiple_scattering, Scene
 /// With a camera that does not see all, masks' kernels are those that ask which ray it is.
 void list_opacities(SceneData& scene) {
   scene.opacities.clear();
-  bool any = is_limited(scene.camera);
+  bool any = is_limited(scene.camera) || !scene.media.empty();
   for (const MaterialDescription& m : scene.materials) any = any || !m.opacity.is_opaque();
   for (Mesh& mesh : scene.meshes) {
     mesh.masked = is_masked(scene, scene.materials[mesh.material]);

@@ -7,6 +7,7 @@
 #include "common/scene/prepare/prepare_camera.h"
 #include "common/scene/prepare/prepare_filter.h"
 #include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_media.h"
 #include "common/scene/prepare/prepare_primitives.h"
 #include "common/scene/prepare/prepare_triangles.h"
 #include "common/scene/prepare/scene_properties.h"
@@ -43,6 +44,7 @@ void prepare_scene(SceneData& scene, const Options& options, const DevicePropert
   }
   set_camera(scene, scene.camera, options);
   prepare_materials(scene, options.multiple_scattering);
+  prepare_media(scene);
   prepare_filter(scene, filter_of(options, scene));
   scene.properties = properties_of(scene);
   const ExecutionPlan plan = plan_execution(options, scene.properties, device);
@@ -90,6 +92,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
+  view.camera_medium = scene.camera_medium;
   for_each_array(scene, view,
                  [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   return view;

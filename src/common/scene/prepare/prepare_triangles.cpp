@@ -59,7 +59,8 @@ void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
   const bool masked = !scene.opacities.empty();
   const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
                      accel == Accel::brute || accel == Accel::embree;
-  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked};
+  scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked,
+                  !scene.media.empty()};
   const TreeOptions tree = tree_options(accel, options.builder);
   if (is_device_builder(options.builder)) {
     check_geometry(scene.meshes, scene.instances);

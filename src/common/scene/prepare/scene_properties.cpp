@@ -20,7 +20,7 @@ bool has_primitives_only(const SceneData& scene) {
   return !is_limited(scene.camera) && !scene.camera.orthographic && scene.meshes.empty() &&
          scene.delta_lights.empty() && scene.environment.width == 0 &&
          scene.sun.one_minus_cos == 0.0f && scene.textures.empty() && scene.sphere_frames.empty() &&
-         std::ranges::none_of(scene.materials, needs_triangles);
+         scene.media.empty() && std::ranges::none_of(scene.materials, needs_triangles);
 }
 
 SceneProperties properties_of(const SceneData& scene) {
@@ -33,6 +33,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.instances = scene.instances.size();
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_masks = std::ranges::any_of(scene.materials, is_masked);
+  properties.has_media = !scene.media.empty();
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
   properties.limits_camera_rays = is_limited(scene.camera);

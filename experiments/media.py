@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Media: which mode is faster in a medium, and where should null collisions be sampled?
+
+The scene `cloud:N:T:A` is a grid of N^3 voxels with optical depth T and albedo A, `fog` a homogeneous
+medium in a room (docs/scenes.md). Each of density, albedo and grid size varies alone. The megakernel
+loops over a flight's null collisions in its lane; so does the wavefront, or it lets a path wait for
+the next wave after some of them (--wave-collisions). `ratio` is the megakernel's time divided by the
+variant's. All trace the same structure. First, images of all variants are compared: they must be equal
+bit for bit.
+"""
+import sys
+
+from lib import harness
+from lib.harness import Configuration, Experiment, HarnessError, Plot
+
+DEPTHS = [0.1, 0.3, 1, 3, 10, 30, 100]
+ALBEDOS = [0, 0.5, 0.9, 0.99, 0.999]
+SIDES = [16, 64, 256, 512]
+SIDE, DEPTH, ALBEDO = 128, 10, 0.999
+BASE = "megakernel"
+VARIANTS = {
+    BASE: "--mode megakernel",
+    "loop": "--mode wavefront",
+    "waves of 1": "--mode wavefront --wave-collisions 1",
+    "waves of 4": "--mode wavefront --wave-collisions 4",
+    "waves of 16": "--mode wavefront --wave-collisions 16",
+    "fused": "--mode wavefront --stages fused",
+}
+OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high"), ("high", "low")]
+
+
+def add_arguments(parser):
+    parser.set_defaults(repeat=6, rounds=2, warmup=1)
+    parser.add_argument("--size", type=int, default=1024, metavar="N",
+                        help="width and height in pixels [%(default)s]")
+    parser.add_argument("--spp", type=int, default=16, metavar="N",
+                        help="samples per pixel [%(default)s]")
+    parser.add_argument("--max-depth", type=int, default=128, metavar="N",
+                        help="rays of a path; roulette begins after 16 [%(default)s]")
+
+
+def scenes_of(quick):
+    """(figure, x, scene): what varies, its value, and where."""
+    if quick:
+        return [("optical depth", 3, f"cloud:16:3:{ALBEDO}"), ("homogeneous", 0, "fog")]
+    return ([("optical depth", t, f"cloud:{SIDE}:{t}:{ALBEDO}") for t in DEPTHS]
+            + [("albedo", a, f"cloud:{SIDE}:{DEPTH}:{a}") for a in ALBEDOS]
+            + [("voxels along a side", n, f"cloud:{n}:{DEPTH}:{ALBEDO}") for n in SIDES]
+            + [("homogeneous", 0, "fog")])
+
+
+def configurations(arguments, _device):
+    size, spp = (24, 2) if arguments.quick else (arguments.size, arguments.spp)
+    rows = []
+    for figure, x, scene in scenes_of(arguments.quick):
+        for variant, options in VARIANTS.items():
+            if figure == "homogeneous" and "collisions" in options:
+                continue  # it has no null collisions
+            drawn = variant != BASE and figure != "homogeneous"
+            rows.append(Configuration(
+                f"{figure} {x:g}: {variant}",
+                f"--scene {scene} --width {size} --height {size} --spp {spp} "
+                f"--max-depth {arguments.max_depth} --rr 16 --accel bvh2 {options}",
+                {"panel": figure, "series": variant, "x": x if drawn else "", "figure": figure,
+                 "value": x, "variant": variant, **{f"ratio_{part}": "" for part, _ in OPPOSITES}},
+                same_image=f"{figure} {x:g}"))
+    return rows
+
+
+def finish(rows, _arguments):
+    bases = {(row["figure"], row["value"]): row for row in rows if row["variant"] == BASE}
+    for row in rows:
+        base = bases.get((row["figure"], row["value"]))
+        if base is None:
+            continue
+        for column in ("paths", "rays", "shadow_rays"):
+            if row[column] != base[column]:
+                raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
+                                   f"{base[column]}; expected equal numbers")
+        for part, opposite in OPPOSITES:
+            ratio = float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{opposite}"])
+            row[f"ratio_{part}"] = f"{ratio:.4f}"
+
+
+def conclude(rows, _arguments):
+    """A sentence for each scene: the best variant."""
+    scenes = {}
+    for row in rows:
+        scenes.setdefault((row["figure"], row["value"]), []).append(row)
+    sentences = []
+    for (figure, value), variants in scenes.items():
+        measured = [row for row in variants if row["ratio_median"]]
+        if not measured:
+            continue
+        best = max(measured, key=lambda row: float(row["ratio_median"]))
+        sentences.append(f"{figure} {value}: {best['variant']} is fastest, "
+                         f"{float(best['ratio_median']):.2f} times the megakernel's speed")
+    return sentences
+
+
+EXPERIMENT = Experiment(
+    "media", __doc__.splitlines()[0], configurations,
+    Plot("lines", "A cloud: time of the megakernel by that of the wavefront",
+         "", "megakernel / wavefront", y="ratio", mark=1.0),
+    add_arguments=add_arguments, finish=finish, conclude=conclude, table=("ratio_median",))
+
+if __name__ == "__main__":
+    sys.exit(harness.main(EXPERIMENT))

@@ -1,0 +1,114 @@
+// Tracking: how far light gets in a medium before it collides, and how much of it gets through.
+#pragma once
+
+#include "common/medium/channel_densities.h"
+#include "common/medium/medium.h"
+#include "common/sampling/hash.h"
+#include "common/sampling/random.h"
+
+namespace pt {
+
+/// A flight along a ray, between two of its collisions; null collisions are those with matter that
+/// is not there.
+struct alignas(8) FreeFlight {
+  float t = 0.0f;                ///< how far it has got
+  std::uint32_t collisions = 0;  ///< null ones so far
+
+  PT_HD bool has_begun() const { return collisions > 0; }
+};
+
+enum class FlightEvent { arrives, collides, collides_with_nothing };
+
+/// Takes a flight in a homogeneous medium to its collision, or to `t_max`.
+PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_channel,
+                                  float u_distance, FreeFlight& flight, ChannelDensities& densities,
+                                  Color& beta) {
+  const float of_channel = channel(extinction, densities.choose(u_channel));
+  const float distance =
+      of_channel > 0.0f ? divide(-logf(1.0f - u_distance), of_channel) : infinite_distance;
+  const bool collides = distance < t_max;
+  flight.t = collides ? distance : t_max;
+  if (!is_grey(extinction)) {  // else the weight is 1
+    Color density = transmittance(extinction, flight.t);
+    if (collides) density = multiply_rounded(density, extinction);
+    beta = multiply_rounded(beta, densities.weigh(density, density));
+  }
+  return collides ? FlightEvent::collides : FlightEvent::arrives;
+}
+
+/// Takes a flight in a medium with a grid to its next collision, null or not, or to `t_max`: delta
+/// tracking (Woodcock et al. 1965; Miller et al. 2019), with majorants that are constant in cells.
+PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
+                                   float t_max, std::uint32_t key, FreeFlight& flight,
+                                   ChannelDensities& densities, Color& beta) {
+  const VolumeGrid& grid = grids.grids[medium.density_grid];
+  key = combine_hash(key, flight.collisions);
+  const int by = densities.choose(to_unit_float(combine_hash(key, 0)));
+  const float of_channel = channel(medium.extinction, by);
+  const float depth = of_channel > 0.0f
+                          ? divide(-logf(1.0f - to_unit_float(combine_hash(key, 1))), of_channel)
+                          : HUGE_VALF;
+  const MajorantWalk walk = walk_majorants(grids, grid, ray, flight.t, t_max, depth);
+  flight.t = walk.t;
+  const bool same_for_all = is_grey(medium.extinction) && grid.channels == 1;  // the weight is 1
+  if (walk.arrives) {
+    if (!same_for_all) {
+      const Color passed = transmittance(medium.extinction, walk.depth);
+      beta = multiply_rounded(beta, densities.weigh(passed, passed));
+    }
+    return FlightEvent::arrives;
+  }
+  const Color density = sample_grid(grids, grid, add_scaled(ray.origin, walk.t, ray.direction));
+  const float inverse = divide(1.0f, walk.majorant);
+  const Color there(fminf(multiply_rounded(density.x, inverse), 1.0f),
+                    fminf(multiply_rounded(density.y, inverse), 1.0f),
+                    fminf(multiply_rounded(density.z, inverse), 1.0f));
+  const bool collides = to_unit_float(combine_hash(key, 2)) < channel(there, by);
+  if (!same_for_all) {
+    const Color reached =
+        multiply_rounded(transmittance(medium.extinction, walk.depth), medium.extinction);
+    const Color event = multiply_rounded(reached, collides ? there : Color(1.0f) - there);
+    beta = multiply_rounded(beta, densities.weigh(event, event));
+  }
+  if (collides) return FlightEvent::collides;
+  ++flight.collisions;
+  return FlightEvent::collides_with_nothing;
+}
+
+/// An unbiased estimate of the transmittance of `t_max` of a ray: ratio tracking (Novak et al.
+/// 2014, 'Residual ratio tracking for estimating attenuation in participating media') by the
+/// channel of the largest extinction, with roulette where little is left.
+PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
+                                   float t_max, std::uint32_t key) {
+  if (medium.is_homogeneous()) return transmittance(medium.extinction, t_max);
+  constexpr float little = 0.125f, survival = 0.5f;
+  const VolumeGrid& grid = grids.grids[medium.density_grid];
+  const Color& e = medium.extinction;
+  const float largest = fmaxf(fmaxf(e.x, e.y), e.z);
+  if (!(largest > 0.0f)) return Color(1.0f);
+  const Color relative = multiply_rounded(e, Color(divide(1.0f, largest)));
+  Color passed(1.0f);
+  float t = 0.0f;
+  for (std::uint32_t collisions = 0;; ++collisions) {
+    const std::uint32_t event = combine_hash(key, collisions);
+    const float depth = divide(-logf(1.0f - to_unit_float(combine_hash(event, 0))), largest);
+    const MajorantWalk walk = walk_majorants(grids, grid, ray, t, t_max, depth);
+    if (walk.arrives) return passed;
+    lanes_of(ray).count(LanePoint::flight);
+    t = walk.t;
+    const Color density = sample_grid(grids, grid, add_scaled(ray.origin, t, ray.direction));
+    const float inverse = divide(1.0f, walk.majorant);
+    const auto missed = [&](float of_density, float of_channel) {
+      return fmaxf(1.0f - multiply_rounded(multiply_rounded(of_density, inverse), of_channel),
+                   0.0f);
+    };
+    passed = multiply_rounded(passed, {missed(density.x, relative.x), missed(density.y, relative.y),
+                                       missed(density.z, relative.z)});
+    if (max_abs(passed) < little) {
+      if (!(to_unit_float(combine_hash(event, 1)) < survival)) return Color(0.0f);
+      passed = multiply_rounded(passed, Color(1.0f / survival));
+    }
+  }
+}
+
+}  // namespace pt

@@ -1,0 +1,66 @@
+#include "common/scene/prepare/prepare_media.h"
+
+#include <algorithm>
+
+namespace pt {
+namespace {
+
+constexpr std::uint32_t cell_voxels = 8, cells_max = 64;
+
+/// The voxels along an axis that have a part in the values of a cell.
+struct VoxelRange {
+  std::uint32_t begin, end;
+
+  VoxelRange(std::uint32_t cell, std::uint32_t cells, std::uint32_t size, bool interpolates) {
+    const double per_cell = static_cast<double>(size) / cells;
+    const auto clamped = [&](double voxel) {
+      return static_cast<std::uint32_t>(std::clamp(voxel, 0.0, static_cast<double>(size)));
+    };
+    // One more than needed on each side: kernels round where a point lies.
+    const double more = interpolates ? 1.5 : 1.0;
+    begin = clamped(std::floor(cell * per_cell - more));
+    end = clamped(std::ceil((cell + 1) * per_cell + more));
+  }
+};
+
+void bound(SceneData& scene, VolumeGrid& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::uint32_t wanted = (grid.size[axis] + cell_voxels - 1) / cell_voxels;
+    grid.cells[axis] = std::min(wanted, cells_max);
+  }
+  grid.first_cell = static_cast<std::uint32_t>(scene.majorants.size());
+  const auto range = [&](int axis, std::uint32_t cell) {
+    return VoxelRange(cell, grid.cells[axis], grid.size[axis], grid.interpolates != 0);
+  };
+  for (std::uint32_t k = 0; k < grid.cells[2]; ++k) {
+    for (std::uint32_t j = 0; j < grid.cells[1]; ++j) {
+      for (std::uint32_t i = 0; i < grid.cells[0]; ++i) {
+        const VoxelRange x = range(0, i), y = range(1, j), z = range(2, k);
+        float largest = 0;
+        for (std::uint32_t w = z.begin; w < z.end; ++w) {
+          for (std::uint32_t v = y.begin; v < y.end; ++v) {
+            const std::size_t row = std::size_t{grid.size[0]} * (v + std::size_t{grid.size[1]} * w);
+            const float* const values = &scene.grid_values[grid.first];
+            const float* const first = values + (row + x.begin) * grid.channels;
+            const float* const last = values + (row + x.end) * grid.channels;
+            largest = std::max(largest, *std::max_element(first, last));
+          }
+        }
+        scene.majorants.push_back(largest);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void prepare_media(SceneData& scene) {
+  scene.boundaries.clear(), scene.majorants.clear();
+  if (scene.media.empty()) return;
+  for (const MaterialDescription& m : scene.materials) scene.boundaries.push_back(m.media);
+  for (const Medium& medium : scene.media) {
+    if (!medium.is_homogeneous()) bound(scene, scene.grids[medium.density_grid]);
+  }
+}
+
+}  // namespace pt

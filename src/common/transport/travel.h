@@ -1,0 +1,142 @@
+// Between surfaces: a ray in a medium collides or arrives, and what a collision does with a path
+// (pbrt-v4, section 14.2). Only in scenes with media (Traits::has_media).
+#pragma once
+
+#include "common/medium/free_flight.h"
+#include "common/transport/shade_surface.h"
+
+namespace pt {
+
+/// For the free flight of the ray after `rays_traced` others of the path.
+PT_HD std::uint32_t flight_key(std::uint32_t path_key, std::uint32_t rays_traced) {
+  constexpr std::uint32_t purpose = 0x6d656469u;  // not that of masks
+  return combine_hash(combine_hash(path_key, purpose), rays_traced);
+}
+
+/// The medium in which the next ray begins; a camera ray's is the camera's.
+PT_HD std::uint32_t medium_of(const Scene& scene, const PathState& path) {
+  return path.rays == 0 ? scene.camera_medium : path.medium.index;
+}
+
+/// A flight has no end of its own: all of its collisions are sampled at once.
+inline constexpr std::uint32_t to_the_end = ~0u;
+
+/// Takes a path to the end of its ray, `hit`, or to a collision before, which is then the hit.
+/// Multiplies its throughput by what the flight weighs. Returns whether it is there: after
+/// `collisions_max` null collisions it is not, and `flight` says where to go on. `path.rays` does
+/// not yet count the ray.
+PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
+                  std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
+  if (path.rays == 0 && !flight.has_begun()) {
+    path.medium = {};
+    path.medium.index = static_cast<std::uint16_t>(scene.camera_medium);
+  }
+  if (path.medium.index == no_medium) return true;
+  const Medium medium = load_wide(&scene.media[path.medium.index]);
+  const std::uint32_t key = flight_key(path_key, path.rays);
+  FlightEvent event;
+  if (medium.is_homogeneous()) {
+    event = fly_homogeneous(medium.extinction, hit.t, to_unit_float(combine_hash(key, 0)),
+                            to_unit_float(combine_hash(key, 1)), flight, path.medium.densities,
+                            path.beta);
+  } else {
+    do {
+      lanes_of(ray).count(LanePoint::flight);
+      event = fly_to_collision(scene.grids, medium, ray, hit.t, key, flight, path.medium.densities,
+                               path.beta);
+    } while (event == FlightEvent::collides_with_nothing && --collisions_max > 0);
+    if (event == FlightEvent::collides_with_nothing) return false;
+  }
+  if (event == FlightEvent::collides) hit = {flight.t, medium_collision, 0};
+  return true;
+}
+
+/// The closest hit of a path's next ray, or the collision before it. `flight`: where its flight
+/// has got already.
+template <class Traits>
+PT_HD Hit next_hit(const Scene& scene, const Ray& ray, std::uint32_t path_key, PathState& path,
+                   FreeFlight flight = {}) {
+  Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, path_key, path.rays));
+  if constexpr (Traits::has_media) travel(scene, ray, path_key, to_the_end, path, flight, hit);
+  return hit;
+}
+
+/// As shade_surface, for a collision `distance` along the ray: the medium emits, light is sampled,
+/// and the phase function decides where the path goes on.
+template <class Traits, class Steps>
+PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float distance,
+                                   PathState& path, const PathLimits& limits, const Steps& steps) {
+  lanes_of(ray).count(LanePoint::shade_medium);
+  const Medium medium = load_wide(&scene.media[path.medium.index]);
+  const Vec3 point = add_scaled(ray.origin, distance, ray.direction);
+  const Color albedo = albedo_at(scene.grids, medium, point);
+  Scattering result;
+  const Color emission = emission_at(scene.grids, medium, point) * (Color(1.0f) - albedo);
+  result.emitted = steps.emit(path.beta * emission);
+  if (path.depth<Traits>() >= limits.max_depth || is_black(albedo)) return result;
+  path.beta = multiply_rounded(path.beta, albedo);
+  path.receiver = {};
+  IncidentLight incident;
+  if (limits.ask_lights) {
+    incident = sample_light<Traits>(scene, point, path.receiver, steps.light());
+  }
+  const Vec4 scatter = steps.scatter();
+  BsdfValue value;
+  PhaseSample next{};
+  visit_phase(medium.phase, medium.phase_parameter, [&](const auto& phase) {
+    if (incident.pdf > 0.0f) {
+      value.pdf = phase.value(dot(ray.direction, incident.wi));
+      value.f = Color(value.pdf);
+    }
+    next = sample_phase(phase, ray.direction, scatter.x, scatter.y);
+  });
+  const Color radiance = direct_radiance(path, incident, value, limits.mis);
+  const float distance2 = dot(incident.end, incident.end);
+  if (!is_black(radiance) && distance2 > 0.0f) {
+    const float inverse = inverse_sqrt(distance2);
+    result.shadow = {{point, multiply_rounded(incident.end, Vec3(inverse))},
+                     multiply_rounded(distance2, inverse),
+                     radiance,
+                     path.medium.index};
+    set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
+    ++path.shadow_rays;
+  }
+  path.bsdf_pdf = limits.ask_lights ? next.pdf : PathState::delta_distribution;
+  path.medium.travelled = 0.0f;
+  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w);
+  result.alive = !is_black(path.beta);
+  result.ray = {point, next.wi};
+  set_lanes(result.ray, lanes_of(scene).at(path.rays));
+  return result;
+}
+
+/// What of a shadow ray's radiance arrives: black if a surface with a BSDF lies between its ends,
+/// else the transmittance of the media through which it goes.
+template <class Traits>
+PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
+                                 std::uint32_t ray_key) {
+  Color passed(1.0f);
+  Ray ray = shadow.ray;
+  float left = shadow.distance;
+  std::uint32_t medium = shadow.medium;
+  for (std::uint32_t segment = 0;; ++segment) {
+    const Hit hit = intersect_closest<Traits>(scene, ray, ray_key);
+    const bool arrives = hit.is_miss() || !(hit.t < left);
+    const std::uint32_t material = arrives ? 0 : material_index_at(scene, hit);
+    if (!arrives && !scene.material(material).is(Material::passes)) return Color(0.0f);
+    if (medium != no_medium) {
+      const float length = arrives ? left : hit.t;
+      passed = multiply_rounded(
+          passed, estimate_transmittance(scene.grids, load_wide(&scene.media[medium]), ray, length,
+                                         flight_key(ray_key, segment)));
+    }
+    if (arrives || is_black(passed)) return passed;
+    const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, ray, hit).point;
+    medium = scene.boundaries[material].towards(ray.direction, point.normal);
+    const Ray next = spawn_ray(point, ray.direction);
+    left -= dot(next.origin - ray.origin, ray.direction);
+    ray.origin = next.origin;
+  }
+}
+
+}  // namespace pt
