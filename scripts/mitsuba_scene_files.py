@@ -1,4 +1,4 @@
-"""Pictures and a mesh that the scenes of scripts/mitsuba_scenes.py name."""
+"""Pictures, volumes and a mesh that the scenes of scripts/mitsuba_scenes.py name."""
 import math
 import struct
 import zlib
@@ -74,3 +74,37 @@ def meshes():
     rows, faces = patch_vertices()
     return {"patch.ply": patch_ply(rows, faces), "patch.obj": patch_obj(rows, faces),
             "patch.serialized": patch_serialized(rows, faces)}
+
+
+def vol(values, low, high):
+    """Mitsuba's .vol, version 3, of an array by z, y, x and channel; the box is between corners."""
+    z, y, x, channels = values.shape
+    head = struct.pack("<3sB5i6f", b"VOL", 3, 1, x, y, z, channels, *low, *high)
+    return head + numpy.round(values, 3).astype("<f4").tobytes()
+
+
+def voxel_middles(x, y, z):
+    """Their coordinates from -1 to 1, as three arrays by z, y and x."""
+    def middles(count):
+        return (2 * numpy.arange(count) + 1) / count - 1
+
+    c, b, a = numpy.meshgrid(middles(z), middles(y), middles(x), indexing="ij")
+    return a, b, c
+
+
+def volumes():
+    """Name -> bytes. None has a symmetry that would hide a confusion of its axes."""
+    a, b, c = voxel_middles(12, 10, 8)
+    puffs = sum(numpy.maximum(0, height - ((a - x) ** 2 + (b - y) ** 2 + (c - z) ** 2) / size)
+                for x, y, z, size, height in ((-0.5, -0.4, 0.1, 0.5, 1.0),
+                                              (0.5, 0.2, -0.3, 1.0, 0.6),
+                                              (-0.1, 0.8, 0.5, 0.8, 0.8)))
+    a2, b2, c2 = voxel_middles(5, 4, 3)
+    colors = numpy.stack([0.5 + 0.45 * numpy.sin(2 * a2 + b2), 0.5 - 0.4 * b2 * c2,
+                          0.55 + 0.4 * numpy.cos(3 * c2 - a2 + 1)], axis=3)
+    a3, b3, c3 = voxel_middles(12, 12, 12)
+    radius = numpy.sqrt(a3 * a3 + b3 * b3 + c3 * c3)
+    shell = numpy.where((radius > 0.6) & (radius < 0.85), 1.0 + 0.3 * a3, 0.0)
+    return {"puffs.vol": vol(puffs[..., None], (-2, -1, -1), (2, 3, 1)),
+            "colors.vol": vol(colors, (0, 0, 0), (1, 1, 1)),
+            "shell.vol": vol(shell[..., None], (0, 0, 0), (1, 1, 1))}

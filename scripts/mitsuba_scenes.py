@@ -209,6 +209,47 @@ def room():
                     glow("6 5 4")))
 
 
+def medium(*inside, side="interior", **parameters):
+    """Homogeneous; sigma_t, albedo, scale."""
+    text = plugin("medium", "homogeneous", *inside, **parameters)
+    return text.replace(">", f' name="{side}">', 1)
+
+
+def phase(kind, **parameters):
+    return plugin("phase", kind, **parameters)
+
+
+EMPTY = bsdf("null")
+CLOUD = {"albedo": "0.9 0.85 0.8", "sigma_t": 1.5}
+PROBED = {**CLOUD, "albedo": "[0.9] 0.85 0.8"}
+
+
+def filled(*inside, kind="sphere", place=scale(0.9) + move(0, 0.95, 0), around=EMPTY, stage=STAGE,
+           **parameters):
+    """A shape around a medium, between what lights it."""
+    return shape(kind, place, around, medium(*inside, **parameters)) + stage
+
+
+def volume(name, file, place, *inside, **parameters):
+    """A grid in the cube from -1 to 1 of `place`."""
+    onto = move(-0.5, -0.5, -0.5) + scale(2) + place
+    text = plugin("volume", "gridvolume", tag("string", "filename", file), to_world(onto), *inside,
+                  **parameters)
+    return text.replace(">", f' name="{name}">', 1)
+
+
+TURNED = scale(0.35) + rotate("x", 20) + rotate("y", 40) + move(0.1, 0.6, 0)
+GRID_BOX = scale(0.9, 0.8, 0.7) + move(0, 0.85, 0)
+
+
+def gridded(*inside, kind="cube", place=GRID_BOX, density="puffs.vol", stage=STAGE, look=None,
+            **parameters):
+    """A shape around a medium whose density is a grid in it."""
+    grid = volume("sigma_t", density, GRID_BOX, **(look or {}))
+    text = plugin("medium", "heterogeneous", grid, *inside, **parameters)
+    return shape(kind, place, EMPTY, text.replace(">", ' name="interior">', 1)) + stage
+
+
 def large(inside):
     return inside.replace("</transform>", scale(1000) + "</transform>")
 
@@ -404,6 +445,70 @@ SCENES = {
     "shape_flip_normals": patch("obj", MAPPED, flip_normals=True) + shape(
         "sphere", scale(-0.5) + move(-1.2, 1.6, 0), MAPPED, flip_normals=True),
     "shape_instances": group(),
+    # media
+    "medium_grey": filled(sigma_t="[2]", albedo=0.8),
+    "medium_absorbing": filled(sigma_t="0.07 [0.33] 1", albedo=0.0, scale=3.0),
+    "medium_coloured": filled(sigma_t="0.1 [0.4] 1", albedo="0.9 0.5 0.8", scale=4.0),
+    "medium_dense": filled(albedo="0.95 [0.8] 0.9", scale=30.0),
+    "medium_thin": filled(sigma_t=0.15, albedo=0.9),
+    # All but clear: of a channel of 0 Mitsuba 3.9.1's volpath makes NaN and its volpathmis too little.
+    "medium_clear_red": filled(sigma_t="0.0001 0.5 0.9", albedo="0 [0.9] 0.9", scale=2.0),
+    "medium_forward": filled(phase("hg", g="[0.8]"), **CLOUD),
+    "medium_backward": filled(phase("hg", g=-0.6), **PROBED),
+    "medium_rayleigh": filled(phase("rayleigh"), **PROBED),
+    "medium_cube": filled(kind="cube", place=scale(0.7) + rotate("y", 25) + rotate("x", 10)
+                          + move(0, 0.95, 0), sigma_t="[2]", albedo=0.8),
+    "medium_in_glass": filled(around=bsdf("dielectric", int_ior=1.5, ext_ior=1.0),
+                              sigma_t="0.4 0.5 1", albedo="0.7 0.8 0.9", scale=2.0),
+    "medium_in_rough_glass": filled(around=bsdf("roughdielectric", int_ior=1.3, ext_ior=1.0,
+                                                distribution="ggx", alpha=0.3),
+                                    sigma_t="0.4 0.5 1", albedo="0.7 0.8 0.9", scale=2.0),
+    "medium_nested": filled(stage="", sigma_t="[0.8]", albedo="0.9 0.6 0.5") + shape(
+        "sphere", scale(0.4) + move(0.1, 1, 0.1), EMPTY, medium(sigma_t=5.0, albedo="0.3 0.6 0.9"),
+        medium(side="exterior", sigma_t="[0.8]", albedo="0.9 0.6 0.5")) + STAGE,
+    "medium_around_ball": filled(stage="", **PROBED) + shape(
+        "sphere", scale(0.4) + move(0, 0.95, 0), diffuse("0.8 0.3 0.1")) + STAGE,
+    "medium_around_glass": filled(stage="", **PROBED) + shape(
+        "sphere", scale(0.4) + move(0, 0.95, 0), bsdf("dielectric", int_ior=1.5, ext_ior=1.0),
+        medium(side="exterior", **PROBED)) + STAGE,
+    "medium_around_lamp": filled(stage="", **CLOUD) + shape(
+        "sphere", scale(0.45) + move(0.1, 0.95, 0.2), BLACK, glow("[9] 8 6")) + floor() + WALL,
+    "medium_point": filled(stage=lit_by(), **CLOUD) + emitter(
+        "point", '<point name="position" x="-1" y="2.5" z="1.5"/>', intensity="[9] 8 6"),
+    "medium_spot": filled(stage=lit_by(), **CLOUD) + emitter(
+        "spot", to_world('<lookat origin="-1.5,3,2" target="0,0.8,0" up="0,1,0"/>'),
+        cutoff_angle=25.0, beam_width=10.0, intensity="[30] 25 20"),
+    "medium_directional": filled(stage=lit_by(), **CLOUD) + emitter(
+        "directional", '<vector name="direction" x="0.5" y="-1" z="-0.4"/>', irradiance="[3] 2.5 2"),
+    "medium_envmap": filled(stage=lit_by(), **CLOUD) + emitter(
+        "envmap", to_world(rotate("x", 25) + rotate("y", 130)), filename="sky.exr", scale="[0.8]"),
+    "medium_many_lamps": filled(stage=many_lamps().replace("[20]", "20"), **PROBED),
+    "medium_instances": (
+        '<shape type="shapegroup" id="group">' + shape("sphere", scale(0.5), EMPTY, medium(**CLOUD))
+        + "</shape>" + shape("instance", scale(1, 1.4, 1) + move(-0.8, 0.8, 0), '<ref id="group"/>')
+        + shape("instance", scale(1.2, 0.7, 1) + move(0.8, "[0.6]", 0.3), '<ref id="group"/>')
+        + STAGE),
+    "medium_deep": filled(albedo="1 [0.95] 0.99", scale=8.0),
+    "medium_grid": gridded(scale="[6]", albedo=0.8),
+    "medium_grid_colors": gridded(density="colors.vol", scale="[3]", albedo="0.9 0.6 0.8"),
+    "medium_grid_albedo": gridded(volume("albedo", "colors.vol", GRID_BOX), scale="[8]"),
+    # The sphere reaches beyond the grid, whose outermost voxels are not empty.
+    "medium_grid_nearest": gridded(kind="sphere", place=scale(1.3) + move(0, 0.85, 0),
+                                   density="colors.vol", scale="[3]", albedo=0.7,
+                                   look={"filter_type": "nearest"}),
+    # By the file's box, which is (-2, -1, -1) to (2, 3, 1).
+    "medium_grid_turned": shape(
+        "cube", scale(2, 2, 1) + move(0, 1, 0) + TURNED, EMPTY, plugin(
+            "medium", "heterogeneous", plugin(
+                "volume", "gridvolume", tag("string", "filename", "puffs.vol"), to_world(TURNED),
+                use_grid_bbox=True).replace(">", ' name="sigma_t">', 1), scale=6.0,
+            albedo="[0.9] 0.85 0.8").replace(">", ' name="interior">', 1)) + STAGE,
+    "medium_grid_sphere": gridded(phase("hg", g=0.6), kind="sphere",
+                                  place=scale(0.7) + move(0, 0.85, 0), scale=8.0, albedo="[0.9]",
+                                  stage=lit_by(LAMP)),
+    "medium_grid_point": gridded(stage=lit_by(), scale=5.0, albedo="0.9 0.85 0.8") + emitter(
+        "point", '<point name="position" x="-1" y="2.5" z="1.5"/>', intensity="[9] 8 6"),
+    "medium_grid_shell": gridded(density="shell.vol", scale=60.0, albedo="0.99 [0.95] 0.9"),
     # filters: edges and a bright lamp
     **{f"filter_{name}": lit_by(shape(
         "sphere", scale(0.3) + move(0.3, 1.5, 0.4), BLACK, glow("4 3 5")), SKY)
@@ -459,6 +564,8 @@ def sensor(kind="perspective", view=VIEW, *inside, **parameters):
 
 
 NOISY = {"samples": 768}
+MEDIUM = {"method": "volpath", "samples": 1024}
+MIS = {**MEDIUM, "method": "volpathmis"}  # over the channels
 SETTINGS = {
     **{name: NOISY for name in """conductor_gold conductor_spectra conductor_eta_k
        roughconductor_anisotropic dielectric_tinted roughdielectric_beckmann thindielectric blend light_rectangle light_sphere
@@ -466,6 +573,12 @@ SETTINGS = {
        light_envmap_and_three normalmap_glass light_sunsky light_sunsky_and_lamps shape_sphere
        shape_cube shape_cylinder shape_flip_normals""".split()},
     **{name: DEEP for name in SCENES if name.startswith(("mask", "null"))},
+    **{name: MEDIUM for name in SCENES if name.startswith("medium")},
+    **{name: MIS for name in SCENES if name.startswith("medium_grid")},
+    **{name: MIS for name in """medium_clear_red medium_coloured medium_absorbing medium_in_glass
+       medium_in_rough_glass""".split()},
+    "medium_deep": {**MEDIUM, "depth": 40},
+    "medium_grid_shell": {**MIS, "depth": 20},
     "dielectric": {"depth": 6, **NOISY}, "roughdielectric_ggx": {"depth": 6, **NOISY},
     "light_in_glass": {"depth": 8},
     "light_two": {"samples": 1024}, "light_textured_and_plain": {"samples": 1024},

@@ -89,6 +89,11 @@ def serialized(version, double):
     return b"".join(shapes) + table + struct.pack("<I", 2)
 
 
+def vol(channels):
+    head = struct.pack("<3sB5i6f", b"VOL", 3, 1, 2, 3, 1, channels, -1, -1, -1, 1, 2, 3)
+    return head + struct.pack(f"<{6 * channels}f", *range(6 * channels))
+
+
 def png(color_type, depth, channels, interlace=0):
     def chunk(name, data):
         return (struct.pack(">I", len(data)) + name + data +
@@ -226,6 +231,13 @@ value="1 0 0 0 0 2 0 0 0 0 3 0 0 0 0 1"/></transform></shape>
 <alias id="wood" as="timber"/><shape type="cube"><bsdf type="blendbsdf"><float name="weight"
 value="0.3"/><bsdf type="diffuse"/><bsdf type="mask"><bsdf type="principled"/></bsdf></bsdf>
 <texture type="checkerboard" name="color"/></shape>
+""", b"""<medium type="heterogeneous" id="cloud"><volume type="gridvolume" name="sigma_t">
+<string name="filename" value="a.vol"/><boolean name="use_grid_bbox" value="true"/>
+<string name="filter_type" value="nearest"/></volume><float name="scale" value="3"/>
+<volume type="constvolume" name="albedo"><float name="value" value="0.5"/></volume>
+<phase type="hg"><float name="g" value="0.5"/></phase></medium>
+<shape type="sphere"><ref id="cloud" name="interior"/></shape>
+<shape type="cube"><bsdf type="null"/><medium type="homogeneous" name="interior"/></shape>
 """]
 
 
@@ -310,6 +322,7 @@ SEEDS = {
     "obj": [OBJ],
     "mtl": [MTL],
     "serialized": [serialized(v, d) for v in (3, 4) for d in (False, True)],
+    "vol": [vol(1), vol(3)],
     "image": [png(0, 8, 1), png(2, 8, 3), png(6, 16, 4, 1), png(3, 8, 1), png(4, 8, 2), bmp(),
               tga(2, 24), tga(10, 32), tga(3, 8), jpeg(False), jpeg(True), *hdr(), exr(),
               b"P6 1 1 255\nabc", b"P5 1 1 65535\nab",
@@ -324,7 +337,7 @@ SEEDS = {
 
 # Beside the scenes, under the names that they use.
 FILES = {"a.png": png(2, 8, 3), "a.hdr": hdr()[0], "a.obj": OBJ, "a.mtl": MTL, "a.ply": ply("ascii"),
-         "a.serialized": serialized(4, False),
+         "a.serialized": serialized(4, False), "a.vol": vol(3),
          "b.pbrt": b'Translate 1 0 0 Shape "sphere" "float radius" 0.5\n',
          "b.xml": b'<scene version="3.0.0"><bsdf type="diffuse" id="other"/></scene>'}
 

@@ -81,6 +81,15 @@ class MitsubaSuite : public testing::TestWithParam<std::string> {
   Estimates reference = read_reference(suite_file(GetParam() + ".exr"));
 };
 
+/// NaN is far from nothing: no comparison would fail.
+bool is_finite(const Estimates& image) {
+  return std::ranges::all_of(image.pixels, [](const auto& pixel) {
+    return std::ranges::all_of(pixel, [](const Estimate& e) {
+      return std::isfinite(e.value) && std::isfinite(e.variance);
+    });
+  });
+}
+
 /// What a scene's probe is multiplied by, for a look at what the suite would notice: 1, or the
 /// environment variable PTEXP_SUITE_CHANGE. Then all scenes that have a probe must fail.
 std::map<std::string, std::string> changed_probe(const std::string& xml) {
@@ -93,7 +102,10 @@ std::map<std::string, std::string> changed_probe(const std::string& xml) {
 }
 
 TEST_P(MitsubaSuite, SameImage) {
-  const Distance d = compare(render_estimates(xml, changed_probe(xml)), reference);
+  ASSERT_TRUE(is_finite(reference));
+  const Estimates ours = render_estimates(xml, changed_probe(xml));
+  ASSERT_TRUE(is_finite(ours));
+  const Distance d = compare(ours, reference);
   EXPECT_FALSE(d.is_far(limit())) << d;
   EXPECT_LT(d.relative_noise, 0.003) << "too noisy to tell";
   if (std::getenv("PTEXP_SUITE_PRINT")) std::cout << GetParam() << ": " << d << "\n";

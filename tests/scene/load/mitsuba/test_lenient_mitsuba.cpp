@@ -50,13 +50,13 @@ TEST(LenientMitsuba, DiffuseReflectanceOfDiffuse) {
   EXPECT_EQ(loaded.count("diffuse"), 0);
 }
 
-TEST(LenientMitsuba, AShapeAroundAMediumIsNotThere) {
+TEST(LenientMitsuba, AShapeAroundAMediumThatIsNotSupportedIsNotThere) {
   const auto with = [](const std::string& more) {
-    return load_xml(sphere("<medium type=\"homogeneous\" name=\"interior\"/>" + more));
+    return load_xml(sphere("<medium type=\"heterogeneous\" name=\"interior\"/>" + more));
   };
   const LoadedScene loaded = with("");
   EXPECT_TRUE(loaded.scene.spheres.empty());
-  EXPECT_EQ(loaded.count("media are not supported"), 1);
+  EXPECT_EQ(loaded.count("medium 'heterogeneous' is not supported"), 1);
   EXPECT_EQ(with("<bsdf type=\"diffuse\"/>").scene.spheres.size(), 1u);
   EXPECT_EQ(with("<emitter type=\"area\"/>").scene.spheres.size(), 1u);
 }

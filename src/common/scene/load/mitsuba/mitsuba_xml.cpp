@@ -6,6 +6,7 @@
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/load/mitsuba/emitters.h"
+#include "common/scene/load/mitsuba/media/add_grids.h"
 #include "common/scene/load/mitsuba/sensor.h"
 #include "common/scene/load/mitsuba/shapes/shapes.h"
 
@@ -39,6 +40,7 @@ void load_sensor(Context& context, const Object& root) {
 void load_objects(Context& context, const Object& root) {
   for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
   load_sensor(context, root);
+  add_grids(context);
   // What the camera sees is up to it.
   if (const Object* integrator = root.child("integrator")) read_integrator(context, *integrator);
   for (const Object* emitter : root.children("emitter")) add_emitter(context, *emitter);

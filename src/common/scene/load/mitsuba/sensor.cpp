@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/scene/load/mitsuba/media/media.h"
 #include "common/scene/load/mitsuba/xml/values.h"
 #include "common/scene/prepare/prepare_filter.h"
 
@@ -136,6 +137,9 @@ void read_sensor(Context& context, const Object& sensor) {
   }
   read_clips(sensor, camera);
   sensor.ignore({"shutter_open", "shutter_close"});
+  if (const Object* medium = sensor.child("medium")) {
+    context.scene.camera_medium = read_medium(context, *medium).value_or(no_medium);
+  }
   if (type == "thinlens") {
     read_lens(sensor, camera);
   } else {

@@ -1,6 +1,7 @@
 // The material of a shape: its bsdf and its emitter.
 #include <fmt/format.h>
 
+#include "common/scene/load/mitsuba/media/media.h"
 #include "common/scene/load/mitsuba/shapes/shapes.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 
@@ -67,16 +68,22 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
                                          std::uint32_t group) {
   const Object* bsdf = shape.child("bsdf");
   const Object* emitter = emitter_of(context, shape, group);
-  if (!shape.children("medium").empty()) {
-    context.warn_once("medium", shape.element(),
-                      "media are not supported: shapes are empty, and light passes one that has a "
-                      "medium and no bsdf");
-    if (!bsdf && !emitter) return std::nullopt;
-  }
+  const ShapeMedia media = media_of(context, shape);
+  const bool has_medium = !shape.children("medium").empty();
+  if (has_medium && !media.any && !bsdf && !emitter) return std::nullopt;
   constexpr std::uint32_t invisible = 0xffffffffu;
-  const auto [entry, is_new] = context.materials.try_emplace({bsdf, emitter}, invisible);
+  const auto [entry, is_new] = context.materials.try_emplace(
+      {bsdf, emitter, media.boundary.outside, media.boundary.inside}, invisible);
   if (is_new) {
     Surface surface = bsdf ? read_surface(context, *bsdf) : default_surface(emitter);
+    const bool has_nothing = bsdf ? surface.invisible : has_medium && !emitter;
+    if (media.any) {
+      const bool passes = has_nothing && !emitter;
+      if (passes) surface = Surface();
+      surface.material.is_boundary = true;
+      surface.material.media = media.boundary;
+      surface.material.passes = passes;
+    }
     if (emitter) add_emission(context, *emitter, surface);
     if (!surface.invisible) {
       entry->second = context.scene.add_material(surface.material);

@@ -1,13 +1,16 @@
 // What the loading of one scene shares.
 #pragma once
 
+#include <compare>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "common/scene/data/scene_data.h"
+#include "common/scene/data/volume_data.h"
 #include "common/scene/load/files/images/texture_store.h"
 #include "common/scene/load/files/load_options.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
@@ -50,9 +53,28 @@ class Context {
   /// Reports what is inside of objects in use and nothing asked for.
   void report_unused();
 
-  /// Numbers of materials by bsdf and emitter, of groups by shapegroup.
-  std::map<std::pair<const Object*, const Object*>, std::uint32_t> materials;
+  /// What a shape's material is made of.
+  struct MaterialParts {
+    const Object *bsdf, *emitter;
+    std::uint16_t outside, inside;  ///< media
+
+    auto operator<=>(const MaterialParts&) const = default;
+  };
+
+  /// Numbers of materials, of media that are supported, and of groups by shapegroup.
+  std::map<MaterialParts, std::uint32_t> materials;
+  std::map<const Object*, std::optional<std::uint16_t>> media;
   std::map<const Object*, std::uint32_t> groups;
+
+  /// The grids of a medium, by what names them in `volumes`; nullptr: it has none.
+  struct MediumGrids {
+    const Object* medium = nullptr;
+    const Object *density = nullptr, *albedo = nullptr;
+  };
+
+  /// Grids that files bring, and the media that have them: add_grids() makes them the scene's.
+  std::map<const Object*, VolumeData> volumes;
+  std::map<std::uint16_t, MediumGrids> medium_grids;
 
   /// Emitters that shapes have, in them or by reference.
   std::set<const Object*> on_shapes;
