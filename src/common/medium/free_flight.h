@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/medium/channel_densities.h"
+#include "common/medium/equiangular.h"
 #include "common/medium/medium.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/random.h"
@@ -33,6 +34,32 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_
     if (collides) density = multiply_rounded(density, extinction);
     beta = multiply_rounded(beta, densities.weigh(density, density));
   }
+  return collides ? FlightEvent::collides : FlightEvent::arrives;
+}
+
+/// The same with a chance of `share` to place a collision by a light at a point; `u_technique`
+/// makes the choice.
+PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Equiangular& towards,
+                                  float share, float u_technique, float u_channel, float u_distance,
+                                  FreeFlight& flight, ChannelDensities& densities, Color& beta) {
+  bool collides = true;
+  if (u_technique < share) {
+    flight.t = fminf(towards.sample(u_distance), t_max);
+  } else {
+    const float of_channel = channel(extinction, densities.choose(u_channel));
+    const float distance =
+        of_channel > 0.0f ? divide(-logf(1.0f - u_distance), of_channel) : infinite_distance;
+    collides = distance < t_max;
+    flight.t = collides ? distance : t_max;
+  }
+  Color value = transmittance(extinction, flight.t);
+  Color density = multiply_rounded(value, Color(1.0f - share));
+  if (collides) {
+    value = multiply_rounded(value, extinction);
+    density = add_rounded(multiply_rounded(density, extinction),
+                          Color(multiply_rounded(share, towards.pdf(flight.t))));
+  }
+  beta = multiply_rounded(beta, densities.weigh(value, density));
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
 

@@ -98,7 +98,8 @@ struct ViewThroughMedia {
 template <class Traits>
 PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_ray,
                                           std::uint32_t path_key) {
-  ViewThroughMedia view{camera_ray};
+  ViewThroughMedia view;
+  view.ray = camera_ray;
   PathState path;  // the flights of the path itself: their keys are the same
   for (;; ++path.rays) {
     const std::uint32_t ray_key = next_ray_key(scene, path_key, path.rays);

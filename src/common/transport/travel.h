@@ -13,13 +13,30 @@ PT_HD std::uint32_t flight_key(std::uint32_t path_key, std::uint32_t rays_traced
   return combine_hash(combine_hash(path_key, purpose), rays_traced);
 }
 
-/// The medium in which the next ray begins; a camera ray's is the camera's.
-PT_HD std::uint32_t medium_of(const Scene& scene, const PathState& path) {
-  return path.rays == 0 ? scene.camera_medium : path.medium.index;
-}
-
 /// A flight has no end of its own: all of its collisions are sampled at once.
 inline constexpr std::uint32_t to_the_end = ~0u;
+
+/// Takes a path's flight in a homogeneous medium to its end. Before the path's first scattering,
+/// where single scattering shows, it may be drawn to a light at a point.
+PT_HD FlightEvent fly_homogeneous(const Scene& scene, const Color& extinction, const Ray& ray,
+                                  float t_max, std::uint32_t key, FreeFlight& flight,
+                                  PathState& path) {
+  constexpr float share = 0.5f;
+  const float u_channel = to_unit_float(combine_hash(key, 0));
+  const float u_distance = to_unit_float(combine_hash(key, 1));
+  ChannelDensities& densities = path.medium.densities;
+  const std::uint32_t lights = scene.light_point_count;
+  if (lights > 0 && path.rays == path.medium.passed && !is_black(extinction)) {
+    const float choice = to_unit_float(combine_hash(key, 2)) * static_cast<float>(lights);
+    const std::uint32_t light = min_integer(static_cast<std::uint32_t>(choice), lights - 1);
+    const Equiangular towards(ray, t_max, Vec3(scene.light_points[light]));
+    if (towards.pays()) {
+      return fly_homogeneous(extinction, t_max, towards, share, to_unit_float(combine_hash(key, 3)),
+                             u_channel, u_distance, flight, densities, path.beta);
+    }
+  }
+  return fly_homogeneous(extinction, t_max, u_channel, u_distance, flight, densities, path.beta);
+}
 
 /// Takes a path to the end of its ray, `hit`, or to a collision before, which is then the hit.
 /// Multiplies its throughput by what the flight weighs. Returns whether it is there: after
@@ -36,9 +53,7 @@ PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
   const std::uint32_t key = flight_key(path_key, path.rays);
   FlightEvent event;
   if (medium.is_homogeneous()) {
-    event = fly_homogeneous(medium.extinction, hit.t, to_unit_float(combine_hash(key, 0)),
-                            to_unit_float(combine_hash(key, 1)), flight, path.medium.densities,
-                            path.beta);
+    event = fly_homogeneous(scene, medium.extinction, ray, hit.t, key, flight, path);
   } else {
     do {
       lanes_of(ray).count(LanePoint::flight);

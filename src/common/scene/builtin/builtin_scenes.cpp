@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "common/error/error.h"
+#include "common/scene/builtin/generate_cloud.h"
 #include "common/scene/builtin/generate_dial.h"
 #include "common/scene/builtin/generated/generate_boxes.h"
-#include "common/scene/builtin/generated/generate_cloud.h"
 #include "common/scene/builtin/generated/generate_forest.h"
 #include "common/scene/builtin/generated/generate_statue.h"
 #include "common/scene/builtin/generated/generate_terrain.h"

@@ -1,4 +1,4 @@
-#include "common/scene/builtin/generated/generate_cloud.h"
+#include "common/scene/builtin/generate_cloud.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

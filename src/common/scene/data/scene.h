@@ -37,15 +37,17 @@ struct Scene {
   std::uint32_t light_count = 0;
   // Scenes with triangles, which also number their triangles' slots after their primitives:
   TriangleTree triangles;
-  const CornerAttributes* corners = nullptr;   ///< [triangle id]; null: no mesh has attributes
-  const Affine* to_world = nullptr;            ///< [InstanceRecord::number]
-  LightSelector light_selector;                ///< Lighting::full
-  LightMap light_map;                          ///< Lighting::full
-  Environment environment;                     ///< Lighting::full
-  const Opacity* opacities = nullptr;          ///< [material], in scenes with masks
-  std::uint32_t mask_seed = 0;                 ///< of this render
-  const Medium* media = nullptr;               ///< in scenes with media
-  VolumeGrids grids;                           ///< of media
+  const CornerAttributes* corners = nullptr;  ///< [triangle id]; null: no mesh has attributes
+  const Affine* to_world = nullptr;           ///< [InstanceRecord::number]
+  LightSelector light_selector;               ///< Lighting::full
+  LightMap light_map;                         ///< Lighting::full
+  Environment environment;                    ///< Lighting::full
+  const Opacity* opacities = nullptr;         ///< [material], in scenes with masks
+  std::uint32_t mask_seed = 0;                ///< of this render
+  const Medium* media = nullptr;              ///< in scenes with media
+  VolumeGrids grids;                          ///< of media
+  const Vec4* light_points = nullptr;         ///< of point-like lights, in scenes with media
+  std::uint32_t light_point_count = 0;
   const MediumBoundary* boundaries = nullptr;  ///< [material] likewise
   std::uint32_t camera_medium = no_medium;     ///< in which the camera stands
   const Texture* textures = nullptr;

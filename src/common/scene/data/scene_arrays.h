@@ -38,6 +38,7 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.opacities, scene.opacities, "scene");
   function(view.media, scene.media, "scene");
   function(view.boundaries, scene.boundaries, "scene");
+  function(view.light_points, scene.light_points, "lights");
   function(view.grids.grids, scene.grids, "grids");
   function(view.grids.values, scene.grid_values, "grids");
   function(view.grids.majorants, scene.majorants, "grids");

@@ -77,8 +77,8 @@ struct SceneData {
   std::vector<Instance> instances;  ///< of the other groups
   std::vector<MaterialDescription> materials;
   std::vector<Medium> media;
-  std::vector<VolumeGrid> grids;   ///< of media; add_grid() makes them
-  std::vector<float> grid_values;  ///< of all grids
+  std::vector<VolumeGrid> grids;            ///< of media; add_grid() makes them
+  std::vector<float> grid_values;           ///< of all grids
   std::uint32_t camera_medium = no_medium;  ///< in which the camera stands
   std::vector<Texture> textures;
   std::vector<std::byte> texels;                              ///< of all textures
@@ -94,6 +94,7 @@ struct SceneData {
   std::vector<Emission> emissions;
   std::vector<Opacity> opacities;          ///< by material; empty: there are no masks
   std::vector<MediumBoundary> boundaries;  ///< by material; empty: there are no media
+  std::vector<Vec4> light_points;          ///< places of point-like lights; empty: no media
   std::vector<float> majorants;            ///< of the grids of densities
   std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned
   std::vector<std::uint32_t> material_of;  ///< by primitive

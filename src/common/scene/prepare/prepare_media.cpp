@@ -55,11 +55,17 @@ void bound(SceneData& scene, VolumeGrid& grid) {
 }  // namespace
 
 void prepare_media(SceneData& scene) {
-  scene.boundaries.clear(), scene.majorants.clear();
+  scene.boundaries.clear(), scene.majorants.clear(), scene.light_points.clear();
   if (scene.media.empty()) return;
   for (const MaterialDescription& m : scene.materials) scene.boundaries.push_back(m.media);
+  for (const DeltaLight& light : scene.delta_lights) {
+    if (light.kind != LightKind::directional) scene.light_points.emplace_back(light.position, 0);
+  }
+  for (VolumeGrid& grid : scene.grids) std::fill(std::begin(grid.cells), std::end(grid.cells), 0u);
   for (const Medium& medium : scene.media) {
-    if (!medium.is_homogeneous()) bound(scene, scene.grids[medium.density_grid]);
+    if (medium.is_homogeneous()) continue;
+    VolumeGrid& grid = scene.grids[medium.density_grid];
+    if (grid.cells[0] == 0) bound(scene, grid);  // several media may have it
   }
 }
 

@@ -93,6 +93,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
   view.camera_medium = scene.camera_medium;
+  view.light_point_count = count(scene.light_points);
   for_each_array(scene, view,
                  [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   return view;
