@@ -49,18 +49,6 @@ TEST(GltfMaterials, TransmissionIsGlass) {
   EXPECT_FALSE(water.one_sided);
 }
 
-TEST(GltfMaterials, VolumesThatAbsorbAreReported) {
-  const auto warnings = [](const Json& volume) {
-    const Json glass = {{"transmissionFactor", 1}};
-    return Loaded(with_material({{"extensions",
-                                  {{"KHR_materials_transmission", glass},
-                                   {"KHR_materials_volume", volume}}}}))
-        .count("media are not supported");
-  };
-  EXPECT_EQ(warnings({{"attenuationColor", {1, 0.5, 1}}, {"attenuationDistance", 2}}), 1u);
-  EXPECT_EQ(warnings({{"thicknessFactor", 1}}), 0u);
-}
-
 TEST(GltfMaterials, CoatSheenAndSpecular) {
   const MaterialDescription m = material_of(with_material(
       {{"extensions",

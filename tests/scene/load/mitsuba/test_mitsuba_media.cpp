@@ -17,7 +17,7 @@ std::string ball(const std::string& inside) {
 }
 
 /// With a light and, unless it has one, a sensor, of whose absence nothing is said then.
-SceneData load_silently(const std::string& inside, const std::string& version = "3.0.0") {
+SceneData load_media(const std::string& inside, const std::string& version = "3.0.0") {
   std::string more = "<emitter type='constant'/>";
   if (inside.find("<sensor") == std::string::npos) more += "<sensor type='perspective'/>";
   const LoadedScene loaded = load_xml(inside + more, version);
@@ -28,7 +28,7 @@ SceneData load_silently(const std::string& inside, const std::string& version = 
 const std::string null_bsdf = "<bsdf type='null'/>";
 
 TEST(MitsubaMedia, HaveDefaults) {
-  const SceneData scene = load_silently(ball(null_bsdf + medium("")));
+  const SceneData scene = load_media(ball(null_bsdf + medium("")));
   ASSERT_EQ(scene.media.size(), 1u);
   expect_near(scene.media[0].extinction, Color(1));
   expect_near(scene.media[0].albedo, Color(0.75f));
@@ -37,7 +37,7 @@ TEST(MitsubaMedia, HaveDefaults) {
 }
 
 TEST(MitsubaMedia, ReadExtinctionAlbedoAndScale) {
-  const SceneData scene = load_silently(
+  const SceneData scene = load_media(
       ball(null_bsdf + medium("<rgb name='sigma_t' value='0.1 0.2 1'/><rgb name='albedo' value='1 "
                               "0.5 0'/>" +
                               number("scale", 4))));
@@ -46,7 +46,7 @@ TEST(MitsubaMedia, ReadExtinctionAlbedoAndScale) {
 }
 
 TEST(MitsubaMedia, ReadOldCoefficients) {
-  const SceneData scene = load_silently(
+  const SceneData scene = load_media(
       ball(medium("<spectrum name='sigmaS' value='2'/><spectrum name='sigmaA' value='0.5'/>")),
       "0.6.0");
   expect_near(scene.media[0].extinction, Color(2.5f));
@@ -54,7 +54,7 @@ TEST(MitsubaMedia, ReadOldCoefficients) {
 }
 
 TEST(MitsubaMedia, ReadConstantVolumes) {
-  const SceneData scene = load_silently(ball(
+  const SceneData scene = load_media(ball(
       null_bsdf + medium("<volume type='constvolume' name='albedo'><rgb name='value' value='0.2 "
                          "0.4 0.6'/></volume>")));
   expect_near(scene.media[0].albedo, Color(0.2f, 0.4f, 0.6f));
@@ -62,7 +62,7 @@ TEST(MitsubaMedia, ReadConstantVolumes) {
 
 TEST(MitsubaMedia, ReadPhaseFunctions) {
   const auto phase_of = [](const std::string& phase) {
-    return load_silently(ball(null_bsdf + medium(phase))).media.at(0);
+    return load_media(ball(null_bsdf + medium(phase))).media.at(0);
   };
   const Medium forward = phase_of("<phase type='hg'>" + number("g", 0.3) + "</phase>");
   EXPECT_EQ(forward.phase, phase_kind_of<HenyeyGreenstein>);
@@ -73,11 +73,11 @@ TEST(MitsubaMedia, ReadPhaseFunctions) {
 }
 
 TEST(MitsubaMedia, LieInsideAndOutside) {
-  const SceneData scene = load_silently(
-      "<medium type='homogeneous' id='fog'/>" +
-      ball(null_bsdf + medium(number("scale", 3)) + "<ref name='exterior' id='fog'/>") +
-      ball("<bsdf type='diffuse'/><ref name='exterior' id='fog'/>") +
-      ball("<bsdf type='diffuse'/>"));
+  const SceneData scene =
+      load_media("<medium type='homogeneous' id='fog'/>" +
+                 ball(null_bsdf + medium(number("scale", 3)) + "<ref name='exterior' id='fog'/>") +
+                 ball("<bsdf type='diffuse'/><ref name='exterior' id='fog'/>") +
+                 ball("<bsdf type='diffuse'/>"));
   EXPECT_EQ(scene.media.size(), 2u);
   ASSERT_EQ(scene.materials.size(), 3u);
   const MaterialDescription &first = scene.materials[0], &second = scene.materials[1];
@@ -91,10 +91,10 @@ TEST(MitsubaMedia, LieInsideAndOutside) {
 
 TEST(MitsubaMedia, TheCameraMayStandInOne) {
   const SceneData scene =
-      load_silently(ball("") + "<sensor type='perspective'>" + medium("", "medium") + "</sensor>");
+      load_media(ball("") + "<sensor type='perspective'>" + medium("", "medium") + "</sensor>");
   EXPECT_EQ(scene.camera_medium, 0u);
   EXPECT_EQ(scene.media.size(), 1u);
-  EXPECT_EQ(load_silently(ball("")).camera_medium, no_medium);
+  EXPECT_EQ(load_media(ball("")).camera_medium, no_medium);
 }
 
 TEST(MitsubaMedia, WhatIsNotSupportedIsSaidAndLeftOut) {

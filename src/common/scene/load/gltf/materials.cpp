@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/scene/load/gltf/document/values.h"
@@ -143,10 +144,35 @@ void Materials::set_transmission(const tinygltf::Material& source, const std::st
   result.parameters[Principled::Index::spec_trans] =
       number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
                 place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
+  set_volume(source, place, result);
+}
+
+/// What the colour leaves of light after the distance. The mesh itself says how thick it is: a
+/// thickness of 0 means that it is a thin wall, and its texture is for renderers that trace no
+/// rays.
+void Materials::set_volume(const tinygltf::Material& source, const std::string& place,
+                           MaterialDescription& result) {
   const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
-  if (volume && vector_or(*volume, "attenuationColor", Color(1.0f)) != Color(1.0f)) {
-    file_.report(place, "KHR_materials_volume: media are not supported: glass is clear inside");
+  if (!volume || !(number_or(*volume, "thicknessFactor", 0.0f) > 0.0f)) return;
+  constexpr float endless = std::numeric_limits<float>::infinity();
+  const float distance = number_or(*volume, "attenuationDistance", endless);
+  if (!(distance > 0.0f)) {
+    file_.fail(place + ".extensions.KHR_materials_volume.attenuationDistance",
+               fmt::format("{}: expected > 0", distance));
   }
+  constexpr float blackest = 1e-6f;  // of a colour; black would absorb everything at once
+  const Color color = clamped(vector_or(*volume, "attenuationColor", Color(1.0f)));
+  Medium medium;
+  for (int c = 0; c < 3; ++c) {
+    medium.extinction[c] = -std::log(std::max(color[c], blackest)) / distance;
+  }
+  if (is_black(medium.extinction)) return;
+  if (scene_.media.size() >= no_medium) {
+    file_.fail(place, fmt::format("expected at most {} media", no_medium));
+  }
+  result.is_boundary = true;
+  result.media.inside = static_cast<std::uint16_t>(scene_.media.size());
+  scene_.media.push_back(medium);
 }
 
 /// KHR_materials_ior, and KHR_materials_specular as another index with the reflectance that it
@@ -262,6 +288,8 @@ std::uint32_t Materials::add(const tinygltf::Material& source, const std::string
       make_mapped(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, 0);
   std::swap(mapped.emission, material.emission);
   std::swap(mapped.opacity, material.opacity);
+  std::swap(mapped.is_boundary, material.is_boundary);
+  std::swap(mapped.media, material.media);
   mapped.children[0] = mapped.children[1] = scene_.add_material(material);
   return scene_.add_material(mapped);
 }

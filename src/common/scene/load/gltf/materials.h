@@ -33,6 +33,8 @@ class Materials {
                                MaterialDescription& result);
   void set_transmission(const tinygltf::Material& source, const std::string& place,
                         MaterialDescription& result);
+  void set_volume(const tinygltf::Material& source, const std::string& place,
+                  MaterialDescription& result);
   void set_index(const tinygltf::Material& source, const std::string& place,
                  MaterialDescription& result);
   void set_sheen(const tinygltf::Material& source, const std::string& place,

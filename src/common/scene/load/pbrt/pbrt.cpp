@@ -9,6 +9,7 @@
 #include "common/scene/load/pbrt/colors/white_balance.h"
 #include "common/scene/load/pbrt/description/read_description.h"
 #include "common/scene/load/pbrt/lights/lights.h"
+#include "common/scene/load/pbrt/media/media.h"
 #include "common/scene/load/pbrt/shapes/shapes.h"
 #include "common/scene/load/pbrt/view/view.h"
 
@@ -46,6 +47,10 @@ SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& option
   scene.name = path.stem().string();
   Context context(scene, description, reporter);
   pbrt::read_view(context);
+  if (description.camera) {
+    scene.camera_medium = pbrt::medium_named(context, description.camera_medium,
+                                             description.camera->parameters.place());
+  }
   pbrt::add_lights(context);
   pbrt::add_shapes(context);
   if (context.white_kelvins > 0.0f) pbrt::balance_lights(scene, double{context.white_kelvins});

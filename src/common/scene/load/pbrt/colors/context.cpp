@@ -12,6 +12,7 @@ std::string text_of(const Color& c) { return fmt::format("{} {} {}", c.x, c.y, c
 std::string key_of(const MaterialDescription& m) {
   std::string key = fmt::format("{} {} {} {} {}", static_cast<int>(m.kind), m.one_sided,
                                 static_cast<int>(m.node), m.children[0], m.children[1]);
+  if (m.is_boundary) key += fmt::format(" {} {} {}", m.passes, m.media.outside, m.media.inside);
   for (const pt::Parameter& p : m.parameters)
     key += fmt::format(" {} {}", text_of(p.value), p.texture);
   key += fmt::format(" {} {} {}", text_of(m.emission.radiance), m.emission.texture,

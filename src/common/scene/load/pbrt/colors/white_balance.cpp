@@ -26,6 +26,22 @@ DVec3 daylight(double kelvins) {
 /// Lam 1985, by columns.
 const DMat3 cones_of_xyz(0.8951, -0.7502, 0.0389, 0.2664, 1.7135, -0.0685, -0.1614, 0.0367, 1.0296);
 
+/// A grid of colours has them all: it is multiplied by grey.
+template <class Balance>
+void balance_medium(SceneData& scene, const Balance& balance, Medium& medium) {
+  if (medium.emission_grid == no_grid || scene.grids[medium.emission_grid].channels == 1) {
+    return balance(medium.emission);
+  }
+  const VolumeGrid& grid = scene.grids[medium.emission_grid];
+  const std::size_t voxels = std::size_t{grid.size[0]} * grid.size[1] * grid.size[2];
+  for (std::size_t i = 0; i < voxels; ++i) {
+    float* const values = &scene.grid_values[grid.first + 3 * i];
+    Color color(values[0], values[1], values[2]);
+    balance(color);
+    for (int c = 0; c < 3; ++c) values[c] = color[c];
+  }
+}
+
 }  // namespace
 
 glm::mat3 white_balance(double kelvins) {
@@ -44,6 +60,7 @@ void balance_lights(SceneData& scene, double kelvins) {
   for (MaterialDescription& material : scene.materials) balance(material.emission.radiance);
   for (Color& pixel : scene.environment.pixels) balance(pixel);
   balance(scene.sky.nadir), balance(scene.sky.zenith);
+  for (Medium& medium : scene.media) balance_medium(scene, balance, medium);
 }
 
 }  // namespace pt::pbrt

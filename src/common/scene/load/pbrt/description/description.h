@@ -24,12 +24,18 @@ using EntityPointer = std::shared_ptr<const Entity>;
 /// One of its own, or by name; a null pointer is pbrt's default, diffuse.
 using MaterialReference = std::variant<EntityPointer, std::string>;
 
+/// By name; an empty one is a vacuum.
+struct MediumNames {
+  std::string inside, outside;
+};
+
 struct ShapeEntity {
   Entity shape;
   MaterialReference material;
   EntityPointer area_light;  ///< null: it is dark
   bool reverse = false;      ///< ReverseOrientation
-  std::uint32_t group = 0;   ///< 0: the world; else of an object
+  MediumNames media;
+  std::uint32_t group = 0;  ///< 0: the world; else of an object
 };
 
 struct InstanceEntity {
@@ -43,8 +49,10 @@ struct Description {
   Place place;                   ///< its beginning
   // Null: the file has none.
   EntityPointer camera, film, sampler, integrator, filter;
+  std::string camera_medium;  ///< by name; empty: a vacuum
   std::vector<EntityPointer> lights;
-  std::map<std::string, EntityPointer> materials, float_textures, spectrum_textures;  ///< by name
+  // By name:
+  std::map<std::string, EntityPointer> materials, media, float_textures, spectrum_textures;
   std::vector<ShapeEntity> shapes;
   std::map<std::string, std::uint32_t> groups;  ///< of objects, from 1
   std::vector<InstanceEntity> instances;

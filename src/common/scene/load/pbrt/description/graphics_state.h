@@ -12,6 +12,7 @@ struct GraphicsState {
   ColorSpace space = ColorSpace::srgb;
   MaterialReference material;
   EntityPointer area_light;
+  MediumNames media;
   std::map<std::string, std::vector<Parameter>, std::less<>> attributes;  ///< by target
 };
 

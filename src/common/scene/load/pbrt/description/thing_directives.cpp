@@ -32,6 +32,7 @@ void Interpreter::option(const Directive& directive) {
     }
     coordinate_systems_["camera"] = inverse(state_.to_world);
     description_.camera = entity;
+    description_.camera_medium = state_.media.outside;
   } else if (directive.name == "Film") {
     description_.film = entity;
   } else if (directive.name == "Sampler") {
@@ -83,7 +84,7 @@ void Interpreter::texture(const Directive& directive) {
 
 void Interpreter::shape(const Directive& directive) {
   description_.shapes.push_back({read_entity(directive, "shape"), state_.material,
-                                 state_.area_light, state_.reverse, group_});
+                                 state_.area_light, state_.reverse, state_.media, group_});
 }
 
 void Interpreter::light(const Directive& directive) {
@@ -95,20 +96,22 @@ void Interpreter::area_light(const Directive& directive) {
 }
 
 void Interpreter::medium(const Directive& directive) {
-  if (directive.name == "MakeNamedMedium") {
-    read_entity(directive, "medium");
-  } else {
+  if (directive.name == "MediumInterface") {
     // One name is for both sides; an empty one is no medium.
-    bool is_empty = name_after(directive).empty();
+    state_.media.inside = state_.media.outside = name_after(directive);
     const Token* second = directive.tokens.peek();
     if (second && second->kind == TokenKind::string) {
-      is_empty = directive.tokens.next()->text.empty() && is_empty;
+      state_.media.outside = directive.tokens.next()->text;
     }
-    if (is_empty) return;
+    return;
   }
-  reporter_.warn_once("medium", directive.place,
-                      "media are not supported: shapes are empty, and light passes through those "
-                      "of the material 'interface'");
+  // The "type" stands among the parameters.
+  EntityPointer entity = shared(read_entity(directive, "medium"));
+  const std::string name = entity->type;
+  if (!description_.media.try_emplace(name, entity).second) {
+    reporter_.warn_once("medium named " + name, directive.place,
+                        fmt::format("a medium '{}' was defined before: that holds", name));
+  }
 }
 
 /// Option "type name" value, as pbrt's documentation has it, or Option "name" value.

@@ -106,6 +106,8 @@ void place_mesh(Context& context, const ShapeEntity& entity, const ShapeMaterial
   mesh.group = entity.group;
   if (shape.two_sided && shape.emits) {
     Mesh back = back_of(mesh);
+    std::swap(material.media.inside, material.media.outside);
+    back.material = context.add_material(material);
     context.scene.meshes.push_back(std::move(mesh));
     context.scene.meshes.push_back(std::move(back));
   } else {

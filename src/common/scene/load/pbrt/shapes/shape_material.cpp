@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/scene/load/files/images/image_files.h"
+#include "common/scene/load/pbrt/media/media.h"
 
 namespace pt::pbrt {
 namespace {
@@ -99,20 +100,36 @@ void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) 
   context_.lit = true;
 }
 
+/// A shape of the material 'interface' is visible where it parts two media.
+void ShapeMaterials::set_media(const ShapeEntity& shape, ShapeMaterial& result) {
+  const MediumBoundary media = media_of(context_, shape);
+  if (media.inside == media.outside) return;
+  result.material.is_boundary = true;
+  result.material.passes = result.invisible;
+  result.material.media = media;
+  result.invisible = false;
+  if (result.material.passes && shape.area_light) {
+    context_.reporter.warn_once("light of a boundary", shape.shape.parameters.place(),
+                                "an area light of the material 'interface' between two media is "
+                                "ignored");
+  }
+}
+
 ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
   const Surface& surface = surface_of(shape);
   ShapeMaterial result;
   result.material = surface.material;
   result.invisible = surface.invisible;
   context_.mappings = surface.mappings;
+  set_media(shape, result);
   const ColorTexture alpha = read_number_texture(context_, shape.shape.parameters, "alpha", 1.0f);
-  if (!surface.invisible) {
+  if (!result.invisible) {
     result.material.opacity = alpha.is_constant()
                                   ? constant_opacity(glm::clamp(alpha.color.x, 0.0f, 1.0f))
                                   : textured_opacity(alpha.color.x, alpha.texture);
     result.invisible = alpha.is_constant() && alpha.color.x <= 0.0f;
   }
-  if (shape.area_light) add_light(shape, result);
+  if (shape.area_light && !result.material.passes) add_light(shape, result);
   if (result.material.emission.texture != no_texture) context_.mappings.emplace_back();
   result.mapping =
       common_mapping(context_.mappings, shape.shape.parameters.place(), context_.reporter);

@@ -1,0 +1,25 @@
+// What gas of a temperature emits, as pbrt has it.
+#pragma once
+
+#include <vector>
+
+#include "common/math/vec.h"
+
+namespace pt::pbrt {
+
+/// A blackbody's spectrum over its largest value, in linear sRGB; its luminance is the integral
+/// with y-bar, as pbrt's film has it of what was not divided by that of a light. A table: spectra
+/// are slow, and grids have millions of voxels.
+class GlowingGas {
+ public:
+  explicit GlowingGas(float hottest_kelvins);
+
+  /// Black up to 100 K; `kelvins` at most the hottest.
+  Color radiance(float kelvins) const;
+
+ private:
+  float step_ = 1.0f;  ///< of the temperature's logarithm, between entries
+  std::vector<Color> table_;
+};
+
+}  // namespace pt::pbrt
