@@ -213,7 +213,7 @@ struct IntersectRays : PathRays {
       {StageId::shade_surface, StageId::shade_miss},
       true,
       false,
-      {Traits::has_media ? StageId::sample_medium : StageId::idle}};
+      {Traits::has_media ? StageId::sample_medium : StageId::idle, StageId::idle}};
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {

@@ -35,8 +35,8 @@ struct AmbientOcclusion {
   }
 };
 
-using Kind =
-    Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters, false, AmbientOcclusion>;
+using Kind = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters, false, false,
+                    AmbientOcclusion>;
 
 constexpr std::uint32_t width = 8, height = 8, sample_count = 256;
 constexpr PhiloxSource source{7};

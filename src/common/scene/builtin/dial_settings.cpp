@@ -10,16 +10,6 @@
 #include "common/scene/builtin/shapes/sphere_world.h"
 
 namespace pt {
-namespace {
-
-[[noreturn]] void refuse(const SceneName& scene, char part, std::string_view value,
-                         std::string_view expected) {
-  throw Error(fmt::format("--scene {}: {} is '{}', expected {} in dial:K:C:F", scene.full, part,
-                          value, expected));
-}
-
-}  // namespace
-
 DialSettings parse_dial(const SceneName& scene) {
   DialSettings settings;
   if (scene.parameter.empty()) return settings;
@@ -27,16 +17,17 @@ DialSettings parse_dial(const SceneName& scene) {
   const bool has_coherence = rest.find(':') != std::string_view::npos;
   const std::string_view materials = next_part(rest);
   if (!read_part(materials, 1u, dial_materials_most, settings.materials)) {
-    refuse(scene, 'K', materials, "a whole number of materials from 1 to 32");
+    refuse_part(scene, 'K', materials, "a whole number of materials from 1 to 32", "dial:K:C:F");
   }
   if (!has_coherence) return settings;
   const bool has_form = rest.find(':') != std::string_view::npos;
   const std::string_view coherence = next_part(rest);
   if (!read_part(coherence, 0.0f, 1.0f, settings.coherence)) {
-    refuse(scene, 'C', coherence, "a coherence from 0 to 1");
+    refuse_part(scene, 'C', coherence, "a coherence from 0 to 1", "dial:K:C:F");
   }
   if (!has_form) return settings;
-  if (rest != "open" && rest != "closed") refuse(scene, 'F', rest, "open or closed");
+  if (rest != "open" && rest != "closed")
+    refuse_part(scene, 'F', rest, "open or closed", "dial:K:C:F");
   settings.closed = rest == "closed";
   return settings;
 }

@@ -15,12 +15,6 @@ constexpr std::uint32_t cloud_seed = 7;
 constexpr double billow_size = 0.6;  ///< of the first octave's lattice
 constexpr double mean_cosine = 0.8;
 
-[[noreturn]] void refuse(const SceneName& scene, char part, std::string_view value,
-                         std::string_view expected) {
-  throw Error(fmt::format("--scene {}: {} is '{}', expected {} in cloud:N:T:A", scene.full, part,
-                          value, expected));
-}
-
 /// In [0, 1]: a ball with a flat foot, billowed by noise.
 double density_at(const glm::dvec3& p, int octaves) {
   const double flattened = p.y < -0.25 ? 2.2 * (p.y + 0.25) - 0.25 : p.y;
@@ -59,17 +53,18 @@ CloudSettings parse_cloud(const SceneName& scene) {
   const bool has_depth = rest.find(':') != std::string_view::npos;
   const std::string_view side = next_part(rest);
   if (!read_part(side, 2u, cloud_side_most, settings.side)) {
-    refuse(scene, 'N', side, fmt::format("a side from 2 to {} voxels", cloud_side_most));
+    refuse_part(scene, 'N', side, fmt::format("a side from 2 to {} voxels", cloud_side_most),
+                "cloud:N:T:A");
   }
   if (!has_depth) return settings;
   const bool has_albedo = rest.find(':') != std::string_view::npos;
   const std::string_view depth = next_part(rest);
   if (!read_part(depth, 1e-3f, 1e4f, settings.optical_depth)) {
-    refuse(scene, 'T', depth, "an optical depth from 0.001 to 10000");
+    refuse_part(scene, 'T', depth, "an optical depth from 0.001 to 10000", "cloud:N:T:A");
   }
   if (!has_albedo) return settings;
   if (!read_part(rest, 0.0f, 1.0f, settings.albedo)) {
-    refuse(scene, 'A', rest, "an albedo from 0 to 1");
+    refuse_part(scene, 'A', rest, "an albedo from 0 to 1", "cloud:N:T:A");
   }
   return settings;
 }
