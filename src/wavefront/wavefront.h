@@ -194,8 +194,7 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
 template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
                        const StageQueues& surfaces) {
-  constexpr bool streams =
-      Executor::streams_shading && Shading::lighting == Lighting::full && !Shading::has_media;
+  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
   execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 

@@ -188,8 +188,13 @@ void WavefrontCuda::build_graph(const SampleBuffer& batch) {
   check_cuda(cudaStreamBeginCaptureToGraph(stream(), body, nullptr, nullptr, 0,
                                            cudaStreamCaptureModeThreadLocal),
              "cudaStreamBeginCaptureToGraph");
-  for (int i = 0; i < waves_per_iteration; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
   cudaGraph_t captured{};
+  try {
+    for (int i = 0; i < waves_per_iteration; ++i) enqueue_wave(batch, loop, buffers_.reuses_slots);
+  } catch (...) {
+    cudaStreamEndCapture(stream(), &captured);  // else the graph could not be destroyed
+    throw;
+  }
   check_cuda(cudaStreamEndCapture(stream(), &captured), "cudaStreamEndCapture");
   check_cuda(cudaGraphInstantiate(&graph_exec_, graph_, 0), "cudaGraphInstantiate");
   check_cuda(cudaGraphUpload(graph_exec_, stream()), "cudaGraphUpload");

@@ -8,7 +8,8 @@ namespace pt {
 
 inline constexpr std::uint32_t no_grid = 0xffffffffu;
 
-/// How a grid lies in space and in memory. Beyond its cube the outermost voxels go on.
+/// How a grid lies in space and in memory. Beyond its cube the outermost voxels go on, but not
+/// along a ray without end.
 struct alignas(16) VolumeGrid {
   Affine to_unit;                ///< from the world to the cube [0, 1]^3, which the voxels fill
   std::uint32_t size[3] = {};    ///< voxels, each at least 1
@@ -17,8 +18,9 @@ struct alignas(16) VolumeGrid {
   std::uint32_t first_cell = 0;  ///< index of the first of them, in the same order
   std::uint32_t channels = 1;    ///< 1, or 3 that stand side by side
   std::uint32_t interpolates =
-      1;  ///< trilinear between the middles of voxels; else constant in each
-  std::uint32_t unused[2] = {};
+      1;                   ///< trilinear between the middles of voxels; else constant in each
+  std::uint32_t ends = 0;  ///< its outermost voxels are 0: it has nothing beyond its cube
+  std::uint32_t unused = 0;
 };
 
 /// The grids of a scene.
@@ -92,17 +94,31 @@ struct MajorantWalk {
 };
 
 /// Walks from `t` until the integral of the majorants over the distance is `depth_wanted`, or to
-/// `t_max` (Amanatides and Woo 1987, 'A fast voxel traversal algorithm for ray tracing'; pbrt-v4,
-/// section 11.4.2). It depends on nothing but its arguments: a flight may pause at any collision.
+/// `t_max`, and without end only through the grid's cube (Amanatides and Woo 1987, 'A fast voxel
+/// traversal algorithm for ray tracing'; pbrt-v4, section 11.4.2). It depends on nothing but its
+/// arguments: a flight may pause at any collision.
 PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& grid, const Ray& ray,
                                   float t, float t_max, float depth_wanted) {
   const Vec3 size(static_cast<float>(grid.cells[0]), static_cast<float>(grid.cells[1]),
                   static_cast<float>(grid.cells[2]));
   const Vec3 origin = multiply_rounded(grid.to_unit.point(ray.origin), size);
   const Vec3 direction = multiply_rounded(grid.to_unit.vector(ray.direction), size);
-  const Vec3 begin = add_scaled(origin, t, direction);
   const auto inverse_of = [](float d) { return fabsf(d) > 1e-20f ? divide(1.0f, d) : 0.0f; };
   const Vec3 inverse(inverse_of(direction.x), inverse_of(direction.y), inverse_of(direction.z));
+  float last = t_max;
+  if (grid.ends != 0 || t_max >= infinite_distance) {  // the part in the cube
+    const auto clip = [&](float from, float inverse_way, float length) {
+      const float a = multiply_rounded(-from, inverse_way);
+      const float b = multiply_rounded(length - from, inverse_way);
+      const bool is_beside = inverse_way == 0.0f && !(from >= 0.0f && from <= length);
+      if (inverse_way != 0.0f) t = fmaxf(t, fminf(a, b)), last = fminf(last, fmaxf(a, b));
+      if (is_beside) last = t;
+    };
+    clip(origin.x, inverse.x, size.x), clip(origin.y, inverse.y, size.y);
+    clip(origin.z, inverse.z, size.z);
+    if (!(t < last)) return {t_max, 0.0f, 0.0f, true};
+  }
+  const Vec3 begin = add_scaled(origin, t, direction);
   std::uint32_t x = detail::clamp_voxel(floorf(begin.x), grid.cells[0]),
                 y = detail::clamp_voxel(floorf(begin.y), grid.cells[1]),
                 z = detail::clamp_voxel(floorf(begin.z), grid.cells[2]);
@@ -117,7 +133,7 @@ PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& gr
            end_of(z, grid.cells[2], origin.z, inverse.z));
   float depth = 0.0f;
   for (;;) {
-    const float cell_end = fmaxf(fminf(fminf(end.x, end.y), fminf(end.z, t_max)), t);
+    const float cell_end = fmaxf(fminf(fminf(end.x, end.y), fminf(end.z, last)), t);
     const float majorant =
         grids.majorants[grid.first_cell + x + grid.cells[0] * (y + grid.cells[1] * z)];
     const float deeper = fused_multiply_add(majorant, cell_end - t, depth);
@@ -127,7 +143,7 @@ PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& gr
     }
     depth = fminf(deeper, infinite_distance);
     t = cell_end;
-    if (t >= t_max) return {t, depth, majorant, true};
+    if (t >= last) return {t_max, depth, majorant, true};
     if (end.x <= end.y && end.x <= end.z) {
       inverse.x > 0.0f ? ++x : --x;
       end.x = end_of(x, grid.cells[0], origin.x, inverse.x);

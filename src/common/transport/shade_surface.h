@@ -204,8 +204,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
     }
     if constexpr (Traits::has_media) {
       const Vec3& n = surface.point.normal;
-      result.shadow.medium =
-          static_cast<std::uint16_t>(boundary.towards(result.shadow.ray.direction, n));
+      result.shadow.medium = static_cast<std::uint16_t>(boundary.towards(incident.wi, n));
     }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
