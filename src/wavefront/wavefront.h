@@ -263,8 +263,9 @@ void sample_media(Executor& execute, const WaveBuffers& b, const SampleBuffer& s
   execute.compact(b.request<id>(b.pool.tag));
   execute.run(SampleMedium<RayTraits<Traits>>{b.pool, samples, b.wave_collisions},
               b.stage_queues(id, b.waiting(id), b.pool.tag));
-  execute.compact(
-      b.request<StageId::shade_miss, StageId::shade_surface, StageId::shade_medium>(b.pool.tag));
+  // A pass on CUDA fills at most two queues, and may use the count behind them.
+  execute.compact(b.request<StageId::shade_miss, StageId::shade_surface>(b.pool.tag));
+  execute.compact(b.request<StageId::shade_medium>(b.pool.tag));
 }
 
 /// One wave: free slots get new paths, and every path in flight one more ray. Without
