@@ -49,6 +49,7 @@ const std::map<std::string, std::string>& other_values() {
       {"shade", "material"},
       {"stages", "fused"},
       {"wave-rays", "3"},
+      {"wave-collisions", "4"},
       {"seed", "18446744073709551615"},
       {"output", "a b.png"},
       {"exposure", "-1.5"},

@@ -85,12 +85,13 @@ TEST(ThickMedia, HalfSpacesUnderTheSkyReflectWhatChandrasekharSays) {
   }
 }
 
-// A density changes lengths alone; with depth it grows here from nothing to twice the usual.
+// A density changes lengths alone, in a grid that few paths leave; with depth it grows here from
+// nothing to twice the usual.
 TEST(ThickMedia, HalfSpacesOfVaryingDensityReflectTheSame) {
   const double albedo = 0.9, mu = 0.6;
   SceneData scene = half_space(make_medium(Color(1.0f), Color(0.9f)), mu);
   scene.media[0].density_grid = add_grid(
-      scene, make_volume({1, 32, 1}, 1, true, translate({-300, -8, -300}) * scale({600, 8, 600}),
+      scene, make_volume({1, 32, 1}, 1, true, translate({-300, -80, -300}) * scale({600, 80, 600}),
                          [](const GridSize& v, std::uint32_t) {
                            return v[1] % 3 == 0 ? 0.1 : 0.06 * (33.0 - v[1]);
                          }));

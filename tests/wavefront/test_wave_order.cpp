@@ -11,6 +11,7 @@
 namespace pt {
 namespace {
 
+using MediaScene = Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>;
 using TriangleScene = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full>;
 using SphereScene = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>;
 
@@ -295,6 +296,8 @@ TEST(WaveOrder, EveryStageOfAWaveIsReached) {
   for (const CompactionInfo& strategy : compaction_table) {
     const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy);
     reached.insert(notes.ran.begin(), notes.ran.end());
+    const auto in_media = notes_of<MediaScene, Branching::divergent, true>(strategy);
+    reached.insert(in_media.ran.begin(), in_media.ran.end());
   }
   for (const auto& notes : {fused_notes(Compaction::atomic, true), repeat_notes(false)}) {
     reached.insert(notes.ran.begin(), notes.ran.end());
