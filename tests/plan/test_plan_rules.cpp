@@ -69,15 +69,16 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   sorting.kernel = MegakernelKind::sort;
   EXPECT_NO_THROW(check(sorting, masked));
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
+    EXPECT_EQ(refusal(scene, "kernel", "sort"),
+              "--kernel sort: traces triangles alone; scene '" + scene +
+                  "' has spheres, instances, media, clip planes, hidden emitters or no triangles, "
+                  "expected auto "
+                  "or loop");
     EXPECT_EQ(
-        refusal(scene, "kernel", "sort"),
-        "--kernel sort: traces triangles alone; scene '" + scene +
-            "' has spheres, instances, clip planes, hidden emitters or no triangles, expected auto "
-            "or loop");
-    EXPECT_EQ(refusal(scene, "kernel", "vote"),
-              "--kernel vote: traces triangles alone; scene '" + scene +
-                  "' has spheres, instances, masks, clip planes, hidden emitters or no triangles, "
-                  "expected auto or loop");
+        refusal(scene, "kernel", "vote"),
+        "--kernel vote: traces triangles alone; scene '" + scene +
+            "' has spheres, instances, masks, media, clip planes, hidden emitters or no triangles, "
+            "expected auto or loop");
     EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
   }
 }

@@ -52,11 +52,11 @@ TEST(LenientMitsuba, DiffuseReflectanceOfDiffuse) {
 
 TEST(LenientMitsuba, AShapeAroundAMediumThatIsNotSupportedIsNotThere) {
   const auto with = [](const std::string& more) {
-    return load_xml(sphere("<medium type=\"heterogeneous\" name=\"interior\"/>" + more));
+    return load_xml(sphere("<medium type=\"wobbling\" name=\"interior\"/>" + more));
   };
   const LoadedScene loaded = with("");
   EXPECT_TRUE(loaded.scene.spheres.empty());
-  EXPECT_EQ(loaded.count("medium 'heterogeneous' is not supported"), 1);
+  EXPECT_EQ(loaded.count("medium 'wobbling' is not supported"), 1);
   EXPECT_EQ(with("<bsdf type=\"diffuse\"/>").scene.spheres.size(), 1u);
   EXPECT_EQ(with("<emitter type=\"area\"/>").scene.spheres.size(), 1u);
 }
