@@ -14,8 +14,9 @@ import math
 import sys
 
 from lib import harness
-from lib.harness import Configuration, Experiment, HarnessError, Plot
+from lib.harness import Configuration, Experiment, Plot
 from lib.image_check import with_options
+from lib.ratios import ratio_labels, set_ratios
 
 FIGURES = ["open", "closed"]
 MATERIALS = [1, 2, 4, 8, 16, 32]
@@ -31,8 +32,6 @@ VARIANTS = {
     "wide tree": "--mode wavefront --accel cwbvh",
 }
 DEPTH = 8
-# A ratio is lowest if the base is as fast and the row as slow as they may be: wider than need be.
-OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high"), ("high", "low")]
 
 
 def add_arguments(parser):
@@ -77,25 +76,14 @@ def configurations(arguments, device):
                 {"panel": f"{figure}, {variant}", "series": f"coherence {coherence}",
                  "x": "" if is_base else materials, "figure": figure, "materials": materials,
                  "coherence": coherence, "variant": variant,
-                 **{f"ratio_{part}": "" for part, _ in OPPOSITES}}, same_image=scene))
+                 **ratio_labels()}, same_image=scene))
     return rows
 
 
 def finish(rows, _arguments):
     def scene(row):
         return row["figure"], row["materials"], row["coherence"]
-    bases = {scene(row): row for row in rows if row["variant"] == BASE}
-    for row in rows:
-        base = bases.get(scene(row))
-        if base is None:
-            continue
-        for column in ("paths", "rays", "shadow_rays"):
-            if row[column] != base[column]:
-                raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
-                                   f"{base[column]}; expected equal numbers")
-        for part, opposite in OPPOSITES:
-            ratio = float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{opposite}"])
-            row[f"ratio_{part}"] = f"{ratio:.4f}"
+    set_ratios(rows, BASE, scene)
 
 
 def crossing(points):

@@ -11,7 +11,8 @@ bit for bit.
 import sys
 
 from lib import harness
-from lib.harness import Configuration, Experiment, HarnessError, Plot
+from lib.harness import Configuration, Experiment, Plot
+from lib.ratios import ratio_labels, set_ratios
 
 DEPTHS = [0.1, 0.3, 1, 3, 10, 30, 100]
 ALBEDOS = [0, 0.5, 0.9, 0.99, 0.999]
@@ -26,7 +27,6 @@ VARIANTS = {
     "waves of 16": "--mode wavefront --wave-collisions 16",
     "fused": "--mode wavefront --stages fused",
 }
-OPPOSITES = [("median", "median"), ("min", "max"), ("max", "min"), ("low", "high"), ("high", "low")]
 
 
 def add_arguments(parser):
@@ -62,31 +62,24 @@ def configurations(arguments, _device):
                 f"--scene {scene} --width {size} --height {size} --spp {spp} "
                 f"--max-depth {arguments.max_depth} --rr 16 --accel bvh2 {options}",
                 {"panel": figure, "series": variant, "x": x if drawn else "", "figure": figure,
-                 "value": x, "variant": variant, **{f"ratio_{part}": "" for part, _ in OPPOSITES}},
+                 "value": x, "variant": variant, **ratio_labels()},
                 same_image=f"{figure} {x:g}"))
     return rows
 
 
+def scene_of(row):
+    return row["figure"], row["value"]
+
+
 def finish(rows, _arguments):
-    bases = {(row["figure"], row["value"]): row for row in rows if row["variant"] == BASE}
-    for row in rows:
-        base = bases.get((row["figure"], row["value"]))
-        if base is None:
-            continue
-        for column in ("paths", "rays", "shadow_rays"):
-            if row[column] != base[column]:
-                raise HarnessError(f"{row['name']} has {row[column]} {column}, {base['name']} has "
-                                   f"{base[column]}; expected equal numbers")
-        for part, opposite in OPPOSITES:
-            ratio = float(base[f"kernel_ms_{part}"]) / float(row[f"kernel_ms_{opposite}"])
-            row[f"ratio_{part}"] = f"{ratio:.4f}"
+    set_ratios(rows, BASE, scene_of)
 
 
 def conclude(rows, _arguments):
     """A sentence for each scene: the best variant."""
     scenes = {}
     for row in rows:
-        scenes.setdefault((row["figure"], row["value"]), []).append(row)
+        scenes.setdefault(scene_of(row), []).append(row)
     sentences = []
     for (figure, value), variants in scenes.items():
         measured = [row for row in variants if row["ratio_median"]]
