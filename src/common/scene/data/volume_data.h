@@ -14,6 +14,12 @@ struct VolumeData {
   Affine to_world;             ///< not singular
 };
 
+/// The same in space, with a layer of zeros around it: it fades to nothing beyond its cube.
+VolumeData with_rim_of_zeros(const VolumeData& volume);
+
+/// Whether all of the outermost voxels are 0. `values`: of so many voxels, as above.
+bool has_empty_rim(const std::uint32_t (&size)[3], std::uint32_t channels, const float* values);
+
 /// Adds the grid to the scene; its index, for a Medium. Throws Error, which names the scene and
 /// what was expected, where the grid is not as above.
 std::uint32_t add_grid(SceneData& scene, const VolumeData& volume);

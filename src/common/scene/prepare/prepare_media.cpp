@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/scene/data/volume_data.h"
+
 namespace pt {
 namespace {
 
@@ -23,27 +25,8 @@ struct VoxelRange {
   }
 };
 
-/// Whether all of the outermost voxels are 0.
-bool ends(const SceneData& scene, const VolumeGrid& grid) {
-  const auto is_outermost = [&](int axis, std::uint32_t i) {
-    return i == 0 || i + 1 == grid.size[axis];
-  };
-  const float* value = &scene.grid_values[grid.first];
-  for (std::uint32_t k = 0; k < grid.size[2]; ++k) {
-    for (std::uint32_t j = 0; j < grid.size[1]; ++j) {
-      const bool row_is = is_outermost(1, j) || is_outermost(2, k);
-      for (std::uint32_t i = 0; i < grid.size[0]; ++i) {
-        for (std::uint32_t c = 0; c < grid.channels; ++c) {
-          if (*value++ != 0.0f && (row_is || is_outermost(0, i))) return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
 void bound(SceneData& scene, VolumeGrid& grid) {
-  grid.ends = ends(scene, grid) ? 1 : 0;
+  grid.ends = has_empty_rim(grid.size, grid.channels, &scene.grid_values[grid.first]) ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     const std::uint32_t wanted = (grid.size[axis] + cell_voxels - 1) / cell_voxels;
     grid.cells[axis] = std::min(wanted, cells_max);

@@ -58,56 +58,6 @@ bool reaches_beyond(const SceneData& scene, std::uint16_t medium, const VolumeDa
          glm::any(glm::greaterThan(room.max, box.max + tolerance));
 }
 
-/// Calls `f` with a row of voxels along x: its first value, and its j and k.
-template <class Function>
-void for_each_row(const VolumeData& grid, Function&& f) {
-  for (std::uint32_t k = 0; k < grid.size[2]; ++k) {
-    for (std::uint32_t j = 0; j < grid.size[1]; ++j) {
-      const std::size_t row = j + std::size_t{grid.size[1]} * k;
-      f(row * grid.size[0] * grid.channels, j, k);
-    }
-  }
-}
-
-bool ends_in_nothing(const VolumeData& grid) {
-  bool all_zero = true;
-  const std::size_t length = std::size_t{grid.size[0]} * grid.channels;
-  for_each_row(grid, [&](std::size_t first, std::uint32_t j, std::uint32_t k) {
-    const float* const row = grid.values.data() + first;
-    const auto is_zero = [](float value) { return value == 0; };
-    const bool is_outermost = j == 0 || k == 0 || j + 1 == grid.size[1] || k + 1 == grid.size[2];
-    if (is_outermost) {
-      all_zero = all_zero && std::all_of(row, row + length, is_zero);
-    } else {
-      all_zero = all_zero && std::all_of(row, row + grid.channels, is_zero) &&
-                 std::all_of(row + length - grid.channels, row + length, is_zero);
-    }
-  });
-  return all_zero;
-}
-
-/// With a layer of zeros around it.
-VolumeData padded(const VolumeData& grid) {
-  VolumeData result = grid;
-  Vec3 voxel, size;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.size[axis] = grid.size[axis] + 2;
-    voxel[axis] = 1.0f / static_cast<float>(grid.size[axis]);
-    size[axis] = static_cast<float>(result.size[axis]) * voxel[axis];
-  }
-  result.to_world = grid.to_world * translate(-voxel) * scale(size);
-  result.values.assign(
-      std::size_t{result.size[0]} * result.size[1] * result.size[2] * grid.channels, 0.0f);
-  const std::size_t length = std::size_t{grid.size[0]} * grid.channels;
-  for_each_row(grid, [&](std::size_t first, std::uint32_t j, std::uint32_t k) {
-    const std::size_t row = j + 1 + std::size_t{result.size[1]} * (k + 1);
-    std::copy_n(grid.values.begin() + static_cast<std::ptrdiff_t>(first), length,
-                result.values.begin() +
-                    static_cast<std::ptrdiff_t>((row * result.size[0] + 1) * grid.channels));
-  });
-  return result;
-}
-
 /// Whether axes of the grid are axes of the world.
 bool is_aligned(const Affine& map) {
   for (const Vec4& row : map.row) {
@@ -130,13 +80,15 @@ class GridsOfScene {
     const VolumeData& grid = context_.volumes.at(grids.density);
     Medium& medium = context_.scene.media[number];
     expect_finite(*grids.medium, medium, grid);
-    if (!ends_in_nothing(grid) && reaches_beyond(context_.scene, number, grid)) {
+    if (!has_empty_rim(grid.size, grid.channels, grid.values.data()) &&
+        reaches_beyond(context_.scene, number, grid)) {
       if (grid.interpolates || !is_aligned(grid.to_world)) {
         context_.warn_once("beyond grid", grids.medium->element(),
                            "a medium reaches beyond its grid, where nothing is: its density fades "
                            "within half a voxel");
       }
-      medium.density_grid = index_of(padded_, grids.density, [&] { return padded(grid); });
+      medium.density_grid =
+          index_of(padded_, grids.density, [&] { return with_rim_of_zeros(grid); });
     } else if (is_constant(grid)) {
       medium.extinction *= only_value(grid);
     } else {

@@ -65,22 +65,7 @@ VolumeData plain_volume(const SampleBox& box, std::uint32_t channels, std::vecto
 
 VolumeData faded_volume(const SampleBox& box, std::uint32_t channels,
                         const std::vector<float>& values) {
-  VolumeData volume = plain_volume(box, channels, {});
-  const Vec3 voxel = Vec3(1.0f) / size_of(box);
-  volume.to_world = volume.to_world * translate(-voxel) * scale(Vec3(1.0f) + 2.0f * voxel);
-  for (std::uint32_t& side : volume.size) side += 2;
-  const std::size_t width = volume.size[0], height = volume.size[1], depth = volume.size[2];
-  volume.values.assign(width * height * depth * channels, 0.0f);
-  const std::size_t row = std::size_t{box.size[0]} * channels;
-  for (std::size_t k = 0; k < box.size[2]; ++k) {
-    for (std::size_t j = 0; j < box.size[1]; ++j) {
-      const auto from = values.begin() + static_cast<std::ptrdiff_t>((k * box.size[1] + j) * row);
-      const std::size_t to = (((k + 1) * height + j + 1) * width + 1) * channels;
-      std::copy(from, from + static_cast<std::ptrdiff_t>(row),
-                volume.values.begin() + static_cast<std::ptrdiff_t>(to));
-    }
-  }
-  return volume;
+  return with_rim_of_zeros(plain_volume(box, channels, values));
 }
 
 }  // namespace pt::pbrt
