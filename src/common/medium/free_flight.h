@@ -20,15 +20,20 @@ struct alignas(8) FreeFlight {
 
 enum class FlightEvent { arrives, collides, collides_with_nothing };
 
+/// The distance to an event of this rate per unit of length; without end for a rate of 0.
+/// u uniform in [0, 1).
+PT_HD float sample_exponential(float rate, float u) {
+  return rate > 0.0f ? divide(-logf(1.0f - u), rate) : HUGE_VALF;
+}
+
 /// Takes a flight in a homogeneous medium to its collision, or to `t_max`.
 PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_channel,
                                   float u_distance, FreeFlight& flight, ChannelDensities& densities,
                                   Color& beta) {
-  const float of_channel = channel(extinction, densities.choose(u_channel));
   const float distance =
-      of_channel > 0.0f ? divide(-logf(1.0f - u_distance), of_channel) : infinite_distance;
+      sample_exponential(channel(extinction, densities.choose(u_channel)), u_distance);
   const bool collides = distance < t_max;
-  flight.t = collides ? distance : t_max;
+  flight.t = fminf(distance, t_max);
   if (!is_grey(extinction)) {  // else the weight is 1
     Color density = transmittance(extinction, flight.t);
     if (collides) density = multiply_rounded(density, extinction);
@@ -42,16 +47,12 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_
 PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Equiangular& towards,
                                   float share, float u_technique, float u_channel, float u_distance,
                                   FreeFlight& flight, ChannelDensities& densities, Color& beta) {
-  bool collides = true;
-  if (u_technique < share) {
-    flight.t = fminf(towards.sample(u_distance), t_max);
-  } else {
-    const float of_channel = channel(extinction, densities.choose(u_channel));
-    const float distance =
-        of_channel > 0.0f ? divide(-logf(1.0f - u_distance), of_channel) : infinite_distance;
-    collides = distance < t_max;
-    flight.t = collides ? distance : t_max;
-  }
+  const bool is_drawn = u_technique < share;
+  const float distance =
+      is_drawn ? towards.sample(u_distance)
+               : sample_exponential(channel(extinction, densities.choose(u_channel)), u_distance);
+  const bool collides = is_drawn || distance < t_max;
+  flight.t = fminf(distance, t_max);
   Color value = transmittance(extinction, flight.t);
   Color density = multiply_rounded(value, Color(1.0f - share));
   if (collides) {
@@ -71,10 +72,8 @@ PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& mediu
   const VolumeGrid& grid = grids.grids[medium.density_grid];
   key = combine_hash(key, flight.collisions);
   const int by = densities.choose(to_unit_float(combine_hash(key, 0)));
-  const float of_channel = channel(medium.extinction, by);
-  const float depth = of_channel > 0.0f
-                          ? divide(-logf(1.0f - to_unit_float(combine_hash(key, 1))), of_channel)
-                          : HUGE_VALF;
+  const float depth =
+      sample_exponential(channel(medium.extinction, by), to_unit_float(combine_hash(key, 1)));
   const MajorantWalk walk = walk_majorants(grids, grid, ray, flight.t, t_max, depth);
   flight.t = walk.t;
   const bool same_for_all = is_grey(medium.extinction) && grid.channels == 1;  // the weight is 1
@@ -118,7 +117,7 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
   float t = 0.0f;
   for (std::uint32_t collisions = 0;; ++collisions) {
     const std::uint32_t event = combine_hash(key, collisions);
-    const float depth = divide(-logf(1.0f - to_unit_float(combine_hash(event, 0))), largest);
+    const float depth = sample_exponential(largest, to_unit_float(combine_hash(event, 0)));
     const MajorantWalk walk = walk_majorants(grids, grid, ray, t, t_max, depth);
     if (walk.arrives) return passed;
     lanes_of(ray).count(LanePoint::flight);

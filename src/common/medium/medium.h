@@ -31,7 +31,7 @@ struct MediumBoundary {
   std::uint16_t outside = no_medium, inside = no_medium;
 
   /// Behind the surface, as seen by who travels along `direction` away from it.
-  PT_HD std::uint32_t towards(const Vec3& direction, const Vec3& normal) const {
+  PT_HD std::uint16_t towards(const Vec3& direction, const Vec3& normal) const {
     return dot(direction, normal) > 0.0f ? outside : inside;
   }
   bool operator==(const MediumBoundary&) const = default;

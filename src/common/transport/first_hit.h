@@ -120,11 +120,10 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
     const std::uint32_t material = material_index_at(scene, view.hit);
     if (!scene.material(material).is(Material::passes)) return view;
     const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit).point;
-    path.medium.index = static_cast<std::uint16_t>(
-        scene.boundaries[material].towards(view.ray.direction, point.normal));
-    const Ray next = spawn_ray(point, view.ray.direction);
-    view.distance += dot(next.origin - view.ray.origin, view.ray.direction);
-    view.ray = next;
+    const BoundaryCrossing crossing = cross_boundary(scene, view.ray, material, point);
+    path.medium.index = crossing.medium;
+    view.distance += crossing.length;
+    view.ray = crossing.ray;
   }
 }
 

@@ -101,18 +101,32 @@ PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& 
   steps.aim(shadow);
 }
 
+/// Where a ray goes on behind a boundary without a BSDF.
+struct BoundaryCrossing {
+  Ray ray;               ///< in the same direction
+  float length;          ///< from the origin of the ray before
+  std::uint16_t medium;  ///< in which it begins
+};
+
+PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, std::uint32_t material,
+                                      const SurfacePoint& point) {
+  const Ray next = spawn_ray(point, ray.direction);
+  return {next, dot(next.origin - ray.origin, ray.direction),
+          scene.boundaries[material].towards(ray.direction, point.normal)};
+}
+
 /// A surface without a BSDF between two media.
 PT_HD Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                PathState& path) {
-  path.medium.index = static_cast<std::uint16_t>(
-      scene.boundaries[surface.material_index].towards(ray.direction, surface.point.normal));
+  const BoundaryCrossing crossing =
+      cross_boundary(scene, ray, surface.material_index, surface.point);
+  path.medium.index = crossing.medium;
+  path.medium.travelled = add_rounded(path.medium.travelled, crossing.length);
   ++path.medium.passed;
   Scattering result;
   result.alive = true;
-  result.ray = spawn_ray(surface.point, ray.direction);
+  result.ray = crossing.ray;
   set_lanes(result.ray, lanes_of(scene).at(path.rays));
-  path.medium.travelled =
-      add_rounded(path.medium.travelled, dot(result.ray.origin - ray.origin, ray.direction));
   return result;
 }
 
@@ -203,8 +217,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
       result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
     }
     if constexpr (Traits::has_media) {
-      const Vec3& n = surface.point.normal;
-      result.shadow.medium = static_cast<std::uint16_t>(boundary.towards(incident.wi, n));
+      result.shadow.medium = boundary.towards(incident.wi, surface.point.normal);
     }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
@@ -214,8 +227,7 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
   if constexpr (Traits::has_media) {
-    path.medium.index =
-        static_cast<std::uint16_t>(boundary.towards(result.ray.direction, surface.point.normal));
+    path.medium.index = boundary.towards(result.ray.direction, surface.point.normal);
     path.medium.travelled = 0.0f;
   }
   set_lanes(result.ray, lanes_of(scene).at(path.rays));

@@ -147,10 +147,10 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
     }
     if (arrives || is_black(passed)) return passed;
     const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, ray, hit).point;
-    medium = scene.boundaries[material].towards(ray.direction, point.normal);
-    const Ray next = spawn_ray(point, ray.direction);
-    left -= dot(next.origin - ray.origin, ray.direction);
-    ray.origin = next.origin;
+    const BoundaryCrossing crossing = cross_boundary(scene, ray, material, point);
+    medium = crossing.medium;
+    left -= crossing.length;
+    ray.origin = crossing.ray.origin;
   }
 }
 
