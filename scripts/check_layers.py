@@ -23,7 +23,7 @@ HOST = ["options", "error"]
 BUILDERS = ["build", "embree", *SCENE_PARTS, *HOST]
 SCENE = ["loaders", "builtin", "prepare", "scene", "plan", "image", *BUILDERS]
 PHYSICS = ["transport", "prepare", "scene", *SCENE_PARTS]
-COMMON = ["rays", "device", "build_cuda", "cuda", "render", "film", "trace_cuda", "transport", *SCENE]
+COMMON = ["rays", "block_wavefront", "device", "build_cuda", "cuda", "render", "film", "trace_cuda", "transport", *SCENE]
 SCHEDULES = ["serial", "megakernel", "wavefront"]
 
 LAYERS = [
@@ -41,6 +41,9 @@ LAYERS = [
     *[(name, [name + "/*"], COMMON) for name in SCHEDULES],
     # Arrays of rays: files of them, and the kernels that measure how fast they are traced.
     ("rays", ["common/rays/*"], ["build_cuda", "cuda", "render", "trace_cuda", "transport", *SCENE]),
+    # The wavefront inside of a block, which the megakernel runs by and the wavefront ends with.
+    ("block_wavefront", ["common/block_wavefront/*"],
+     ["device", "cuda", "render", "film", "trace_cuda", "transport", *SCENE]),
     # What runs a schedule on a device.
     ("device", ["common/device/*"], ["build_cuda", "cuda", "render", "film", "transport", *SCENE]),
     # Around the physics: renderers and batches; what becomes of the samples.

@@ -20,7 +20,7 @@ from pathlib import Path
 HEADER = "common/mutant.h"
 CUDA_SUFFIXES = (".cu", ".cuh", "_cuda.cpp", "_cuda.h")
 # Device code that tests run on emulated blocks (tests/support/emulated_gpu.h).
-EMULATED = ("megakernel/trace_paths_sorting.cuh", "megakernel/path_query.cuh",
+EMULATED = ("common/block_wavefront/block_wavefront.cuh", "common/block_wavefront/path_query.cuh",
             "common/device/cuda/counting_sort.cuh", "common/accel/trace_cuda/reserve_rays.cuh",
             "common/accel/trace_cuda/persistent_cwbvh.cuh")
 

@@ -30,6 +30,13 @@ bool is_scene_file(const std::string& scene) {
   return !built_in && scene.find_first_of("./") != std::string::npos;
 }
 
+/// What renders on it, where it is not a thread of the host.
+DeviceProperties properties_for(const Options& options, const DeviceInfo& device) {
+  const bool is_on_gpu =
+      device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+  return is_on_gpu ? device.properties : cpu_properties(options.threads);
+}
+
 }  // namespace
 
 SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
@@ -55,9 +62,7 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
 }
 
 void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device) {
-  const bool is_on_gpu =
-      device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
-  prepare_scene(scene, options, is_on_gpu ? device.properties : cpu_properties(options.threads));
+  prepare_scene(scene, options, properties_for(options, device));
 }
 
 SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
@@ -68,14 +73,14 @@ SceneData make_scene_for(const Options& options, const DeviceInfo& device, const
 
 std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
                                         [[maybe_unused]] const DeviceInfo& device) {
+  const Mode mode = plan_execution(options, scene.properties, properties_for(options, device)).mode;
 #ifdef PTEXP_CUDA
-  if (device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial) {
-    return options.mode == Mode::megakernel
-               ? make_megakernel_cuda(options, scene, device.choice.index)
-               : make_wavefront_cuda(options, scene, device.choice.index);
+  if (device.choice.kind == DeviceChoice::Kind::cuda && mode != Mode::serial) {
+    return mode == Mode::megakernel ? make_megakernel_cuda(options, scene, device.choice.index)
+                                    : make_wavefront_cuda(options, scene, device.choice.index);
   }
 #endif
-  switch (options.mode) {
+  switch (mode) {
     case Mode::serial:
       return make_serial_renderer(options, scene);
     case Mode::megakernel:

@@ -7,11 +7,9 @@ namespace pt {
 MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, int device)
     : CudaRenderer(options, scene, device) {
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
-  if (execution_.megakernel != MegakernelKind::sort) return;
-  if (traits_.has_masks) {
-    allocate_slots<true>();
-  } else {
-    allocate_slots<false>();
+  if (execution_.megakernel == MegakernelKind::sort) {
+    CudaLauncher& launcher = *this;
+    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_);
   }
 }
 
@@ -22,10 +20,8 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     const SceneStorage<SceneMemory::global> in_global{scene_};
     if constexpr (std::is_same_v<Source, SamplerSource>) {
       if (execution_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
-      if (execution_.megakernel == MegakernelKind::sort) {
-        return traits_.has_masks ? launch_block_wavefront<true>(source, batch)
-                                 : launch_block_wavefront<false>(source, batch);
-      }
+      if (blocks_ != nullptr)
+        return blocks_->trace(scene_, batch, source, limits_, StageId::megakernel);
       launch_megakernel(in_global, 0, source, batch);
     } else {
       if constexpr (std::is_same_v<Source, PhiloxSource>) {

@@ -1,13 +1,12 @@
 // The megakernel's renderer. The loop has 15 variants (scene, branching, random numbers, scene
-// memory), so launching is split into files that compile side by side; the kernels that vote and
-// sort are one each.
+// memory), so launching is split into files that compile side by side; the kernel that votes is
+// one, and so is that of the block-local wavefront.
 #pragma once
 
+#include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/cuda_renderer.cuh"
 
 namespace pt {
-
-struct PathSlot;
 
 class MegakernelCuda : public CudaRenderer {
  public:
@@ -27,18 +26,10 @@ class MegakernelCuda : public CudaRenderer {
   template <class Kernel>
   dim3 grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes, const SampleBuffer& batch);
 
-  /// How many paths a block that sorts has for each thread: what its shared memory has room for.
-  int block_wavefront_slots() const;
   void launch_phase_voting(const SamplerSource& source, const SampleBuffer& batch);
-  template <bool has_masks>
-  std::uint32_t block_wavefront_blocks();
-  template <bool has_masks>
-  void allocate_slots();
-  template <bool has_masks>
-  void launch_block_wavefront(const SamplerSource& source, const SampleBuffer& batch);
 
   std::uint32_t* next_path_ = nullptr;
-  PathSlot* slots_ = nullptr;  ///< only where blocks sort
+  std::unique_ptr<BlockWavefronts> blocks_;  ///< only with --kernel sort
 };
 
 }  // namespace pt

@@ -11,9 +11,9 @@
 
 #include "common/accel/trace_cuda/choose_turn.cuh"
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
+#include "common/block_wavefront/path_query.cuh"
 #include "common/film/path_sample.h"
 #include "common/transport/path_step.h"
-#include "megakernel/path_query.cuh"
 
 namespace pt {
 

@@ -8,6 +8,12 @@ namespace {
 
 using Slots = std::array<std::uint32_t, RayBlock::size_max>;
 
+bool is_in_medium(const PathPool& pool, std::uint32_t slot) {
+  PathState path;
+  pool.load_medium(slot, path);
+  return path.medium.index != no_medium;
+}
+
 // Traces the next rays of the paths in `count` slots; `send(slot, next)` takes each on.
 template <class Send>
 void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
@@ -23,7 +29,14 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
   }
   std::array<Hit, RayBlock::size_max> hits;
   intersect_closest_block(traits, scene, rays, hits.data());
-  for (std::uint32_t i = 0; i < count; ++i) send(slots[i], stage.finish(slots[i], hits[i]));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (traits.has_media && is_in_medium(stage.pool, slots[i])) {
+      stage.pool.store_hit(slots[i], hits[i]);
+      send(slots[i], Next{StageId::sample_medium});
+    } else {
+      send(slots[i], stage.finish(slots[i], hits[i]));
+    }
+  }
 }
 
 // Likewise the shadow rays.
@@ -43,8 +56,10 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleB
   }
   const std::uint32_t occluded = intersect_shadow_block(traits, scene, rays);
   for (std::uint32_t i = 0; i < count; ++i) {
+    const bool is_occluded = (occluded >> i & 1u) != 0;
+    if (traits.has_media && !is_occluded) DimShadowRays{stage.pool, samples}(scene, slots[i], i);
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
-    send(slots[i], stage.finish(path_index, shadow, (occluded >> i & 1u) != 0));
+    send(slots[i], stage.finish(path_index, shadow, is_occluded));
   }
 }
 

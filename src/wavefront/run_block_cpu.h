@@ -17,14 +17,23 @@ void run_blocks_cpu(const ShadowRays& stage, const BlockTraits& traits, const Sa
 /// The traits of a stage's rays; only of stages that trace.
 template <class Traits>
 constexpr BlockTraits block_traits(const IntersectRays<Traits>&) {
-  return {Traits::accel, Traits::geometry, Traits::has_masks};
+  return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
 }
 template <class Traits>
 constexpr BlockTraits block_traits(const TraceShadowRays<Traits>&) {
-  return {Traits::accel, Traits::geometry, Traits::has_masks};
+  return {Traits::accel, Traits::geometry, Traits::has_masks, Traits::has_media};
 }
 
-/// Whether the stage runs so.
+/// Whether it is a stage that traces in scenes with media.
+template <class Stage>
+inline constexpr bool traces_media = false;
+template <class Traits>
+inline constexpr bool traces_media<IntersectRays<Traits>> = Traits::has_media;
+template <class Traits>
+inline constexpr bool traces_media<TraceShadowRays<Traits>> = Traits::has_media;
+
+/// Whether the stage runs so; with media where each boundary has a BSDF, so that a shadow ray ends
+/// at the first surface.
 template <class Stage>
 inline constexpr bool runs_in_blocks = false;
 template <class Traits>

@@ -19,8 +19,7 @@ concept StatelessSource = !requires(const Source& source) {
 template <class Stage>
 inline constexpr bool shades_in_blocks = false;
 template <class Traits, Branching branching, StatelessSource Source>
-inline constexpr bool shades_in_blocks<ShadeSurface<Traits, branching, Source>> =
-    !Traits::has_media;
+inline constexpr bool shades_in_blocks<ShadeSurface<Traits, branching, Source>> = true;
 
 /// Draws the numbers with which `count` paths leave the surfaces that they have met.
 template <bool has_lights, class Source, class Slots>

@@ -2,6 +2,7 @@
 // the stage for which the path waits next. Compaction does the rest (compaction.h).
 #pragma once
 
+#include "common/block_wavefront/path_share.h"
 #include "common/film/path_supply.h"
 #include "common/options/options.h"
 #include "common/transport/follow_path.h"
@@ -240,9 +241,15 @@ struct IntersectRays : PathRays {
   }
 };
 
+/// mask_key of scenes with media.
+PT_HD std::uint32_t media_key(const Scene& scene, const SampleBuffer& samples,
+                              std::uint32_t path_index) {
+  using AnyWithMedia = Traits<Accel::brute, Geometry::mixed, Lighting::sky, true, true>;
+  return mask_key<AnyWithMedia>(scene, samples.id_of(path_index));
+}
+
 /// The free flights of paths in media: to a collision, or to what their rays have hit. One that is
 /// not there after `collisions_max` null collisions goes on in the next wave.
-template <class Traits>
 struct SampleMedium {
   static constexpr StageId id = StageId::sample_medium;
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -261,8 +268,8 @@ struct SampleMedium {
     pool.load_medium(slot, path);
     Hit hit = pool.load_hit(slot);
     FreeFlight flight = pool.load_flight(slot);
-    const bool arrives = travel(scene, ray, mask_key<Traits>(scene, samples.id_of(path.index)),
-                                collisions_max, path, flight, hit);
+    const bool arrives = travel(scene, ray, media_key(scene, samples, path.index), collisions_max,
+                                path, flight, hit);
     pool.store_path(slot, ray, path);
     pool.store_medium(slot, path);
     pool.store_flight(slot, arrives ? FreeFlight() : flight);
@@ -276,16 +283,25 @@ struct SampleMedium {
 };
 
 /// Routes each path whose ray has been traced to the stage that shades its hit or miss: for tracers
-/// that store hits only (trace_rays in wavefront.h).
+/// that store hits only (trace_rays in wavefront.h). One in a medium flies there first.
+template <bool has_media>
 struct RouteHits {
   static constexpr StageId id = StageId::route_hits;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {
-      {StageId::shade_surface, StageId::shade_miss}, true, false};
+      {StageId::shade_surface, StageId::shade_miss},
+      true,
+      false,
+      {has_media ? StageId::sample_medium : StageId::idle, StageId::idle}};
   PathPool pool;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     pool.path_lanes(lanes_of(scene), slot).count(LanePoint::route_hits);
+    if constexpr (has_media) {
+      PathState path;
+      pool.load_medium(slot, path);
+      if (path.medium.index != no_medium) return {StageId::sample_medium};
+    }
     return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
 };
@@ -391,6 +407,29 @@ struct ShadowRays {
   }
 };
 
+/// Dims shadow rays by the media in which they begin, and end, since every boundary there has a
+/// BSDF and is opaque to them: for tracers that find occlusion only.
+struct DimShadowRays {
+  static constexpr StageId id = StageId::shadow;
+  static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  PathPool pool;
+  SampleBuffer samples;
+
+  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+    const std::uint16_t medium = pool.load_shadow_medium(slot);
+    if (medium == no_medium) return {free_slot};
+    std::uint32_t path_index;
+    ShadowRay shadow = pool.load_shadow(slot, path_index);
+    set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
+    const std::uint32_t key =
+        shadow_ray_key(scene, media_key(scene, samples, path_index), pool.load_shadow_rays(slot));
+    pool.dim_shadow(slot,
+                    segment_transmittance(scene, medium, shadow.ray, shadow.distance, key, 0));
+    return {free_slot};
+  }
+};
+
 template <class Traits>
 struct TraceShadowRays : ShadowRays {
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -466,6 +505,28 @@ struct FollowPaths {
     pool.store_path(slot, ray, path);
     if constexpr (Traits::has_media) pool.store_medium(slot, path);
     return {StageId::intersect};
+  }
+};
+
+/// Puts the last paths of a batch where blocks follow them to their ends (block_wavefront.cuh).
+struct HandOver {
+  static constexpr StageId id = StageId::hand_over;
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr StageOutcomes outcomes = {{free_slot, free_slot}, false, false};
+  PathPool pool;
+  SampleBuffer samples;
+  BegunPaths paths;
+
+  PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t rank) const {
+    Ray ray;
+    const PathState path = pool.load_path(slot, ray);
+    const std::size_t place = paths.place(rank);
+    paths.slots.paths[place].store_path(path, ray);
+    paths.slots.paths[place].store_radiance(load_wide(&samples.samples[path.index]).radiance, path);
+    if (paths.slots.media != nullptr) {
+      store_wide(&paths.slots.media[place], load_wide(pool.at(pool.medium, slot)));
+    }
+    return {free_slot};
   }
 };
 

@@ -170,7 +170,7 @@ void trace_rays(Executor& execute, const WaveBuffers& b, const SampleBuffer& sam
   if constexpr (Executor::template traces_queues<Traits>) {
     if (rays.appends && execute.traces_queues_here()) {
       execute.trace_queue(rays, samples);
-      execute.run(RouteHits{b.pool}, rays);
+      execute.run(RouteHits<Traits::has_media>{b.pool}, rays);
       return;
     }
   }
@@ -184,6 +184,7 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
       b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
   if constexpr (Executor::template traces_queues<Traits>) {
     if (rays.appends && execute.traces_queues_here()) {
+      if constexpr (Traits::has_media) execute.run(DimShadowRays{b.pool, samples}, rays);
       return execute.trace_shadow_queue(rays, samples);
     }
   }
@@ -257,11 +258,11 @@ void bounce_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
 }
 
 /// The free flights of paths in media. All paths then wait for what they have met.
-template <class Traits, class Executor>
+template <class Executor>
 void sample_media(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
   constexpr StageId id = StageId::sample_medium;
   execute.compact(b.request<id>(b.pool.tag));
-  execute.run(SampleMedium<RayTraits<Traits>>{b.pool, samples, b.wave_collisions},
+  execute.run(SampleMedium{b.pool, samples, b.wave_collisions},
               b.stage_queues(id, b.waiting(id), b.pool.tag));
   // A pass on CUDA fills at most two queues, and may use the count behind them.
   execute.compact(b.request<StageId::shade_miss, StageId::shade_surface>(b.pool.tag));
@@ -291,7 +292,7 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   trace_rays<Traits>(execute, b, context.samples, parts_misses);
 
   if constexpr (Traits::has_media) {
-    sample_media<Traits>(execute, b, context.samples);
+    sample_media(execute, b, context.samples);
   } else {
     execute.compact(b.request<shade_miss, shade_surface>(tags));
   }

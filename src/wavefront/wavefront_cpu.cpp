@@ -91,13 +91,14 @@ struct PoolPart {
 class CpuExecutor {
  public:
   CpuExecutor(const Scene& scene, const Options& options, PoolPart& part, PathRuns& runs,
-              bool repeats, std::uint32_t finish_paths)
+              bool repeats, std::uint32_t finish_paths, bool has_open_boundaries)
       : scene_(scene),
         options_(options),
         part_(part),
         runs_(runs),
         repeats_(repeats),
-        finish_paths_(finish_paths) {}
+        finish_paths_(finish_paths),
+        has_open_boundaries_(has_open_boundaries) {}
 
   void compact(const CompactionRequest& request) {
     const TagPass pass = compaction_info(options_.compaction).pass;
@@ -140,6 +141,9 @@ class CpuExecutor {
     if (*queues.count == 0) return;
     part_.timer.time(to_string(id_of(stage)), [&] {
       if constexpr (runs_in_blocks<Stage>) {
+        if constexpr (traces_media<Stage>) {
+          if (has_open_boundaries_) return run_stage_cpu(stage, scene_, queues);
+        }
         run_blocks_cpu(stage, block_traits(stage), stage.samples, scene_, queues);
       } else if constexpr (shades_in_blocks<Stage>) {
         shade_blocks_cpu(stage, scene_, queues);
@@ -156,13 +160,15 @@ class CpuExecutor {
   PathRuns& runs_;
   bool repeats_;  ///< the stages start paths themselves
   std::uint32_t finish_paths_;
+  bool has_open_boundaries_;
   bool more_ = true;
 };
 
 class WavefrontCpu : public CpuRenderer {
  public:
   WavefrontCpu(const Options& options, const SceneData& scene)
-      : CpuRenderer(options, scene, options.threads) {
+      : CpuRenderer(options, scene, options.threads),
+        has_open_boundaries_(scene.properties.has_open_boundaries) {
     const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
                                       static_cast<std::uint64_t>(options.spp);
     const auto threads = static_cast<std::uint64_t>(this->threads());
@@ -241,7 +247,7 @@ class WavefrontCpu : public CpuRenderer {
     const std::uint64_t finish_paths =
         repeats ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
     CpuExecutor execute(scene_, options_, part, runs, repeats,
-                        static_cast<std::uint32_t>(finish_paths));
+                        static_cast<std::uint32_t>(finish_paths), has_open_boundaries_);
     while (execute.more()) {
       run_wave<Traits, branching>(execute, buffers, context);
       if (is_cancelled()) runs.end();
@@ -250,6 +256,7 @@ class WavefrontCpu : public CpuRenderer {
   }
 
   std::vector<std::unique_ptr<PoolPart>> parts_;
+  const bool has_open_boundaries_;
 };
 
 }  // namespace

@@ -21,8 +21,17 @@ constexpr double mib = 1024.0 * 1024.0;
 }  // namespace
 
 WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
-    : CudaRenderer(options, scene, device) {
+    : CudaRenderer(options, scene, device),
+      has_masks_(scene.properties.has_masks),
+      finish_paths_(execution_.finish_paths) {
   allocate_pool(scene);
+  if (execution_.finishes_in_blocks) {
+    const std::uint64_t most = std::min<std::uint64_t>(batch_paths(), finish_paths_);
+    CudaLauncher& launcher = *this;
+    blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_,
+                                                static_cast<std::uint32_t>(most));
+    finish_paths_ = std::min(finish_paths_, blocks_->capacity());
+  }
   check_cuda(cudaMallocHost(reinterpret_cast<void**>(&host_counters_), sizeof *host_counters_),
              "cudaMallocHost");
 }
@@ -151,12 +160,17 @@ void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditional
 
 void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
   set_wave(static_cast<int>(flows_.size()) - 1);  // the last one, which found no more to do
+  if (blocks_ != nullptr) return finish_in_blocks(batch);
   with_context(
       batch, [&](auto kinds, const auto& context) { enqueue_finish_of<decltype(kinds)>(context); });
 }
 
+bool WavefrontCuda::has_few_paths(const SampleBuffer& batch) const {
+  return blocks_ != nullptr && !supply().repeats() && batch.path_count <= finish_paths_;
+}
+
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
-  if (!execution_.uses_graph || is_counting()) return;
+  if (!execution_.uses_graph || is_counting() || has_few_paths(batch)) return;
   if (graph_exec_ != nullptr && batch == graph_batch_ && supply() == graph_supply_) return;
   destroy_graph();
   build_graph(batch);
@@ -218,8 +232,12 @@ void WavefrontCuda::read_counters() {
 }
 
 void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
-  start_queues();
   flows_.clear();
+  if (has_few_paths(batch)) {
+    set_wave(-1);
+    return blocks_->trace(scene_, batch, sampler_source_of(options_), limits_, StageId::finish);
+  }
+  start_queues();
   // A pool that holds the whole batch starts all paths in the first wave.
   int wave = 0;
   if (!buffers_.reuses_slots) {
@@ -241,7 +259,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
         read_counters();
     } while (host_counters_->intersect > 0);
   }
-  if (execution_.finish_paths > 0 && !supply().repeats()) enqueue_finish(batch);
+  if (finish_paths_ > 0 && !supply().repeats()) enqueue_finish(batch);
   waves_ += host_counters_->waves;
 }
 

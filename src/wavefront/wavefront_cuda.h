@@ -1,6 +1,7 @@
 // The wavefront's renderer on CUDA: the pool, the two ways to run the loop of waves.
 #pragma once
 
+#include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/pool/stage_bytes.h"
@@ -34,7 +35,7 @@ class WavefrontCuda : public CudaRenderer {
   /// Wide trees, where a thread per ray would wait for the slowest of its warp. Scenes with spheres
   /// or masks are of the same kinds as some without.
   template <class Traits>
-  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh && !Traits::has_media;
+  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
   bool traces_queues_here() const { return execution_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
@@ -61,6 +62,9 @@ class WavefrontCuda : public CudaRenderer {
   template <class Kinds, class Source>
   void enqueue_finish_of(const StageContext<Source>& context);
   void allocate_pool(const SceneData& scene);
+  /// Whether blocks follow the whole batch from its first rays, as few paths as it has.
+  bool has_few_paths(const SampleBuffer& batch) const;
+  void finish_in_blocks(const SampleBuffer& batch);
   void build_graph(const SampleBuffer& batch);
   void destroy_graph();
   void read_counters();
@@ -71,7 +75,10 @@ class WavefrontCuda : public CudaRenderer {
   WaveBuffers buffers_;
   std::uint32_t* all_slots_ = nullptr;  ///< 0, 1, 2, ...: the first queue of free slots
   std::unique_ptr<CudaCompactor> compactor_;
-  WaveCounters* host_counters_ = nullptr;  ///< pinned
+  std::unique_ptr<BlockWavefronts> blocks_;  ///< null: threads follow the last paths
+  bool has_masks_ = false;                   ///< where media have kernels with masks in any case
+  std::uint32_t finish_paths_ = 0;           ///< of the plan, as far as blocks have room for them
+  WaveCounters* host_counters_ = nullptr;    ///< pinned
   std::uint64_t waves_ = 0;
   std::vector<WaveFlow> flows_;  ///< of the batch's waves so far, where they are counted
   // What the wave being enqueued belongs to:

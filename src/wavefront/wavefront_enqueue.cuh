@@ -28,6 +28,10 @@ template <class T, SceneMemory memory>
 inline constexpr bool has_kernel<TraceShadowRays<T>, memory> = has_kernel<IntersectRays<T>, memory>;
 template <class T, class Source>
 inline constexpr bool has_kernel<FollowPaths<T, Source>, SceneMemory::shared> = !T::has_lights;
+/// Blocks finish paths in media where wide trees are traced.
+template <class T, class Source>
+inline constexpr bool has_kernel<FollowPaths<T, Source>, SceneMemory::global> =
+    !T::has_media || T::accel == Accel::bvh2;
 
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {

@@ -8,7 +8,7 @@ template <class Rays>
 void WavefrontCuda::trace_persistently(const Rays& rays, const SampleBuffer& samples,
                                        StageId stage) {
   using Masked = MaskedRays<Rays>;
-  if (traits_.has_masks) {
+  if (has_masks_) {
     run_persistent<CwbvhLane<typename Masked::Query>>(Masked{rays, scene_, samples}, stage);
   } else if (scene_.triangles.instance_count > 0) {
     run_persistent<InstancedLane<typename Rays::Query>>(rays, stage);

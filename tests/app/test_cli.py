@@ -318,6 +318,7 @@ class Statistics(CommandLine):
             run = json.loads((self.folder / f"{mode}.json").read_text(encoding="utf-8"))
             self.assertEqual({d["option"]: d["value"] for d in run["plan"]}, said)
             self.assertEqual(run["used"]["accel"], said["accel"])
+            self.assertEqual((run["used"]["mode"], said["mode"]), (mode, mode))
             before = self.files()
 
     def test_samples_that_are_asked_for_limit_a_stop(self):

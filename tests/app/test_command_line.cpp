@@ -124,7 +124,7 @@ TEST(CommandLine, DefaultsAreThoseOfOptions) {
     EXPECT_EQ(entry.text(command.options), entry.text(Options())) << entry.name;
   EXPECT_TRUE(command.given.empty());
   const Options& options = command.options;
-  EXPECT_EQ(options.mode, Mode::wavefront);
+  EXPECT_EQ(options.mode, Mode::automatic);
   EXPECT_EQ(options.width, 600);
   EXPECT_EQ(options.height, 300);
   EXPECT_EQ(options.spp, 50);
@@ -376,7 +376,7 @@ TEST(Refused, NamesAndForms) {
       {"--device cuda:", "--device cuda:: expected auto"},
       {"--device cuda:-1", "--device cuda:-1: expected auto"},
       {"--device cuda:1x", "--device cuda:1x: expected auto"},
-      {"--mode ''", "--mode '': expected one of serial"},
+      {"--mode ''", "--mode '': expected one of auto, serial"},
       {"--scene ''", "--scene '': expected a name"},
       {"--output ''", "--output"},
       {"--stats --quiet", "--stats --quiet: expected a name"},
@@ -492,10 +492,13 @@ TEST(Refused, VotesWithoutWholeWarpsThatFetch) {
 
 TEST(Refused, WithoutEffectInTheMode) {
   expect_refused({
-      {"--work pixel",
+      {"--mode wavefront --work pixel",
        "--work pixel: has no effect with --mode wavefront; it applies to megakernel"},
-      {"--block 8x8", "--block 8x8: has no effect with --mode wavefront"},
-      {"--kernel loop", "--kernel loop: has no effect with --mode wavefront"},
+      {"--mode wavefront --block 8x8", "--block 8x8: has no effect with --mode wavefront"},
+      {"--mode wavefront --kernel loop", "--kernel loop: has no effect with --mode wavefront"},
+      {"--kernel loop --compaction cub",
+       "--kernel and --compaction: have no effect in one mode; expected options of the megakernel "
+       "or of the wavefront"},
       {"--mode serial --threads 2", "--threads 2: has no effect with --mode serial"},
       {"--mode serial --device cuda:1", "--device cuda:1: has no effect with --mode serial"},
       {"--mode serial --scene-memory shared", "--scene-memory shared: has no effect"},
@@ -507,6 +510,16 @@ TEST(Refused, WithoutEffectInTheMode) {
                                "schedule host", "stage-block 128", "layout aos", "stages split"})
       expect_refused({{std::string("--mode ") + mode + " --" + option,
                        std::string("--") + option + ": has no effect with --mode " + mode}});
+}
+
+TEST(CommandLine, TakesTheModeThatItsOptionsAreFor) {
+  const auto mode_of = [](const char* line) { return parse_render(line).options.mode; };
+  EXPECT_EQ(mode_of("--spp 7"), Mode::automatic);
+  EXPECT_EQ(mode_of("--accel bvh2 --threads 2"), Mode::automatic);
+  EXPECT_EQ(mode_of("--kernel loop"), Mode::megakernel);
+  EXPECT_EQ(mode_of("--block 8x8 --spp 7"), Mode::megakernel);
+  EXPECT_EQ(mode_of("--compaction none"), Mode::wavefront);
+  EXPECT_EQ(mode_of("--mode auto --finish-paths 0"), Mode::wavefront);
 }
 
 TEST(Refused, WhatFusedOrSplitStagesDoNotKnow) {

@@ -81,7 +81,7 @@ class Completion:
         self.assertLessEqual(subcommands_of_help(), set(self.complete("")))
 
     def test_values(self):
-        self.assertEqual(set(self.complete("--mode", "")), {"serial", "megakernel", "wavefront"})
+        self.assertEqual(set(self.complete("--mode", "")), {"auto", "serial", "megakernel", "wavefront"})
         self.assertEqual(set(self.complete("--device", "c")), {"cpu", "cuda"})
         self.assertIn("cornell", self.complete("--scene", "co"))
         self.assertEqual(set(self.complete("compact", "--cache", "")), {"cold", "warm"})
@@ -106,7 +106,7 @@ class Bash(Completion, unittest.TestCase):
         return self.complete(*filter(None, [command]), "-")
 
     def test_values_behind_an_equals_sign(self):
-        self.assertEqual(self.complete("--mode", "="), ["serial", "megakernel", "wavefront"])
+        self.assertEqual(self.complete("--mode", "="), ["auto", "serial", "megakernel", "wavefront"])
         self.assertEqual(self.complete("--mode", "=", "w"), ["wavefront"])
 
     def test_has_no_complaint_of_shellcheck(self):
@@ -171,7 +171,7 @@ class Zsh(unittest.TestCase):
     def test_values(self):
         lines = self.arguments("")
         mode = next(line for line in lines if line.startswith("*--mode="))
-        self.assertTrue(mode.endswith(":(serial megakernel wavefront)"), mode)
+        self.assertTrue(mode.endswith(":(auto serial megakernel wavefront)"), mode)
         scene = next(line for line in lines if line.startswith("*--scene="))
         self.assertRegex(scene, r":NAME\|FILE: _ptexp_word_or_file .*\bcornell\b")
 

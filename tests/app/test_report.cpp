@@ -31,6 +31,7 @@ RenderReport make_report() {
   RenderReport report;
   report.device_name = "CPU, 8 threads";
   report.device_kind = "cpu";
+  report.mode = "wavefront";
   report.accel = "bvh2";
   report.schedule = "host";
   report.stages = "split";
@@ -150,6 +151,7 @@ TEST(ReportJson, HasEverything) {
   EXPECT_EQ(json["program"]["commit"], build_info().commit);
   EXPECT_EQ(json["program"]["fast_math"], build_info().fast_math);
   EXPECT_EQ(json["device"]["name"], "CPU, 8 threads");
+  EXPECT_EQ(json["used"]["mode"], "wavefront");
   EXPECT_EQ(json["used"]["accel"], "bvh2");
   EXPECT_EQ(json["used"]["schedule"], "host");
   EXPECT_EQ(json["used"]["stages"], "split");
@@ -245,7 +247,7 @@ TEST(ReportJson, HasEveryOptionWithItsType) {
     EXPECT_TRUE(options.contains(option_key(entry))) << entry.name;
   EXPECT_EQ(options["width"], 600);
   EXPECT_EQ(options["max_depth"], 50);
-  EXPECT_EQ(options["mode"], "wavefront");
+  EXPECT_EQ(options["mode"], "auto");
   EXPECT_EQ(options["quiet"], false);
   EXPECT_EQ(options["pool_size"], "auto");
   EXPECT_EQ(options["look_from"], "13,2,3");

@@ -40,7 +40,8 @@ RenderReport unequal_report() {
   RenderReport report;
   report.device_name = "Device", report.device_kind = "kind", report.driver = "driver 5";
   report.plan = {{"accel", "cwbvh", "a reason"}, {"kernel", "loop", "another"}};
-  report.accel = "cwbvh", report.schedule = "graph", report.stages = "fused";
+  report.mode = "serial", report.accel = "cwbvh", report.schedule = "graph";
+  report.stages = "fused";
   report.pool_size = 1111, report.finish_paths = 77, report.primitives = 51;
   report.scene = {101,
                   102,
@@ -71,7 +72,7 @@ Options two_repeats() {
 // Medians and rates are of both repeats, numbers of things are the last one's: 64 launches.
 constexpr const char* expected_json = R"({
   "device": {"name": "Device", "kind": "kind", "driver": "driver 5"},
-  "used": {"accel": "cwbvh", "schedule": "graph", "stages": "fused", "pool_size": 1111,
+  "used": {"mode": "serial", "accel": "cwbvh", "schedule": "graph", "stages": "fused", "pool_size": 1111,
            "finish_paths": 77, "primitives": 51, "exposure": 2.25},
   "plan": [{"option": "accel", "value": "cwbvh", "reason": "a reason"},
            {"option": "kernel", "value": "loop", "reason": "another"}],
@@ -157,6 +158,7 @@ TEST(ReportFields, OfTheCsv) {
       {"device_name", "Device"},
       {"device_kind", "kind"},
       {"driver", "driver 5"},
+      {"used_mode", "serial"},
       {"used_accel", "cwbvh"},
       {"used_schedule", "graph"},
       {"used_stages", "fused"},

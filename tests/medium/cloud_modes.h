@@ -1,7 +1,7 @@
 // A scene in which paths of all kinds meet media, and how it is rendered to compare modes.
 #pragma once
 
-#include "medium_scenes.h"
+#include "medium/medium_scenes.h"
 
 namespace pt {
 

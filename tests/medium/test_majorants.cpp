@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "volume_cases.h"
+#include "medium/volume_cases.h"
 
 namespace pt {
 namespace {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cloud_modes.h"
+#include "medium/filled_glasses.h"
 
 namespace pt {
 namespace {
@@ -56,9 +57,8 @@ TEST(FogModes, StructuresAndSamplersKeepThem) {
   }
 }
 
-void expect_same_clouds(const std::string& mode, const std::vector<Choice>& choices,
-                        std::uint64_t seed) {
-  const SceneData scene = clouds();
+void expect_same_media(const SceneData& scene, const std::string& mode,
+                       const std::vector<Choice>& choices, std::uint64_t seed) {
   Options reference = cloud_options("serial");
   std::vector<Rendered> expected;  // of two seeds, which take turns: see expect_all_same
   int i = 0;
@@ -80,11 +80,27 @@ void expect_same_clouds(const std::string& mode, const std::vector<Choice>& choi
 }
 
 TEST(CloudModes, MegakernelEqualsSerial) {
-  expect_same_clouds("megakernel", megakernel_choices, 3);
+  expect_same_media(clouds(), "megakernel", megakernel_choices, 3);
 }
 
 TEST(CloudModes, WavefrontEqualsSerial) {
-  expect_same_clouds("wavefront", wavefront_choices({"auto", "300", "11", "1380", "1381"}), 4);
+  expect_same_media(clouds(), "wavefront", wavefront_choices({"auto", "300", "11", "1380", "1381"}),
+                    4);
+}
+
+// Their rays are traced in blocks.
+TEST(GlassModes, WavefrontEqualsSerial) {
+  for (const bool has_masks : {false, true}) {
+    const SceneData scene = filled_glasses(has_masks);
+    expect_same_media(scene, "wavefront", wavefront_choices({"auto", "300", "11", "1380", "1381"}),
+                      5 + has_masks);
+    for (const char* accel : {"auto", "bvh2", "cwbvh"}) {
+      const Options options = cloud_options("wavefront", {{"accel", accel}, {"spp", "20"}});
+      SCOPED_TRACE(accel);
+      expect_same(render_clouds(scene, options),
+                  render_clouds(scene, cloud_options("serial", {{"spp", "20"}})));
+    }
+  }
 }
 
 // With the other options as usual, and in a pool of some slots, where paths of all kinds meet.

@@ -4,7 +4,9 @@
 #include "cloud_modes.h"
 #include "common/error/error.h"
 #include "common/image/compare/compare.h"
+#include "common/plan/execution_plan.h"
 #include "cuda_test.h"
+#include "medium/filled_glasses.h"
 
 namespace pt {
 namespace {
@@ -65,8 +67,46 @@ TEST_F(CudaMedia, AreAsOnTheCpu) {
               2e-3 * static_cast<double>(cpu.counts.rays));
 }
 
-TEST_F(CudaMedia, HaveNoWideTrees) {
+// A shadow ray would go on behind such a boundary.
+TEST_F(CudaMedia, HaveNoWideTreesWhereBoundariesHaveNoBsdf) {
   EXPECT_THROW(render_clouds(clouds(), gpu_options("wavefront", {{"accel", "cwbvh"}})), Error);
+}
+
+ExecutionPlan plan_for(SceneData scene, const Options& options) {
+  const DeviceInfo device = choose_device(options.device);
+  prepare_scene_for(scene, options, device);
+  return plan_execution(options, scene.properties, device.properties);
+}
+
+TEST_F(CudaMedia, InGlassesOfTrianglesAreTracedAsScenesWithoutMedia) {
+  for (const bool has_masks : {false, true}) {
+    const SceneData scene = filled_glasses(has_masks);
+    const ExecutionPlan waves = plan_for(scene, gpu_options("wavefront"));
+    EXPECT_TRUE(waves.persistent_warps && waves.finishes_in_blocks);
+    EXPECT_EQ(plan_for(scene, gpu_options("megakernel")).megakernel, MegakernelKind::sort);
+
+    const Options loop = gpu_options("megakernel", {{"kernel", "loop"}});
+    const Rendered expected = render_clouds(scene, loop);
+    expect_plausible(expected, loop);
+    expect_same(render_clouds(scene, gpu_options("megakernel")), expected);
+    for (const Settings& more :
+         {Settings{}, Settings{{"finish-paths", "0"}}, Settings{{"finish-paths", "1"}},
+          Settings{{"finish-paths", "700"}}, Settings{{"finish-paths", "1000000"}},
+          Settings{{"finish-paths", "0"}, {"wave-collisions", "1"}},
+          Settings{{"finish-paths", "300"}, {"wave-collisions", "3"}},
+          Settings{{"finish-paths", "300"}, {"pool-size", "500"}},
+          Settings{{"finish-paths", "0"}, {"layout", "aos"}},
+          Settings{{"finish-paths", "0"}, {"schedule", "host"}}, Settings{{"accel", "bvh2"}},
+          Settings{{"persistent", "off"}}, Settings{{"stages", "fused"}},
+          Settings{{"compaction", "cub"}}}) {
+      const Options options = gpu_options("wavefront", more);
+      SCOPED_TRACE(command_of(options));
+      expect_same(render_clouds(scene, options), expected);
+    }
+    const Settings tree{{"light-selection", "tree"}};
+    expect_same(render_clouds(scene, gpu_options("wavefront", tree)),
+                render_clouds(scene, gpu_options("megakernel", tree)));
+  }
 }
 
 // The launch is refused while a graph is recorded, which must end all the same.

@@ -1,7 +1,7 @@
 // Light through media and from them, against formulas and quadrature in double precision.
 #include <gtest/gtest.h>
 
-#include "medium_scenes.h"
+#include "medium/medium_scenes.h"
 
 namespace pt {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "medium_scenes.h"
+#include "medium/medium_scenes.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/medium/free_flight.h"
-#include "volume_cases.h"
+#include "medium/volume_cases.h"
 
 namespace pt {
 namespace {

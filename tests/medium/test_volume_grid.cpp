@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error/error.h"
-#include "volume_cases.h"
+#include "medium/volume_cases.h"
 
 namespace pt {
 namespace {

@@ -1,21 +1,25 @@
-// The megakernel whose blocks sort their paths, on emulated blocks: each path gets what it gets
-// when it is followed alone, bit for bit.
+// Block-local wavefronts, on emulated blocks: each path gets what it gets when it is followed
+// alone, bit for bit, from its first ray on or from where the waves have left it.
 #include <gtest/gtest.h>
 
+#include "emulated_gpu.h"  // before device code
+
+#include "common/block_wavefront/block_wavefront.cuh"
 #include "common/render/path_limits_of.h"
 #include "common/render/random_source.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
-#include "emulated_gpu.h"  // before device code
-#include "megakernel/trace_paths_sorting.cuh"
+#include "medium/filled_glasses.h"
 #include "mode_cases.h"
 #include "scene/masked_room.h"
+#include "wavefront/stages.h"
 
 namespace pt {
 namespace {
 
-template <bool has_masks>
-using BlockWavefrontTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks>;
+template <bool has_masks, bool has_media = false>
+using BlockWavefrontTraits =
+    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks, has_media>;
 constexpr int threads = 64;
 
 /// What blocks made of the paths of a scene, and what each is alone.
@@ -33,28 +37,34 @@ class SortedPaths {
     batch_ = SampleBuffer(samples_.data(), {0, 0, width, height}, 0, spp);
   }
 
-  /// What a grid of blocks does, one after the other; later ones may find nothing left. Beyond what
-  /// a block may use of its memory nothing is written.
+  /// All paths, by a grid of blocks; later ones may find nothing left.
   template <class Traits>
   void sort(int blocks, std::uint32_t at_once,
             int slots_per_thread = BlockWavefrontTuning::slots_most) {
-    using Memory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, threads>;
-    const auto memory = std::make_unique<Memory>();
-    std::vector<PathSlot> slots(std::size_t{threads} * slots_per_thread);
-    std::uint32_t next_path = 0;
-    const PathShare paths{&next_path, at_once, slots_per_thread};
-    const auto* const bytes = reinterpret_cast<const unsigned char*>(memory.get());
-    for (int i = 0; i < blocks; ++i) {
-      std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
-      EmulatedBlock(threads).run([&] {
-        uint2 stack[block_wavefront_stack_size];
-        BlockWavefront<Traits, SamplerSource, Memory> tracer(scene_, source_, batch_, limits_,
-                                                             paths, *memory, slots.data(), stack);
-        tracer.run();
-      });
-      ASSERT_TRUE(std::all_of(bytes + Memory::bytes(slots_per_thread), bytes + sizeof *memory,
-                              [](unsigned char byte) { return byte == 0xa5; }));
-    }
+    run<Traits>(blocks, at_once, slots_per_thread,
+                BegunPaths::divide(make_slots<Traits>(blocks, slots_per_thread), 0, blocks));
+  }
+
+  /// Follows each path alone for `rays` rays, and hands those that are left over to blocks.
+  template <class Traits>
+  void finish(int rays, int blocks, int slots_per_thread) {
+    PathPool pool;
+    pool.slot_count = batch_.path_count;
+    std::vector<std::vector<std::uint64_t>> arrays;
+    PathPool::Parts parts{true, false, false, scene_.light_selector.has_tree()};
+    parts.media = Traits::has_media;
+    pool.allocate_arrays(parts, [&]<class T>(T*, std::uint64_t count) {
+      arrays.emplace_back(count * sizeof(T) / sizeof(std::uint64_t) + 1);
+      return reinterpret_cast<T*>(arrays.back().data());
+    });
+    const std::vector<std::uint32_t> left = begin<Traits>(pool, rays);
+    ASSERT_GT(left.size(), 0u);
+    const BegunPaths begun = BegunPaths::divide(make_slots<Traits>(blocks, slots_per_thread),
+                                                static_cast<std::uint32_t>(left.size()), blocks);
+    ASSERT_LE(begun.per_block, begun.slots.per_block);
+    for (std::uint32_t rank = 0; rank < left.size(); ++rank)
+      HandOver{pool, batch_, begun}(scene_, left[rank], rank);
+    run<Traits>(blocks, 0, slots_per_thread, begun);
   }
 
   template <class Traits>
@@ -70,14 +80,76 @@ class SortedPaths {
   }
 
  private:
+  /// What blocks do, one after the other. Beyond what a block may use of its memory nothing is
+  /// written.
+  template <class Traits>
+  void run(int blocks, std::uint32_t at_once, int slots_per_thread, const BegunPaths& begun) {
+    using Memory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, threads>;
+    const auto memory = std::make_unique<Memory>();
+    std::uint32_t next_path = 0;
+    const PathShare paths{&next_path, at_once, slots_per_thread};
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(memory.get());
+    for (int i = 0; i < blocks; ++i) {
+      std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
+      EmulatedBlock(threads).run([&] {
+        uint2 stack[block_wavefront_stack_size];
+        BlockWavefront<Traits, SamplerSource, Memory> tracer(
+            scene_, source_, batch_, limits_, paths, *memory,
+            begun.slots.of_block(static_cast<std::uint32_t>(i)), stack);
+        tracer.run(begun.count_in(static_cast<std::uint32_t>(i)));
+      });
+      ASSERT_TRUE(std::all_of(bytes + Memory::bytes(slots_per_thread), bytes + sizeof *memory,
+                              [](unsigned char byte) { return byte == 0xa5; }));
+    }
+  }
+
+  /// The slots of blocks, which hold what is no path.
+  template <class Traits>
+  BlockSlots make_slots(int blocks, int slots_per_thread) {
+    const auto per_block = static_cast<std::uint32_t>(threads * slots_per_thread);
+    slots_.resize(std::size_t{per_block} * blocks);
+    media_.assign(Traits::has_media ? slots_.size() : 0, PathRecord{-1, -1, -1, 0x12345678});
+    std::memset(static_cast<void*>(slots_.data()), 0xa5, slots_.size() * sizeof(PathSlot));
+    return {slots_.data(), Traits::has_media ? media_.data() : nullptr, per_block};
+  }
+
+  /// Puts the paths that `rays` rays do not end into slots of the pool, and returns these.
+  template <class Traits>
+  std::vector<std::uint32_t> begin(const PathPool& pool, int rays) {
+    std::vector<std::uint32_t> left;
+    for (std::uint32_t path_index = 0; path_index < batch_.path_count; ++path_index) {
+      const PathId id = batch_.id_of(path_index);
+      auto random = source_.open(id);
+      PathState path;
+      path.index = path_index;
+      Ray ray = begin_path(scene_, id, random);
+      Color radiance(0.0f);
+      bool alive = true;
+      for (int i = 0; i < rays && alive; ++i) {
+        alive = follow_ray<Traits>(scene_, ray, path, radiance, limits_, random,
+                                   mask_key<Traits>(scene_, id));
+      }
+      batch_.store(path, radiance);
+      if (!alive) continue;
+      const std::uint32_t slot = batch_.path_count - 1 - path_index;
+      if (rays == 0) {
+        pool.store_new_path(slot, ray, path_index);
+      } else {
+        pool.store_path(slot, ray, path);
+      }
+      if constexpr (Traits::has_media) pool.store_medium(slot, path);
+      left.push_back(slot);
+    }
+    return left;
+  }
+
   template <class Traits>
   Sample follow(std::uint32_t path_index) const {
     const PathId id = batch_.id_of(path_index);
     auto random = source_.open(id);
     PathState path;
     path.index = path_index;
-    const Vec4 u = random.draw(scatter_block(0));
-    const Ray ray = generate_camera_path(scene_, random, id.pixel, u);
+    const Ray ray = begin_path(scene_, id, random);
     const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
                                                mask_key<Traits>(scene_, id));
     return {radiance, path.packed_rays()};
@@ -88,6 +160,8 @@ class SortedPaths {
   PathLimits limits_;
   std::vector<Sample> samples_;
   SampleBuffer batch_;
+  std::vector<PathSlot> slots_;
+  std::vector<PathRecord> media_;
 };
 
 Options small_image() {
@@ -129,6 +203,59 @@ TEST(SortingOfFewSlots, GivesEachPathWhatItGetsAlone) {
     SortedPaths paths(scene, options);
     paths.sort<Traits>(2, 300, slots_per_thread);
     paths.expect_what_each_gets_alone<Traits>();
+  }
+}
+
+TEST_P(SortingOf, FinishesWhatWavesHaveLeftOver) {
+  using Traits = BlockWavefrontTraits<false>;
+  const Options options = with(small_image(), GetParam().settings);
+  const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
+  for (const int rays : {0, 1, 3}) {
+    if (rays >= options.max_depth) continue;
+    SortedPaths paths(scene, options);
+    paths.finish<Traits>(rays, 3, 4);
+    paths.expect_what_each_gets_alone<Traits>();
+  }
+}
+
+TEST(SortingOfMasks, FinishesWhatWavesHaveLeftOver) {
+  const Options options = with(small_image(), {{"width", "31"}, {"height", "23"}});
+  SceneData scene = masked_room();
+  prepare_scene(scene, options);
+  SortedPaths paths(scene, options);
+  paths.finish<BlockWavefrontTraits<true>>(2, 2, 12);
+  paths.expect_what_each_gets_alone<BlockWavefrontTraits<true>>();
+}
+
+TEST(SortingOfMedia, GivesEachPathWhatItGetsAlone) {
+  using Traits = BlockWavefrontTraits<true, true>;
+  const Options options =
+      with(small_image(), {{"width", "31"}, {"height", "23"}, {"max-depth", "12"}, {"rr", "4"}});
+  SceneData scene = filled_glasses();
+  prepare_scene(scene, options);
+  ASSERT_TRUE(scene.traits.has_media);
+  ASSERT_FALSE(scene.properties.has_open_boundaries);
+  SortedPaths paths(scene, options);
+  paths.sort<Traits>(2, 1000);
+  paths.expect_what_each_gets_alone<Traits>();
+  for (const int rays : {0, 1, 2, 6}) {
+    SortedPaths rest(scene, options);
+    rest.finish<Traits>(rays, 3, 12);
+    rest.expect_what_each_gets_alone<Traits>();
+  }
+}
+
+TEST(BegunPaths, EachHasAPlaceOfItsOwnInTheFirstSlotsOfABlock) {
+  constexpr std::uint32_t blocks = 7, per_block = 10;
+  std::vector<PathSlot> slots(blocks * per_block);
+  for (std::uint32_t count = 1; count <= blocks * per_block; ++count) {
+    const BegunPaths paths = BegunPaths::divide({slots.data(), nullptr, per_block}, count, blocks);
+    std::vector<int> used(slots.size());
+    for (std::uint32_t k = 0; k < count; ++k) ++used.at(paths.place(k));
+    for (std::uint32_t slot = 0; slot < slots.size(); ++slot) {
+      const bool is_used = slot % per_block < paths.count_in(slot / per_block);
+      ASSERT_EQ(used[slot], is_used ? 1 : 0) << slot << " of " << count;
+    }
   }
 }
 

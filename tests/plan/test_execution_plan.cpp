@@ -49,6 +49,11 @@ SceneProperties masked_mesh() {
 SceneProperties clipped_mesh() {
   return changed(mesh(), [](SceneProperties& s) { s.limits_camera_rays = true; });
 }
+/// `open`: with boundaries that have no BSDF.
+SceneProperties filled_glass(bool open = false) {
+  return changed(mesh(),
+                 [open](SceneProperties& s) { s.has_media = true, s.has_open_boundaries = open; });
+}
 SceneProperties forest() {
   return changed(mesh(), [](SceneProperties& s) { s.instances = 20; });
 }
@@ -71,6 +76,7 @@ DeviceProperties cpu(bool has_vectors = true) {
 ExecutionPlan plan_of(const Choices& settings, const SceneProperties& scene,
                       const DeviceProperties& device) {
   Options options;
+  options.mode = Mode::wavefront;
   for (const auto& [name, value] : settings) find_option(name).set(options, value);
   return plan_execution(options, scene, device);
 }
@@ -167,17 +173,23 @@ const std::vector<Row>& rows() {
         {"persistent", "on"},
         {"stages", "split"},
         {"shade", "uber"},
-        {"finish-paths", "32768"}}},
+        {"finish-paths", "1048576"}}},
       {"five kinds of BSDFs",
        {},
        mesh(five_kinds),
        gpu(),
-       {{"shade", "uber"}, {"finish-paths", "32768"}}},
+       {{"shade", "uber"}, {"finish-paths", "1048576"}}},
       {"six",
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
        gpu(),
-       {{"shade", "uber"}, {"order-surfaces", "on"}, {"finish-paths", "8192"}}},
+       {{"shade", "uber"}, {"order-surfaces", "on"}, {"finish-paths", "1048576"}}},
+      {"six where blocks have little memory",
+       {},
+       mesh(five_kinds | bit(kind_of<Metal>)),
+       gpu(64),
+       {{"finish-paths", "8192"}}},
+      {"triangles there", {}, mesh(), gpu(64), {{"finish-paths", "32768"}}},
       {"a long one alone", {}, mesh(bit(kind_of<Principled>)), gpu(), {{"order-surfaces", "off"}}},
       {"and another",
        {},
@@ -285,6 +297,43 @@ const std::vector<Row>& rows() {
        changed(forest(), [](auto& s) { s.has_masks = true; }),
        cpu(),
        {{"accel", "bvh2"}}},
+      {"media in waves", {}, filled_glass(), gpu(), {{"accel", "cwbvh"}, {"persistent", "on"}}},
+      {"media in a megakernel", mega(), filled_glass(), gpu(), {{"kernel", "sort"}}},
+      {"a cloud in waves",
+       {},
+       filled_glass(true),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"a cloud in a megakernel",
+       mega(),
+       filled_glass(true),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"media among instances",
+       {},
+       changed(forest(), [](auto& s) { s.has_media = true; }),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"media in fused stages", {{"stages", "fused"}}, filled_glass(), gpu(), {{"accel", "bvh2"}}},
+      {"flights that pause",
+       {{"wave-collisions", "3"}},
+       filled_glass(),
+       gpu(),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"media where blocks have little memory",
+       {},
+       filled_glass(),
+       gpu(64),
+       {{"accel", "bvh2"}, {"persistent", "off"}}},
+      {"and in a megakernel there",
+       mega(),
+       filled_glass(),
+       gpu(64),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"media on a CPU", {}, filled_glass(), cpu(), {{"accel", "cwbvh"}}},
+      {"media in a megakernel of a CPU", mega(), filled_glass(), cpu(), {{"accel", "bvh2"}}},
+      {"a cloud on a CPU", {}, filled_glass(true), cpu(), {{"accel", "bvh2"}}},
+      {"media without vectors", {}, filled_glass(), cpu(false), {{"accel", "bvh2"}}},
       {"the host's waves", {{"schedule", "host"}}, mesh(), gpu(), {{"schedule", "host"}}},
       {"few emitters",
        {},
@@ -320,6 +369,52 @@ TEST(ExecutionPlan, IsATable) {
   }
 }
 
+// For the measured scenes the mode that was faster (results/log/2026-11-sizes.md).
+TEST(ExecutionPlan, TakesTheModeThatWasFaster) {
+  const auto mode_of = [](const SceneProperties& scene, Choices settings = {},
+                          const DeviceProperties& device = gpu()) {
+    settings.insert({"mode", "auto"});
+    return to_string(plan_of(settings, scene, device).mode);
+  };
+  const auto image = [](const char* size, const char* spp, const char* depth) {
+    return Choices{{"width", size}, {"height", size}, {"spp", spp}, {"max-depth", depth}};
+  };
+  const SceneProperties dial = mesh(five_kinds | bit(kind_of<Metal>));
+  EXPECT_EQ(mode_of(spheres(51)), "megakernel");
+  EXPECT_EQ(mode_of(spheres(486), image("2048", "16", "50")), "megakernel");
+  EXPECT_EQ(mode_of(quads(17), image("2048", "16", "4")), "wavefront");
+  EXPECT_EQ(mode_of(quads(17), image("256", "1", "50")), "wavefront");
+  EXPECT_EQ(mode_of(quads(17), image("1024", "16", "50")), "megakernel");
+  EXPECT_EQ(mode_of(mesh()), "wavefront");
+  EXPECT_EQ(mode_of(dial), "megakernel");
+  EXPECT_EQ(mode_of(dial, image("512", "16", "4")), "wavefront");
+  EXPECT_EQ(mode_of(dial, {{"accel", "bvh2"}}), "wavefront");
+  EXPECT_EQ(mode_of(dial, {{"integrator", "mlt"}}), "wavefront");
+  EXPECT_EQ(mode_of(dial, {}, gpu(64)), "wavefront");
+  EXPECT_EQ(mode_of(forest()), "wavefront");
+  EXPECT_EQ(mode_of(filled_glass(true)), "wavefront");
+  EXPECT_EQ(mode_of(dial, {}, cpu()), "wavefront");
+  EXPECT_EQ(mode_of(spheres(51), {}, cpu()), "wavefront");
+}
+
+// What is prepared for a mode is rendered by it.
+TEST(ExecutionPlan, TakesTheSameModeWhenTheSceneIsPrepared) {
+  for (const SceneProperties& scene :
+       {spheres(51), spheres(300), quads(9), mesh(), mesh(five_kinds | bit(kind_of<Metal>)),
+        masked_mesh(), clipped_mesh(), forest(), filled_glass(), filled_glass(true)}) {
+    for (const DeviceProperties& device : {gpu(), gpu(64), cpu(), cpu(false)}) {
+      const ExecutionPlan plan = plan_of({{"mode", "auto"}}, scene, device);
+      const SceneProperties prepared = changed(scene, [&](SceneProperties& s) {
+        s.structure = plan.accel, s.why_structure = "as planned", s.emitters = 30;
+      });
+      const ExecutionPlan again = plan_of({{"mode", "auto"}}, prepared, device);
+      EXPECT_EQ(again.mode, plan.mode);
+      EXPECT_EQ(again.accel, plan.accel);
+      EXPECT_EQ(again.megakernel, plan.megakernel);
+    }
+  }
+}
+
 // What is printed is what is done.
 TEST(ExecutionPlan, SaysWhatItIs) {
   for (const Row& row : rows()) {
@@ -331,6 +426,7 @@ TEST(ExecutionPlan, SaysWhatItIs) {
       if (!found.contains(option)) return;
       EXPECT_EQ(found[option], value) << option;
     };
+    expect("mode", to_string(plan.mode));
     expect("accel", accel_name(plan.accel));
     expect("kernel-set", to_string(plan.kernel_set));
     expect("kernel", to_string(plan.megakernel));

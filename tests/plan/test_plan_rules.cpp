@@ -71,9 +71,8 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
     EXPECT_EQ(refusal(scene, "kernel", "sort"),
               "--kernel sort: traces triangles alone; scene '" + scene +
-                  "' has spheres, instances, media, clip planes, hidden emitters or no triangles, "
-                  "expected auto "
-                  "or loop");
+                  "' has spheres, instances, boundaries without a BSDF, clip planes, hidden "
+                  "emitters or no triangles, expected auto or loop");
     EXPECT_EQ(
         refusal(scene, "kernel", "vote"),
         "--kernel vote: traces triangles alone; scene '" + scene +

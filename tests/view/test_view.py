@@ -128,7 +128,7 @@ class Program(unittest.TestCase):
         status, _, body = self.ask("settings", "POST", json.dumps(settings))
         self.assertEqual((status, body), (204, b""))
 
-    def image(self, mode="wavefront"):
+    def image(self, mode="auto"):
         status, headers, body = self.ask(f"image?mode={mode}")
         self.assertEqual((status, headers["Content-Type"]), (200, "image/png"))
         return read_png(body)
@@ -193,9 +193,9 @@ class Render(Program):
         self.start(spp="20")
         state = self.when_done()
         self.assertEqual([state[key] for key in ("scene", "mode", "spp")],
-                         ["cornell", "wavefront", 20])
+                         ["cornell", "auto", 20])
         view, = state["views"]
-        self.assertEqual((view["mode"], view["samples"]), ("wavefront", 20))
+        self.assertEqual((view["mode"], view["samples"]), ("auto", 20))
         self.assertGreater(view["pass_ms"], 0)
         self.assertGreater(view["msamples_per_s"], 0)
         self.assertEqual(self.image(), self.rendered("--spp", "20"))
@@ -245,7 +245,7 @@ class Render(Program):
         self.start()
         self.assert_idle()
         self.assertEqual(json.loads(self.ask("state")[2])["status"], "idle")  # no viewer asks
-        self.assertEqual(self.ask("image?mode=wavefront")[0], 404)
+        self.assertEqual(self.ask("image?mode=auto")[0], 404)
         self.state("a")
         self.state("b")
         self.assert_works()
@@ -353,7 +353,7 @@ class Refusals(Program):
         self.start()
         for body, words in (("", "JSON object"), ("[1]", "JSON object"), ("{", "JSON object"),
                             ('{"exposure": "bright"}', '"exposure": expected a number from'),
-                            ('{"mode": "fast"}', '"mode": expected one of serial'),
+                            ('{"mode": "fast"}', '"mode": expected one of auto'),
                             ('{"orbit": {"zoom": -1}}', '"zoom": expected a number'),
                             ('{"scene": "/etc/passwd"}', '"scene": no such key')):
             status, _, answer = self.ask("settings", "POST", body)

@@ -303,7 +303,8 @@ TEST(WaveOrder, EveryStageOfAWaveIsReached) {
     reached.insert(notes.ran.begin(), notes.ran.end());
   }
   for (const StageInfo& stage : stage_table) {
-    if (stage.queue == StageId::idle) continue;  // of no wave
+    if (stage.queue == StageId::idle) continue;    // of no wave
+    if (stage.id == StageId::hand_over) continue;  // after the last one, on CUDA
     EXPECT_TRUE(reached.contains(stage.id)) << stage.name;
   }
 }

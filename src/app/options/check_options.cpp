@@ -35,7 +35,7 @@ bool has_value(const OptionRule& rule, const std::string& text) {
 
 void check_rule(const OptionRule& rule, const std::string& name, const std::string& value,
                 Mode mode, std::optional<DeviceChoice::Kind> device) {
-  if (!contains(rule.modes, mode))
+  if (mode != Mode::automatic && !contains(rule.modes, mode))
     throw Error(fmt::format("--{} {}: has no effect with --mode {}; it applies to {}", name, value,
                             to_string(mode), joined(rule.modes)));
   if (device && !contains(rule.devices, *device))
@@ -264,9 +264,31 @@ void check_crop(const Options& options) {
 }
 
 bool has_effect(const OptionEntry& entry, const std::string& value, Mode mode) {
+  if (mode == Mode::automatic)
+    return has_effect(entry, value, Mode::wavefront) || has_effect(entry, value, Mode::megakernel);
   return std::ranges::all_of(entry.rules, [&](const OptionRule& rule) {
     return !has_value(rule, value) || contains(rule.modes, mode);
   });
+}
+
+void fit_mode(Options& options, const GivenOptions& given) {
+  if (options.mode != Mode::automatic) return;
+  const auto first_without_effect = [&](Mode mode) -> const OptionEntry* {
+    for (const OptionEntry& entry : option_list()) {
+      if (given.contains(entry.name) && !has_effect(entry, entry.text(options), mode))
+        return &entry;
+    }
+    return nullptr;
+  };
+  const OptionEntry* const not_in_waves = first_without_effect(Mode::wavefront);
+  const OptionEntry* const not_in_megakernel = first_without_effect(Mode::megakernel);
+  if (not_in_waves != nullptr && not_in_megakernel != nullptr)
+    throw Error(
+        fmt::format("--{} and --{}: have no effect in one mode; expected options of the "
+                    "megakernel or of the wavefront",
+                    not_in_waves->name, not_in_megakernel->name));
+  if (not_in_waves != nullptr) options.mode = Mode::megakernel;
+  if (not_in_megakernel != nullptr) options.mode = Mode::wavefront;
 }
 
 void check_applicable(const Options& options, const GivenOptions& given,

@@ -308,6 +308,7 @@ RenderCommand make_render_command(const std::vector<Setting>& settings) {
     entry->set(command.options, value);
     command.given.insert(entry->name);
   }
+  fit_mode(command.options, command.given);
   check_consistent(command.options, command.given);
   std::optional<DeviceChoice::Kind> device;
   if (command.options.device.kind != DeviceChoice::Kind::automatic)

@@ -261,6 +261,8 @@ void add_camera(std::vector<OptionEntry>& list) {
 void add_execution(std::vector<OptionEntry>& list) {
   Group(list, "Execution (how the image is made, not what it shows)")
       .add(choice("mode", &Options::mode),
+           "auto: megakernel or wavefront, whichever is expected to be\n"
+           "faster; they give the same image.\n"
            "serial: one CPU thread, one path after the other.\n"
            "megakernel: each thread traces whole paths.\n"
            "wavefront: one kernel per stage over a pool of paths")

@@ -14,7 +14,7 @@ namespace pt {
 
 /// Of the JSON and the CSV. Raise it whenever a field changes its name, unit or meaning or is
 /// added or removed, and tell docs/statistics.md.
-inline constexpr int report_schema_version = 12;
+inline constexpr int report_schema_version = 13;
 
 /// Every repeat ran, and the last one had all its samples.
 bool is_complete(const Options& options, const RenderReport& report);

@@ -86,6 +86,7 @@ void add_device(CsvRow& row, const RenderReport& report) {
   row.emplace_back("device_name", report.device_name);
   row.emplace_back("device_kind", report.device_kind);
   row.emplace_back("driver", report.driver);
+  row.emplace_back("used_mode", report.mode);
   row.emplace_back("used_accel", report.accel);
   row.emplace_back("used_schedule", report.schedule);
   row.emplace_back("used_stages", report.stages);

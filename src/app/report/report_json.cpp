@@ -216,7 +216,8 @@ std::string report_json(const Options& options, const RenderReport& report) {
   json["options"] = options_json(options);
   json["device"] = {
       {"name", report.device_name}, {"kind", report.device_kind}, {"driver", report.driver}};
-  json["used"] = {{"accel", report.accel},
+  json["used"] = {{"mode", report.mode},
+                  {"accel", report.accel},
                   {"schedule", report.schedule},
                   {"stages", report.stages},
                   {"pool_size", report.pool_size},

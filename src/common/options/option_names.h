@@ -23,8 +23,11 @@ template <typename E>
 inline constexpr std::array<EnumName<E>, 0> enum_names{};
 
 template <>
-inline constexpr auto enum_names<Mode> = std::to_array<EnumName<Mode>>(
-    {{Mode::serial, "serial"}, {Mode::megakernel, "megakernel"}, {Mode::wavefront, "wavefront"}});
+inline constexpr auto enum_names<Mode> =
+    std::to_array<EnumName<Mode>>({{Mode::automatic, "auto"},
+                                   {Mode::serial, "serial"},
+                                   {Mode::megakernel, "megakernel"},
+                                   {Mode::wavefront, "wavefront"}});
 template <>
 inline constexpr auto enum_names<IntegratorKind> = std::to_array<EnumName<IntegratorKind>>(
     {{IntegratorKind::path, "path"}, {IntegratorKind::mlt, "mlt"}});

@@ -16,7 +16,7 @@
 
 namespace pt {
 
-enum class Mode { serial, megakernel, wavefront };
+enum class Mode { automatic, serial, megakernel, wavefront };
 enum class Work { pixel, sample, persistent };
 enum class KernelSet { automatic, specialized, general };
 enum class MegakernelKind { automatic, loop, vote, sort };
@@ -164,7 +164,7 @@ struct Options {
   CameraOverrides camera;
 
   // Execution
-  Mode mode = Mode::wavefront;
+  Mode mode = Mode::automatic;
   DeviceChoice device;
   int threads = 0;  ///< CPU threads, 0: all
   AccelKind accel = AccelKind::automatic;

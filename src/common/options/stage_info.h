@@ -24,6 +24,7 @@ namespace pt {
   STAGE(shade_medium, shade_medium, true)   \
   STAGE(shadow, shadow, true)               \
   STAGE(bounce, intersect, true)            \
+  STAGE(hand_over, intersect, true)         \
   STAGE(finish, intersect, true)            \
   STAGE(features, idle, false)              \
   STAGE(accumulate, idle, true)             \

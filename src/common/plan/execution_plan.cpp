@@ -27,7 +27,11 @@ constexpr std::size_t few_emitters = 16;
 // Where a pass over all tags fills the queues: large enough to hide the launches, small enough for
 // the L2 cache.
 constexpr std::uint64_t pool_paths_for_passes = std::uint64_t{1} << 20;
-constexpr std::uint64_t pool_paths_per_thread = 1024;  // of a CPU
+constexpr std::uint64_t pool_paths_per_thread = 1024;       // of a CPU
+constexpr std::uint32_t finish_paths_of_blocks = 1u << 20;  // about as many as blocks hold
+constexpr int short_depth = 6;  // of which waves trace all rays with full warps
+// Of scans of quads, where a megakernel's warps wait for the longest path:
+constexpr std::uint64_t few_paths = std::uint64_t{1} << 19;
 
 constexpr const char* asked = "asked for";
 
@@ -40,11 +44,12 @@ class Planner {
   ExecutionPlan plan() {
     check_options_for_scene(o_, scene_);
     choose_kernels();
+    choose_mode();
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
     choose_structure();
-    if (o_.mode == Mode::wavefront) choose_stages();
+    if (plan_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
-    if (o_.mode == Mode::wavefront) choose_waves();
+    if (plan_.mode == Mode::wavefront) choose_waves();
     if (!is_specialized() && scene_.emitters && o_.nee) choose_lights();
     check_plan(plan_, o_, scene_, device_);
     return std::move(plan_);
@@ -52,10 +57,38 @@ class Planner {
 
  private:
   bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
-  bool is_on_gpu(Mode mode) const { return device_.is_cuda && o_.mode == mode; }
+  bool is_on_gpu(Mode mode) const { return device_.is_cuda && plan_.mode == mode; }
 
   void decide(const char* option, std::string value, std::string reason) {
     plan_.decisions.push_back({option, std::move(value), std::move(reason)});
+  }
+
+  void choose_mode() {
+    std::string reason = asked;
+    plan_.mode = o_.mode;
+    if (o_.mode == Mode::automatic) std::tie(plan_.mode, reason) = faster_mode();
+    decide("mode", to_string(plan_.mode), reason);
+  }
+
+  /// Fitted to sizes.csv: results/log/2026-11-sizes.md.
+  std::pair<Mode, std::string> faster_mode() const {
+    using enum Mode;
+    if (!device_.is_cuda) return {wavefront, "the CPU takes rays and surfaces in blocks"};
+    if (o_.integrator == IntegratorKind::mlt) return {wavefront, "its slots follow chains"};
+    if (is_specialized()) {
+      if (scene_.quads == 0) return {megakernel, "spheres: a path is cheap to follow alone"};
+      if (o_.max_depth <= short_depth) return {wavefront, "quads and short paths"};
+      const double paths = double(o_.width) * o_.height * o_.spp;
+      if (paths <= double(few_paths)) return {wavefront, "quads and few paths"};
+      return {megakernel, "quads and many long paths"};
+    }
+    const bool sorts = scene_.has_only_triangles() && !scene_.limits_camera_rays &&
+                       (!scene_.has_media || has_closed_media()) &&
+                       known_structure().value_or(Accel::cwbvh) == Accel::cwbvh &&
+                       device_.block_shared_bytes >= sorting_bytes_min;
+    if (sorts && order_pays_for(scene_.bsdf_kinds) && o_.max_depth > short_depth)
+      return {megakernel, "many kinds of BSDFs on long paths: blocks that sort were faster"};
+    return {wavefront, "persistent warps or queues of rays were faster"};
   }
 
   void choose_kernels() {
@@ -88,15 +121,16 @@ class Planner {
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
       return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
-    if (scene_.has_media) return {loop, "the others know no media"};
+    if (scene_.has_media && !has_closed_media())
+      return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
     if (o_.block == BlockSize{} && device_.block_shared_bytes >= sorting_bytes_min)
       return {sort, "triangles alone: a wavefront in each block was the fastest"};
     const std::int64_t threads = o_.block.threads();
-    const bool may_vote =
-        !scene_.has_masks && threads % 32 == 0 && threads <= phase_voting_threads_max;
+    const bool may_vote = !scene_.has_masks && !scene_.has_media && threads % 32 == 0 &&
+                          threads <= phase_voting_threads_max;
     const bool is_simple = std::has_single_bit(scene_.bsdf_kinds) || known_structure();
     if (may_vote && is_simple) return {vote, "triangles of few kinds of BSDFs, blocks of warps"};
     return {loop, "blocks or materials suit no other"};
@@ -124,9 +158,9 @@ class Planner {
     if (device_.is_cuda && is_toggled(o_))
       return {Accel::brute, "--rng and --branching have kernels for it alone on CUDA"};
     const bool halves = device_.is_cuda && scene_.quads == 0;
-    const std::size_t most = !halves                      ? scan_primitives_max
-                             : o_.mode == Mode::wavefront ? scan_spheres_wavefront_max
-                                                          : scan_spheres_megakernel_max;
+    const std::size_t most = !halves                         ? scan_primitives_max
+                             : plan_.mode == Mode::wavefront ? scan_spheres_wavefront_max
+                                                             : scan_spheres_megakernel_max;
     const std::size_t count = scene_.spheres + scene_.quads;
     return {count <= most ? Accel::brute : Accel::bvh2,
             fmt::format("{} primitives: up to {} are scanned faster than a tree is walked", count,
@@ -137,7 +171,8 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
-    if (scene_.limits_camera_rays || scene_.has_media) return {Accel::bvh2, alone};
+    if (scene_.limits_camera_rays || (scene_.has_media && !has_closed_media()))
+      return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
       return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
@@ -146,8 +181,9 @@ class Planner {
       if (takes_wide_tree()) return {Accel::cwbvh, "persistent warps make the most of it"};
       return {Accel::bvh2, alone};
     }
-    const bool masks_in_blocks = o_.mode == Mode::wavefront && scene_.instances == 0;
-    if (device_.has_avx2 && (!scene_.has_masks || masks_in_blocks))
+    const bool masks_in_blocks = plan_.mode == Mode::wavefront && scene_.instances == 0;
+    const bool is_plain = !scene_.has_masks && !scene_.has_media;
+    if (device_.has_avx2 && (is_plain || masks_in_blocks))
       return {Accel::cwbvh, "AVX2 tests eight children at once"};
     return {Accel::bvh2, alone};
   }
@@ -155,14 +191,22 @@ class Planner {
   /// Whether warps could trace the wavefront's queues in a wide tree. Where they do not, threads
   /// walk it over triangles alone.
   bool takes_wide_tree() const {
-    const bool is_plain = scene_.has_only_triangles() && !scene_.has_masks;
+    const bool is_plain = scene_.has_only_triangles() && !scene_.has_masks && !scene_.has_media;
     return warps_can_persist() && (o_.persistent || is_plain);
+  }
+
+  /// Whether a shadow ray ends at the first surface, so that rays can be traced without a look at
+  /// media. Blocks on CUDA, which take the last paths, know no flights that pause.
+  bool has_closed_media() const {
+    return scene_.has_only_triangles() && !scene_.has_open_boundaries &&
+           o_.stages != Stages::fused && o_.wave_collisions == 0 &&
+           (!device_.is_cuda || device_.block_shared_bytes >= sorting_bytes_min);
   }
 
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
-           !scene_.limits_camera_rays && !scene_.has_media &&
+           !scene_.limits_camera_rays && (!scene_.has_media || has_closed_media()) &&
            (scene_.instances == 0 || !scene_.has_masks);
   }
 
@@ -183,7 +227,7 @@ class Planner {
   }
 
   /// Rays that are traced by stages of their own find the spheres in global memory.
-  bool scans_in_one_kernel() const { return o_.mode == Mode::megakernel || plan_.fused; }
+  bool scans_in_one_kernel() const { return plan_.mode == Mode::megakernel || plan_.fused; }
 
   void choose_waves() {
     if (device_.is_cuda) choose_persistence();
@@ -242,20 +286,32 @@ class Planner {
                               : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
   }
 
-  /// A wave costs some 0.1 ms however few rays it has; a thread that follows a path waits for the
-  /// slowest of its warp, in each ray and in shading of several kinds. So the more the rays of a
-  /// scene and its kinds of BSDFs differ, the fewer paths are finished that way.
+  /// A wave costs some 0.1 ms however few rays it has. A thread that follows a path waits for the
+  /// slowest of its warp, in each ray and in shading of several kinds: so the more the rays of a
+  /// scene and its kinds of BSDFs differ, the fewer paths are finished that way. Blocks sort
+  /// theirs, and are faster than waves as long as they have room for all.
   void choose_finish() {
+    plan_.finishes_in_blocks = can_finish_in_blocks();
     if (o_.finish_paths) {
       plan_.finish_paths = *o_.finish_paths;
       return decide("finish-paths", std::to_string(plan_.finish_paths), asked);
     }
     const bool is_dear = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
-    plan_.finish_paths = is_specialized() ? 1u << 17 : is_dear ? 1u << 13 : 1u << 15;
+    plan_.finish_paths = is_specialized()           ? 1u << 17
+                         : plan_.finishes_in_blocks ? finish_paths_of_blocks
+                         : is_dear                  ? 1u << 13
+                                                    : 1u << 15;
     decide("finish-paths", std::to_string(plan_.finish_paths),
-           is_specialized() ? "a path is cheap to follow alone"
-           : is_dear        ? "instances or many kinds of BSDFs: paths are dear to follow alone"
-                            : "triangles");
+           is_specialized()           ? "a path is cheap to follow alone"
+           : plan_.finishes_in_blocks ? "block-local wavefronts follow them"
+           : is_dear ? "instances or many kinds of BSDFs: paths are dear to follow alone"
+                     : "triangles");
+  }
+
+  /// Where the kernel of --kernel sort knows all that the scene has.
+  bool can_finish_in_blocks() const {
+    return plan_.persistent_warps && scene_.has_only_triangles() &&
+           o_.integrator == IntegratorKind::path && device_.block_shared_bytes >= sorting_bytes_min;
   }
 
   void choose_pool() {

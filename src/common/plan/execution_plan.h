@@ -12,6 +12,7 @@
 namespace pt {
 
 struct ExecutionPlan {
+  Mode mode = Mode::wavefront;
   KernelSet kernel_set = KernelSet::general;  ///< never automatic, like all others here
   Accel accel = Accel::brute;                 ///< what the scene is built as
   Accel traversal = Accel::brute;             ///< the code that traces it
@@ -22,6 +23,7 @@ struct ExecutionPlan {
   bool shades_by_kind = false;    ///< wavefront: and each kind has a kernel
   bool persistent_warps = false;  ///< wavefront: they trace its queues
   std::uint32_t finish_paths = 0;
+  bool finishes_in_blocks = false;   ///< wavefront: block-local wavefronts follow them, not threads
   std::uint64_t pool_paths_max = 0;  ///< wavefront: of an automatic pool, 0: no limit
   bool uses_graph = false;           ///< wavefront on CUDA: the device loops over the waves
   std::vector<Decision> decisions;   ///< in the order in which they were made

@@ -36,11 +36,11 @@ bool is_general(const SceneProperties& scene, const Options& o) {
 
 bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
   return is_general(scene, o) && scene.has_only_triangles() && !scene.limits_camera_rays &&
-         !scene.has_media;
+         !scene.has_open_boundaries;
 }
 
 bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return has_triangles_alone(scene, o) && !scene.has_masks;
+  return has_triangles_alone(scene, o) && !scene.has_masks && !scene.has_media;
 }
 
 bool has_rough_conductors(const SceneProperties& scene, const Options&) {
@@ -78,8 +78,8 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::vote);
      },
      has_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, media, clip planes, hidden "
-     "emitters or no triangles, expected auto or loop"},
+     "traces triangles alone; scene '{}' has spheres, instances, boundaries without a BSDF, clip "
+     "planes, hidden emitters or no triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -126,11 +126,11 @@ void check_toggles(const ExecutionPlan& plan, const Options& o, const ScenePrope
     refuse("--scene-memory " + to_string(plan.scene_memory), "global or auto");
 }
 
-void check_scene_memory(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene,
+void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
                         const DeviceProperties& device) {
   if (plan.scene_memory == SceneMemory::global) return;
   const std::string memory = to_string(plan.scene_memory);
-  if (plan.accel != Accel::brute || (o.mode == Mode::wavefront && !plan.fused))
+  if (plan.accel != Accel::brute || (plan.mode == Mode::wavefront && !plan.fused))
     throw Error(
         fmt::format("--scene-memory {}: for kernels that scan the spheres and shade; expected "
                     "--accel brute, and --stages fused in waves, or global memory",
@@ -155,7 +155,7 @@ void check_scene_memory(const ExecutionPlan& plan, const Options& o, const Scene
 }
 
 /// What has no kernel because it would win nowhere.
-void check_structure(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene) {
+void check_structure(const ExecutionPlan& plan, const SceneProperties& scene) {
   if (plan.kernel_set != KernelSet::general) return;
   if (plan.accel == Accel::brute)
     throw Error(
@@ -163,17 +163,20 @@ void check_structure(const ExecutionPlan& plan, const Options& o, const ScenePro
         "cwbvh");
   const bool is_plain = scene.has_only_triangles() && !scene.has_masked_kernels();
   if (plan.accel != Accel::cwbvh || is_plain) return;
-  if (scene.has_media)
+  const bool in_blocks = plan.megakernel == MegakernelKind::sort || plan.persistent_warps;
+  if (scene.has_media && (scene.has_open_boundaries || !scene.has_only_triangles() || !in_blocks))
     throw Error(
-        fmt::format("--accel cwbvh: scenes with media have kernels for binary trees alone on CUDA; "
-                    "scene '{}' has some, expected bvh2 or auto",
+        fmt::format("--accel cwbvh: with media for triangles alone whose boundaries have BSDFs, by "
+                    "--kernel sort or persistent warps without --wave-collisions, on CUDA; not for "
+                    "scene '{}', expected bvh2 "
+                    "or auto",
                     scene.name));
-  if (o.mode == Mode::megakernel && plan.megakernel == MegakernelKind::loop)
+  if (plan.mode == Mode::megakernel && plan.megakernel == MegakernelKind::loop)
     throw Error(
         fmt::format("--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA; "
                     "scene '{}' has more, expected bvh2 or auto",
                     scene.name));
-  if (o.mode == Mode::wavefront && !plan.persistent_warps && !plan.fused)
+  if (plan.mode == Mode::wavefront && !plan.persistent_warps && !plan.fused)
     throw Error(
         fmt::format("--accel cwbvh: threads trace triangles alone in it on CUDA; scene '{}' has "
                     "more, expected bvh2 or auto, or persistent warps",
@@ -224,9 +227,9 @@ void check_plan(const ExecutionPlan& plan, const Options& options, const ScenePr
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);
   if (!device.is_cuda) return;
   check_toggles(plan, options, scene);
-  check_structure(plan, options, scene);
-  check_scene_memory(plan, options, scene, device);
-  if (options.mode == Mode::megakernel) check_megakernel(plan, options, device);
+  check_structure(plan, scene);
+  check_scene_memory(plan, scene, device);
+  if (plan.mode == Mode::megakernel) check_megakernel(plan, options, device);
 }
 
 }  // namespace pt

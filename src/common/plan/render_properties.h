@@ -15,11 +15,12 @@ struct SceneProperties {
   std::size_t spheres = 0, quads = 0;
   std::size_t triangles = 0;  ///< of the meshes
   std::size_t instances = 0;
-  bool is_primitive_only = false;   ///< nothing that the paper's scenes have not
-  bool has_masks = false;           ///< materials that are not opaque everywhere
-  bool has_media = false;           ///< between surfaces
-  bool has_emitters = false;        ///< surfaces that shine
-  bool limits_camera_rays = false;  ///< clip planes or hidden emitters
+  bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
+  bool has_masks = false;            ///< materials that are not opaque everywhere
+  bool has_media = false;            ///< between surfaces
+  bool has_open_boundaries = false;  ///< surfaces without a BSDF between media
+  bool has_emitters = false;         ///< surfaces that shine
+  bool limits_camera_rays = false;   ///< clip planes or hidden emitters
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
   // Known when the scene has been prepared:

@@ -35,13 +35,13 @@ TypeList<Traits<TreeAccel::value, geometry, Lighting::full, has_masks>...> kinds
     TypeList<TreeAccel...>);
 template <Geometry geometry, bool has_masks = false>
 using KindsWithTrees = decltype(kinds_with_trees<geometry, has_masks>(TreeAccels{}));
-/// Of scenes with media, where threads follow rays alone.
+/// Of scenes with media, which may have all else as well.
 template <Accel accel>
 using MediaKind = Traits<accel, Geometry::mixed, Lighting::full, true, true>;
 using TriangleSceneKinds = decltype(concatenate(
     KindsWithTrees<Geometry::triangles>{},
     concatenate(KindsWithTrees<Geometry::mixed>{}, KindsWithTrees<Geometry::mixed, true>{})));
-using MediaSceneKinds = TypeList<MediaKind<Accel::bvh2>>;
+using MediaSceneKinds = TypeList<MediaKind<Accel::bvh2>, MediaKind<Accel::cwbvh>>;
 /// Those that a megakernel's loop traces on CUDA.
 using LoopTriangleKinds =
     decltype(concatenate(KindsWithTrees<Geometry::triangles>{},

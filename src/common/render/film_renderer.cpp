@@ -38,7 +38,8 @@ FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene,
 
 void FilmRenderer::describe_plan(RenderReport& report) const {
   report.plan = execution_.decisions;
-  if (options_.mode != Mode::wavefront) return;
+  report.mode = to_string(execution_.mode);
+  if (execution_.mode != Mode::wavefront) return;
   report.stages = to_string(execution_.fused ? Stages::fused : Stages::split);
   report.finish_paths = execution_.finish_paths;
   if (report.device_kind == "cuda") {

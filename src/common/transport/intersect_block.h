@@ -12,15 +12,15 @@ struct BlockTraits {
   Accel accel;
   Geometry geometry;
   bool has_masks = false;
+  bool has_media = false;  ///< no matter to rays
 };
 
 /// Whether rays of such scenes are traced in blocks: where that is another way to trace them, so
 /// that nothing need be compiled for one ray as well.
 template <class Traits>
-inline constexpr bool traces_blocks =
-    !Traits::has_media &&
-    (Traits::has_masks ? Traits::accel == Accel::cwbvh
-                       : Traits::accel == Accel::brute || Traits::accel == Accel::cwbvh_avx2);
+inline constexpr bool traces_blocks = (Traits::has_masks ? Traits::accel == Accel::cwbvh
+                                                         : Traits::accel == Accel::brute ||
+                                                               Traits::accel == Accel::cwbvh_avx2);
 
 /// Of whose masks rays have keys (mask_key).
 using MaskedRays = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;

@@ -125,6 +125,13 @@ PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float dis
   return result;
 }
 
+/// Of a shadow ray's way through one medium, up to `length`, after `segment` others of its way.
+PT_HD Color segment_transmittance(const Scene& scene, std::uint32_t medium, const Ray& ray,
+                                  float length, std::uint32_t ray_key, std::uint32_t segment) {
+  return estimate_transmittance(scene.grids, load_wide(&scene.media[medium]), ray, length,
+                                flight_key(ray_key, segment));
+}
+
 /// What of a shadow ray's radiance arrives: black if a surface with a BSDF lies between its ends,
 /// else the transmittance of the media through which it goes.
 template <class Traits>
@@ -142,8 +149,7 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
     if (medium != no_medium) {
       const float length = arrives ? left : hit.t;
       passed = multiply_rounded(
-          passed, estimate_transmittance(scene.grids, load_wide(&scene.media[medium]), ray, length,
-                                         flight_key(ray_key, segment)));
+          passed, segment_transmittance(scene, medium, ray, length, ray_key, segment));
     }
     if (arrives || is_black(passed)) return passed;
     const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, ray, hit).point;

@@ -226,6 +226,10 @@ struct PathPool {
     store_wide(at(shadow_radiance, slot),
                pack(shadow.radiance, path.rays | std::uint32_t{shadow.medium} << 16));
   }
+  PT_HD void dim_shadow(std::uint32_t slot, const Color& transmittance) const {
+    const PathRecord r = load_wide(at(shadow_radiance, slot));
+    store_wide(at(shadow_radiance, slot), pack(multiply_rounded(vec(r), transmittance), r.w));
+  }
   /// Of the path when it cast the shadow ray.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w & 0xffffu;

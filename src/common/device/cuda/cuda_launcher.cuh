@@ -79,6 +79,8 @@ class CudaLauncher {
   const cudaDeviceProp properties_;
 
  private:
+  friend class BlockWavefronts;  // another user of the launches
+
   /// The arguments of a launch, converted to the kernel's parameters and listed by address.
   template <class... Parameters>
   class Pack {

@@ -32,7 +32,8 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
                Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
                Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>, MediaKind<Accel::bvh2>>;
+               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>, MediaKind<Accel::bvh2>,
+               MediaKind<Accel::cwbvh>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, needed, IntegratorKind::path,
                   [&](auto kind) { kernel = find_features<decltype(kind)>; });

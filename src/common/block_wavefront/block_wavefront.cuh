@@ -1,9 +1,11 @@
-// The block-local wavefront, the megakernel's body for many kinds of BSDFs (--kernel sort): a
-// wavefront (Laine, Karras and Aila 2013) inside a thread block.
+// The block-local wavefront: a wavefront (Laine, Karras and Aila 2013) inside a thread block. It is
+// the megakernel's body for many kinds of BSDFs (--kernel sort), and follows the last paths of the
+// wavefront to their ends.
 //
-// Phase voting (trace_paths_voting.cuh) shades the paths that wait in a warp, surfaces of several
-// kinds by code that each warp fetches for itself. Here a block owns several paths for each of its
-// threads and takes all of them through the same phases, a barrier between each and the next:
+// Phase voting (megakernel/trace_paths_voting.cuh) shades the paths that wait in a warp, surfaces
+// of several kinds by code that each warp fetches for itself. Here a block owns several paths for
+// each of its threads and takes all of them through the same phases, a barrier between each and the
+// next:
 //
 //   start   slots whose path has ended get a new one and its camera ray
 //   trace   lanes take rays and shadow rays of the block, another one whenever theirs ends
@@ -13,30 +15,24 @@
 //
 // A phase of tracing does not wait for its longest rays: their traversal is suspended and resumed
 // in the next one. A path goes through the same functions in the same order as in the loop
-// (trace_path.h), so its radiance is the same, bit for bit.
+// (megakernel/trace_path.h), so its radiance is the same, bit for bit.
 #pragma once
 
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
+#include "common/block_wavefront/path_query.cuh"
+#include "common/block_wavefront/path_share.h"
 #include "common/device/cuda/counting_sort.cuh"
 #include "common/film/path_sample.h"
 #include "common/transport/mask_hides.h"
 #include "common/transport/path_step.h"
-#include "megakernel/path_query.cuh"
-#include "megakernel/path_slot.h"
+#include "common/transport/travel.h"
 
 namespace pt {
 
 struct BlockWavefrontTuning {
-  static constexpr int slots_most = 12;     ///< of a thread; fewer where a block's memory is small
+  static constexpr int slots_most = 12;     ///< of a thread (PathShare::slots_per_thread)
   static constexpr int suspended_max = 12;  ///< lanes of a warp that a phase may suspend
-};
-
-/// How blocks share the paths of a batch.
-struct PathShare {
-  std::uint32_t* next;    ///< paths that have been taken
-  std::uint32_t at_once;  ///< that a block may take: else the first ones would take small batches
-  int slots_per_thread;   ///< up to BlockWavefrontTuning::slots_most
 };
 
 /// A lane of a block. Traits: of triangles alone.
@@ -187,11 +183,13 @@ struct BlockRays {
 inline constexpr int block_wavefront_stack_size =
     bvh_depth_max + CwbvhLane<PathQuery, true>::suspended_size + 1;
 
-/// A sink (transport/path_step.h) that keeps a path in its slot. It takes results as shading finds
-/// them (StreamedSteps).
+/// A sink (transport/path_step.h) that keeps a path in its slot. `streams`: it takes results as
+/// shading finds them (StreamedSteps).
+template <bool streams = true, bool has_media = false>
 struct SlotSink {
   const SampleBuffer& samples;
   PathSlot& slot;
+  PathRecord* medium = nullptr;  ///< of the path, with has_media
   bool casts = false, alive = false;
 
   PT_HD void emit(const PathState&, const Color& emitted) {
@@ -199,11 +197,13 @@ struct SlotSink {
   }
   PT_HD void aim(const PathState&, const ShadowRay& shadow) { slot.store_shadow_ray(shadow); }
   PT_HD void cast(const PathState&, const ShadowRay& shadow) {
-    slot.store_shadow_radiance(shadow.radiance);
+    if constexpr (!streams) slot.store_shadow_ray(shadow);
+    slot.store_shadow_radiance(shadow.radiance, has_media ? shadow.medium : no_medium);
     casts = true;
   }
   PT_HD void continue_path(const PathState& path, const Ray& ray) {
     slot.store_path(path, ray);
+    if constexpr (has_media) store_wide(medium, pack_medium(path.medium));
     alive = true;
   }
   PT_HD void end(const PathState& path) {
@@ -215,6 +215,30 @@ struct SlotSink {
   }
 };
 
+// Few paths are in media, and what these need must not cost all others registers: calls, all of
+// whose parameters are values.
+
+struct TravelledPath {
+  PathState path;
+  Hit hit;
+};
+
+PT_NOINLINE inline TravelledPath travel_out_of_line(const Scene& scene, Ray ray,
+                                                    std::uint32_t path_key, PathState path,
+                                                    Hit hit) {
+  FreeFlight flight;
+  travel(scene, ray, path_key, to_the_end, path, flight, hit);
+  return {path, hit};
+}
+
+/// What of a slot's shadow ray its medium lets through.
+PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint16_t medium,
+                                                   const PathSlot& slot, std::uint32_t ray_key) {
+  float distance;
+  const Ray ray = slot.load_shadow_ray(distance);
+  return segment_transmittance(scene, medium, ray, distance, ray_key, 0);
+}
+
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
 /// are opened again for each draw.
 template <class Traits, class Source, class Memory>
@@ -222,7 +246,7 @@ class BlockWavefront {
  public:
   __device__ BlockWavefront(const Scene& scene, const Source& source, const SampleBuffer& samples,
                             const PathLimits& limits, const PathShare& paths, Memory& memory,
-                            PathSlot* slots, uint2* stack)
+                            const BlockSlots& slots, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
@@ -230,13 +254,15 @@ class BlockWavefront {
         paths_(paths),
         memory_(memory),
         warp_(memory.tracing.warps[threadIdx.x / 32]),
-        slots_(slots),
-        rays_{memory, slots, scene, samples},
+        slots_(slots.paths),
+        media_(slots.media),
+        rays_{memory, slots.paths, scene, samples},
         stack_(stack) {}
 
-  /// By the whole block; returns when no paths are left.
-  __device__ __forceinline__ void run() {
-    empty();
+  /// By the whole block; returns when no paths are left. `begun`: paths that lie in its first slots
+  /// and wait for their rays.
+  __device__ __forceinline__ void run(std::uint32_t begun) {
+    fill(begun);
     while (start()) {
       trace();
       __syncthreads();
@@ -254,17 +280,23 @@ class BlockWavefront {
   /// The k-th that this thread looks after where a block goes through all of its slots.
   __device__ static std::uint32_t slot_of(int k) { return k * blockDim.x + threadIdx.x; }
 
-  __device__ void empty() {
+  __device__ void fill(std::uint32_t begun) {
     for (int k = 0; k < paths_.slots_per_thread; ++k) {
       const std::uint32_t slot = slot_of(k);
-      memory_.free_slot(slot) = static_cast<std::uint16_t>(slot);
-      memory_.path(slot) = Path::none;
+      const bool has_path = slot < begun;
+      if (has_path) {
+        memory_.ray(slot) = static_cast<std::uint16_t>(2 * slot);
+      } else {
+        memory_.free_slot(slot - begun) = static_cast<std::uint16_t>(slot);
+      }
+      memory_.path(slot) = has_path ? Path::ray : Path::none;
       memory_.shadow(slot) = Shadow::none;
     }
     warp_.ray_id[threadIdx.x & 31] = PersistentWarp<Lane>::none;
     if (threadIdx.x == 0) {
-      memory_.free_end = paths_.slots_per_thread * blockDim.x;
-      memory_.ray_end = memory_.suspended = 0;
+      memory_.free_end = paths_.slots_per_thread * blockDim.x - begun;
+      memory_.ray_end = begun;
+      memory_.suspended = 0;
     }
     memory_.tracing.order.fill();
   }
@@ -410,7 +442,7 @@ class BlockWavefront {
       if (has_path) {
         slot = memory_.ordered(index);
         path = memory_.path(slot), shadow = memory_.shadow(slot);
-        shade_path(slots_[slot], path, shadow);
+        shade_path(slot, path, shadow);
         memory_.path(slot) = path, memory_.shadow(slot) = shadow;
       }
       __syncwarp();
@@ -428,12 +460,14 @@ class BlockWavefront {
   }
 
   /// Takes what the path has waited for, and leaves what it waits for then.
-  __device__ __forceinline__ void shade_path(PathSlot& slot, Path& state, Shadow& shadow) {
+  __device__ __forceinline__ void shade_path(std::uint32_t slot_index, Path& state,
+                                             Shadow& shadow) {
+    PathSlot& slot = slots_[slot_index];
     Color radiance;
     Ray ray;
     PathState path = slot.load_path(radiance, ray);
     const bool is_lit = shadow == Shadow::free;
-    if (is_lit) radiance = add_rounded(radiance, slot.load_shadow_radiance());
+    if (is_lit) radiance = add_rounded(radiance, light_that_arrives(slot, path));
     shadow = Shadow::none;
     PathSample sample{samples_, radiance};
     if (state == Path::ended) {
@@ -442,25 +476,61 @@ class BlockWavefront {
       return;
     }
     set_lanes(ray, lanes_of(scene_).at(path.rays));
+    Hit hit;
+    if (state == Path::hit) hit = slot.load_hit();
+    if constexpr (Traits::has_media) fly(slot_index, ray, path, hit);
     ++path.rays;
-    if (state == Path::miss) {
+    if (hit.is_miss()) {
       leave_scene<typename Traits::Integrator, Traits::lighting>(scene_, ray.direction, path,
                                                                  limits_, sample);
       state = Path::none;
       return;
     }
     if (is_lit) slot.store_radiance(radiance, path);
-    shade_hit(slot, path, ray, state, shadow);
+    lanes_of(scene_).at(path.rays).count(LanePoint::iteration);
+    PathRecord* const medium = Traits::has_media ? media_ + slot_index : nullptr;
+    if constexpr (Traits::has_media) {
+      if (hit.is_collision()) {
+        SlotSink<false, true> sink{samples_, slot, medium};
+        auto random = source_.open(samples_.id_of(path.index));
+        const DrawnSteps steps = draw_steps<Traits>(random, path);
+        collide<Shading>(scene_, ray, hit.t, path, limits_, steps, sink);
+        return wait(sink, state, shadow);
+      }
+    }
+    SlotSink<true, Traits::has_media> sink{samples_, slot, medium};
+    const StreamedSteps steps{source_, samples_, path, sink};
+    meet_surface<Shading>(scene_, ray, hit, path, limits_, steps, sink);
+    wait(sink, state, shadow);
   }
 
-  __device__ __forceinline__ void shade_hit(PathSlot& slot, PathState& path, const Ray& ray,
-                                            Path& state, Shadow& shadow) {
-    lanes_of(scene_).at(path.rays).count(LanePoint::iteration);
-    SlotSink sink{samples_, slot};
-    const StreamedSteps steps{source_, samples_, path, sink};
-    meet_surface<Shading>(scene_, ray, slot.load_hit(), path, limits_, steps, sink);
+  /// What the sink leaves a path to wait for.
+  template <class Sink>
+  __device__ static void wait(const Sink& sink, Path& state, Shadow& shadow) {
     state = sink.alive ? Path::ray : sink.casts ? Path::ended : Path::none;
     shadow = sink.casts ? Shadow::ray : Shadow::none;
+  }
+
+  /// The path's flight through its medium, to `hit` or to a collision before it.
+  __device__ void fly(std::uint32_t slot_index, const Ray& ray, PathState& path, Hit& hit) const {
+    if (path.rays > 0) path.medium = unpack_medium(load_wide(media_ + slot_index));
+    if (path.rays > 0 && path.medium.index == no_medium) return;
+    const TravelledPath there = travel_out_of_line(scene_, ray, key_of(path), path, hit);
+    path = there.path, hit = there.hit;
+  }
+
+  /// Of a shadow ray that nothing occludes.
+  __device__ Color light_that_arrives(const PathSlot& slot, const PathState& path) const {
+    if constexpr (!Traits::has_media) return slot.load_shadow_radiance();
+    std::uint16_t medium;
+    const Color radiance = slot.load_shadow_radiance(medium);
+    if (medium == no_medium) return radiance;
+    const std::uint32_t key = shadow_ray_key(scene_, key_of(path), path.rays);
+    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, medium, slot, key));
+  }
+
+  __device__ std::uint32_t key_of(const PathState& path) const {
+    return mask_key<Traits>(scene_, samples_.id_of(path.index));
   }
 
   const Scene& scene_;
@@ -471,6 +541,7 @@ class BlockWavefront {
   Memory& memory_;
   PersistentWarp<Lane>& warp_;
   PathSlot* slots_;
+  PathRecord* media_;
   const BlockRays<Traits, Memory> rays_;
   uint2* stack_;
 };

@@ -6,9 +6,9 @@
 #include "common/geometry/mesh.h"
 #include "common/scene/builtin/shapes/mesh_shapes.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "medium/volume_cases.h"
 #include "mode_cases.h"
 #include "render_serial.h"
-#include "volume_cases.h"
 
 namespace pt {
 

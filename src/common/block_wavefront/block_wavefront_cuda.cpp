@@ -1,0 +1,56 @@
+#include "common/block_wavefront/block_wavefront_cuda.h"
+
+namespace pt {
+namespace {
+
+BlockWavefrontKernel kernel_for(const SceneTraits& traits) {
+  if (traits.has_media) return media_block_wavefront_kernel();
+  return traits.has_masks ? masked_block_wavefront_kernel() : block_wavefront_kernel();
+}
+
+}  // namespace
+
+BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
+                                 const SceneTraits& traits, std::uint32_t paths_max)
+    : launcher_(launcher), kernel_(kernel_for(traits)) {
+  const std::size_t room = launcher_.properties_.sharedMemPerBlockOptin;
+  while (slots_per_thread_ > block_wavefront_slots_least &&
+         block_wavefront_bytes(slots_per_thread_) > room)
+    --slots_per_thread_;
+  blocks_ =
+      launcher_.resident_blocks(reinterpret_cast<const void*>(kernel_), block_wavefront_threads,
+                                block_wavefront_bytes(slots_per_thread_));
+  const auto fits = [&](int slots) {
+    return std::uint64_t{blocks_} * block_wavefront_threads * slots >= paths_max;
+  };
+  while (slots_per_thread_ > 1 && fits(slots_per_thread_ - 1)) --slots_per_thread_;
+  slots_.per_block = static_cast<std::uint32_t>(block_wavefront_threads * slots_per_thread_);
+  slots_.paths = memory.allocate<PathSlot>("paths", capacity());
+  if (traits.has_media) slots_.media = memory.allocate<PathRecord>("paths", capacity());
+  next_path_ = memory.allocate<std::uint32_t>("counters", 1);
+}
+
+void BlockWavefronts::trace(const Scene& scene, const SampleBuffer& batch,
+                            const SamplerSource& source, const PathLimits& limits, StageId stage) {
+  check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, launcher_.stream()),
+             "cudaMemsetAsync");
+  const std::uint32_t at_once = (batch.path_count + blocks_ - 1) / blocks_;
+  launch(scene, batch, source, limits, stage, at_once, place(0));
+}
+
+void BlockWavefronts::finish(const Scene& scene, const SampleBuffer& batch,
+                             const SamplerSource& source, const PathLimits& limits, StageId stage,
+                             const BegunPaths& paths) {
+  launch(scene, batch, source, limits, stage, 0, paths);
+}
+
+void BlockWavefronts::launch(const Scene& scene, const SampleBuffer& batch,
+                             const SamplerSource& source, const PathLimits& limits, StageId stage,
+                             std::uint32_t at_once, const BegunPaths& begun) {
+  const PathShare paths{next_path_, at_once, slots_per_thread_};
+  launcher_.launch(to_string(stage).c_str(), kernel_, blocks_, block_wavefront_threads,
+                   block_wavefront_bytes(slots_per_thread_), scene, batch, source, limits, paths,
+                   begun, stage, launcher_.clock());
+}
+
+}  // namespace pt

@@ -1,0 +1,36 @@
+// The kernel of the block-local wavefront, for the files that instantiate it.
+#pragma once
+
+#include "common/block_wavefront/block_wavefront.cuh"
+#include "common/block_wavefront/block_wavefront_cuda.h"
+#include "common/device/cuda/stage_stamp.cuh"
+
+namespace pt {
+
+/// Of scenes of triangles alone.
+template <bool has_masks, bool has_media = false>
+using BlockWavefrontTraits =
+    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks, has_media>;
+
+template <class Traits>
+using BlockMemory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, block_wavefront_threads>;
+
+/// Paths of a batch, or those of `begun`. `stage`: what its time counts for.
+template <class Traits>
+__global__ void __launch_bounds__(block_wavefront_threads, 1)
+    block_wavefront(const __grid_constant__ Scene scene, const __grid_constant__ SampleBuffer batch,
+                    const __grid_constant__ SamplerSource source,
+                    const __grid_constant__ PathLimits limits,
+                    const __grid_constant__ PathShare paths,
+                    const __grid_constant__ BegunPaths begun, StageId stage, StageClock* clock) {
+  using Memory = BlockMemory<Traits>;
+  extern __shared__ uint4 block_wavefront_memory[];
+  stamp_first_thread(clock, stage);
+  uint2 stack[block_wavefront_stack_size];
+  BlockWavefront<Traits, SamplerSource, Memory> tracer(
+      scene, source, batch, limits, paths, *reinterpret_cast<Memory*>(block_wavefront_memory),
+      begun.slots.of_block(blockIdx.x), stack);
+  tracer.run(begun.count_in(blockIdx.x));
+}
+
+}  // namespace pt
