@@ -2,9 +2,10 @@
 // alone, bit for bit, from its first ray on or from where the waves have left it.
 #include <gtest/gtest.h>
 
-#include "emulated_gpu.h"  // before device code
-
+// clang-format off: in this order
+#include "emulated_gpu.h"
 #include "common/block_wavefront/block_wavefront.cuh"
+// clang-format on
 #include "common/render/path_limits_of.h"
 #include "common/render/random_source.h"
 #include "common/scene/prepare/prepare_scene.h"

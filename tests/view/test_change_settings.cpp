@@ -41,7 +41,8 @@ TEST(ChangeSettings, NamesTheKeyAndWhatWasExpected) {
       {R"({"orbit": {"roll": 1}})",
        "\"roll\": no such key; expected \"yaw\", \"pitch\" or \"zoom\""},
       {R"({"mode": 3})", "\"mode\": expected one of auto, serial, megakernel, wavefront, split"},
-      {R"({"mode": "fast"})", "\"mode\": expected one of auto, serial, megakernel, wavefront, split"},
+      {R"({"mode": "fast"})",
+       "\"mode\": expected one of auto, serial, megakernel, wavefront, split"},
       {R"({"scene": "x"})",
        "\"scene\": no such key; expected \"orbit\", \"mode\" or \"exposure\""}};
   for (const auto& [json, message] : cases) EXPECT_EQ(refusal(json), message) << json;

@@ -106,8 +106,8 @@ bool is_complete(const Options& options, const RenderReport& report) {
 std::string report_table(const Options& options, const RenderReport& report) {
   const RunSummary summary = summarize(report);
   return fmt::format(
-             "{} of '{}', {}x{}, {} samples per pixel, on {}{}\n\n", report.mode,
-             options.scene, options.width, options.height, summary.samples_done, report.device_name,
+             "{} of '{}', {}x{}, {} samples per pixel, on {}{}\n\n", report.mode, options.scene,
+             options.width, options.height, summary.samples_done, report.device_name,
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
          stage_rows(report, summary) + '\n' + device_rows(report) +
          count_rows(report.counts, summary) + metropolis_rows(summary.metropolis) +

@@ -26,14 +26,13 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
   } else {
     needed.lighting = Lighting::sky;
   }
-  using Kinds =
-      TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
-               Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
-               Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-               Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>, MediaKind<Accel::bvh2>,
-               MediaKind<Accel::cwbvh>>;
+  using Kinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
+                         MediaKind<Accel::bvh2>, MediaKind<Accel::cwbvh>>;
   FeatureKernel kernel = nullptr;
   dispatch_traits(Kinds{}, needed, IntegratorKind::path,
                   [&](auto kind) { kernel = find_features<decltype(kind)>; });
