@@ -2,7 +2,8 @@
 // alone, bit for bit, from its first ray on or from where the waves have left it.
 #include <gtest/gtest.h>
 
-// clang-format off: in this order
+// The emulation comes before what it emulates.
+// clang-format off
 #include "emulated_gpu.h"
 #include "common/block_wavefront/block_wavefront.cuh"
 // clang-format on
