@@ -4,6 +4,7 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/png_rows.h"
 #include "common/image/codecs/png_session.h"
 #include "common/image/codecs/rgba8.h"
 #include "common/image/codecs/tone_mapping.h"
@@ -30,30 +31,35 @@ std::vector<png_text> text_chunks(const ImageMetadata& metadata) {
   return chunks;
 }
 
-/// `prepare`(png) may choose how it is compressed.
-template <class Prepare>
+void write_chunk(png_structp png, const char* name, const std::string& bytes) {
+  png_write_chunk(png, reinterpret_cast<png_const_bytep>(name),
+                  reinterpret_cast<png_const_bytep>(bytes.data()), bytes.size());
+}
+
 std::string encode(const Image& image, const ImageMetadata& metadata,
-                   const ToneMapping& tone_mapping, Prepare prepare) {
-  const std::string samples = quantize(image, tone_mapping, srgb_curve);
+                   const ToneMapping& tone_mapping, const PngCompression& compression) {
+  constexpr std::size_t pixel_bytes = 3;
+  const std::size_t row_bytes = pixel_bytes * static_cast<std::size_t>(image.width);
+  const std::vector<std::string> pixels = compress_png_rows(
+      quantize(image, tone_mapping, srgb_curve), row_bytes, pixel_bytes, compression);
+  const std::string nothing;
   const std::vector<png_text> texts = text_chunks(metadata);
   PngWriter writer;
   attempt(writer, [&](png_structp png, png_infop info) {
-    prepare(png);
     png_set_IHDR(png, info, image.width, image.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_text(png, info, texts.data(), static_cast<int>(texts.size()));
     png_write_info(png, info);
-    const auto* row = reinterpret_cast<png_const_bytep>(samples.data());
-    for (int y = 0; y < image.height; ++y, row += 3 * image.width) png_write_row(png, row);
-    png_write_end(png, info);
+    for (const std::string& block : pixels) write_chunk(png, "IDAT", block);
+    write_chunk(png, "IEND", nothing);
   });
   return std::move(writer.session.output);
 }
 
 std::string encode_png(const Image& image, const ImageMetadata& metadata,
                        const ToneMapping& tone_mapping) {
-  return encode(image, metadata, tone_mapping, [](png_structp) {});
+  return encode(image, metadata, tone_mapping, {});
 }
 
 /// libpng allocates what the length of a chunk announces: refuses lengths past the file's end.
@@ -135,10 +141,7 @@ Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
 }  // namespace
 
 std::string encode_png_fast(const Image& image, const ToneMapping& tone_mapping) {
-  return encode(image, {}, tone_mapping, [](png_structp png) {
-    png_set_compression_level(png, 1);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
-  });
+  return encode(image, {}, tone_mapping, {.level = 1, .chooses_filters = false});
 }
 
 Rgba8Image decode_png_rgba8(std::string_view bytes) {

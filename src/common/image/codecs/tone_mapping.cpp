@@ -1,6 +1,8 @@
 #include "common/image/codecs/tone_mapping.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 
@@ -35,10 +37,12 @@ std::string quantize(const Image& image, const ToneMapping& tone_mapping,
                      const TransferCurve& curve) {
   const float scale = std::exp2(tone_mapping.exposure);
   std::string bytes(image.rgb.size(), '\0');
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    const float encoded = curve.encode(clamp_unit(image.rgb[i] * scale));
-    bytes[i] = static_cast<char>(static_cast<unsigned char>(255 * encoded + 0.5f));
-  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bytes.size(), 1 << 14), [&](auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const float encoded = curve.encode(clamp_unit(image.rgb[i] * scale));
+      bytes[i] = static_cast<char>(static_cast<unsigned char>(255 * encoded + 0.5f));
+    }
+  });
   return bytes;
 }
 
