@@ -108,8 +108,7 @@ class Deflater {
  public:
   explicit Deflater(int level) {
     constexpr int without_header = -15, memory = 8;
-    if (deflateInit2(&stream_, level, Z_DEFLATED, without_header, memory, Z_DEFAULT_STRATEGY) !=
-        Z_OK)
+    if (deflateInit2(&stream_, level, Z_DEFLATED, without_header, memory, Z_FILTERED) != Z_OK)
       throw std::bad_alloc();
   }
   Deflater(const Deflater&) = delete;
