@@ -83,7 +83,7 @@ class Planner {
       return {megakernel, "quads and many long paths"};
     }
     const bool sorts = scene_.has_only_triangles() && !scene_.limits_camera_rays &&
-                       (!scene_.has_media || has_closed_media()) &&
+                       !has_open_media() &&
                        known_structure().value_or(Accel::cwbvh) == Accel::cwbvh &&
                        device_.block_shared_bytes >= sorting_bytes_min;
     if (sorts && order_pays_for(scene_.bsdf_kinds) && o_.max_depth > short_depth)
@@ -121,8 +121,7 @@ class Planner {
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
     if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
       return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
-    if (scene_.has_media && !has_closed_media())
-      return {loop, "the others know no boundaries without a BSDF"};
+    if (has_open_media()) return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
@@ -171,8 +170,7 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
-    if (scene_.limits_camera_rays || (scene_.has_media && !has_closed_media()))
-      return {Accel::bvh2, alone};
+    if (scene_.limits_camera_rays || has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
       return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
@@ -195,18 +193,19 @@ class Planner {
     return warps_can_persist() && (o_.persistent || is_plain);
   }
 
-  /// Whether a shadow ray ends at the first surface, so that rays can be traced without a look at
-  /// media. Blocks on CUDA, which take the last paths, know no flights that pause.
-  bool has_closed_media() const {
-    return scene_.has_only_triangles() && !scene_.has_open_boundaries &&
-           o_.stages != Stages::fused && o_.wave_collisions == 0 &&
-           (!device_.is_cuda || device_.block_shared_bytes >= sorting_bytes_min);
+  /// Media through which rays are traced one by one: a shadow ray goes on behind the first surface.
+  /// Blocks on CUDA, which take the last paths, know no flights that pause.
+  bool has_open_media() const {
+    const bool is_closed = scene_.has_only_triangles() && !scene_.has_open_boundaries &&
+                           o_.stages != Stages::fused && o_.wave_collisions == 0 &&
+                           (!device_.is_cuda || device_.block_shared_bytes >= sorting_bytes_min);
+    return scene_.has_media && !is_closed;
   }
 
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
-           !scene_.limits_camera_rays && (!scene_.has_media || has_closed_media()) &&
+           !scene_.limits_camera_rays && !has_open_media() &&
            (scene_.instances == 0 || !scene_.has_masks);
   }
 
