@@ -1,6 +1,7 @@
 """The first section: which mode for my scene, which block size, what does each idea give."""
 from .html import html_table, paragraph, verdict_cell
 from .scaling import several_devices
+from .size_map import size_map
 from .tables import in_groups, interval, number
 from .words import change, quotient, relation, show, with_interval
 
@@ -176,6 +177,8 @@ def each_idea(device):
                              caption="Each choice against its lack; commits are said at the tables")
 
 
-QUESTIONS = (("Which mode for my scene?", which_mode), ("Which block size?", which_block),
+QUESTIONS = (("Which mode for my scene?", which_mode),
+             ("And for which size, samples and depth?", size_map),
+             ("Which block size?", which_block),
              ("What does each idea give?", each_idea),
              ("What do several devices give?", several_devices))

@@ -186,7 +186,8 @@ class Report(unittest.TestCase):
                  "defaults": TOGGLES, "metropolis": {**SIZES, "y": "relmse", "x_label": "time [ms]"},
                  "random_numbers": TOGGLES, "pool_size": SIZES,
                  "scene_memory": {**SIZES, "y": "kernel_ms", "x_label": "spheres"},
-                 "growth": {**SIZES, "y": "kernel_ms", "x_label": ""}}
+                 "growth": {**SIZES, "y": "kernel_ms", "x_label": ""},
+                 "sizes": {**SIZES, "y": "kernel_ms", "x_label": "pixels"}}
         for name, rows in tables.items():
             write(self.folder, name, rows, facts(name, plots[name]))
         self.run_report(self.folder)
@@ -543,6 +544,27 @@ class Report(unittest.TestCase):
         self.assertEqual(Scale(0, 10.5, False, 0, 1).ticks(), [0, 2, 4, 6, 8, 10])
         self.assertEqual([words.show(x) for x in (0.01234, 1.09096, 104678, 0)],
                          ["0.0123", "1.09", "104,678", "0"])
+
+    def test_sizes_are_a_map(self):
+        def cell(width, variant, ms, **more):
+            return {"experiment": "sizes", "name": f"{width} {variant}", "status": "measured",
+                    "panel": "room", "series": "a", "schema_version": 13,
+                    "x": width if variant == "wavefront" else "",
+                    "commit": "abc", "variant": variant, "width": width, "max_depth": 4, "spp": 1,
+                    "kernel_ms_median": ms, **more}
+        text = self.make(sizes=[
+            cell(128, "megakernel", 4.0), cell(128, "wavefront", 1.0),
+            cell(128, "auto", 1.1, used_mode="wavefront", loss=0.1),
+            cell(256, "megakernel", 1.0), cell(256, "wavefront", 2.0),
+            cell(512, "megakernel", 1.0)])
+        row = re.search(r'<th scope="row">room, depth 4, 1 sample</th>(.*?)</tr>', text).group(1)
+        found = re.findall(r"<td(.*?)>([^<]*)</td>", row)
+        self.assertEqual([value for _, value in found], ["4.00", "0.500", ""])
+        self.assertIn("var(--good) 60%", found[0][0])  # four times as fast: the deepest
+        self.assertIn("auto takes wavefront, loses 10.0%", found[0][0])
+        self.assertIn("var(--bad) 30%", found[1][0])
+        (self.folder / "sizes.csv").unlink()
+        self.assertIn("there is no table sizes", self.make(toggles=toggles()))
 
     def test_committed_page_is_that_of_the_committed_tables(self):
         page = self.folder.parent / "page.html"
