@@ -59,6 +59,9 @@ class Planner {
   bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
   bool is_on_gpu(Mode mode) const { return device_.is_cuda && plan_.mode == mode; }
 
+  /// Of a GPU, for a block-local wavefront.
+  bool blocks_have_room() const { return device_.block_shared_bytes >= sorting_bytes_min; }
+
   void decide(const char* option, std::string value, std::string reason) {
     plan_.decisions.push_back({option, std::move(value), std::move(reason)});
   }
@@ -82,10 +85,7 @@ class Planner {
       if (paths <= double(few_paths)) return {wavefront, "quads and few paths"};
       return {megakernel, "quads and many long paths"};
     }
-    const bool sorts = scene_.has_only_triangles() && !scene_.limits_camera_rays &&
-                       !has_open_media() &&
-                       known_structure().value_or(Accel::cwbvh) == Accel::cwbvh &&
-                       device_.block_shared_bytes >= sorting_bytes_min;
+    const bool sorts = automatic_megakernel().first == MegakernelKind::sort;
     if (sorts && order_pays_for(scene_.bsdf_kinds) && o_.max_depth > short_depth)
       return {megakernel, "many kinds of BSDFs on long paths: blocks that sort were faster"};
     return {wavefront, "persistent warps or queues of rays were faster"};
@@ -125,7 +125,7 @@ class Planner {
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
-    if (o_.block == BlockSize{} && device_.block_shared_bytes >= sorting_bytes_min)
+    if (o_.block == BlockSize{} && blocks_have_room())
       return {sort, "triangles alone: a wavefront in each block was the fastest"};
     const std::int64_t threads = o_.block.threads();
     const bool may_vote = !scene_.has_masks && !scene_.has_media && threads % 32 == 0 &&
@@ -198,7 +198,7 @@ class Planner {
   bool has_open_media() const {
     const bool is_closed = scene_.has_only_triangles() && !scene_.has_open_boundaries &&
                            o_.stages != Stages::fused && o_.wave_collisions == 0 &&
-                           (!device_.is_cuda || device_.block_shared_bytes >= sorting_bytes_min);
+                           (!device_.is_cuda || blocks_have_room());
     return scene_.has_media && !is_closed;
   }
 
@@ -310,7 +310,7 @@ class Planner {
   /// Where the kernel of --kernel sort knows all that the scene has.
   bool can_finish_in_blocks() const {
     return plan_.persistent_warps && scene_.has_only_triangles() &&
-           o_.integrator == IntegratorKind::path && device_.block_shared_bytes >= sorting_bytes_min;
+           o_.integrator == IntegratorKind::path && blocks_have_room();
   }
 
   void choose_pool() {
