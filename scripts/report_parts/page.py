@@ -1,4 +1,4 @@
-"""Sets the page: five answers, the audit, a section for each experiment, pictures."""
+"""Sets the page: the answers, the audit, a section for each experiment, pictures."""
 import re
 from html import escape
 from pathlib import Path

@@ -34,13 +34,7 @@ inline SceneData filled_glasses(bool has_masks = true) {
   MaterialDescription leaf = make_diffuse({0.3f, 0.7f, 0.2f});
   if (has_masks) leaf.opacity = constant_opacity(0.4f);
   scene.add_quad({-1, -0.5f, 1.3f}, {2, 0, 0}, {0, 1, 0.3f}, scene.add_material(leaf));
-  scene.add_quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}, scene.add_material(make_diffuse(Color(0.6f))));
-  scene.add_quad({-1, 2.5f, -1}, {2, 0, 0}, {0, 0, 2},
-                 scene.add_material(make_diffuse(Color(0.0f), {9.0f, 8.0f, 7.0f})));
-  DeltaLight point;
-  point.position = {2, 2, 2};
-  point.intensity = {2.0f, 4.0f, 6.0f};
-  scene.delta_lights.push_back(point);
+  add_floor_and_lights(scene);
   scene.camera = {{0.3f, 0.8f, 3.8f}, {0, 0, 0}, {0, 1, 0}, 45.0f, 0.0f, 4.0f};
   scene.camera_medium = haze;
   return scene;

@@ -45,6 +45,17 @@ inline void add_cuboid(SceneData& scene, const Vec3& low, const Vec3& high,
   scene.add_quad(low + y, z, x, material), scene.add_quad(low, x, z, material);
 }
 
+/// A floor below, a lamp above and a point light, for what lies within 2 of the origin.
+inline void add_floor_and_lights(SceneData& scene) {
+  scene.add_quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}, scene.add_material(make_diffuse(Color(0.6f))));
+  scene.add_quad({-1, 2.5f, -1}, {2, 0, 0}, {0, 0, 2},
+                 scene.add_material(make_diffuse(Color(0.0f), {9.0f, 8.0f, 7.0f})));
+  DeltaLight point;
+  point.position = {2, 2, 2};
+  point.intensity = {2.0f, 4.0f, 6.0f};
+  scene.delta_lights.push_back(point);
+}
+
 /// A ball of 2 * 12 * 24 triangles at most, with normals like a sphere's.
 inline Mesh make_ball(std::uint32_t material) {
   Mesh mesh;
