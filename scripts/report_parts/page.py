@@ -95,8 +95,8 @@ def on_a_device(table, shared):
         command = escape(without_folders(table.facts["command"]))
         parts.append(f'<p class="method">Method: <code>{command}</code></p>')
     if not table.facts:
-        parts.append(f'<p class="note">A plain table: no {escape(table.name)}.json says how it '
-                     "was measured, so nothing is drawn or concluded.</p>")
+        parts.append(f'<p class="note plain">A plain table: no {escape(table.name)}.json says how '
+                     "it was measured, so nothing is drawn or concluded.</p>")
     if table.drawn:
         parts.append(figures(table, shared))
     parts.append(f'<div class="meaning">{sentences(table)}</div>{own_words(table)}')

@@ -13,10 +13,9 @@ DEEPEST = 60  # per cent of a colour, where a mode takes four times as long as t
 
 
 def tint(ratio):
-    """The wavefront's colour where it is faster, else the megakernel's."""
+    """The class of the faster mode's colour, and how deep it is."""
     share = DEEPEST * min(abs(log2(ratio)) / 2, 1)
-    colour = "good" if ratio > 1 else "bad"
-    return f"background:color-mix(in srgb, var(--{colour}) {share:.0f}%, transparent)"
+    return MODES[ratio > 1], f"--share:{share:.0f}%"
 
 
 def cells_of(table):
@@ -38,7 +37,8 @@ def map_cell(rows):
     if auto and number(auto.get("loss")) is not None:
         title += (f"; auto takes {auto.get('used_mode') or 'one of them'}, "
                   f"loses {max(number(auto['loss']), 0):.1%}")
-    return (f'<td class="n" data-v="{ratio!r}" title="{escape(title)}" style="{tint(ratio)}">'
+    mode, share = tint(ratio)
+    return (f'<td class="n {mode}" data-v="{ratio!r}" title="{escape(title)}" style="{share}">'
             f"{show(ratio)}</td>")
 
 

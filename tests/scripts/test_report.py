@@ -560,9 +560,11 @@ class Report(unittest.TestCase):
         row = re.search(r'<th scope="row">room, depth 4, 1 sample</th>(.*?)</tr>', text).group(1)
         found = re.findall(r"<td(.*?)>([^<]*)</td>", row)
         self.assertEqual([value for _, value in found], ["4.00", "0.500", ""])
-        self.assertIn("var(--good) 60%", found[0][0])  # four times as fast: the deepest
+        self.assertIn('"n wavefront"', found[0][0])
+        self.assertIn("--share:60%", found[0][0])  # four times as fast: the deepest
         self.assertIn("auto takes wavefront, loses 10.0%", found[0][0])
-        self.assertIn("var(--bad) 30%", found[1][0])
+        self.assertIn('"n megakernel"', found[1][0])
+        self.assertIn("--share:30%", found[1][0])
         (self.folder / "sizes.csv").unlink()
         self.assertIn("there is no table sizes", self.make(toggles=toggles()))
 
