@@ -8,12 +8,6 @@ namespace {
 
 using Slots = std::array<std::uint32_t, RayBlock::size_max>;
 
-bool is_in_medium(const PathPool& pool, std::uint32_t slot) {
-  PathState path;
-  pool.load_medium(slot, path);
-  return path.medium.index != no_medium;
-}
-
 // Traces the next rays of the paths in `count` slots; `send(slot, next)` takes each on.
 template <class Send>
 void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuffer& samples,
@@ -30,7 +24,7 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
   std::array<Hit, RayBlock::size_max> hits;
   intersect_closest_block(traits, scene, rays, hits.data());
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (traits.has_media && is_in_medium(stage.pool, slots[i])) {
+    if (traits.has_media && stage.pool.is_in_medium(slots[i])) {
       stage.pool.store_hit(slots[i], hits[i]);
       send(slots[i], Next{StageId::sample_medium});
     } else {

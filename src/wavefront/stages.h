@@ -83,7 +83,7 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   context.pool.store_new_path(slot, ray, path_index);
   if (context.pool.medium != nullptr) {
     PathState path;
-    path.medium.index = static_cast<std::uint16_t>(scene.camera_medium);
+    path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
     context.pool.store_medium(slot, path);
     context.pool.store_flight(slot, {});
   }
@@ -230,9 +230,7 @@ struct IntersectRays : PathRays {
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
     const Hit hit = intersect_closest<Traits>(scene, ray, key);
     if constexpr (Traits::has_media) {
-      PathState path;
-      pool.load_medium(slot, path);
-      if (path.medium.index != no_medium) {
+      if (pool.is_in_medium(slot)) {
         pool.store_hit(slot, hit);
         return {StageId::sample_medium};
       }
@@ -298,9 +296,7 @@ struct RouteHits {
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     pool.path_lanes(lanes_of(scene), slot).count(LanePoint::route_hits);
     if constexpr (has_media) {
-      PathState path;
-      pool.load_medium(slot, path);
-      if (path.medium.index != no_medium) return {StageId::sample_medium};
+      if (pool.is_in_medium(slot)) return {StageId::sample_medium};
     }
     return {pool.load_hit(slot).is_miss() ? StageId::shade_miss : StageId::shade_surface};
   }
@@ -417,15 +413,15 @@ struct DimShadowRays {
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const std::uint16_t medium = pool.load_shadow_medium(slot);
-    if (medium == no_medium) return {free_slot};
+    const std::uint16_t around = pool.load_around_shadow_ray(slot);
+    if (around == no_medium) return {free_slot};
     std::uint32_t path_index;
     ShadowRay shadow = pool.load_shadow(slot, path_index);
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     const std::uint32_t key =
         shadow_ray_key(scene, media_key(scene, samples, path_index), pool.load_shadow_rays(slot));
     pool.dim_shadow(slot,
-                    segment_transmittance(scene, medium, shadow.ray, shadow.distance, key, 0));
+                    segment_transmittance(scene, around, shadow.ray, shadow.distance, key, 0));
     return {free_slot};
   }
 };
@@ -443,7 +439,7 @@ struct TraceShadowRays : ShadowRays {
                            pool.load_shadow_rays(slot));
     }
     if constexpr (Traits::has_media) {
-      shadow.medium = pool.load_shadow_medium(slot);
+      shadow.around = pool.load_around_shadow_ray(slot);
       const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);

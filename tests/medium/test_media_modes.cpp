@@ -88,6 +88,26 @@ TEST(CloudModes, WavefrontEqualsSerial) {
                     4);
 }
 
+TEST(OverlappingModes, EqualSerial) {
+  expect_same_media(overlapping_clouds(), "megakernel", megakernel_choices, 7);
+  expect_same_media(overlapping_clouds(), "wavefront",
+                    wavefront_choices({"auto", "300", "11", "1380", "1381"}), 8);
+}
+
+// All boundaries have a BSDF, and still light goes through those that are hidden: water that
+// reaches into a ball of glass.
+TEST(OverlappingModes, EqualSerialWithoutOpenBoundaries) {
+  SceneData scene = filled_glasses();
+  scene.media[0].priority = 2, scene.media[1].priority = 1;
+  const auto water = std::ranges::find_if(
+      scene.materials, [](const MaterialDescription& m) { return m.media.inside == 1; });
+  add_cuboid(scene, {-1, -0.6f, -0.3f}, {0.2f, 0.2f, 0.4f},
+             static_cast<std::uint32_t>(water - scene.materials.begin()));
+  expect_same_media(scene, "megakernel", megakernel_choices, 9);
+  expect_same_media(scene, "wavefront", wavefront_choices({"auto", "300", "11", "1380", "1381"}),
+                    10);
+}
+
 // Their rays are traced in blocks.
 TEST(GlassModes, WavefrontEqualsSerial) {
   for (const bool has_masks : {false, true}) {

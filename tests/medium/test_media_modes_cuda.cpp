@@ -53,6 +53,18 @@ TEST_F(CudaMedia, WavefrontEqualsMegakernel) {
   EXPECT_GT(compared, 15);
 }
 
+TEST_F(CudaMedia, OverlappingOnesAreTheSameInBothModes) {
+  const SceneData scene = overlapping_clouds();
+  const Rendered expected = render_clouds(scene, gpu_options("megakernel"));
+  expect_plausible(expected, gpu_options("megakernel"));
+  for (const Settings& more : {Settings{}, Settings{{"pool-size", "300"}},
+                               Settings{{"wave-collisions", "2"}}, Settings{{"stages", "fused"}}}) {
+    const Options options = gpu_options("wavefront", more);
+    SCOPED_TRACE(command_of(options));
+    expect_same(render_clouds(scene, options), expected);
+  }
+}
+
 // CPU and GPU round differently, and a path that takes another way differs in all that follows.
 TEST_F(CudaMedia, AreAsOnTheCpu) {
   const SceneData scene = clouds();

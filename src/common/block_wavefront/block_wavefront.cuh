@@ -198,7 +198,7 @@ struct SlotSink {
   PT_HD void aim(const PathState&, const ShadowRay& shadow) { slot.store_shadow_ray(shadow); }
   PT_HD void cast(const PathState&, const ShadowRay& shadow) {
     if constexpr (!streams) slot.store_shadow_ray(shadow);
-    slot.store_shadow_radiance(shadow.radiance, has_media ? shadow.medium : no_medium);
+    slot.store_shadow_radiance(shadow.radiance, has_media ? shadow.around : no_medium);
     casts = true;
   }
   PT_HD void continue_path(const PathState& path, const Ray& ray) {
@@ -232,11 +232,11 @@ PT_NOINLINE inline TravelledPath travel_out_of_line(const Scene& scene, Ray ray,
 }
 
 /// What of a slot's shadow ray its medium lets through.
-PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint16_t medium,
+PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint16_t around,
                                                    const PathSlot& slot, std::uint32_t ray_key) {
   float distance;
   const Ray ray = slot.load_shadow_ray(distance);
-  return segment_transmittance(scene, medium, ray, distance, ray_key, 0);
+  return segment_transmittance(scene, around, ray, distance, ray_key, 0);
 }
 
 /// One thread's view. Traits: of triangles alone; Source: one whose streams
@@ -514,7 +514,7 @@ class BlockWavefront {
   /// The path's flight through its medium, to `hit` or to a collision before it.
   __device__ void fly(std::uint32_t slot_index, const Ray& ray, PathState& path, Hit& hit) const {
     if (path.rays > 0) path.medium = unpack_medium(load_wide(media_ + slot_index));
-    if (path.rays > 0 && path.medium.index == no_medium) return;
+    if (path.rays > 0 && path.medium.around == no_medium) return;
     const TravelledPath there = travel_out_of_line(scene_, ray, key_of(path), path, hit);
     path = there.path, hit = there.hit;
   }
@@ -522,11 +522,11 @@ class BlockWavefront {
   /// Of a shadow ray that nothing occludes.
   __device__ Color light_that_arrives(const PathSlot& slot, const PathState& path) const {
     if constexpr (!Traits::has_media) return slot.load_shadow_radiance();
-    std::uint16_t medium;
-    const Color radiance = slot.load_shadow_radiance(medium);
-    if (medium == no_medium) return radiance;
+    std::uint16_t around;
+    const Color radiance = slot.load_shadow_radiance(around);
+    if (around == no_medium) return radiance;
     const std::uint32_t key = shadow_ray_key(scene_, key_of(path), path.rays);
-    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, medium, slot, key));
+    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, around, slot, key));
   }
 
   __device__ std::uint32_t key_of(const PathState& path) const {

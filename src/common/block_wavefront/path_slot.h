@@ -20,7 +20,7 @@ struct alignas(128) PathSlot {
   PathRecord radiance;          ///< so far; the receiver
   PathRecord shadow_origin;     ///< of the shadow ray; distance
   PathRecord shadow_direction;  ///< of the shadow ray
-  PathRecord shadow_radiance;   ///< contribution if the ray is not occluded; its medium
+  PathRecord shadow_radiance;   ///< contribution if the ray is not occluded; what is around its ray
   StoredHit hit;                ///< of the ray
 
   /// All but its radiance.
@@ -72,14 +72,14 @@ struct alignas(128) PathSlot {
     distance = bits_to_float(o.w);
     return {vec(o), vec(load_wide(&shadow_direction))};
   }
-  /// `medium`: in which it begins, in scenes with media.
-  PT_HD void store_shadow_radiance(const Color& c, std::uint16_t medium) {
-    store_wide(&shadow_radiance, pack(c, medium));
+  /// `around`: where it begins, in scenes with media.
+  PT_HD void store_shadow_radiance(const Color& c, std::uint16_t around) {
+    store_wide(&shadow_radiance, pack(c, around));
   }
   PT_HD Color load_shadow_radiance() const { return vec(load_wide(&shadow_radiance)); }
-  PT_HD Color load_shadow_radiance(std::uint16_t& medium) const {
+  PT_HD Color load_shadow_radiance(std::uint16_t& around) const {
     const PathRecord r = load_wide(&shadow_radiance);
-    medium = static_cast<std::uint16_t>(r.w);
+    around = static_cast<std::uint16_t>(r.w);
     return vec(r);
   }
 };

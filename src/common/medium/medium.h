@@ -9,6 +9,9 @@ namespace pt {
 /// No medium: a vacuum.
 inline constexpr std::uint32_t no_medium = 0xffffu;
 
+/// In a scene where they may overlap.
+inline constexpr std::size_t overlapping_media_max = 16;
+
 /// 64 bytes: four loads.
 struct alignas(16) Medium {
   Color extinction = Color(0.0f);  ///< sigma_t >= 0, per unit of length, where the density is 1
@@ -21,7 +24,8 @@ struct alignas(16) Medium {
   std::uint32_t density_grid = no_grid;  ///< of the extinction; >= 0
   std::uint32_t albedo_grid = no_grid;
   std::uint32_t emission_grid = no_grid;
-  std::uint32_t unused[2] = {};
+  std::int32_t priority = 0;  ///< where shapes overlap, that of the highest is there
+  std::uint32_t unused = 0;
 
   PT_HD bool is_homogeneous() const { return density_grid == no_grid; }
 };
@@ -35,6 +39,49 @@ struct MediumBoundary {
     return dot(direction, normal) > 0.0f ? outside : inside;
   }
   bool operator==(const MediumBoundary&) const = default;
+};
+
+/// The media of a scene. What is around a point is a number of 16 bits: the index of the medium or,
+/// where media may overlap (Schmidt and Budge 2002, 'Simple Nested Dielectrics in Ray Traced
+/// Images'), a set of them in the order of their priorities: bit i is 0 within a shape of medium i.
+/// No_medium is a vacuum in either case.
+struct Media {
+  const Medium* list = nullptr;
+  const MediumBoundary* boundaries = nullptr;  ///< [material]
+  bool overlap = false;                        ///< what is around a point is a set
+
+  /// The medium that is there, where one is.
+  PT_HD const Medium* at(std::uint32_t around) const {
+    return list + (overlap ? highest_bit(inverted(around)) : around);
+  }
+
+  /// The sides of a surface that is no boundary.
+  PT_HD MediumBoundary same_on_both_sides(std::uint16_t around) const {
+    if (overlap) return {};
+    return {around, around};
+  }
+
+  /// What is around who was in `around` and leaves a surface along `direction`.
+  PT_HD std::uint16_t behind(const MediumBoundary& boundary, const Vec3& direction,
+                             const Vec3& normal, std::uint16_t around) const {
+    if (!overlap) return boundary.towards(direction, normal);
+    const std::uint32_t shape = bit_of(boundary);
+    return static_cast<std::uint16_t>(dot(direction, normal) > 0.0f ? around | shape
+                                                                    : around & ~shape);
+  }
+
+  /// Whether a surface is within a medium of a higher priority than its own, where it is nothing.
+  PT_HD bool hides(std::uint32_t material, std::uint16_t around) const {
+    if (!overlap) return false;
+    const std::uint32_t shape = bit_of(boundaries[material]);
+    return shape != 0 && inverted(around) >= 2 * shape;
+  }
+
+ private:
+  PT_HD static std::uint32_t inverted(std::uint32_t around) { return around ^ 0xffffu; }
+  PT_HD static std::uint32_t bit_of(const MediumBoundary& boundary) {
+    return boundary.inside == no_medium ? 0u : 1u << boundary.inside;
+  }
 };
 
 /// The medium's albedo at a point.

@@ -18,7 +18,7 @@ struct SceneProperties {
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
   bool has_masks = false;            ///< materials that are not opaque everywhere
   bool has_media = false;            ///< between surfaces
-  bool has_open_boundaries = false;  ///< surfaces without a BSDF between media
+  bool has_open_boundaries = false;  ///< surfaces may let light through
   bool has_emitters = false;         ///< surfaces that shine
   bool limits_camera_rays = false;   ///< clip planes or hidden emitters
   bool has_rough_conductors = false;

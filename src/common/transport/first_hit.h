@@ -110,18 +110,19 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
     if (end.is_collision() && !view.collides) {
       view.collides = true, view.collision = view.distance + end.t;
     }
-    if (path.medium.index != no_medium) {
+    if (path.medium.around != no_medium) {
       view.transmittance = multiply_rounded(
           view.transmittance,
-          estimate_transmittance(scene.grids, load_wide(&scene.media[path.medium.index]), view.ray,
-                                 view.hit.t, combine_hash(ray_key, 1)));
+          estimate_transmittance(scene.grids, load_wide(scene.media.at(path.medium.around)),
+                                 view.ray, view.hit.t, combine_hash(ray_key, 1)));
     }
     if (view.hit.is_miss()) return view;
     const std::uint32_t material = material_index_at(scene, view.hit);
-    if (!scene.material(material).is(Material::passes)) return view;
+    if (!lets_through(scene, scene.material(material), material, path.medium.around)) return view;
     const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit).point;
-    const BoundaryCrossing crossing = cross_boundary(scene, view.ray, material, point);
-    path.medium.index = crossing.medium;
+    const BoundaryCrossing crossing =
+        cross_boundary(scene, view.ray, material, point, path.medium.around);
+    path.medium.around = crossing.around;
     view.distance += crossing.length;
     view.ray = crossing.ray;
   }

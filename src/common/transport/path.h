@@ -14,9 +14,9 @@ PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 /// A path among media; only in scenes that have any.
 struct PathMedium {
-  std::uint16_t index = no_medium;  ///< in which its current ray begins
-  std::uint16_t passed = 0;         ///< surfaces without a BSDF that it has gone through
-  float travelled = 0.0f;           ///< from where it has its direction to where the ray begins
+  std::uint16_t around = no_medium;  ///< where its current ray begins (Media)
+  std::uint16_t passed = 0;          ///< surfaces without a BSDF that it has gone through
+  float travelled = 0.0f;            ///< from where it has its direction to where the ray begins
   ChannelDensities densities;
 };
 

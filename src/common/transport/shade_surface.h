@@ -101,26 +101,35 @@ PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& 
   steps.aim(shadow);
 }
 
-/// Where a ray goes on behind a boundary without a BSDF.
+/// Where a ray goes on behind a boundary that lets it through.
 struct BoundaryCrossing {
   Ray ray;               ///< in the same direction
   float length;          ///< from the origin of the ray before
-  std::uint16_t medium;  ///< in which it begins
+  std::uint16_t around;  ///< where it begins (Media)
 };
 
+/// `around`: what is around the ray's origin.
 PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, std::uint32_t material,
-                                      const SurfacePoint& point) {
+                                      const SurfacePoint& point, std::uint16_t around) {
   const Ray next = spawn_ray(point, ray.direction);
-  return {next, dot(next.origin - ray.origin, ray.direction),
-          scene.boundaries[material].towards(ray.direction, point.normal)};
+  return {
+      next, dot(next.origin - ray.origin, ray.direction),
+      scene.media.behind(scene.media.boundaries[material], ray.direction, point.normal, around)};
 }
 
-/// A surface without a BSDF between two media.
+/// Whether light goes on through a surface as if it were not there.
+PT_HD bool lets_through(const Scene& scene, const Material& material, std::uint32_t index,
+                        std::uint16_t around) {
+  return material.is(Material::passes) ||
+         (material.emission == no_emission && scene.media.hides(index, around));
+}
+
+/// A surface that lets light through.
 PT_HD Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                PathState& path) {
   const BoundaryCrossing crossing =
-      cross_boundary(scene, ray, surface.material_index, surface.point);
-  path.medium.index = crossing.medium;
+      cross_boundary(scene, ray, surface.material_index, surface.point, path.medium.around);
+  path.medium.around = crossing.around;
   path.medium.travelled = add_rounded(path.medium.travelled, crossing.length);
   ++path.medium.passed;
   Scattering result;
@@ -152,17 +161,20 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   lanes_of(ray).count(LanePoint::shade_surface);
   Surface surface = surface_at<Traits>(scene, ray, hit);
   if constexpr (Traits::has_media) {
-    if (surface.material.is(Material::passes)) return pass_boundary(scene, ray, surface, path);
+    if (lets_through(scene, surface.material, surface.material_index, path.medium.around)) {
+      return pass_boundary(scene, ray, surface, path);
+    }
   }
   Scattering result;
   if constexpr (has_lights) {
     result.emitted = steps.emit(emitted_radiance<Traits>(scene, ray, hit, path, surface, mis));
   }
   if (path.depth<Traits>() >= limits.max_depth) return result;
-  MediumBoundary boundary{path.medium.index, path.medium.index};
+  MediumBoundary boundary;
   if constexpr (Traits::has_media) {
-    if (surface.material.is(Material::boundary))
-      boundary = scene.boundaries[surface.material_index];
+    boundary = surface.material.is(Material::boundary)
+                   ? scene.media.boundaries[surface.material_index]
+                   : scene.media.same_on_both_sides(path.medium.around);
   }
   float choice = 0.0f;
   const bool is_nested = full && surface.material.is(Material::nested);
@@ -217,7 +229,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
       result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
     }
     if constexpr (Traits::has_media) {
-      result.shadow.medium = boundary.towards(incident.wi, surface.point.normal);
+      result.shadow.around =
+          scene.media.behind(boundary, incident.wi, surface.point.normal, path.medium.around);
     }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
@@ -227,7 +240,8 @@ PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hi
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
   if constexpr (Traits::has_media) {
-    path.medium.index = boundary.towards(result.ray.direction, surface.point.normal);
+    path.medium.around = scene.media.behind(boundary, result.ray.direction, surface.point.normal,
+                                            path.medium.around);
     path.medium.travelled = 0.0f;
   }
   set_lanes(result.ray, lanes_of(scene).at(path.rays));

@@ -46,10 +46,10 @@ PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
                   std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
   if (path.rays == 0 && !flight.has_begun()) {
     path.medium = {};
-    path.medium.index = static_cast<std::uint16_t>(scene.camera_medium);
+    path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
   }
-  if (path.medium.index == no_medium) return true;
-  const Medium medium = load_wide(&scene.media[path.medium.index]);
+  if (path.medium.around == no_medium) return true;
+  const Medium medium = load_wide(scene.media.at(path.medium.around));
   const std::uint32_t key = flight_key(path_key, path.rays);
   FlightEvent event;
   if (medium.is_homogeneous()) {
@@ -82,7 +82,7 @@ template <class Traits, class Steps>
 PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float distance,
                                    PathState& path, const PathLimits& limits, const Steps& steps) {
   lanes_of(ray).count(LanePoint::shade_medium);
-  const Medium medium = load_wide(&scene.media[path.medium.index]);
+  const Medium medium = load_wide(scene.media.at(path.medium.around));
   const Vec3 point = add_scaled(ray.origin, distance, ray.direction);
   const Color albedo = albedo_at(scene.grids, medium, point);
   Scattering result;
@@ -112,7 +112,7 @@ PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float dis
     result.shadow = {{point, multiply_rounded(incident.end, Vec3(inverse))},
                      multiply_rounded(distance2, inverse),
                      radiance,
-                     path.medium.index};
+                     path.medium.around};
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     ++path.shadow_rays;
   }
@@ -126,9 +126,9 @@ PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float dis
 }
 
 /// Of a shadow ray's way through one medium, up to `length`, after `segment` others of its way.
-PT_HD Color segment_transmittance(const Scene& scene, std::uint32_t medium, const Ray& ray,
+PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t around, const Ray& ray,
                                   float length, std::uint32_t ray_key, std::uint32_t segment) {
-  return estimate_transmittance(scene.grids, load_wide(&scene.media[medium]), ray, length,
+  return estimate_transmittance(scene.grids, load_wide(scene.media.at(around)), ray, length,
                                 flight_key(ray_key, segment));
 }
 
@@ -140,21 +140,23 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
   Color passed(1.0f);
   Ray ray = shadow.ray;
   float left = shadow.distance;
-  std::uint32_t medium = shadow.medium;
+  std::uint16_t around = shadow.around;
   for (std::uint32_t segment = 0;; ++segment) {
     const Hit hit = intersect_closest<Traits>(scene, ray, ray_key);
     const bool arrives = hit.is_miss() || !(hit.t < left);
     const std::uint32_t material = arrives ? 0 : material_index_at(scene, hit);
-    if (!arrives && !scene.material(material).is(Material::passes)) return Color(0.0f);
-    if (medium != no_medium) {
+    if (!arrives && !lets_through(scene, scene.material(material), material, around)) {
+      return Color(0.0f);
+    }
+    if (around != no_medium) {
       const float length = arrives ? left : hit.t;
       passed = multiply_rounded(
-          passed, segment_transmittance(scene, medium, ray, length, ray_key, segment));
+          passed, segment_transmittance(scene, around, ray, length, ray_key, segment));
     }
     if (arrives || is_black(passed)) return passed;
     const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, ray, hit).point;
-    const BoundaryCrossing crossing = cross_boundary(scene, ray, material, point);
-    medium = crossing.medium;
+    const BoundaryCrossing crossing = cross_boundary(scene, ray, material, point, around);
+    around = crossing.around;
     left -= crossing.length;
     ray.origin = crossing.ray.origin;
   }

@@ -156,6 +156,11 @@ struct PathPool {
   PT_HD void store_medium(std::uint32_t slot, const PathState& path) const {
     store_wide(at(medium, slot), pack_medium(path.medium));
   }
+  PT_HD bool is_in_medium(std::uint32_t slot) const {
+    PathState path;
+    load_medium(slot, path);
+    return path.medium.around != no_medium;
+  }
   /// Where the flight of the path's next ray has got in earlier waves.
   PT_HD FreeFlight load_flight(std::uint32_t slot) const {
     return flight != nullptr ? *at(flight, slot) : FreeFlight();
@@ -224,7 +229,7 @@ struct PathPool {
   PT_HD void store_shadow_radiance(std::uint32_t slot, const ShadowRay& shadow,
                                    const PathState& path) const {
     store_wide(at(shadow_radiance, slot),
-               pack(shadow.radiance, path.rays | std::uint32_t{shadow.medium} << 16));
+               pack(shadow.radiance, path.rays | std::uint32_t{shadow.around} << 16));
   }
   PT_HD void dim_shadow(std::uint32_t slot, const Color& transmittance) const {
     const PathRecord r = load_wide(at(shadow_radiance, slot));
@@ -234,7 +239,7 @@ struct PathPool {
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w & 0xffffu;
   }
-  PT_HD std::uint16_t load_shadow_medium(std::uint32_t slot) const {
+  PT_HD std::uint16_t load_around_shadow_ray(std::uint32_t slot) const {
     return static_cast<std::uint16_t>(at(shadow_radiance, slot)->w >> 16);
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& path_index) const {

@@ -44,12 +44,11 @@ struct Scene {
   Environment environment;                    ///< Lighting::full
   const Opacity* opacities = nullptr;         ///< [material], in scenes with masks
   std::uint32_t mask_seed = 0;                ///< of this render
-  const Medium* media = nullptr;              ///< in scenes with media
+  Media media;                                ///< in scenes with media
   VolumeGrids grids;                          ///< of media
   const Vec4* light_points = nullptr;         ///< of point-like lights, in scenes with media
   std::uint32_t light_point_count = 0;
-  const MediumBoundary* boundaries = nullptr;  ///< [material] likewise
-  std::uint32_t camera_medium = no_medium;     ///< in which the camera stands
+  std::uint32_t around_camera = no_medium;  ///< see Media
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
   PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA

@@ -36,8 +36,8 @@ void for_each_array(const SceneData& scene, Scene& view, Function&& function) {
   function(view.environment.texels, scene.environment_map.texels, "environment");
   function(view.environment.alias, scene.environment_map.alias, "environment");
   function(view.opacities, scene.opacities, "scene");
-  function(view.media, scene.media, "scene");
-  function(view.boundaries, scene.boundaries, "scene");
+  function(view.media.list, scene.media, "scene");
+  function(view.media.boundaries, scene.boundaries, "scene");
   function(view.light_points, scene.light_points, "lights");
   function(view.grids.grids, scene.grids, "grids");
   function(view.grids.values, scene.grid_values, "grids");

@@ -94,6 +94,7 @@ struct SceneData {
   std::vector<Emission> emissions;
   std::vector<Opacity> opacities;          ///< by material; empty: there are no masks
   std::vector<MediumBoundary> boundaries;  ///< by material; empty: there are no media
+  bool media_overlap = false;              ///< see Media
   std::vector<Vec4> light_points;          ///< places of point-like lights; empty: no media
   std::vector<float> majorants;            ///< of the grids of densities
   std::vector<Bvh2Node> bvh_nodes;         ///< over spheres and quads; empty: they are scanned

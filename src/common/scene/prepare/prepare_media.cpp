@@ -1,7 +1,11 @@
 #include "common/scene/prepare/prepare_media.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <numeric>
+
+#include "common/error/error.h"
 #include "common/scene/data/volume_data.h"
 
 namespace pt {
@@ -55,9 +59,41 @@ void bound(SceneData& scene, VolumeGrid& grid) {
   }
 }
 
+/// So that the order of media is that of their priorities.
+void order_media(SceneData& scene) {
+  std::vector<std::uint16_t> order(scene.media.size());
+  std::iota(order.begin(), order.end(), std::uint16_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::uint16_t i) { return scene.media[i].priority; });
+  std::vector<Medium> media;
+  std::vector<std::uint16_t> place_of(order.size());
+  for (const std::uint16_t i : order) {
+    place_of[i] = static_cast<std::uint16_t>(media.size());
+    media.push_back(scene.media[i]);
+  }
+  scene.media = std::move(media);
+  const auto follow = [&](auto& medium) {
+    if (medium != no_medium) medium = place_of[medium];
+  };
+  for (MaterialDescription& m : scene.materials) follow(m.media.outside), follow(m.media.inside);
+  follow(scene.camera_medium);
+}
+
 }  // namespace
 
+std::uint32_t around_camera(const SceneData& scene) {
+  if (!scene.media_overlap || scene.camera_medium == no_medium) return scene.camera_medium;
+  return no_medium ^ 1u << scene.camera_medium;
+}
+
 void prepare_media(SceneData& scene) {
+  scene.media_overlap = std::ranges::any_of(scene.media, &Medium::priority);
+  if (scene.media_overlap) {
+    if (scene.media.size() > overlapping_media_max) {
+      throw Error(fmt::format("scene '{}': {} media, some with a priority; expected at most {}",
+                              scene.name, scene.media.size(), overlapping_media_max));
+    }
+    order_media(scene);
+  }
   scene.boundaries.clear(), scene.majorants.clear(), scene.light_points.clear();
   if (scene.media.empty()) return;
   for (const MaterialDescription& m : scene.materials) scene.boundaries.push_back(m.media);

@@ -5,9 +5,13 @@
 
 namespace pt {
 
-/// Lists the boundaries of media by material and the places of point-like lights, and bounds the
-/// grids of densities: a majorant for each cell of 8^3 voxels or, where a grid would have more than
-/// 64^3 of them, larger ones.
+/// Orders media by their priorities, where one has any, and lists the boundaries of media by
+/// material and the places of point-like lights, and bounds the grids of densities: a majorant for
+/// each cell of 8^3 voxels or, where a grid would have more than 64^3 of them, larger ones. Throws
+/// Error, which names the scene, where more have to be ordered than overlapping_media_max.
 void prepare_media(SceneData& scene);
+
+/// As Scene has it. After prepare_media().
+std::uint32_t around_camera(const SceneData& scene);
 
 }  // namespace pt

@@ -92,7 +92,8 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_selector.total_weight = scene.light_list.total_weight;
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
-  view.camera_medium = scene.camera_medium;
+  view.media.overlap = scene.media_overlap;
+  view.around_camera = around_camera(scene);
   view.light_point_count = count(scene.light_points);
   for_each_array(scene, view,
                  [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });

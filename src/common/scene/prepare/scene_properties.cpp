@@ -35,6 +35,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.has_masks = std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = !scene.media.empty();
   properties.has_open_boundaries =
+      scene.media_overlap ||
       std::ranges::any_of(scene.materials, [](const auto& m) { return m.passes; });
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });

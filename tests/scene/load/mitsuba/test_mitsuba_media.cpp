@@ -97,6 +97,14 @@ TEST(MitsubaMedia, TheCameraMayStandInOne) {
   EXPECT_EQ(load_media(ball("")).camera_medium, no_medium);
 }
 
+TEST(MitsubaMedia, MayHaveAPriority) {
+  const auto priority_of = [](const std::string& inside) {
+    return load_media(ball(null_bsdf + medium(inside))).media.at(0).priority;
+  };
+  EXPECT_EQ(priority_of(""), 0);
+  EXPECT_EQ(priority_of("<integer name='priority' value='-7'/>"), -7);
+}
+
 TEST(MitsubaMedia, WhatIsNotSupportedIsSaidAndLeftOut) {
   const auto expect_left_out = [](const LoadedScene& loaded, const std::string& what) {
     EXPECT_EQ(loaded.count(what + " is not supported"), 1) << what;

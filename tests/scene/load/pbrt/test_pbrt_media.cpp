@@ -127,6 +127,17 @@ TEST(PbrtMedia, TheCameraIsInTheOutsideOfItsDirective) {
   EXPECT_EQ(medium_with(named_medium("") + fog_inside).camera_medium, no_medium);
 }
 
+TEST(PbrtMedia, MayHaveAPriority) {
+  const auto priority_of = [](const std::string& parameters) {
+    return load_pbrt_silently(pbrt_world(lit + named_medium(parameters) + fog_inside +
+                                         "Material \"interface\" Shape \"sphere\""))
+        .media.at(0)
+        .priority;
+  };
+  EXPECT_EQ(priority_of(""), 0);
+  EXPECT_EQ(priority_of("\"integer priority\" 12"), 12);
+}
+
 TEST(PbrtMedia, TheBackOfALampHasItsSidesSwapped) {
   const SceneData scene =
       load_pbrt_silently(pbrt_world(named_medium("") + fog_inside +

@@ -52,6 +52,7 @@ void expect_coefficients(const Object& medium, const Medium& result) {
 
 void read_phase_and_check(Context& context, const Object& object, Medium& medium) {
   object.ignore({"sample_emitters", "has_spectral_extinction", "strategy"});
+  medium.priority = object.integer("priority").value_or(0);
   read_phase(context, object, medium);
   expect_coefficients(object, medium);
 }

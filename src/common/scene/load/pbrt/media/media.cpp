@@ -35,7 +35,8 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
                                            type));
     return no_medium;
   }
-  const Medium medium = reader->second(context, entity);
+  Medium medium = reader->second(context, entity);
+  medium.priority = parameters.integer("priority", 0);
   parameters.report_unused(context.reporter);
   std::vector<Medium>& media = context.scene.media;
   if (media.size() == media_max) {
