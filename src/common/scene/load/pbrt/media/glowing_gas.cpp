@@ -1,5 +1,8 @@
 #include "common/scene/load/pbrt/media/glowing_gas.h"
 
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,6 +43,25 @@ Color GlowingGas::radiance(float kelvins) const {
   const Color &a = table_[static_cast<std::size_t>(below)],
               &b = table_[static_cast<std::size_t>(below) + 1];
   return a + (x - static_cast<float>(below)) * (b - a);
+}
+
+std::vector<Color> read_gas_light(const Parameters& parameters, const Place& place,
+                                  const std::vector<float>& temperatures) {
+  const float offset =
+      parameters.number("temperatureoffset", parameters.number("temperaturecutoff", 0.0f));
+  const float factor = parameters.number("temperaturescale", 1.0f);
+  const auto kelvins = [&](float temperature) { return (temperature - offset) * factor; };
+  float hottest = 0.0f;
+  for (const float temperature : temperatures) {
+    const float t = kelvins(temperature);
+    if (!std::isfinite(t)) fail(place, fmt::format("a temperature of {} K", t));
+    hottest = std::max(hottest, t);
+  }
+  const GlowingGas gas(hottest);
+  std::vector<Color> light(temperatures.size());
+  tbb::parallel_for(std::size_t{0}, light.size(),
+                    [&](std::size_t i) { light[i] = gas.radiance(kelvins(temperatures[i])); });
+  return light;
 }
 
 }  // namespace pt::pbrt

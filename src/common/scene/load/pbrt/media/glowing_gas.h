@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/math/vec.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 
@@ -21,5 +22,10 @@ class GlowingGas {
   float step_ = 1.0f;  ///< of the temperature's logarithm, between entries
   std::vector<Color> table_;
 };
+
+/// The light of gas of these temperatures, of which `parameters` have the offset and the scale;
+/// `place` is theirs. Throws Error for temperatures that are not finite.
+std::vector<Color> read_gas_light(const Parameters& parameters, const Place& place,
+                                  const std::vector<float>& temperatures);
 
 }  // namespace pt::pbrt

@@ -13,10 +13,9 @@ using MediumReader = Medium (*)(Context&, const Entity&);
 
 const std::map<std::string_view, MediumReader>& medium_readers() {
   static const std::map<std::string_view, MediumReader> table = {
-      {"homogeneous", read_homogeneous},
-      {"uniformgrid", read_uniform_grid},
-      {"rgbgrid", read_rgb_grid},
-      {"cloud", read_cloud},
+      {"homogeneous", read_homogeneous}, {"uniformgrid", read_uniform_grid},
+      {"rgbgrid", read_rgb_grid},        {"cloud", read_cloud},
+      {"nanovdb", read_nanovdb_grids},
   };
   return table;
 }
@@ -31,7 +30,8 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
   if (reader == medium_readers().end()) {
     context.reporter.warn_once("medium " + type, parameters.place(),
                                fmt::format("medium '{}' is not supported: there is none instead; "
-                                           "expected homogeneous, uniformgrid, rgbgrid or cloud",
+                                           "expected homogeneous, uniformgrid, rgbgrid, cloud "
+                                           "or nanovdb",
                                            type));
     return no_medium;
   }

@@ -9,6 +9,7 @@ Medium read_homogeneous(Context& context, const Entity& entity);
 Medium read_uniform_grid(Context& context, const Entity& entity);
 Medium read_rgb_grid(Context& context, const Entity& entity);
 Medium read_cloud(Context& context, const Entity& entity);
+Medium read_nanovdb_grids(Context& context, const Entity& entity);
 
 /// Extinction and albedo by sigma_a and sigma_s (both 1 unless they are given) times `scale`, and
 /// the phase function by g.

@@ -42,25 +42,17 @@ float fading_scale(const SampleBox& box, std::uint32_t i, std::uint32_t j, std::
 /// light.
 void read_temperature(Context& context, const Parameters& parameters, const SampleBox& box,
                       const std::vector<float>& scales, Medium& medium) {
-  std::vector<float> kelvins = read_samples_of(parameters, "temperature", box);
-  const float offset =
-      parameters.number("temperatureoffset", parameters.number("temperaturecutoff", 0.0f));
-  const float factor = parameters.number("temperaturescale", 1.0f);
-  for (float& t : kelvins) {
-    t = (t - offset) * factor;
-    if (!std::isfinite(t)) {
-      fail(parameters.find("temperature")->place, fmt::format("a temperature of {} K", t));
-    }
-  }
-  const GlowingGas gas(*std::max_element(kelvins.begin(), kelvins.end()));
+  const std::vector<Color> colors =
+      read_gas_light(parameters, parameters.find("temperature")->place,
+                     read_samples_of(parameters, "temperature", box));
   std::vector<float> light;
-  light.reserve(3 * kelvins.size());
+  light.reserve(3 * colors.size());
   std::size_t voxel = 0;
   for (std::uint32_t k = 0; k < box.size[2]; ++k) {
     for (std::uint32_t j = 0; j < box.size[1]; ++j) {
       for (std::uint32_t i = 0; i < box.size[0]; ++i, ++voxel) {
         const float scale = scales.empty() ? fading_scale(box, i, j, k) : scales[voxel];
-        const Color color = scale * gas.radiance(kelvins[voxel]);
+        const Color color = scale * colors[voxel];
         light.insert(light.end(), {color.x, color.y, color.z});
       }
     }
