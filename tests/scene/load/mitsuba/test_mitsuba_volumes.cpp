@@ -1,8 +1,11 @@
 // <volume>s of heterogeneous media: what is read from files, where it lies, and where it ends.
 #include <gtest/gtest.h>
 
+#include "common/scene/load/files/volumes/nanovdb_file.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
+#include "load/nanovdb_bytes.h"
+#include "load/render_loaded.h"
 #include "load/vol_bytes.h"
 
 namespace pt {
@@ -251,6 +254,63 @@ TEST_F(MitsubaVolumes, RoomIsThatOfAllShapesOfTheMedium) {
   const SceneData outside = load_silently(
       medium + "<shape type='cube'><bsdf type='null'/><ref id='m' name='exterior'/></shape>");
   EXPECT_GT(outside.grid_values.size(), 2u);
+}
+
+// The fog of a ball of radius 1 about (3, 4, 5), which grows over 0.375, and of one beside it.
+TEST_F(MitsubaVolumes, MayBeOfNanovdb) {
+  if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
+  const std::string place = to_world("<scale value='2'/><translate x='7'/>");
+  const std::string large = to_world("<scale value='99'/>");
+  const auto load_fog = [&](const char* file, const std::string& more) {
+    return load_silently(around(
+        cloud(grid_volume("sigma_t", nanovdb_path(file), more) + number("scale", 6)), large));
+  };
+  const SceneData scene = load_fog("balls.nvdb", place);
+  expect_near(extinction_at(scene, {13, 9.5f, 10}), Color(4), 2e-4f);
+  expect_near(extinction_at(scene, {16, 8.5f, 10}), Color(4), 2e-4f);
+  EXPECT_EQ(extinction_at(scene, {7, 0, 0}), Color(0));
+  // One grid of two, by name: 0.75 from the middle of a ball of radius 1.25 with larger voxels.
+  const SceneData named = load_fog("two.nvdb", text("grid", "temperature"));
+  expect_near(extinction_at(named, {3.25f, 4.75f, 5}), Color(4), 2e-4f);
+  expect_near(extinction_at(load_fog("two.nvdb", ""), {3, 4.75f, 5}), Color(4), 2e-4f);
+  const auto fails = [&](const char* file, const std::string& more, const std::string& part) {
+    expect_error([&] { load(around(cloud(grid_volume("sigma_t", nanovdb_path(file), more)))); },
+                 part);
+  };
+  fails("two.nvdb", text("grid", "smoke"), "no grid 'smoke'; expected one of: ");
+  fails("level_set.nvdb", "", "scene.xml:2: cannot read ");
+}
+
+// The same image as of the same values in Mitsuba's own format.
+TEST_F(MitsubaVolumes, OfNanovdbLookAsOthers) {
+  if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
+  const VolumeData grid = read_nanovdb(nanovdb_path("balls.nvdb"));
+  VolKind kind;
+  kind.x = static_cast<std::int32_t>(grid.size[0]),
+  kind.y = static_cast<std::int32_t>(grid.size[1]);
+  kind.z = static_cast<std::int32_t>(grid.size[2]);
+  const Vec3 low = grid.to_world.point(Vec3(0)), high = grid.to_world.point(Vec3(1));
+  kind.box = {low.x, low.y, low.z, high.x, high.y, high.z};
+  const TempFolder folder;
+  write_text(folder.file("same.vol"), vol_bytes(kind, grid.values));
+  const auto means = [&](const std::string& file, const std::string& more) {
+    const std::string medium = cloud(grid_volume("sigma_t", file, more) + number("scale", 2) +
+                                     "<rgb name='albedo' value='0.9 0.6 0.3'/>");
+    return channel_means(
+        load(around(medium, to_world("<scale x='1.5' y='1.1' z='1.1'/>"
+                                     "<translate x='3.4' y='4' z='5'/>")) +
+             "<emitter type='constant'/><sensor type='perspective'>" + number("fov", 30) +
+             to_world("<lookat origin='3.4, 4, 0' target='3.4, 4, 5' up='0, 1, 0'/>") + "</sensor>")
+            .scene,
+        8, 64);
+  };
+  const ChannelMeans ours = means(nanovdb_path("balls.nvdb"), "");
+  const ChannelMeans others =
+      means(folder.file("same.vol"), "<boolean name='use_grid_bbox' value='true'/>");
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(ours.of[c].mean(), others.of[c].mean(), 1e-4) << c;
+    EXPECT_LT(ours.of[c].mean(), 0.99) << c;
+  }
 }
 
 TEST_F(MitsubaVolumes, ErrorsNameFileAndPlace) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/scene/load/files/volumes/nanovdb_file.h"
 #include "common/scene/load/files/volumes/vol_file.h"
 
 namespace pt::mitsuba {
@@ -39,15 +40,28 @@ void read_look(Context& context, const Object& volume, VolumeData& grid) {
   volume.ignore({"raw", "accel"});  // three channels are linear RGB in either case
 }
 
+VolumeData read_vol_grid(const Object& volume, const std::filesystem::path& path) {
+  VolFile file = read_vol(path);
+  if (volume.boolean("use_grid_bbox", false)) {
+    file.grid.to_world = file_box(volume.element(), file);
+  }
+  return std::move(file.grid);
+}
+
+/// An extension of ours. Its place is the file's, with or without use_grid_bbox.
+VolumeData read_nanovdb_grid(const Object& volume, const std::filesystem::path& path) {
+  volume.ignore({"use_grid_bbox"});
+  return read_nanovdb(path, volume.text("grid", ""));
+}
+
 VolumeData read_grid(Context& context, const Object& volume) {
   const Element* filename = volume.find("filename");
   if (!filename) fail(volume.element(), "volume 'gridvolume' has no filename");
   const auto path = context.resolve(*filename, filename->required("value"));
   VolumeData grid;
   try {
-    VolFile file = read_vol(path);
-    grid = std::move(file.grid);
-    if (volume.boolean("use_grid_bbox", false)) grid.to_world = file_box(volume.element(), file);
+    const bool is_nanovdb = path.extension() == ".nvdb";
+    grid = is_nanovdb ? read_nanovdb_grid(volume, path) : read_vol_grid(volume, path);
   } catch (const Error& error) {
     fail(*filename, error.what());
   }
