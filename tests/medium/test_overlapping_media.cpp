@@ -210,8 +210,11 @@ TEST(OverlappingMedia, SurfacesAreHiddenByHigherOnesAlone) {
     for (int i = 0; i < 3; ++i) {
       if (set >> i & 1) around = enter(around, i);
     }
-    if (set == 0) EXPECT_EQ(around, no_medium);
-    if (set != 0) EXPECT_EQ(media.at(around) - list, set >= 4 ? 2 : set >= 2 ? 1 : 0);
+    if (set == 0) {
+      EXPECT_EQ(around, no_medium);
+    } else {
+      EXPECT_EQ(media.at(around) - list, set >= 4 ? 2 : set >= 2 ? 1 : 0);
+    }
     EXPECT_FALSE(media.hides(3, around));
     for (std::uint32_t material = 0; material < 3; ++material) {
       EXPECT_EQ(media.hides(material, around), set >> (material + 1) != 0) << set;
@@ -219,7 +222,9 @@ TEST(OverlappingMedia, SurfacesAreHiddenByHigherOnesAlone) {
       EXPECT_EQ(media.hides(material, inside), set >> (material + 1) != 0) << set;
       const std::uint16_t outside = media.behind(boundaries[material], up, up, inside);
       EXPECT_EQ(outside, media.behind(boundaries[material], up, up, around));
-      if (!(set >> material & 1)) EXPECT_EQ(outside, around);
+      if (!(set >> material & 1)) {
+        EXPECT_EQ(outside, around);
+      }
     }
   }
 }
