@@ -38,7 +38,8 @@ void check(const SceneData& scene, const VolumeData& v) {
 }  // namespace
 
 VolumeData with_rim_of_zeros(const VolumeData& volume) {
-  VolumeData result = volume;
+  VolumeData result;
+  result.channels = volume.channels, result.interpolates = volume.interpolates;
   Vec3 voxel, size;
   for (int axis = 0; axis < 3; ++axis) {
     result.size[axis] = volume.size[axis] + 2;

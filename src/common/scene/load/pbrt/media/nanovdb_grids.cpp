@@ -6,6 +6,7 @@
 #include "common/scene/load/files/volumes/nanovdb_file.h"
 #include "common/scene/load/pbrt/media/glowing_gas.h"
 #include "common/scene/load/pbrt/media/medium_kinds.h"
+#include "common/scene/load/pbrt/media/sample_box.h"
 
 namespace pt::pbrt {
 namespace {
@@ -20,11 +21,7 @@ void read_emission_of_gas(Context& context, const Entity& entity, const Paramete
   if (light_scale == 0.0f) return;
   VolumeData volume = std::move(temperature);
   volume.channels = 3;
-  volume.values.clear();
-  volume.values.reserve(3 * light.size());
-  for (const Color& color : light) {
-    volume.values.insert(volume.values.end(), {color.x, color.y, color.z});
-  }
+  volume.values = channels_of(light, 3);
   volume.to_world = entity.to_world * volume.to_world;
   medium.emission = Color(context.imaging_ratio * light_scale);
   medium.emission_grid = add_grid(context.scene, volume);

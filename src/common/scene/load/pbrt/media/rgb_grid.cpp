@@ -39,16 +39,6 @@ bool are_grey(const Colors& colors) {
   return std::ranges::all_of(colors, [](const Color& c) { return c.x == c.y && c.y == c.z; });
 }
 
-std::vector<float> channels_of(const Colors& colors, std::uint32_t channels) {
-  std::vector<float> values;
-  values.reserve(colors.size() * channels);
-  for (const Color& c : colors) {
-    values.push_back(c.x);
-    if (channels == 3) values.insert(values.end(), {c.y, c.z});
-  }
-  return values;
-}
-
 /// By voxel. A channel of nothing gets the albedo of what is around it: where it is looked up,
 /// between voxels, only that scatters.
 Colors albedos(const SampleBox& box, const Colors& absorption, const Colors& scattering) {

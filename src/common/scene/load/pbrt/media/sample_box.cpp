@@ -54,6 +54,16 @@ SampleBox read_sample_box(const Entity& entity) {
   return box;
 }
 
+std::vector<float> channels_of(const std::vector<Color>& colors, std::uint32_t channels) {
+  std::vector<float> values;
+  values.reserve(colors.size() * channels);
+  for (const Color& c : colors) {
+    values.push_back(c.x);
+    if (channels == 3) values.insert(values.end(), {c.y, c.z});
+  }
+  return values;
+}
+
 VolumeData plain_volume(const SampleBox& box, std::uint32_t channels, std::vector<float> values) {
   VolumeData volume;
   std::copy(std::begin(box.size), std::end(box.size), std::begin(volume.size));

@@ -24,6 +24,9 @@ SampleBox read_box(const Entity& entity);
 /// The same with nx * ny * nz samples.
 SampleBox read_sample_box(const Entity& entity);
 
+/// The values of colours side by side, or with one channel their reds.
+std::vector<float> channels_of(const std::vector<Color>& colors, std::uint32_t channels);
+
 /// For all channels of a voxel, x fastest: how pbrt looks samples up. Beyond the outermost of them
 /// they fade to zero, which a layer of zeros around the box says.
 VolumeData faded_volume(const SampleBox& box, std::uint32_t channels,

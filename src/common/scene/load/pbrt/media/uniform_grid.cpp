@@ -42,23 +42,18 @@ float fading_scale(const SampleBox& box, std::uint32_t i, std::uint32_t j, std::
 /// light.
 void read_temperature(Context& context, const Parameters& parameters, const SampleBox& box,
                       const std::vector<float>& scales, Medium& medium) {
-  const std::vector<Color> colors =
-      read_gas_light(parameters, parameters.find("temperature")->place,
-                     read_samples_of(parameters, "temperature", box));
-  std::vector<float> light;
-  light.reserve(3 * colors.size());
+  std::vector<Color> light = read_gas_light(parameters, parameters.find("temperature")->place,
+                                            read_samples_of(parameters, "temperature", box));
   std::size_t voxel = 0;
   for (std::uint32_t k = 0; k < box.size[2]; ++k) {
     for (std::uint32_t j = 0; j < box.size[1]; ++j) {
       for (std::uint32_t i = 0; i < box.size[0]; ++i, ++voxel) {
-        const float scale = scales.empty() ? fading_scale(box, i, j, k) : scales[voxel];
-        const Color color = scale * colors[voxel];
-        light.insert(light.end(), {color.x, color.y, color.z});
+        light[voxel] *= scales.empty() ? fading_scale(box, i, j, k) : scales[voxel];
       }
     }
   }
   medium.emission = Color(context.imaging_ratio);
-  medium.emission_grid = add_grid(context.scene, faded_volume(box, 3, light));
+  medium.emission_grid = add_grid(context.scene, faded_volume(box, 3, channels_of(light, 3)));
   context.lit = true;
 }
 
