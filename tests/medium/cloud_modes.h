@@ -54,14 +54,8 @@ inline SceneData overlapping_clouds() {
   constexpr std::uint32_t smoke = 0, boxed = 1, haze = 2, dye = 3;
   scene.media[smoke].priority = -1, scene.media[haze].priority = -2;
   scene.media[boxed].priority = 4, scene.media[dye].priority = 3;
-  const auto material_around = [&](std::uint32_t medium) {
-    const auto found = std::ranges::find_if(scene.materials, [&](const MaterialDescription& m) {
-      return m.is_boundary && m.media.inside == medium;
-    });
-    return static_cast<std::uint32_t>(found - scene.materials.begin());
-  };
-  add_cuboid(scene, {-0.9f, -0.9f, -0.7f}, {0.2f, 0.3f, 0.8f}, material_around(boxed));
-  scene.add_sphere({0.2f, 0.1f, 0.6f}, 0.5f, material_around(dye));
+  add_cuboid(scene, {-0.9f, -0.9f, -0.7f}, {0.2f, 0.3f, 0.8f}, material_around(scene, boxed));
+  scene.add_sphere({0.2f, 0.1f, 0.6f}, 0.5f, material_around(scene, dye));
   return scene;
 }
 

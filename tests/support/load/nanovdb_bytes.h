@@ -2,11 +2,13 @@
 // were made.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <cstring>
 #include <string>
 
+#include "common/scene/load/files/volumes/nanovdb_file.h"
 #include "temp_folder.h"
 #include "test_data.h"
 
@@ -14,6 +16,13 @@ namespace pt {
 
 inline std::string nanovdb_path(const std::string& name) { return test_data("nanovdb/" + name); }
 inline std::string nanovdb_bytes(const std::string& name) { return read_text(nanovdb_path(name)); }
+
+class NanovdbTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
+  }
+};
 
 /// A file of one grid that was packed by zip, unpacked. By NanoVDB's documentation of its layout.
 class UnpackedNanovdb {

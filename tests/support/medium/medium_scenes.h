@@ -28,6 +28,14 @@ inline MaterialDescription make_boundary(std::uint32_t outside, std::uint32_t in
   return boundary;
 }
 
+/// The first material of the scene that has the medium inside.
+inline std::uint32_t material_around(const SceneData& scene, std::uint32_t medium) {
+  const auto found = std::ranges::find_if(scene.materials, [&](const MaterialDescription& m) {
+    return m.is_boundary && m.media.inside == medium;
+  });
+  return static_cast<std::uint32_t>(found - scene.materials.begin());
+}
+
 /// How a medium is bounded: by the sphere of radius 1 or the box [-1, 1]^3.
 enum class CloudShape { sphere, quads, mesh_box, mesh_ball };
 

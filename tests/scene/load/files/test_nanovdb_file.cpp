@@ -11,12 +11,7 @@
 namespace pt {
 namespace {
 
-class NanovdbFile : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
-  }
-};
+class NanovdbFile : public NanovdbTest {};
 
 /// The fog of a ball is 1 from a depth of three voxels on and 0 at its surface.
 float fog_of_ball(const Vec3& point, const Vec3& middle, float radius, float voxel) {

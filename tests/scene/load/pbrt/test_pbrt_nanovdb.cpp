@@ -13,12 +13,7 @@
 namespace pt {
 namespace {
 
-class PbrtNanovdb : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!reads_nanovdb()) GTEST_SKIP() << "built without NanoVDB";
-  }
-};
+class PbrtNanovdb : public NanovdbTest {};
 
 std::string gas(const std::string& file, const std::string& parameters) {
   return "MakeNamedMedium \"fog\" \"string type\" \"nanovdb\" \"string filename\" \"" +
