@@ -14,6 +14,7 @@
 #include "app/resume_command.h"
 #include "app/scene_defaults.h"
 #include "app/standard_output.h"
+#include "common/device/devices_opening.h"
 #include "common/mpi/serve_units.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
@@ -120,6 +121,8 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   if (ranks.count() > 1) check_ranks(ranks, options, devices.front());
   if (const std::string text = binding_warning(ranks.own()); is_first && !text.empty()) warn(text);
   if (is_first) end_on_signal(": no sample was finished, no image written");
+  std::optional<DeviceOpening> opening;
+  if (options.mode != Mode::serial) opening.emplace(devices);
 
   RenderReport report;
   SceneData scene;

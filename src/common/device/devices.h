@@ -31,4 +31,7 @@ std::vector<DeviceInfo> choose_devices(const DeviceChoice& choice, int threads);
 /// with CUDA.
 std::string append_cuda_devices(std::vector<DeviceInfo>& devices);
 
+/// Creates the context of a CUDA device, if it can be. Only in a build with CUDA.
+void open_cuda_device(int index);
+
 }  // namespace pt

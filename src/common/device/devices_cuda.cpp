@@ -28,4 +28,8 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
   return fmt::format("this machine has {}", count);
 }
 
+void open_cuda_device(int index) {
+  if (cudaSetDevice(index) != cudaSuccess) cudaGetLastError();  // clears it
+}
+
 }  // namespace pt
