@@ -105,12 +105,12 @@ TEST(PngRows, DoNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(two.execute(compress), expected);
 }
 
-TEST(PngRows, AreAsSmallAsOfOneCore) {
+TEST(PngRows, AreHardlyLargerThanLibpngs) {
   for (const auto& [width, height] : {Size{640, 480}, Size{1500, 400}}) {
     const std::string samples = picture(width, height);
     const std::string stream = joined(compress_png_rows(samples, 3 * width, 3, {}));
     EXPECT_LE(static_cast<double>(stream.size()),
-              1.01 * static_cast<double>(written_by_libpng(samples, width, height).size()));
+              1.04 * static_cast<double>(written_by_libpng(samples, width, height).size()));
   }
 }
 

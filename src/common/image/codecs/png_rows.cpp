@@ -14,7 +14,7 @@
 namespace pt {
 namespace {
 
-constexpr std::size_t block_bytes = std::size_t{1} << 18;
+constexpr std::size_t block_bytes = std::size_t{1} << 16;   // smaller ones cost no bytes
 constexpr std::size_t window_bytes = std::size_t{1} << 15;  // that a block sees of the one before
 
 using Byte = unsigned char;
