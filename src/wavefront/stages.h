@@ -280,6 +280,25 @@ struct SampleMedium {
   }
 };
 
+/// Routes each path whose flight has ended, where flights are taken to their ends by whole warps,
+/// in the order of the queue.
+struct RouteFlights {
+  static constexpr StageId id = StageId::sample_medium;
+  static constexpr SphereAccess spheres = SphereAccess::once;
+  static constexpr const char* kind = "route";
+  static constexpr StageOutcomes outcomes = {{StageId::shade_surface, StageId::shade_miss},
+                                             true,
+                                             false,
+                                             {StageId::shade_medium, StageId::idle}};
+  PathPool pool;
+
+  PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t) const {
+    const Hit hit = pool.load_hit(slot);
+    if (hit.is_collision()) return {StageId::shade_medium};
+    return {hit.is_miss() ? StageId::shade_miss : StageId::shade_surface};
+  }
+};
+
 /// Routes each path whose ray has been traced to the stage that shades its hit or miss: for tracers
 /// that store hits only (trace_rays in wavefront.h). One in a medium flies there first.
 template <bool has_media>

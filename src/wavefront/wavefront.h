@@ -42,9 +42,10 @@ struct WaveBuffers {
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
   bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
-  bool only_triangles = false;  ///< no instances, no spheres: read where a scene has masks
+  bool only_triangles = false;  ///< no instances, no spheres
   bool fused = false;           ///< --stages
   bool has_media = false;       ///< the scene has
+  bool has_volumes = false;     ///< media with grids of densities
   std::uint32_t wave_collisions = to_the_end;  ///< null ones that a flight has in a wave
   std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
   // Pools that share a batch whose paths repeat divide its indices among all of their slots:
@@ -160,6 +161,8 @@ inline std::uint32_t wave_collisions(const Options& options) {
 //   traces_queues_here()     in this very one;
 //   trace_queue(queues, samples)          does so: the next hit of each path is stored
 //   trace_shadow_queue(queues, samples)   likewise: light that arrives is added
+//   flies_queues             whether persistent warps can take flights to their ends:
+//   fly_queue(queues, samples)            does so; collisions are stored as hits
 
 /// The closest hit of every ray. Persistent warps trace the whole queue and store the hits, and a
 /// short stage, route_hits, sends the paths on; a thread per ray does both at once.
@@ -257,13 +260,26 @@ void bounce_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
               paths);
 }
 
-/// The free flights of paths in media. All paths then wait for what they have met.
+/// The free flights of paths in media, by persistent warps or by a thread each, as with rays.
+template <class Executor>
+void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
+  constexpr StageId id = StageId::sample_medium;
+  const StageQueues flights = b.stage_queues(id, b.waiting(id), b.pool.tag);
+  if constexpr (Executor::flies_queues) {
+    if (flights.appends && b.has_volumes && b.wave_collisions == to_the_end) {
+      execute.fly_queue(flights, samples);
+      execute.run(RouteFlights{b.pool}, flights);
+      return;
+    }
+  }
+  execute.run(SampleMedium{b.pool, samples, b.wave_collisions}, flights);
+}
+
+/// Paths in media fly there first. All paths then wait for what they have met.
 template <class Executor>
 void sample_media(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
-  constexpr StageId id = StageId::sample_medium;
-  execute.compact(b.request<id>(b.pool.tag));
-  execute.run(SampleMedium{b.pool, samples, b.wave_collisions},
-              b.stage_queues(id, b.waiting(id), b.pool.tag));
+  execute.compact(b.request<StageId::sample_medium>(b.pool.tag));
+  fly(execute, b, samples);
   // A pass on CUDA fills at most two queues, and may use the count behind them.
   execute.compact(b.request<StageId::shade_miss, StageId::shade_surface>(b.pool.tag));
   execute.compact(b.request<StageId::shade_medium>(b.pool.tag));
@@ -303,8 +319,8 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
                 b.stage_queues(shade_miss, b.waiting(shade_miss), tags));
   }
   using Shading = ShadingTraits<Traits>;
-  // Masks make a scene `mixed` for its rays, but not for its surfaces.
-  constexpr bool may_be_plain = Traits::has_masks && !Traits::has_media;
+  // Masks and media make a scene `mixed` for its rays, but not for its surfaces.
+  constexpr bool may_be_plain = Traits::has_masks;
   if (may_be_plain && b.only_triangles) {
     using Plain = std::conditional_t<may_be_plain, TrianglesAlone<Shading>, Shading>;
     shade_surfaces<Plain, branching>(execute, b, context);

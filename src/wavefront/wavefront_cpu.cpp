@@ -135,6 +135,7 @@ class CpuExecutor {
 
   template <class Traits>
   static constexpr bool traces_queues = false;  // a thread is no warp
+  static constexpr bool flies_queues = false;
 
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues) {

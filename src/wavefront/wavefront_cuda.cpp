@@ -46,6 +46,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const bool appends = buffers_.compaction.appends;
   buffers_.kinds = kinds_of(scene);
   buffers_.has_media = traits_.has_media;
+  buffers_.has_volumes = std::ranges::any_of(
+      scene.media, [](const Medium& medium) { return !medium.is_homogeneous(); });
   buffers_.only_triangles = scene_.has_only_triangles();
   buffers_.fused = execution_.fused;
   buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);

@@ -28,7 +28,8 @@ class WavefrontCuda : public CudaRenderer {
   /// Where the experiment looks at them: one kernel, or one for each material.
   template <class Traits, class Bsdf>
   static constexpr bool kinds_have_kernels =
-      Traits::geometry == Geometry::triangles && !std::is_same_v<Bsdf, CompensatedConductor>;
+      Traits::geometry == Geometry::triangles && !Traits::has_media &&
+      !std::is_same_v<Bsdf, CompensatedConductor>;
   static constexpr bool streams_shading = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
@@ -39,6 +40,8 @@ class WavefrontCuda : public CudaRenderer {
   bool traces_queues_here() const { return execution_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
+  static constexpr bool flies_queues = true;
+  void fly_queue(const StageQueues& queues, const SampleBuffer& samples);
 
  protected:
   void prepare_batch(const SampleBuffer& batch) override;

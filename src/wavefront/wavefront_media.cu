@@ -1,7 +1,17 @@
 // Scenes with media.
+#include "wavefront/fly_queue.cuh"
 #include "wavefront/wavefront_enqueue.cuh"
 
 namespace pt {
+
+void WavefrontCuda::fly_queue(const StageQueues& queues, const SampleBuffer& samples) {
+  constexpr auto kernel = fly_flights_of_queue<QueuedFlights>;
+  const std::uint32_t blocks =
+      resident_blocks(reinterpret_cast<const void*>(kernel), flight_block, 0);
+  constexpr StageId id = StageId::sample_medium;
+  launch(stage_info(id).name.data(), kernel, blocks, flight_block, 0,
+         QueuedFlights{scene_, buffers_.pool, samples, queues, &buffers_.counters->flown}, clock());
+}
 
 using SamplerContext = StageContext<SamplerSource>;
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "common/medium/majorant_walk.h"
 #include "medium/volume_cases.h"
 
 namespace pt {
@@ -292,6 +293,33 @@ TEST(MajorantWalks, GoOnFromWhereTheyPaused) {
     if (once.arrives != twice.arrives || std::abs(once.t - twice.t) > 1e-4f * (1 + once.t)) {
       EXPECT_NEAR(along.depth(0, std::min(double{once.t}, 1e6)),
                   along.depth(0, std::min(double{twice.t}, 1e6)), 1e-4);
+    }
+  }
+}
+
+// What is known of a ray serves all of its walks.
+TEST(MajorantWalks, OfOneRayMayFollowEachOther) {
+  TestRandom random(46);
+  for (int i = 0; i < 500; ++i) {
+    const Affine to_world = random_place(random);
+    const MajorantCase majorants(random, {5, 3, 7}, inverse(to_world));
+    const Ray ray{to_world.point(Vec3(random.point(0.8) + 0.5)),
+                  normalize(Vec3(random.direction()))};
+    const float t_max = i % 2 == 0 ? 5.0f : infinite_distance;
+    const VolumeGrids grids = grids_of(majorants.scene);
+    CellWalk walk(majorants.grid(), ray, t_max);
+    float t = 0;
+    for (bool arrives = false; !arrives;) {
+      const auto wanted = static_cast<float>(random.uniform(0, 2));
+      CellWalk::State state = walk.begin(majorants.grid(), t, wanted);
+      while (state == CellWalk::State::walks) state = walk.step(grids, majorants.grid());
+      const MajorantWalk found = walk.result(state, t_max);
+      const MajorantWalk alone = majorants.walk(ray, t, t_max, wanted);
+      ASSERT_EQ(found.t, alone.t);
+      ASSERT_EQ(found.depth, alone.depth);
+      ASSERT_EQ(found.majorant, alone.majorant);
+      ASSERT_EQ(found.arrives, alone.arrives);
+      t = found.t, arrives = found.arrives;
     }
   }
 }

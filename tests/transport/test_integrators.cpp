@@ -116,6 +116,7 @@ struct Executor {
   static constexpr bool streams_shading = false;
   template <class>
   static constexpr bool traces_queues = false;
+  static constexpr bool flies_queues = false;
 
   void compact(const CompactionRequest&) {}
   void order_surfaces(const SurfaceOrder& order) { order_surfaces_cpu(scene, order); }

@@ -23,6 +23,7 @@ class Notes {
   static constexpr bool streams_shading = persistent;
   template <class Traits>
   static constexpr bool traces_queues = persistent;
+  static constexpr bool flies_queues = persistent;
 
   void compact(const CompactionRequest& request) {
     ran.push_back(StageId::compact);
@@ -47,6 +48,9 @@ class Notes {
   bool traces_queues_here() const { return here; }
   void trace_queue(const StageQueues&, const SampleBuffer&) {
     traced.push_back(StageId::intersect), note_traced();
+  }
+  void fly_queue(const StageQueues&, const SampleBuffer&) {
+    traced.push_back(StageId::sample_medium), note_traced();
   }
   void trace_shadow_queue(const StageQueues&, const SampleBuffer&) {
     traced.push_back(StageId::shadow), note_traced();
@@ -153,6 +157,34 @@ TEST(WaveOrder, AThreadPerRayTracesScenesThatPersistentWarpsCannot) {
   const auto notes = notes_of<TriangleScene, Branching::divergent, true>(strategy, true, false);
   EXPECT_TRUE(notes.traced.empty());
   EXPECT_EQ(notes.ran, (notes_of<TriangleScene, Branching::divergent, false>(strategy).ran));
+}
+
+// Where they have grids; and a thread per flight can pause it, or write tags.
+TEST(WaveOrder, PersistentWarpsTakeFlightsToTheirEnds) {
+  using enum StageId;
+  for (const CompactionInfo& strategy : compaction_table) {
+    SCOPED_TRACE(strategy.name);
+    for (const bool has_volumes : {false, true}) {
+      for (const std::uint32_t collisions : {to_the_end, 4u}) {
+        WaveCounters counters{};
+        std::uint32_t slot_count = 0;
+        WaveBuffers buffers;
+        buffers.compaction = strategy;
+        buffers.counters = &counters, buffers.slot_count = &slot_count;
+        buffers.has_media = true, buffers.has_volumes = has_volumes;
+        buffers.wave_collisions = collisions;
+        const StageContext<SamplerSource> context{{}, {}, {}, &counters, nullptr, {}, {}};
+        Notes<true> notes;
+        notes.here = false;
+        run_wave<MediaScene, Branching::divergent>(notes, buffers, context);
+        const bool by_warps = strategy.appends && has_volumes && collisions == to_the_end;
+        EXPECT_EQ(notes.traced, by_warps ? Ids{sample_medium} : Ids{});
+        // By warps, they are routed then.
+        EXPECT_EQ(std::ranges::count(notes.ran, sample_medium), by_warps ? 2 : 1);
+        EXPECT_EQ(notes.shaded.front().first, by_warps ? "route" : "all");
+      }
+    }
+  }
 }
 
 TEST(WaveOrder, ReducedBranchingHasNoStageForMisses) {

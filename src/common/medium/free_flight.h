@@ -3,6 +3,7 @@
 
 #include "common/medium/channel_densities.h"
 #include "common/medium/equiangular.h"
+#include "common/medium/majorant_walk.h"
 #include "common/medium/medium.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/random.h"
@@ -64,17 +65,29 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Eq
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
 
-/// Takes a flight in a medium with a grid to its next collision, null or not, or to `t_max`: delta
-/// tracking (Woodcock et al. 1965; Miller et al. 2019), with majorants that are constant in cells.
-PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
-                                   float t_max, std::uint32_t key, FreeFlight& flight,
-                                   ChannelDensities& densities, Color& beta) {
+/// What is drawn for the next collision of a flight, null or not, whose key is `flight_key`.
+struct CollisionDraw {
+  std::uint32_t key;
+  int channel;  ///< that samples it
+
+  PT_HD CollisionDraw(std::uint32_t flight_key, const FreeFlight& flight,
+                      const ChannelDensities& densities)
+      : key(combine_hash(flight_key, flight.collisions)), channel(densities.choose(unit(0))) {}
+
+  PT_HD float unit(std::uint32_t index) const { return to_unit_float(combine_hash(key, index)); }
+
+  /// How much of the majorants' integral lies before it.
+  PT_HD float depth(const Medium& medium) const {
+    return sample_exponential(pt::channel(medium.extinction, channel), unit(1));
+  }
+};
+
+/// What becomes of a flight where its walk to a collision has ended: delta tracking (Woodcock et
+/// al. 1965; Miller et al. 2019), with majorants that are constant in cells.
+PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
+                           const MajorantWalk& walk, const CollisionDraw& draw, FreeFlight& flight,
+                           ChannelDensities& densities, Color& beta) {
   const VolumeGrid& grid = grids.grids[medium.density_grid];
-  key = combine_hash(key, flight.collisions);
-  const int by = densities.choose(to_unit_float(combine_hash(key, 0)));
-  const float depth =
-      sample_exponential(channel(medium.extinction, by), to_unit_float(combine_hash(key, 1)));
-  const MajorantWalk walk = walk_majorants(grids, grid, ray, flight.t, t_max, depth);
   flight.t = walk.t;
   const bool same_for_all = is_grey(medium.extinction) && grid.channels == 1;  // the weight is 1
   if (walk.arrives) {
@@ -89,7 +102,7 @@ PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& mediu
   const Color there(fminf(multiply_rounded(density.x, inverse), 1.0f),
                     fminf(multiply_rounded(density.y, inverse), 1.0f),
                     fminf(multiply_rounded(density.z, inverse), 1.0f));
-  const bool collides = to_unit_float(combine_hash(key, 2)) < channel(there, by);
+  const bool collides = draw.unit(2) < channel(there, draw.channel);
   if (!same_for_all) {
     const Color reached =
         multiply_rounded(transmittance(medium.extinction, walk.depth), medium.extinction);
@@ -99,6 +112,16 @@ PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& mediu
   if (collides) return FlightEvent::collides;
   ++flight.collisions;
   return FlightEvent::collides_with_nothing;
+}
+
+/// Takes a flight in a medium with a grid to its next collision, null or not, or to `t_max`.
+PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
+                                   float t_max, std::uint32_t key, FreeFlight& flight,
+                                   ChannelDensities& densities, Color& beta) {
+  const CollisionDraw draw(key, flight, densities);
+  const MajorantWalk walk = walk_majorants(grids, grids.grids[medium.density_grid], ray, flight.t,
+                                           t_max, draw.depth(medium));
+  return end_walk(grids, medium, ray, walk, draw, flight, densities, beta);
 }
 
 /// An unbiased estimate of the transmittance of `t_max` of a ray: ratio tracking (Novak et al.

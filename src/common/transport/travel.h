@@ -38,16 +38,20 @@ PT_HD FlightEvent fly_homogeneous(const Scene& scene, const Color& extinction, c
   return fly_homogeneous(extinction, t_max, u_channel, u_distance, flight, densities, path.beta);
 }
 
+/// Before a flight begins: a camera ray is in what is around the camera.
+PT_HD void begin_flight(const Scene& scene, PathState& path) {
+  if (path.rays > 0) return;
+  path.medium = {};
+  path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
+}
+
 /// Takes a path to the end of its ray, `hit`, or to a collision before, which is then the hit.
 /// Multiplies its throughput by what the flight weighs. Returns whether it is there: after
 /// `collisions_max` null collisions it is not, and `flight` says where to go on. `path.rays` does
 /// not yet count the ray.
 PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
                   std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
-  if (path.rays == 0 && !flight.has_begun()) {
-    path.medium = {};
-    path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
-  }
+  if (!flight.has_begun()) begin_flight(scene, path);
   if (path.medium.around == no_medium) return true;
   const Medium medium = load_wide(scene.media.at(path.medium.around));
   const std::uint32_t key = flight_key(path_key, path.rays);

@@ -27,6 +27,7 @@ struct WaveCounters {
   std::uint32_t ticket;                    ///< paths handed out where no queue ranks the free slots
   std::uint32_t traced;                    ///< rays handed out to persistent warps
   std::uint32_t shadow_traced;             ///< shadow rays, likewise
+  std::uint32_t flown;                     ///< flights, likewise
   std::uint32_t waves;
   KindRanges kinds;
 };
@@ -51,7 +52,7 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   c.generate = 0;
   c.intersect = 0;
   c.ticket = 0;
-  c.traced = c.shadow_traced = 0;
+  c.traced = c.shadow_traced = c.flown = 0;
   if (remaining == 0) free = 0;  // free slots stay free
   if (remaining == 0 && c.live <= finish_paths) {
     c.finish = c.live;

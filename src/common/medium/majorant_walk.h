@@ -1,0 +1,125 @@
+// Walks along rays through the cells of a grid's majorants.
+#pragma once
+
+#include "common/medium/volume_grid.h"
+
+namespace pt {
+
+/// Where a walk has ended.
+struct MajorantWalk {
+  float t;         ///< distance from the ray's origin
+  float depth;     ///< integral of the majorants over the distance walked
+  float majorant;  ///< of the last cell
+  bool arrives;    ///< at `t_max`, and not where the integral is what was wanted
+};
+
+/// Walks along one ray from cell to cell (Amanatides and Woo 1987, 'A fast voxel traversal
+/// algorithm for ray tracing'; pbrt-v4, section 11.4.2). Each ends where the integral of the
+/// majorants over the distance is what is wanted, or where the ray ends, and can stop between any
+/// two steps.
+class CellWalk {
+ public:
+  enum class State { idle, walks, reaches_depth, arrives };
+
+  CellWalk() = default;
+
+  /// Of a ray to `t_max`; one without end is walked only in the grid's cube.
+  PT_HD CellWalk(const VolumeGrid& grid, const Ray& ray, float t_max) : last_(t_max) {
+    const Vec3 size(static_cast<float>(grid.cells[0]), static_cast<float>(grid.cells[1]),
+                    static_cast<float>(grid.cells[2]));
+    origin_ = multiply_rounded(grid.to_unit.point(ray.origin), size);
+    direction_ = multiply_rounded(grid.to_unit.vector(ray.direction), size);
+    const auto inverse_of = [](float d) { return fabsf(d) > 1e-20f ? divide(1.0f, d) : 0.0f; };
+    inverse_ = {inverse_of(direction_.x), inverse_of(direction_.y), inverse_of(direction_.z)};
+    if (grid.ends == 0 && t_max < infinite_distance) return;
+    const auto clip = [&](float from, float inverse_way, float length) {
+      const float a = multiply_rounded(-from, inverse_way);
+      const float b = multiply_rounded(length - from, inverse_way);
+      const bool is_beside = inverse_way == 0.0f && !(from >= 0.0f && from <= length);
+      if (inverse_way != 0.0f)
+        first_ = fmaxf(first_, fminf(a, b)), last_ = fminf(last_, fmaxf(a, b));
+      if (is_beside) last_ = 0.0f;
+    };
+    clip(origin_.x, inverse_.x, size.x), clip(origin_.y, inverse_.y, size.y);
+    clip(origin_.z, inverse_.z, size.z);
+  }
+
+  /// From a distance of `t` on.
+  PT_HD State begin(const VolumeGrid& grid, float t, float depth_wanted) {
+    t_ = fmaxf(t, first_), depth_ = 0.0f, depth_wanted_ = depth_wanted, majorant_ = 0.0f;
+    if (!(t_ < last_)) return State::arrives;
+    const Vec3 at = add_scaled(origin_, t_, direction_);
+    x_ = detail::clamp_voxel(floorf(at.x), grid.cells[0]);
+    y_ = detail::clamp_voxel(floorf(at.y), grid.cells[1]);
+    z_ = detail::clamp_voxel(floorf(at.z), grid.cells[2]);
+    end_ = {end_of(x_, grid.cells[0], origin_.x, inverse_.x),
+            end_of(y_, grid.cells[1], origin_.y, inverse_.y),
+            end_of(z_, grid.cells[2], origin_.z, inverse_.z)};
+    return State::walks;
+  }
+
+  /// Through the present cell.
+  PT_HD State step(const VolumeGrids& grids, const VolumeGrid& grid) {
+    const float cell_end = fmaxf(fminf(fminf(end_.x, end_.y), fminf(end_.z, last_)), t_);
+    majorant_ = grids.majorants[grid.first_cell + x_ + grid.cells[0] * (y_ + grid.cells[1] * z_)];
+    const float deeper = fused_multiply_add(majorant_, cell_end - t_, depth_);
+    if (deeper > depth_wanted_) {
+      t_ = fminf(t_ + divide(depth_wanted_ - depth_, majorant_), cell_end);
+      depth_ = depth_wanted_;
+      return State::reaches_depth;
+    }
+    depth_ = fminf(deeper, infinite_distance);
+    t_ = cell_end;
+    if (t_ >= last_) return State::arrives;
+    if (end_.x <= end_.y && end_.x <= end_.z) {
+      inverse_.x > 0.0f ? ++x_ : --x_;
+      end_.x = end_of(x_, grid.cells[0], origin_.x, inverse_.x);
+    } else if (end_.y <= end_.z) {
+      inverse_.y > 0.0f ? ++y_ : --y_;
+      end_.y = end_of(y_, grid.cells[1], origin_.y, inverse_.y);
+    } else {
+      inverse_.z > 0.0f ? ++z_ : --z_;
+      end_.z = end_of(z_, grid.cells[2], origin_.z, inverse_.z);
+    }
+    return State::walks;
+  }
+
+  /// The distance walked from the ray's origin.
+  PT_HD float t() const { return t_; }
+
+  /// `state` is what the last step returned, t_max the ray's.
+  PT_HD MajorantWalk result(State state, float t_max) const {
+    const bool arrives = state == State::arrives;
+    return {arrives ? t_max : t_, depth_, majorant_, arrives};
+  }
+
+ private:
+  /// Where the ray leaves a cell along an axis. Outermost cells have no end outwards.
+  PT_HD static float end_of(std::uint32_t cell, std::uint32_t count, float from,
+                            float inverse_way) {
+    const bool ends = inverse_way > 0.0f ? cell + 1 < count : inverse_way < 0.0f && cell > 0;
+    const float wall = static_cast<float>(cell + (inverse_way > 0.0f ? 1 : 0));
+    return ends ? multiply_rounded(wall - from, inverse_way) : infinite_distance;
+  }
+
+  // The ray, in units of cells; 0 is the inverse of a direction of 0:
+  Vec3 origin_{}, direction_{}, inverse_{};
+  float first_ = 0.0f, last_ = 0.0f;     ///< the distances between which there are cells
+  Vec3 end_{};                           ///< where it leaves the present cell along each axis
+  std::uint32_t x_ = 0, y_ = 0, z_ = 0;  ///< the present cell
+  float t_ = 0.0f;                       ///< distance from the ray's origin
+  float depth_ = 0.0f, depth_wanted_ = 0.0f;
+  float majorant_ = 0.0f;  ///< of the last cell
+};
+
+/// Walks from `t` until the integral of the majorants over the distance is `depth_wanted`, or to
+/// `t_max`. It depends on nothing but its arguments: a flight may pause at any collision.
+PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& grid, const Ray& ray,
+                                  float t, float t_max, float depth_wanted) {
+  CellWalk walk(grid, ray, t_max);
+  CellWalk::State state = walk.begin(grid, t, depth_wanted);
+  while (state == CellWalk::State::walks) state = walk.step(grids, grid);
+  return walk.result(state, t_max);
+}
+
+}  // namespace pt
