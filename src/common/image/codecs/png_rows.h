@@ -11,7 +11,7 @@
 namespace pt {
 
 struct PngCompression {
-  int level = 4;  ///< of zlib, 0..9; 6: thrice the time, 2 to 7 % fewer bytes
+  int level = 4;                ///< of zlib, 0..9; 6: thrice the time, 2 to 7 % fewer bytes
   bool chooses_filters = true;  ///< each row's by what is left of it; else Sub
 };
 
