@@ -28,10 +28,8 @@ struct QueuedFlights {
   /// One in a homogeneous medium is a single step.
   __device__ bool start(std::uint32_t index, LaneFlight& flight) const {
     const std::uint32_t slot = queues.slots[index];
-    PathState path = pool.load_path(slot, flight.ray);
+    PathState path = load(slot, flight.ray);
     set_lanes(flight.ray, pool.path_lanes(lanes_of(scene), slot));
-    pool.load_medium(slot, path);
-    begin_flight(scene, path);
     flight.t_max = pool.load_hit(slot).t;
     flight.key = flight_key(media_key(scene, samples, path.index), path.rays);
     flight.around = path.medium.around;
@@ -51,15 +49,20 @@ struct QueuedFlights {
   __device__ void finish(const LaneFlight& flight, FlightEvent event, float t) const {
     const std::uint32_t slot = queues.slots[flight.index];
     Ray ray;
-    PathState path = pool.load_path(slot, ray);
-    pool.load_medium(slot, path);
-    begin_flight(scene, path);
+    PathState path = load(slot, ray);
     path.medium.densities = flight.densities;
     path.beta = flight.beta;
     store(slot, ray, path, event, t);
   }
 
  private:
+  __device__ PathState load(std::uint32_t slot, Ray& ray) const {
+    PathState path = pool.load_path(slot, ray);
+    pool.load_medium(slot, path);
+    begin_flight(scene, path);
+    return path;
+  }
+
   __device__ void store(std::uint32_t slot, const Ray& ray, const PathState& path,
                         FlightEvent event, float t) const {
     pool.store_path(slot, ray, path);

@@ -246,6 +246,12 @@ PT_HD std::uint32_t media_key(const Scene& scene, const SampleBuffer& samples,
   return mask_key<AnyWithMedia>(scene, samples.id_of(path_index));
 }
 
+/// The shading for which a path waits that has flown to `hit`.
+PT_HD Next after_flight(const Hit& hit) {
+  if (hit.is_collision()) return {StageId::shade_medium};
+  return {hit.is_miss() ? StageId::shade_miss : StageId::shade_surface};
+}
+
 /// The free flights of paths in media: to a collision, or to what their rays have hit. One that is
 /// not there after `collisions_max` null collisions goes on in the next wave.
 struct SampleMedium {
@@ -272,11 +278,8 @@ struct SampleMedium {
     pool.store_medium(slot, path);
     pool.store_flight(slot, arrives ? FreeFlight() : flight);
     if (!arrives) return {StageId::intersect};
-    if (hit.is_collision()) {
-      pool.store_hit(slot, hit);
-      return {StageId::shade_medium};
-    }
-    return {hit.is_miss() ? StageId::shade_miss : StageId::shade_surface};
+    if (hit.is_collision()) pool.store_hit(slot, hit);
+    return after_flight(hit);
   }
 };
 
@@ -293,9 +296,7 @@ struct RouteFlights {
   PathPool pool;
 
   PT_HD Next operator()(const Scene&, std::uint32_t slot, std::uint32_t) const {
-    const Hit hit = pool.load_hit(slot);
-    if (hit.is_collision()) return {StageId::shade_medium};
-    return {hit.is_miss() ? StageId::shade_miss : StageId::shade_surface};
+    return after_flight(pool.load_hit(slot));
   }
 };
 

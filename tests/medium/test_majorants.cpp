@@ -280,8 +280,7 @@ TEST(MajorantWalks, GoOnFromWhereTheyPaused) {
   for (int i = 0; i < 2000; ++i) {
     const Affine to_world = random_place(random);
     const MajorantCase majorants(random, {5, 3, 7}, inverse(to_world));
-    const Ray ray{to_world.point(Vec3(random.point(0.8) + 0.5)),
-                  normalize(Vec3(random.direction()))};
+    const Ray ray = random_ray(random, to_world);
     const float t_max = i % 2 == 0 ? 5.0f : infinite_distance;
     const auto first = static_cast<float>(random.uniform(0, 2)),
                second = static_cast<float>(random.uniform(0, 2));
@@ -303,8 +302,7 @@ TEST(MajorantWalks, OfOneRayMayFollowEachOther) {
   for (int i = 0; i < 500; ++i) {
     const Affine to_world = random_place(random);
     const MajorantCase majorants(random, {5, 3, 7}, inverse(to_world));
-    const Ray ray{to_world.point(Vec3(random.point(0.8) + 0.5)),
-                  normalize(Vec3(random.direction()))};
+    const Ray ray = random_ray(random, to_world);
     const float t_max = i % 2 == 0 ? 5.0f : infinite_distance;
     const VolumeGrids grids = grids_of(majorants.scene);
     CellWalk walk(majorants.grid(), ray, t_max);

@@ -32,8 +32,7 @@ struct Flights {
     const Affine to_world = inverse(scene.grids[0].to_unit);
     for (std::uint32_t i = 0; i < count; ++i) {
       LaneFlight flight;
-      flight.ray = {to_world.point(Vec3(random.point(0.8) + 0.5)),
-                    normalize(Vec3(random.direction()))};
+      flight.ray = random_ray(random, to_world);
       flight.t_max = i % 3 == 0 ? static_cast<float>(random.uniform(0, 3)) : infinite_distance;
       flight.key = random.bits(), flight.index = i;
       flight.beta = Color(0.5f + static_cast<float>(i % 5));

@@ -50,6 +50,11 @@ inline Affine random_place(TestRandom& random) {
          rotate(Vec3(random.direction()), part(0, 360)) * scale(sides);
 }
 
+/// In or near the unit cube at that place, in any direction.
+inline Ray random_ray(TestRandom& random, const Affine& to_world) {
+  return {to_world.point(Vec3(random.point(0.8) + 0.5)), normalize(Vec3(random.direction()))};
+}
+
 /// From z = 0 to `length` the channels' values go linearly from one of n >= 2 voxels to the next,
 /// which are value(z, channel); nothing depends on x and y.
 inline VolumeData slab_volume(std::uint32_t n, double length, std::uint32_t channels,
