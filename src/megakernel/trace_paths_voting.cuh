@@ -34,9 +34,9 @@ struct PhaseVotingWarp {
   float bsdf_pdf[32];
 };
 
-/// With room for a lane's suspended traversal, its state and hit, beyond the stack.
+/// With room for a lane's suspended traversal beyond the stack.
 inline constexpr int phase_voting_stack_size =
-    bvh_depth_max + CwbvhLane<PathQuery>::suspended_size + 1;
+    CwbvhLane<PathQuery>::stack_size + CwbvhLane<PathQuery>::suspended_size;
 
 /// One lane's view. Traits: of triangles without masks and instances; Source: one whose streams are
 /// opened again for each draw; Work: see trace_path.h.
@@ -55,7 +55,7 @@ class PhaseVotingTracer {
         warp_(warp),
         lane_(lane),
         ray_(scene.triangles, order, stack),
-        suspended_(stack + bvh_depth_max) {}
+        suspended_(stack + CwbvhLane<PathQuery>::stack_size) {}
 
   /// By the whole warp; returns when no paths are left.
   __device__ __forceinline__ void run() {
@@ -147,8 +147,10 @@ class PhaseVotingTracer {
     begin(warp_.rays.load(lane_));
   }
 
-  __device__ void begin(const PreparedRay& ray) {
-    ray_.begin(ray, PathQuery(0.0f, ray.t_max, traces_shadow()));
+  __device__ void begin(const PreparedRay& ray) { ray_.begin(ray, query_of(ray)); }
+
+  __device__ PathQuery query_of(const PreparedRay& ray) const {
+    return {0.0f, ray.t_max, traces_shadow()};
   }
 
   /// By the whole warp; lanes that wait get something to trace, as far as there are paths.
@@ -158,7 +160,8 @@ class PhaseVotingTracer {
     Ray ray;
     Hit hit;
     bool ended = waits && state_ != State::ray;
-    suspend();
+    // All lanes: so those that were traversing need no registers while others are shaded.
+    ray_.suspend(suspended_);
     if (waits && state_ == State::shadow_then_end) {
       samples_.store(load_path(), lit_radiance());
     } else if (waits && state_ == State::ray) {
@@ -188,23 +191,10 @@ class PhaseVotingTracer {
     }
     const bool works = waits && state_ != State::idle;
     if (works) continue_path(path, radiance, ray, hit);
-    resume_traversal();
     const PreparedRay prepared =
         traces_shadow() ? warp_.shadow_rays.load(lane_) : warp_.rays.load(lane_);
-    ray_.set_ray(prepared);
+    ray_.resume(prepared, query_of(prepared), suspended_);
     if (works && state_ != State::no_path) begin(prepared);
-  }
-
-  /// All lanes: so those that were traversing need no registers while others are shaded.
-  __device__ void suspend() {
-    ray_.suspend(suspended_);
-    volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
-    met.x = __float_as_uint(ray_.query().t_max()), met.y = ray_.query().result().primitive;
-  }
-  __device__ void resume_traversal() {
-    const volatile uint2& met = suspended_[CwbvhLane<PathQuery>::suspended_size];
-    const float t = __uint_as_float(met.x);
-    ray_.resume(suspended_, PathQuery::resumed(scene_.triangles, t, met.y, traces_shadow()));
   }
 
   /// A path begins at the camera or continues from a surface.

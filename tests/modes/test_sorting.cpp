@@ -19,9 +19,12 @@
 namespace pt {
 namespace {
 
-template <bool has_masks, bool has_media = false>
-using BlockWavefrontTraits =
-    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks, has_media>;
+template <Geometry geometry, bool has_masks = false, bool has_media = false>
+using BlockWavefrontTraits = Traits<Accel::cwbvh, geometry, Lighting::full, has_masks, has_media>;
+using PlainTraits = BlockWavefrontTraits<Geometry::triangles>;
+using MaskedTraits = BlockWavefrontTraits<Geometry::triangles, true>;
+using MediaTraits = BlockWavefrontTraits<Geometry::triangles, true, true>;
+using InstancedTraits = BlockWavefrontTraits<Geometry::mixed>;
 constexpr int threads = 64;
 
 /// What blocks made of the paths of a scene, and what each is alone.
@@ -94,7 +97,7 @@ class SortedPaths {
     for (int i = 0; i < blocks; ++i) {
       std::memset(static_cast<void*>(memory.get()), 0xa5, sizeof *memory);
       EmulatedBlock(threads).run([&] {
-        uint2 stack[block_wavefront_stack_size];
+        uint2 stack[block_wavefront_stack_size<BlockWavefrontLane<Traits>>];
         BlockWavefront<Traits, SamplerSource, Memory> tracer(
             scene_, source_, batch_, limits_, paths, *memory,
             begun.slots.of_block(static_cast<std::uint32_t>(i)), stack);
@@ -188,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& kind) { return kind.param.name; });
 
 TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
-  using Traits = BlockWavefrontTraits<false>;
+  using Traits = PlainTraits;
   const Options options = with(small_image(), GetParam().settings);
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   ASSERT_EQ(scene.traits, Traits::value());
@@ -198,7 +201,7 @@ TEST_P(SortingOf, GivesEachPathWhatItGetsAlone) {
 }
 
 TEST(SortingOfFewSlots, GivesEachPathWhatItGetsAlone) {
-  using Traits = BlockWavefrontTraits<false>;
+  using Traits = PlainTraits;
   const Options options = with(small_image(), {{"scene", "boxes"}});
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   for (const int slots_per_thread : {1, 4, 7}) {
@@ -209,7 +212,7 @@ TEST(SortingOfFewSlots, GivesEachPathWhatItGetsAlone) {
 }
 
 TEST_P(SortingOf, FinishesWhatWavesHaveLeftOver) {
-  using Traits = BlockWavefrontTraits<false>;
+  using Traits = PlainTraits;
   const Options options = with(small_image(), GetParam().settings);
   const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
   for (const int rays : {0, 1, 3}) {
@@ -225,12 +228,12 @@ TEST(SortingOfMasks, FinishesWhatWavesHaveLeftOver) {
   SceneData scene = masked_room();
   prepare_scene(scene, options);
   SortedPaths paths(scene, options);
-  paths.finish<BlockWavefrontTraits<true>>(2, 2, 12);
-  paths.expect_what_each_gets_alone<BlockWavefrontTraits<true>>();
+  paths.finish<MaskedTraits>(2, 2, 12);
+  paths.expect_what_each_gets_alone<MaskedTraits>();
 }
 
 TEST(SortingOfMedia, GivesEachPathWhatItGetsAlone) {
-  using Traits = BlockWavefrontTraits<true, true>;
+  using Traits = MediaTraits;
   const Options options =
       with(small_image(), {{"width", "31"}, {"height", "23"}, {"max-depth", "12"}, {"rr", "4"}});
   SceneData scene = filled_glasses();
@@ -244,6 +247,37 @@ TEST(SortingOfMedia, GivesEachPathWhatItGetsAlone) {
     SortedPaths rest(scene, options);
     rest.finish<Traits>(rays, 3, 12);
     rest.expect_what_each_gets_alone<Traits>();
+  }
+}
+
+/// Trees in a wood: turned, stretched and sheared, of several groups, in front of each other.
+Options wood(const Settings& more = {}) {
+  const Options options = with(small_image(), {{"scene", "instances:300"}, {"max-depth", "8"}});
+  return with(options, more);
+}
+
+TEST(SortingOfInstances, GivesEachPathWhatItGetsAlone) {
+  using Traits = InstancedTraits;
+  for (const Settings& settings :
+       {Settings{}, Settings{{"rr", "2"}, {"max-depth", "20"}}, Settings{{"nee", "off"}}}) {
+    const Options options = wood(settings);
+    const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
+    ASSERT_EQ(scene.traits.geometry, Geometry::mixed);
+    SortedPaths paths(scene, options);
+    paths.sort<Traits>(2, 100);
+    paths.expect_what_each_gets_alone<Traits>();
+  }
+}
+
+TEST(SortingOfInstances, FinishesWhatWavesHaveLeftOver) {
+  const Options options = wood({{"width", "37"}, {"height", "21"}});
+  const SceneData scene = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu}));
+  for (const int rays : {0, 1, 3}) {
+    for (const int slots_per_thread : {12, 5}) {
+      SortedPaths paths(scene, options);
+      paths.finish<InstancedTraits>(rays, 5, slots_per_thread);
+      paths.expect_what_each_gets_alone<InstancedTraits>();
+    }
   }
 }
 
@@ -267,8 +301,8 @@ TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
   prepare_scene(scene, options);
   ASSERT_TRUE(scene.traits.has_masks);
   SortedPaths paths(scene, options);
-  paths.sort<BlockWavefrontTraits<true>>(1, 31 * 23 * 2);
-  paths.expect_what_each_gets_alone<BlockWavefrontTraits<true>>();
+  paths.sort<MaskedTraits>(1, 31 * 23 * 2);
+  paths.expect_what_each_gets_alone<MaskedTraits>();
 }
 
 }  // namespace

@@ -129,7 +129,8 @@ TEST_F(CudaVoting, IsChosenWhereItApplies) {
   EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"work", "sample"}}), "loop");
   EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"block", "5x3"}}), "loop");
   EXPECT_STREQ(with_wide_tree({{"scene", "boxes"}, {"block", "32x32"}}), "loop");
-  EXPECT_STREQ(kind_of({{"scene", "instances:20"}}), "loop");
+  EXPECT_STREQ(kind_of({{"scene", "instances:20"}}), "sort");
+  EXPECT_STREQ(kind_of({{"scene", "instances:20"}, {"block", "32x4"}}), "loop");
 }
 
 TEST_F(CudaVoting, RefusesBlocksThatAreTooLarge) {

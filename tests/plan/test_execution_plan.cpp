@@ -232,7 +232,8 @@ const std::vector<Row>& rows() {
        {},
        forest(),
        gpu(),
-       {{"accel", "cwbvh"}, {"persistent", "on"}, {"finish-paths", "8192"}}},
+       {{"accel", "cwbvh"}, {"persistent", "on"}, {"finish-paths", "1048576"}}},
+      {"instances there", {}, forest(), gpu(64), {{"finish-paths", "8192"}}},
       {"masked instances",
        {},
        changed(forest(), [](auto& s) { s.has_masks = true; }),
@@ -282,6 +283,16 @@ const std::vector<Row>& rows() {
        mega(),
        forest(),
        gpu(),
+       {{"kernel", "sort"}, {"accel", "cwbvh"}}},
+      {"masked instances in a megakernel",
+       mega(),
+       changed(forest(), [](auto& s) { s.has_masks = true; }),
+       gpu(),
+       {{"kernel", "loop"}, {"accel", "bvh2"}}},
+      {"instances where blocks have little memory",
+       mega(),
+       forest(),
+       gpu(64),
        {{"kernel", "loop"}, {"accel", "bvh2"}}},
       {"votes, asked for",
        mega({{"kernel", "vote"}}),
@@ -475,7 +486,7 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   EXPECT_THROW(plan_execution(huge, mesh(), gpu()), Error);
   expect_refused(mega({{"kernel", "sort"}}), mesh(), gpu(64),
                  "--kernel sort: expected --accel cwbvh, --work persistent and a device whose "
-                 "blocks may have 73 KiB");
+                 "blocks may have 91 KiB");
   expect_refused(mega({{"kernel", "vote"}, {"block", "32x16"}}), mesh(), gpu(),
                  "--kernel vote: expected --accel cwbvh, --work persistent and a --block of 32 to "
                  "256 threads");
@@ -508,7 +519,7 @@ SceneProperties lit(SceneProperties scene) {
 TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
   expect_refused({{"accel", "brute"}}, mesh(), gpu(),
                  "--accel brute: on CUDA by lean kernels alone (--kernel-set)");
-  expect_refused(mega({{"accel", "cwbvh"}}), forest(), gpu(),
+  expect_refused(mega({{"kernel", "loop"}, {"accel", "cwbvh"}}), forest(), gpu(),
                  "--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA");
   expect_refused({{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
                  "--accel cwbvh: threads trace triangles alone in it on CUDA");

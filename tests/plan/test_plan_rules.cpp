@@ -68,11 +68,17 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
   Options sorting = with_scene("boxes");
   sorting.kernel = MegakernelKind::sort;
   EXPECT_NO_THROW(check(sorting, masked));
+  SceneData instanced_masks = build_scene(with_scene("instances:20"));
+  EXPECT_NO_THROW(check(sorting, instanced_masks));
+  instanced_masks.materials[0].opacity.offset = 0.5f;
+  EXPECT_THROW(check(sorting, instanced_masks), Error);
   for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
     EXPECT_EQ(refusal(scene, "kernel", "sort"),
-              "--kernel sort: traces triangles alone; scene '" + scene +
-                  "' has spheres, instances, boundaries without a BSDF, clip planes, hidden "
-                  "emitters or no triangles, expected auto or loop");
+              scene == "instances:20"
+                  ? ""
+                  : "--kernel sort: traces triangles and their instances alone; scene '" + scene +
+                        "' has spheres, masks or media among instances, boundaries without a BSDF, "
+                        "clip planes, hidden emitters or no triangles, expected auto or loop");
     EXPECT_EQ(
         refusal(scene, "kernel", "vote"),
         "--kernel vote: traces triangles alone; scene '" + scene +

@@ -19,6 +19,7 @@
 #pragma once
 
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
+#include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/block_wavefront/path_query.cuh"
 #include "common/block_wavefront/path_share.h"
@@ -35,10 +36,11 @@ struct BlockWavefrontTuning {
   static constexpr int suspended_max = 12;  ///< lanes of a warp that a phase may suspend
 };
 
-/// A lane of a block. Traits: of triangles alone.
+/// A lane of a block. Traits: of triangles, or of triangles and their instances without masks.
 template <class Traits>
-using BlockWavefrontLane =
-    CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>;
+using BlockWavefrontLane = std::conditional_t<
+    Traits::has_instances, InstancedLane<PathQuery>,
+    CwbvhLane<std::conditional_t<Traits::has_masks, MaskedPathQuery, PathQuery>, true>>;
 
 /// What a block shares, in shared memory: of `slots` as many as the block has.
 template <class Lane, int threads>
@@ -136,7 +138,8 @@ struct BlockRays {
 
   __device__ std::uint32_t id_of(std::uint32_t index) const { return memory.ray(index); }
 
-  __device__ Query query(const PreparedRay& ray) const {
+  /// `ray`: as a warp keeps it.
+  __device__ Query query(const auto& ray) const {
     return with_key(PathQuery(0.0f, ray.t_max, is_shadow(ray.id)), ray.t_min);
   }
   __device__ static Query with_key(const PathQuery& query, [[maybe_unused]] float key) {
@@ -179,9 +182,9 @@ struct BlockRays {
   }
 };
 
-/// With room for a lane's suspended traversal, its state and hit, beyond the stack.
-inline constexpr int block_wavefront_stack_size =
-    bvh_depth_max + CwbvhLane<PathQuery, true>::suspended_size + 1;
+/// With room for a lane's suspended traversal beyond the stack.
+template <class Lane>
+inline constexpr int block_wavefront_stack_size = Lane::stack_size + Lane::suspended_size;
 
 /// A sink (transport/path_step.h) that keeps a path in its slot. `streams`: it takes results as
 /// shading finds them (StreamedSteps).
@@ -239,8 +242,8 @@ PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint
   return segment_transmittance(scene, around, ray, distance, ray_key, 0);
 }
 
-/// One thread's view. Traits: of triangles alone; Source: one whose streams
-/// are opened again for each draw.
+/// One thread's view. Traits: as for BlockWavefrontLane; Source: one whose streams are opened again
+/// for each draw.
 template <class Traits, class Source, class Memory>
 class BlockWavefront {
  public:
@@ -361,14 +364,11 @@ class BlockWavefront {
   }
 
   // Volatile, see CwbvhLane::suspend.
-  __device__ volatile uint2* suspended_state() const { return stack_ + bvh_depth_max; }
+  __device__ volatile uint2* suspended_state() const { return stack_ + Lane::stack_size; }
 
   __device__ void suspend(const Lane& lane) {
     if (!lane.is_active()) return;
     lane.suspend(suspended_state());
-    volatile uint2& met = suspended_state()[Lane::suspended_size];
-    met.x = __float_as_uint(lane.query().t_max());
-    met.y = lane.query().result().primitive;
     atomicAdd(&memory_.suspended, 1u);
   }
 
@@ -378,13 +378,8 @@ class BlockWavefront {
     const bool suspended = ray_id != PersistentWarp<Lane>::none;
     if (suspended) {
       warp_.rays.store(lane_index, rays_.record(ray_id), ray_id);
-      const PreparedRay ray = warp_.rays.load(lane_index);
-      lane.set_ray(ray);
-      const volatile uint2& met = suspended_state()[Lane::suspended_size];
-      const float t = __uint_as_float(met.x);
-      lane.resume(suspended_state(), rays_.with_key(PathQuery::resumed(scene_.triangles, t, met.y,
-                                                                       rays_.is_shadow(ray_id)),
-                                                    ray.t_min));
+      const auto ray = warp_.rays.load(lane_index);
+      lane.resume(ray, rays_.query(ray), suspended_state());
       if constexpr (counts_lanes) set_lanes(lane, rays_.lanes(ray_id));
     }
     __syncwarp();

@@ -3,23 +3,22 @@
 namespace pt {
 namespace {
 
-BlockWavefrontKernel kernel_for(const SceneTraits& traits) {
-  if (traits.has_media) return media_block_wavefront_kernel();
-  return traits.has_masks ? masked_block_wavefront_kernel() : block_wavefront_kernel();
+BlockWavefrontCode code_for(const SceneTraits& traits) {
+  if (traits.geometry == Geometry::mixed) return code_for_instances();
+  if (traits.has_media) return code_for_media();
+  return traits.has_masks ? code_for_masks() : code_for_triangles();
 }
 
 }  // namespace
 
 BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
                                  const SceneTraits& traits, std::uint32_t paths_max)
-    : launcher_(launcher), kernel_(kernel_for(traits)) {
+    : launcher_(launcher), code_(code_for(traits)) {
   const std::size_t room = launcher_.properties_.sharedMemPerBlockOptin;
-  while (slots_per_thread_ > block_wavefront_slots_least &&
-         block_wavefront_bytes(slots_per_thread_) > room)
+  while (slots_per_thread_ > block_wavefront_slots_least && code_.bytes(slots_per_thread_) > room)
     --slots_per_thread_;
-  blocks_ =
-      launcher_.resident_blocks(reinterpret_cast<const void*>(kernel_), block_wavefront_threads,
-                                block_wavefront_bytes(slots_per_thread_));
+  blocks_ = launcher_.resident_blocks(reinterpret_cast<const void*>(code_.kernel),
+                                      block_wavefront_threads, code_.bytes(slots_per_thread_));
   const auto fits = [&](int slots) {
     return std::uint64_t{blocks_} * block_wavefront_threads * slots >= paths_max;
   };
@@ -48,9 +47,9 @@ void BlockWavefronts::launch(const Scene& scene, const SampleBuffer& batch,
                              const SamplerSource& source, const PathLimits& limits, StageId stage,
                              std::uint32_t at_once, const BegunPaths& begun) {
   const PathShare paths{next_path_, at_once, slots_per_thread_};
-  launcher_.launch(to_string(stage).c_str(), kernel_, blocks_, block_wavefront_threads,
-                   block_wavefront_bytes(slots_per_thread_), scene, batch, source, limits, paths,
-                   begun, stage, launcher_.clock());
+  launcher_.launch(to_string(stage).c_str(), code_.kernel, blocks_, block_wavefront_threads,
+                   code_.bytes(slots_per_thread_), scene, batch, source, limits, paths, begun,
+                   stage, launcher_.clock());
 }
 
 }  // namespace pt

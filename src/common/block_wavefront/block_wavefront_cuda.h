@@ -17,13 +17,19 @@ inline constexpr int block_wavefront_slots_least = 4, block_wavefront_slots_most
 /// See block_wavefront_kernel.cuh.
 using BlockWavefrontKernel = void (*)(Scene, SampleBuffer, SamplerSource, PathLimits, PathShare,
                                       BegunPaths, StageId, StageClock*);
-BlockWavefrontKernel block_wavefront_kernel();
-BlockWavefrontKernel masked_block_wavefront_kernel();
-BlockWavefrontKernel media_block_wavefront_kernel();
-/// Shared memory of a block.
-std::size_t block_wavefront_bytes(int slots_per_thread);
 
-/// For scenes of triangles alone, in a wide tree, without boundaries that have no BSDF.
+/// The kernel of one kind of scenes.
+struct BlockWavefrontCode {
+  BlockWavefrontKernel kernel;
+  std::size_t (*bytes)(int slots_per_thread);  ///< of a block's shared memory
+};
+BlockWavefrontCode code_for_triangles();
+BlockWavefrontCode code_for_masks();
+BlockWavefrontCode code_for_media();
+BlockWavefrontCode code_for_instances();
+
+/// For scenes of triangles in a wide tree, without boundaries that have no BSDF; or of instances of
+/// triangles as well, without masks and media.
 class BlockWavefronts {
  public:
   /// Takes memory for as many paths as blocks have room for, or for `paths_max` of them.
@@ -50,7 +56,7 @@ class BlockWavefronts {
               const BegunPaths& begun);
 
   CudaLauncher& launcher_;
-  const BlockWavefrontKernel kernel_;
+  const BlockWavefrontCode code_;
   int slots_per_thread_ = block_wavefront_slots_most;
   std::uint32_t blocks_ = 0;
   BlockSlots slots_{};

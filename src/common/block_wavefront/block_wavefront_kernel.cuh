@@ -4,13 +4,12 @@
 #include "common/block_wavefront/block_wavefront.cuh"
 #include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/stage_stamp.cuh"
+#include "common/plan/execution_plan.h"
 
 namespace pt {
 
-/// Of scenes of triangles alone.
-template <bool has_masks, bool has_media = false>
-using BlockWavefrontTraits =
-    Traits<Accel::cwbvh, Geometry::triangles, Lighting::full, has_masks, has_media>;
+template <Geometry geometry, bool has_masks = false, bool has_media = false>
+using BlockWavefrontTraits = Traits<Accel::cwbvh, geometry, Lighting::full, has_masks, has_media>;
 
 template <class Traits>
 using BlockMemory = BlockWavefrontMemory<BlockWavefrontLane<Traits>, block_wavefront_threads>;
@@ -26,11 +25,21 @@ __global__ void __launch_bounds__(block_wavefront_threads, 1)
   using Memory = BlockMemory<Traits>;
   extern __shared__ uint4 block_wavefront_memory[];
   stamp_first_thread(clock, stage);
-  uint2 stack[block_wavefront_stack_size];
+  uint2 stack[block_wavefront_stack_size<BlockWavefrontLane<Traits>>];
   BlockWavefront<Traits, SamplerSource, Memory> tracer(
       scene, source, batch, limits, paths, *reinterpret_cast<Memory*>(block_wavefront_memory),
       begun.slots.of_block(blockIdx.x), stack);
   tracer.run(begun.count_in(blockIdx.x));
+}
+
+/// See BlockWavefrontCode.
+template <Geometry geometry, bool has_masks = false, bool has_media = false>
+BlockWavefrontCode block_wavefront_code() {
+  using Traits = BlockWavefrontTraits<geometry, has_masks, has_media>;
+  using Memory = BlockMemory<Traits>;
+  static_assert(Memory::bytes(block_wavefront_slots_least) <= sorting_bytes_min);
+  static_assert(block_wavefront_slots_most == BlockWavefrontTuning::slots_most);
+  return {block_wavefront<Traits>, Memory::bytes};
 }
 
 }  // namespace pt

@@ -3,8 +3,6 @@
 
 namespace pt {
 
-BlockWavefrontKernel masked_block_wavefront_kernel() {
-  return block_wavefront<BlockWavefrontTraits<true>>;
-}
+BlockWavefrontCode code_for_masks() { return block_wavefront_code<Geometry::triangles, true>(); }
 
 }  // namespace pt

@@ -3,8 +3,8 @@
 
 namespace pt {
 
-BlockWavefrontKernel media_block_wavefront_kernel() {
-  return block_wavefront<BlockWavefrontTraits<true, true>>;
+BlockWavefrontCode code_for_media() {
+  return block_wavefront_code<Geometry::triangles, true, true>();
 }
 
 }  // namespace pt

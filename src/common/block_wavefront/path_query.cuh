@@ -11,11 +11,13 @@ class PathQuery : public ClosestTriangle {
   __device__ PathQuery(float t_min, float t_max, bool is_shadow = false)
       : ClosestTriangle(t_min, t_max), is_shadow_(is_shadow) {}
 
-  /// One that has met nothing nearer than `t`, which is `primitive` or, without one, the end.
-  __device__ static PathQuery resumed(const TriangleTree& tree, float t, std::uint32_t primitive,
-                                      bool is_shadow) {
+  __device__ bool is_shadow() const { return is_shadow_; }
+
+  /// The same once it has met nothing nearer than `t`, which is `primitive` or, without one, the
+  /// end. For trees without instances.
+  __device__ PathQuery resumed(const TriangleTree& tree, float t, std::uint32_t primitive) const {
     const bool has_hit = primitive != no_primitive;
-    PathQuery query(0.0f, has_hit ? infinite_distance : t, is_shadow);
+    PathQuery query(0.0f, has_hit ? infinite_distance : t, is_shadow_);
     if (has_hit) query.offer(tree, t, primitive, 0);
     return query;
   }
@@ -40,6 +42,10 @@ class MaskedPathQuery : public PathQuery {
   __device__ MaskedPathQuery(const PathQuery& query, std::uint32_t key)
       : PathQuery(query), key_(key) {}
   __device__ std::uint32_t key() const { return key_; }
+  __device__ MaskedPathQuery resumed(const TriangleTree& tree, float t,
+                                     std::uint32_t primitive) const {
+    return {PathQuery::resumed(tree, t, primitive), key_};
+  }
 
  private:
   std::uint32_t key_ = 0;

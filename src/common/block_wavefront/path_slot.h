@@ -10,8 +10,8 @@ namespace pt {
 struct alignas(128) PathSlot {
   struct alignas(16) StoredHit {
     float t;
-    std::uint32_t primitive;
-    std::uint32_t unused[2];
+    std::uint32_t primitive, instance;
+    std::uint32_t unused;
   };
 
   PathRecord origin;            ///< of the ray; density of the BSDF
@@ -48,10 +48,12 @@ struct alignas(128) PathSlot {
 
   PT_HD Ray load_ray() const { return {vec(load_wide(&origin)), vec(load_wide(&direction))}; }
 
-  PT_HD void store_hit(const Hit& h) { store_wide(&hit, StoredHit{h.t, h.primitive, {}}); }
+  PT_HD void store_hit(const Hit& h) {
+    store_wide(&hit, StoredHit{h.t, h.primitive, h.instance, 0});
+  }
   PT_HD Hit load_hit() const {
     const StoredHit h = load_wide(&hit);
-    return {h.t, h.primitive};
+    return {h.t, h.primitive, h.instance};
   }
 
   PT_HD void store_radiance(const Color& sum, const PathState& path) {

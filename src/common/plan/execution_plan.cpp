@@ -119,14 +119,16 @@ class Planner {
   std::pair<MegakernelKind, std::string> automatic_megakernel() const {
     using enum MegakernelKind;
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
-    if (!scene_.has_only_triangles() || scene_.limits_camera_rays)
+    if (scene_.spheres > 0 || scene_.limits_camera_rays)
       return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
+    if (!scene_.has_plain_instances()) return {loop, "the others know no masks among instances"};
     if (has_open_media()) return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
     if (known_structure().value_or(Accel::cwbvh) != Accel::cwbvh)
       return {loop, "the others trace wide trees"};
     if (o_.block == BlockSize{} && blocks_have_room())
-      return {sort, "triangles alone: a wavefront in each block was the fastest"};
+      return {sort, "triangles: a wavefront in each block was the fastest"};
+    if (scene_.instances > 0) return {loop, "phase voting knows no instances"};
     const std::int64_t threads = o_.block.threads();
     const bool may_vote = !scene_.has_masks && !scene_.has_media && threads % 32 == 0 &&
                           threads <= phase_voting_threads_max;
@@ -205,8 +207,7 @@ class Planner {
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
            compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
-           !scene_.limits_camera_rays && !has_open_media() &&
-           (scene_.instances == 0 || !scene_.has_masks);
+           !scene_.limits_camera_rays && !has_open_media() && scene_.has_plain_instances();
   }
 
   void choose_scene_memory() {
@@ -309,8 +310,7 @@ class Planner {
 
   /// Where the kernel of --kernel sort knows all that the scene has.
   bool can_finish_in_blocks() const {
-    return plan_.persistent_warps && scene_.has_only_triangles() &&
-           o_.integrator == IntegratorKind::path && blocks_have_room();
+    return plan_.persistent_warps && o_.integrator == IntegratorKind::path && blocks_have_room();
   }
 
   void choose_pool() {

@@ -63,8 +63,9 @@ std::string plan_text(const std::vector<Decision>& decisions);
 
 /// More threads in a block would leave too few registers to warps that vote on their phase.
 inline constexpr int phase_voting_threads_max = 256;
-/// Shared memory that a block-local wavefront needs at least.
-inline constexpr std::size_t sorting_bytes_min = 73 * 1024;
+/// Shared memory that a block-local wavefront needs at least, with instances: no device has room
+/// for less of it alone.
+inline constexpr std::size_t sorting_bytes_min = 91 * 1024;
 /// A kernel's parameters may take 32,764 bytes (CUDA 12.1 and later, compute capability 7.0); half
 /// of it is enough for the paper's scenes and keeps launches short.
 inline constexpr std::uint32_t constant_spheres_max = 1024;

@@ -35,12 +35,13 @@ bool is_general(const SceneProperties& scene, const Options& o) {
 }
 
 bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return is_general(scene, o) && scene.has_only_triangles() && !scene.limits_camera_rays &&
-         !scene.has_open_boundaries;
+  return is_general(scene, o) && scene.spheres == 0 && scene.has_plain_instances() &&
+         !scene.limits_camera_rays && !scene.has_open_boundaries;
 }
 
 bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return has_triangles_alone(scene, o) && !scene.has_masks && !scene.has_media;
+  return has_triangles_alone(scene, o) && scene.instances == 0 && !scene.has_masks &&
+         !scene.has_media;
 }
 
 bool has_rough_conductors(const SceneProperties& scene, const Options&) {
@@ -78,8 +79,9 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::vote);
      },
      has_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, boundaries without a BSDF, clip "
-     "planes, hidden emitters or no triangles, expected auto or loop"},
+     "traces triangles and their instances alone; scene '{}' has spheres, masks or media among "
+     "instances, boundaries without a BSDF, clip planes, hidden emitters or no triangles, expected "
+     "auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);

@@ -31,6 +31,8 @@ struct SceneProperties {
 
   bool has_masked_kernels() const { return has_masks || limits_camera_rays || has_media; }
   bool has_only_triangles() const { return spheres == 0 && instances == 0; }
+  /// No instances, or some that warps trace in wide trees.
+  bool has_plain_instances() const { return instances == 0 || (!has_masks && !has_media); }
 };
 
 struct DeviceProperties {

@@ -73,21 +73,16 @@ class CwbvhLane {
     }
   }
 
-  /// What begin() took of the same ray besides the query.
-  __device__ void set_ray(const PreparedRay& ray) {
-    origin_ = ray.origin;
-    inverse_ = ray.inverse;
-    planes_ = select_near_planes(ray.inverse);
-    triangle_ray_ = ray.triangles;
-  }
-
   /// The size of the state that suspend() stores.
-  static constexpr int suspended_size = speculative ? 4 : 3;
+  static constexpr int suspended_size = speculative ? 5 : 4;
 
   /// Stores the state of the traversal, so that code between two steps can use its registers.
   /// Volatile: otherwise the compiler would keep the values in registers all the same, or store
   /// them whenever a step changes them.
   __device__ void suspend(volatile uint2* state) const {
+    volatile uint2& met = state[suspended_size - 1];
+    met.x = __float_as_uint(query_.t_max());
+    met.y = query_.result().primitive;
     state[0].x = nodes_.base;
     state[0].y = nodes_.bits;
     state[1].x = leaves_.base;
@@ -98,12 +93,15 @@ class CwbvhLane {
       state[3].y = later_leaves_.bits;
     }
   }
-  __device__ void resume(const volatile uint2* state, const Query& query) {
+  /// `ray` and `query` as for begin().
+  __device__ void resume(const PreparedRay& ray, const Query& query, const volatile uint2* state) {
+    set_ray(ray);
+    const volatile uint2& met = state[suspended_size - 1];
+    query_ = query.resumed(tree_, __uint_as_float(met.x), met.y);
     nodes_ = {state[0].x, state[0].y};
     leaves_ = {state[1].x, state[1].y};
     depth_ = static_cast<int>(state[2].x);
     if constexpr (speculative) later_leaves_ = {state[3].x, state[3].y};
-    query_ = query;
   }
 
   __device__ void step() {
@@ -150,6 +148,13 @@ class CwbvhLane {
   }
 
  private:
+  __device__ void set_ray(const PreparedRay& ray) {
+    origin_ = ray.origin;
+    inverse_ = ray.inverse;
+    planes_ = select_near_planes(ray.inverse);
+    triangle_ray_ = ray.triangles;
+  }
+
   /// Kept where there are registers for them.
   __device__ NearPlanes planes() const {
     if constexpr (Query::has_masks) {

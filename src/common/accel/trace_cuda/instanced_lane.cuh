@@ -59,7 +59,30 @@ class InstancedLane {
     memory_.slot[lane()] = no_primitive;
     origin_ = o, inverse_ = i;
     t_max_ = limit_ = query.t_max();
+    set_kind(query);
     nodes_ = {tree_.root, ray.t_max > 0.0f ? in_world | world.octant << 8 | 1u : 0u};
+  }
+
+  /// See CwbvhLane. The ray and its hit stay in the lane's shared memory meanwhile.
+  static constexpr int suspended_size = 3;
+  __device__ void suspend(volatile uint2* state) const {
+    state[0].x = nodes_.base;
+    state[0].y = nodes_.bits;
+    state[1].x = leaves_.base;
+    state[1].y = leaves_.bits;
+    state[2].x = static_cast<std::uint32_t>(depth_);
+    state[2].y = __float_as_uint(t_max_);
+  }
+  __device__ void resume(const WorldRay&, const Query& query, const volatile uint2* state) {
+    nodes_ = {state[0].x, state[0].y};
+    leaves_ = {state[1].x, state[1].y};
+    depth_ = static_cast<int>(state[2].x);
+    t_max_ = __uint_as_float(state[2].y);
+    set_kind(query);
+    if ((nodes_.bits & in_world) != 0) return set_world();
+    const InstanceRecord instance = load_wide(&tree_.instances[memory_.instance[lane()]]);
+    set_local(make_cwbvh_ray(object_ray(instance, world_ray())));
+    set_limit(memory_.inverse[lane()].w);
   }
 
   __device__ void step() {
@@ -88,9 +111,9 @@ class InstancedLane {
   __device__ void enter() {
     const std::uint32_t instance_index = take_first();
     const InstanceRecord instance = load_wide(&tree_.instances[instance_index]);
-    const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
-    const Ray ray = {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
-    const InstanceVisit visit = visit_instance(instance, ray, make_slab_test_ray(ray), d.w, t_max_);
+    const Ray ray = world_ray();
+    const InstanceVisit visit =
+        visit_instance(instance, ray, make_slab_test_ray(ray), t_min(), t_max_);
     if (visit.is_empty) {
       if (!nodes_.has_slots()) pop();
       return;
@@ -100,9 +123,9 @@ class InstancedLane {
     memory_.origin[lane()].w = visit.part.near;
     memory_.inverse[lane()].w = visit.part.far;
     memory_.instance[lane()] = instance_index;
-    limit_ = visit.limit(t_max_);
+    set_limit(visit.part.far);
     const CwbvhRay local = make_cwbvh_ray(visit.ray);
-    origin_ = local.origin, inverse_ = local.inverse, triangle_ray_ = local.triangles;
+    set_local(local);
     nodes_ = {instance.root, local.octant << 8 | 1u};
   }
 
@@ -153,10 +176,30 @@ class InstancedLane {
 
   /// Below a mark there is always a group.
   __device__ void leave() {
+    set_world();
+    pop();
+  }
+
+  __device__ Ray world_ray() const {
+    const float4 o = memory_.origin[lane()], d = memory_.direction[lane()];
+    return {{o.x, o.y, o.z}, {d.x, d.y, d.z}};
+  }
+
+  __device__ void set_world() {
     const float4 o = memory_.origin[lane()], i = memory_.inverse[lane()];
     origin_ = {o.x, o.y, o.z}, inverse_ = {i.x, i.y, i.z};
     limit_ = t_max_;
-    pop();
+  }
+
+  __device__ void set_local(const CwbvhRay& ray) {
+    origin_ = ray.origin, inverse_ = ray.inverse, triangle_ray_ = ray.triangles;
+  }
+
+  /// As InstanceVisit::limit.
+  __device__ void set_limit(float far) { limit_ = t_max_ >= far ? HUGE_VALF : t_max_; }
+
+  __device__ void set_kind([[maybe_unused]] const Query& query) {
+    if constexpr (requires { query.is_shadow(); }) ends_with_hit_ = query.is_shadow();
   }
 
   __device__ float t_min() const { return memory_.direction[lane()].w; }
@@ -165,10 +208,10 @@ class InstancedLane {
   __device__ void take(float t, std::uint32_t slot, float far) {
     if (t == t_max_ && !wins_tie(slot)) return;
     t_max_ = t;
-    limit_ = t >= far ? HUGE_VALF : t;
+    set_limit(far);
     memory_.slot[lane()] = slot;
     memory_.hit_instance[lane()] = memory_.instance[lane()];
-    if (finds_any) nodes_.bits = leaves_.bits = 0, depth_ = 0;
+    if (ends_with_hit_) nodes_.bits = leaves_.bits = 0, depth_ = 0;
   }
 
   __device__ bool wins_tie(std::uint32_t slot) const {
@@ -194,6 +237,7 @@ class InstancedLane {
   int depth_ = 0;
   float t_max_ = 0.0f;  ///< of the query
   float limit_ = 0.0f;  ///< how far boxes need a visit
+  bool ends_with_hit_ = finds_any;
 };
 
 }  // namespace pt
