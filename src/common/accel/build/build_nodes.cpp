@@ -25,12 +25,4 @@ BuiltNodes build_nodes(BinaryTree&& binary, AccelKind accel, const TreeCosts& co
   return built;
 }
 
-double sah_cost(const TreeNodes<NodesVector>& nodes, const TreeCosts& costs) {
-  double cost = 0;
-  nodes.for_each_nodes([&](const auto& tree) {
-    if (!tree.empty()) cost = measure_tree(std::span(tree), 0).sah_cost(costs.triangle);
-  });
-  return cost;
-}
-
 }  // namespace pt

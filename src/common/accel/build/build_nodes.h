@@ -19,7 +19,4 @@ bool has_nodes(AccelKind accel);
 /// The root comes first.
 BuiltNodes build_nodes(BinaryTree&& binary, AccelKind accel, const TreeCosts& costs);
 
-/// Of the tree whose root comes first.
-double sah_cost(const TreeNodes<NodesVector>& nodes, const TreeCosts& costs);
-
 }  // namespace pt

@@ -15,6 +15,7 @@
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
+#include "common/accel/build/trial_rays.h"
 #include "common/accel/build/wide/append_nodes.h"
 
 namespace pt {
@@ -43,14 +44,29 @@ BuiltGroup build_split(const MeshTriangles& triangles, const TreeOptions& option
   return finish_tree(std::move(binary), "sbvh", options);
 }
 
+void copy_by_slot(const MeshTriangles& triangles, const std::vector<std::uint32_t>& order,
+                  Triangle* to) {
+  tbb::parallel_for(std::size_t{0}, order.size(),
+                    [&](std::size_t i) { to[i] = triangles[order[i]]; });
+}
+
+std::vector<Triangle> by_slot(const MeshTriangles& triangles,
+                              const std::vector<std::uint32_t>& order) {
+  std::vector<Triangle> copies(order.size());
+  copy_by_slot(triangles, order, copies.data());
+  return copies;
+}
+
 // When the automatic builder tries spatial splits and takes them, measured on some fifteen scenes
 // (docs/design/tracing.md).
 constexpr double split_share = 1.5;        // overlap_share() of a tree worth the try
 constexpr double large_split_share = 2.0;  // the same from large_count triangles on
 constexpr std::uint32_t large_count = 1u << 21;
-constexpr double split_gain = 0.92;  // of costs, at most, to be taken
+constexpr std::uint32_t trial_paths = 1u << 13;
+constexpr double split_gain = 0.97;  // of what trial rays cost, to be taken
 
-/// The tree by `sah`, improved by reinsertion if it can be, or a much cheaper one by `sbvh`.
+/// The tree by `sah`, improved by reinsertion if it can be, or one by `sbvh` in which rays cost
+/// less.
 BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& options) {
   BinaryTree binary = build_whole(triangles);
   std::optional<BinaryTree> improved = reinsert_nodes(binary);
@@ -60,9 +76,10 @@ BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& opt
   const bool tries = overlap_share(binary) >= (is_large ? large_split_share : split_share);
   BuiltGroup whole = finish_tree(std::move(binary), builder, options);
   if (!tries) return whole;
+  const std::vector<TrialRay> rays =
+      trial_rays(whole.nodes, by_slot(triangles, whole.nodes.order), whole.bounds, trial_paths);
   BuiltGroup split = build_split(triangles, options);
-  const bool pays =
-      sah_cost(split.nodes, options.costs()) <= split_gain * sah_cost(whole.nodes, options.costs());
+  const bool pays = trial_cost(split.nodes, rays) < split_gain * trial_cost(whole.nodes, rays);
   return pays ? split : whole;
 }
 
@@ -99,9 +116,7 @@ std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles,
   });
   group.first_node = group.root;
   tree.triangles.resize(tree.triangles.size() + order.size());
-  tbb::parallel_for(0u, group.slot_count, [&](std::uint32_t i) {
-    tree.triangles[group.first_slot + i] = triangles[order[i]];
-  });
+  copy_by_slot(triangles, order, tree.triangles.data() + group.first_slot);
   tree.groups.push_back(group);
   return built.builder;
 }

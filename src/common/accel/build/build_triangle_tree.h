@@ -31,8 +31,9 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// tree for each group that is used and one over the instances, the meshes of group 0 being an
 /// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
 /// slots are in the order of the triangles' numbers.
-/// The automatic builder takes, group by group, the cheapest of the tree by sah, the same after
-/// reinsert_nodes() ("sah-reinsert"), and the one by sbvh where overlap_share() promises something.
+/// The automatic builder takes, group by group, the cheaper of the tree by sah and the same after
+/// reinsert_nodes() ("sah-reinsert"); or, where overlap_share() promises something and rays are
+/// found to cost less (trial_rays.h), the one by sbvh.
 /// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
