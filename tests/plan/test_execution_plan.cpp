@@ -403,6 +403,7 @@ TEST(ExecutionPlan, TakesTheModeThatWasFaster) {
   EXPECT_EQ(mode_of(dial, {{"integrator", "mlt"}}), "wavefront");
   EXPECT_EQ(mode_of(dial, {}, gpu(64)), "wavefront");
   EXPECT_EQ(mode_of(forest()), "wavefront");
+  EXPECT_EQ(mode_of(changed(dial, [](auto& s) { s.instances = 20; })), "wavefront");
   EXPECT_EQ(mode_of(filled_glass(true)), "wavefront");
   EXPECT_EQ(mode_of(dial, {}, cpu()), "wavefront");
   EXPECT_EQ(mode_of(spheres(51), {}, cpu()), "wavefront");

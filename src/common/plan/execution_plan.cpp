@@ -85,7 +85,8 @@ class Planner {
       if (paths <= double(few_paths)) return {wavefront, "quads and few paths"};
       return {megakernel, "quads and many long paths"};
     }
-    const bool sorts = automatic_megakernel().first == MegakernelKind::sort;
+    const bool sorts =
+        automatic_megakernel().first == MegakernelKind::sort && scene_.instances == 0;
     if (sorts && order_pays_for(scene_.bsdf_kinds) && o_.max_depth > short_depth)
       return {megakernel, "many kinds of BSDFs on long paths: blocks that sort were faster"};
     return {wavefront, "persistent warps or queues of rays were faster"};
