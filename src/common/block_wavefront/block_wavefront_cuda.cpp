@@ -3,10 +3,11 @@
 namespace pt {
 namespace {
 
+/// Scenes with masks or media are `mixed`, too; here they have no instances.
 BlockWavefrontCode code_for(const SceneTraits& traits) {
-  if (traits.geometry == Geometry::mixed) return code_for_instances();
   if (traits.has_media) return code_for_media();
-  return traits.has_masks ? code_for_masks() : code_for_triangles();
+  if (traits.has_masks) return code_for_masks();
+  return traits.geometry == Geometry::mixed ? code_for_instances() : code_for_triangles();
 }
 
 }  // namespace
