@@ -15,7 +15,8 @@ class Mesh:
         triangles: (m, 3) indices of vertices.
         device: "auto", "cpu", "cuda" or "cuda:N".
         accel: "auto" (cwbvh), "brute", "bvh2" or "cwbvh".
-        builder: "auto", "sah", "sbvh"; on CUDA "lbvh" and "hploc", which build it for each call.
+        builder: "auto", "sah", "sbvh"; on CUDA "lbvh", "hploc" and "hploc-reinsert", which build it
+            for each call.
 
     Raises:
         OptionError: device, accel or builder.

@@ -39,7 +39,8 @@ class CudaHits : public CudaTest {
       }
     }
     for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
-      for (const TreeBuilder builder : {TreeBuilder::lbvh, TreeBuilder::hploc}) {
+      for (const TreeBuilder builder :
+           {TreeBuilder::lbvh, TreeBuilder::hploc, TreeBuilder::hploc_reinsert}) {
         TreeOptions options;
         options.accel = accel, options.builder = builder;
         for (const TraceVariant variant : variants(accel, instances.empty())) {

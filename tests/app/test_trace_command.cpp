@@ -104,7 +104,8 @@ TEST_F(TraceFiles, AppendsRows) {
 }
 
 TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {
-  for (const TreeBuilder builder : {TreeBuilder::lbvh, TreeBuilder::hploc}) {
+  for (const TreeBuilder builder :
+       {TreeBuilder::lbvh, TreeBuilder::hploc, TreeBuilder::hploc_reinsert}) {
     command_.builder = builder;
     expect_error([&] { trace_command(command_); },
                  "--builder " + to_string(builder) + ": needs a CUDA device");

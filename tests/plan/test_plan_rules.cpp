@@ -40,7 +40,7 @@ TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
                   ": holds triangles; scene 'cornell' has spheres and quads only, expected brute "
                   "or bvh2");
   }
-  for (const std::string value : {"sah", "sbvh", "lbvh", "hploc"}) {
+  for (const std::string value : {"sah", "sbvh", "lbvh", "hploc", "hploc-reinsert"}) {
     EXPECT_EQ(refusal("spheres", "builder", value),
               "--builder " + value + ": builds trees over triangles; scene 'spheres' has none");
   }

@@ -66,7 +66,7 @@ std::vector<SubcommandOption<TraceCommand>> trace_options() {
       {"output", "FILE", "Writes the hits as a TRBHITS1 file", [](C& c, S v) { c.output = v; }},
       {"accel", "KIND [auto]", "auto, brute, bvh2, cwbvh",
        [](C& c, S v) { c.accel = parse_accel(v); }},
-      {"builder", "KIND [auto]", "auto, sah, sbvh; on CUDA lbvh, hploc",
+      {"builder", "KIND [auto]", "auto, sah, sbvh; on CUDA lbvh, hploc, hploc-reinsert",
        [](C& c, S v) { c.builder = parse_name<TreeBuilder>("builder", v); }},
       {"device", "D [auto]", "auto, cpu, cuda, cuda:N",
        [](C& c, S v) { c.device = parse_device("device", v); }},

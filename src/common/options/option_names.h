@@ -108,7 +108,8 @@ inline constexpr auto enum_names<TreeBuilder> =
                                           {TreeBuilder::sah, "sah"},
                                           {TreeBuilder::sbvh, "sbvh"},
                                           {TreeBuilder::lbvh, "lbvh"},
-                                          {TreeBuilder::hploc, "hploc"}});
+                                          {TreeBuilder::hploc, "hploc"},
+                                          {TreeBuilder::hploc_reinsert, "hploc-reinsert"}});
 template <>
 inline constexpr auto enum_names<LightSelection> =
     std::to_array<EnumName<LightSelection>>({{LightSelection::automatic, "auto"},

@@ -29,7 +29,7 @@ enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path, mlt };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
-enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc };
+enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc, hploc_reinsert };
 enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };
 

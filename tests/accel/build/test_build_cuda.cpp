@@ -199,6 +199,26 @@ TEST_F(CudaBuild, TooDeepTreesAreReplaced) {
   }
 }
 
+// Boxes around one another are cheapest as a list, which is deep.
+TEST_F(CudaBuild, WhatReinsertionMakesTooDeepIsBuiltWithout) {
+  const std::vector<Triangle> triangles = build_cases[3].make(3000);
+  DeviceBuildOptions options = binary_options();
+  options.costs.leaf_max = 1;
+  options.depth_max = 100'000;
+  options.builder = DeviceBuilder::hploc_reinsert;
+  const DeviceTree deep = build(triangles, options);
+  EXPECT_EQ(deep.builder, DeviceBuilder::hploc_reinsert);
+  options.builder = DeviceBuilder::hploc;
+  const DeviceTree plain = build(triangles, options);
+  ASSERT_GT(deep.depth, plain.depth);
+  options.builder = DeviceBuilder::hploc_reinsert;
+  options.depth_max = plain.depth;
+  const DeviceTree tree = build(triangles, options);
+  EXPECT_EQ(tree.builder, DeviceBuilder::hploc);
+  EXPECT_EQ(tree.depth, plain.depth);
+  check_triangles(download(tree, options), triangles);
+}
+
 TEST_F(CudaBuild, RefusesWhatItCannotBuild) {
   const auto message = [&](const std::vector<Triangle>& triangles, DeviceBuildOptions options) {
     try {

@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "accel/device_tree.h"
+#include "accel/serial_reinsertion.h"
 #include "common/accel/build/binary/build_sah.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/morton.h"
@@ -29,10 +30,42 @@ TEST_F(CudaBuild, TreesAreNearlyAsGoodAsTheCpuBuilders) {
       return builder_->measure(build(triangles, options)).sah_cost(1.0) / reference;
     };
     const double hploc = relative(DeviceBuilder::hploc), lbvh = relative(DeviceBuilder::lbvh);
-    std::printf("%s: H-PLOC %.3f, LBVH %.3f of the CPU's SAH cost\n", scene.name, hploc, lbvh);
+    const double reinserted = relative(DeviceBuilder::hploc_reinsert);
+    std::printf("%s: H-PLOC %.3f, reinserted %.3f, LBVH %.3f of the CPU's SAH cost\n", scene.name,
+                hploc, reinserted, lbvh);
+    EXPECT_LT(reinserted, 1.04) << scene.name;
+    EXPECT_LT(reinserted, 0.96 * hploc) << scene.name;
     EXPECT_LT(hploc, 1.15) << scene.name;
     EXPECT_LT(hploc, lbvh) << scene.name;
     EXPECT_LT(lbvh, 2.0) << scene.name;
+  }
+}
+
+// Other roundings of areas make other trees, which cost the same.
+TEST_F(CudaBuild, ReinsertionGainsAsMuchAsOnTheCpu) {
+  for (const BuildCase& scene : {build_cases[0], build_cases[1]}) {
+    const std::vector<Triangle> triangles = scene.make(100'000);
+    std::vector<Bounds> boxes;
+    for (const Triangle& t : triangles) boxes.push_back(hit_bounds(t.v0, t.v1, t.v2));
+    HostBuildTree expected = SerialHploc(boxes).tree;
+    DeviceBuildOptions options = binary_options();
+    options.costs.leaf_max = 1;
+    const auto expect_equal_cost = [&](DeviceBuilder builder) {
+      double cost = 0;
+      for (std::uint32_t i = 0; i < expected.count(); ++i) {
+        cost += expected.primitives[i].bounds().half_area();
+        if (expected.nodes[i].left != device_build::no_node) {
+          cost += expected.nodes[i].bounds().half_area();
+        }
+      }
+      cost /= expected[expected.root].bounds().half_area();
+      options.builder = builder;
+      const TreeQuality quality = builder_->measure(build(triangles, options));
+      EXPECT_NEAR(quality.sah_cost(1.0) / cost, 1, 0.01) << scene.name << name_of(builder);
+    };
+    expect_equal_cost(DeviceBuilder::hploc);
+    SerialReinsertion(expected, run_forward).run();
+    expect_equal_cost(DeviceBuilder::hploc_reinsert);
   }
 }
 
@@ -65,9 +98,9 @@ TEST_F(CudaBuild, TimesOfALargeBuild) {
   triangles.positions = positions.data(), triangles.indices = indices.data();
   const int repeats = count > 50'000'000 ? 3 : 11;
   std::printf(
-      "%u triangles, ms: median of %d\n%-32s %7s %7s %7s %7s %7s %7s %7s | %9s %9s %5s %s\n", count,
-      repeats, "", "bounds", "morton", "sort", "tree", "nodes", "records", "total", "nodes",
-      "SAH cost", "depth", "scratch MB");
+      "%u triangles, ms: median of %d\n%-32s %7s %7s %7s %7s %7s %7s %7s %7s | %9s %9s %5s %s\n",
+      count, repeats, "", "bounds", "morton", "sort", "tree", "reins.", "nodes", "records", "total",
+      "nodes", "SAH cost", "depth", "scratch MB");
   if (std::getenv("PTEXP_LARGE_SAH") != nullptr) print_cpu_trees(hills);
   for (const DeviceBuildOptions& base : all_options()) {
     for (const int bits : {10, 16, 21}) {
@@ -94,10 +127,11 @@ TEST_F(CudaBuild, TimesOfALargeBuild) {
       const TreeQuality quality = builder_->measure(tree);
       EXPECT_EQ(quality.slots, count);
       std::printf(
-          "%-32s %7.3f %7.3f %7.3f %7.3f %7.3f %7.3f %7.3f | %9llu %9.3f %5d %.0f\n",
+          "%-32s %7.3f %7.3f %7.3f %7.3f %7.3f %7.3f %7.3f %7.3f | %9llu %9.3f %5d %.0f\n",
           name_of(options).c_str(), median([](auto& t) { return t.bounds_ms; }),
           median([](auto& t) { return t.morton_ms; }), median([](auto& t) { return t.sort_ms; }),
           median([](auto& t) { return t.hierarchy_ms; }),
+          median([](auto& t) { return t.reinsertion_ms; }),
           median([](auto& t) { return t.collapse_ms; }),
           median([](auto& t) { return t.triangles_ms; }),
           median([](auto& t) { return t.total_ms(); }),

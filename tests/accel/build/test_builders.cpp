@@ -265,6 +265,8 @@ TEST(BuilderErrors, BuildersOfTheDeviceAreRefused) {
   const std::vector<Mesh> meshes = {make_soup(3, 1)};
   EXPECT_THROW(build_triangle_tree(meshes, {}, options), Error);
   EXPECT_THROW(check_builder(TreeBuilder::hploc, AccelKind::brute, true), Error);
+  EXPECT_THROW(check_builder(TreeBuilder::hploc_reinsert, AccelKind::cwbvh, false), Error);
+  EXPECT_NO_THROW(check_builder(TreeBuilder::hploc_reinsert, AccelKind::cwbvh, true));
   EXPECT_NO_THROW(check_builder(TreeBuilder::lbvh, AccelKind::bvh2, true));
   EXPECT_NO_THROW(check_builder(TreeBuilder::sbvh, AccelKind::brute, false));
 }

@@ -14,11 +14,12 @@
 namespace pt {
 namespace {
 
-constexpr TreeBuilder device_builders[] = {TreeBuilder::lbvh, TreeBuilder::hploc};
+constexpr TreeBuilder device_builders[] = {TreeBuilder::lbvh, TreeBuilder::hploc,
+                                           TreeBuilder::hploc_reinsert};
 
 class CudaDeviceTree : public CudaTest {
  protected:
-  /// Of both structures by both builders.
+  /// Of both structures by all builders.
   template <class Check>
   static void for_each_tree(Check&& check) {
     for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {
@@ -204,8 +205,9 @@ TEST_F(CudaDeviceTree, TheTraceCommandBuildsOnTheDevice) {
       EXPECT_EQ(read_text(command.output), read_text(command.hits));
     });
     const std::string table = read_text(command.csv);
-    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 5);
-    for (const char* text : {"bvh2,lbvh", "bvh2,hploc", "cwbvh,lbvh", "cwbvh,hploc"}) {
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 7);
+    for (const char* text : {"bvh2,lbvh", "bvh2,hploc,", "bvh2,hploc-reinsert", "cwbvh,lbvh",
+                             "cwbvh,hploc,", "cwbvh,hploc-reinsert"}) {
       EXPECT_NE(table.find(text), std::string::npos) << table;
     }
   }

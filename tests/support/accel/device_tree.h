@@ -12,9 +12,10 @@
 namespace pt {
 
 inline const char* name_of(DeviceBuilder builder) {
-  return builder == DeviceBuilder::lbvh    ? "lbvh"
-         : builder == DeviceBuilder::hploc ? "hploc"
-                                           : "balanced";
+  return builder == DeviceBuilder::lbvh             ? "lbvh"
+         : builder == DeviceBuilder::hploc          ? "hploc"
+         : builder == DeviceBuilder::hploc_reinsert ? "hploc-reinsert"
+                                                    : "balanced";
 }
 
 inline std::string name_of(const DeviceBuildOptions& options) {
@@ -36,8 +37,8 @@ inline DeviceBuildOptions binary_options() {
 
 inline std::vector<DeviceBuildOptions> all_options() {
   std::vector<DeviceBuildOptions> all;
-  for (const DeviceBuilder builder :
-       {DeviceBuilder::lbvh, DeviceBuilder::hploc, DeviceBuilder::balanced}) {
+  for (const DeviceBuilder builder : {DeviceBuilder::lbvh, DeviceBuilder::hploc,
+                                      DeviceBuilder::hploc_reinsert, DeviceBuilder::balanced}) {
     for (const int format : {0, 1, 2}) {
       DeviceBuildOptions options = format == 0 ? binary_options() : DeviceBuildOptions{};
       if (format == 1) options.collapse = Collapse::greedy;

@@ -7,7 +7,8 @@ namespace pt {
 
 /// Whether trees are built on the CUDA device.
 inline bool is_device_builder(TreeBuilder builder) {
-  return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc;
+  return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc ||
+         builder == TreeBuilder::hploc_reinsert;
 }
 
 /// Throws Error where a builder of the device is to work on the CPU, or for a structure that is not

@@ -37,7 +37,20 @@ void check_options(std::uint32_t count, const DeviceBuildOptions& options) {
 
 /// The builder to try when a tree is too deep.
 DeviceBuilder next_builder(DeviceBuilder builder) {
-  return builder == DeviceBuilder::hploc ? DeviceBuilder::lbvh : DeviceBuilder::balanced;
+  switch (builder) {
+    case DeviceBuilder::hploc_reinsert:
+      return DeviceBuilder::hploc;
+    case DeviceBuilder::hploc:
+      return DeviceBuilder::lbvh;
+    default:
+      return DeviceBuilder::balanced;
+  }
+}
+
+/// Of a tree that is to change: the costs are found afterwards.
+HierarchyJob without_costs(HierarchyJob job) {
+  job.tables = nullptr, job.binary_costs = nullptr;
+  return job;
 }
 
 }  // namespace
@@ -57,7 +70,8 @@ class DeviceTreeBuilder::Work {
     job_.costs = options.costs;
     divide_scratch();
     // Wide nodes are far fewer than triangles but for strange scenes.
-    divide_collapse_scratch(is_wide() ? count / 2 + 64 : count);
+    node_capacity_ = is_wide() ? count / 2 + 64 : count;
+    divide_collapse_scratch();
 
     DeviceTree tree;
     watch_.start();
@@ -143,13 +157,12 @@ class DeviceTreeBuilder::Work {
     });
   }
 
-  void divide_collapse_scratch(std::uint32_t node_capacity) {
-    node_capacity_ = node_capacity;
+  void divide_collapse_scratch() {
     const std::uint64_t node_bytes = is_wide() ? sizeof(CwbvhNode) : sizeof(Bvh2Node);
     collapse_scratch_.divide([&](Scratch& s) {
-      queue_ = s.take<std::uint64_t>(node_capacity);
+      queue_ = s.take<std::uint64_t>(node_capacity_);
       order_ = s.take<std::uint32_t>(job_.count);
-      nodes_ = s.take<char>(node_capacity * node_bytes);
+      nodes_ = s.take<char>(node_capacity_ * node_bytes);
     });
   }
 
@@ -166,11 +179,11 @@ class DeviceTreeBuilder::Work {
   CollapseCounters build_nodes(DeviceTree& tree) {
     tree.builder = options_.builder;
     while (true) {
-      build_hierarchy(tree.builder);
-      watch_.mark(&tree.times.hierarchy_ms);
+      build_hierarchy(tree.builder, tree.times);
       CollapseCounters counters = collapse(tree.times);
       if (counters.overflowed != 0) {
-        divide_collapse_scratch(job_.count);
+        node_capacity_ = job_.count;
+        divide_collapse_scratch();
         counters = collapse(tree.times);
       }
       if (static_cast<int>(counters.depth) <= options_.depth_max) return counters;
@@ -182,13 +195,40 @@ class DeviceTreeBuilder::Work {
     }
   }
 
-  void build_hierarchy(DeviceBuilder builder) {
+  void build_hierarchy(DeviceBuilder builder, DeviceBuildTimes& times) {
     enqueue_prefixes(sorted_.keys[0], job_.count, options_.morton_bits,
                      builder != DeviceBuilder::balanced, prefixes_);
     job_.order = sorted_.values[0];
     job_.prefixes = prefixes_;
     job_.primitives = primitives_;
-    builder == DeviceBuilder::hploc ? enqueue_hploc(job_) : enqueue_lbvh(job_);
+    const bool reinserts = builder == DeviceBuilder::hploc_reinsert && job_.count > 2;
+    if (reinserts) {
+      enqueue_hploc(without_costs(job_));
+    } else if (builder == DeviceBuilder::lbvh || builder == DeviceBuilder::balanced) {
+      enqueue_lbvh(job_);
+    } else {
+      enqueue_hploc(job_);
+    }
+    watch_.mark(&times.hierarchy_ms);
+    if (!reinserts) return;
+    reinsert();
+    watch_.mark(&times.reinsertion_ms);
+  }
+
+  /// In the memory that the collapse uses afterwards.
+  void reinsert() {
+    ReinsertionJob job;
+    job.count = job_.count;
+    job.primitives = primitives_, job.nodes = job_.nodes, job.root = job_.root;
+    const std::uint64_t count = job_.count;
+    collapse_scratch_.divide([&](Scratch& s) {
+      job.parents = s.take<std::uint32_t>(2 * count);
+      job.locks = s.take<std::uint64_t>(2 * count);
+      job.arrivals = s.take<std::uint32_t>(count);
+      job.moves = s.take<Move>(job.candidates());
+    });
+    enqueue_reinsertion(job, job_);
+    divide_collapse_scratch();
   }
 
   CollapseCounters collapse(DeviceBuildTimes& times) {

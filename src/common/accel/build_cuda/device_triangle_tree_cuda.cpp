@@ -10,9 +10,20 @@
 namespace pt {
 namespace {
 
+DeviceBuilder device_builder(TreeBuilder builder) {
+  switch (builder) {
+    case TreeBuilder::lbvh:
+      return DeviceBuilder::lbvh;
+    case TreeBuilder::hploc_reinsert:
+      return DeviceBuilder::hploc_reinsert;
+    default:
+      return DeviceBuilder::hploc;
+  }
+}
+
 DeviceBuildOptions device_options(const TreeOptions& options) {
   DeviceBuildOptions build;
-  build.builder = options.builder == TreeBuilder::lbvh ? DeviceBuilder::lbvh : DeviceBuilder::hploc;
+  build.builder = device_builder(options.builder);
   const bool is_wide = options.accel != AccelKind::bvh2;
   build.format = is_wide ? TreeFormat::cwbvh : TreeFormat::bvh2;
   build.costs = is_wide ? options.cwbvh_costs : options.bvh2_costs;
@@ -65,7 +76,7 @@ BuiltGroups build_groups(std::span<const Mesh> meshes, std::span<const Instance>
 
 /// Where some tree got too deep, others have built it.
 std::string names_of(const std::set<DeviceBuilder>& builders) {
-  constexpr const char* names[] = {"lbvh", "hploc", "balanced"};
+  constexpr const char* names[] = {"lbvh", "hploc", "hploc-reinsert", "balanced"};
   std::string text;
   for (const DeviceBuilder builder : builders) {
     text += (text.empty() ? "" : "+") + std::string(names[static_cast<int>(builder)]);

@@ -116,7 +116,11 @@ __device__ void merge_range(const HierarchyJob& job, std::uint32_t first, std::u
   int count = load_clusters(job, first, split, last, clusters, lane);
   while (count > (is_whole ? 1 : kept)) count = merge_pairs<Costs>(job, clusters, count, lane);
   if (is_whole) {
-    if (lane == 0) *job.root = clusters.cluster[0].ref;
+    if (lane == 0) {
+      const Cluster& whole = clusters.cluster[0];
+      *job.root = whole.ref;
+      store_wide(&job.nodes[whole.node_index], BuildNode{{}, no_node, {}, no_node});
+    }
   } else if (lane < kept) {  // the range has room for more than that
     job.pairs[first + lane] = pack(lane < count ? clusters.cluster[lane] : Cluster{nobody, 0});
   }

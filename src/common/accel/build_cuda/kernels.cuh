@@ -4,6 +4,7 @@
 #include "common/accel/build/binary/build_tree.h"
 #include "common/accel/build/morton.h"
 #include "common/accel/build_cuda/build_device.h"
+#include "common/accel/build_cuda/reinsertion.h"
 
 namespace pt::device_build {
 
@@ -67,7 +68,7 @@ struct HierarchyJob {
   const std::uint32_t* order = nullptr;
   const std::uint8_t* prefixes = nullptr;
   const BuildNode* primitives = nullptr;
-  BuildNode* nodes = nullptr;       ///< [count]
+  BuildNode* nodes = nullptr;       ///< [count]; H-PLOC's unused one has no_node for its children
   CollapseTable* tables = nullptr;  ///< [count] or null: not needed
   float* binary_costs = nullptr;    ///< likewise
   TreeCosts costs;
@@ -78,6 +79,9 @@ struct HierarchyJob {
 
 void enqueue_lbvh(const HierarchyJob& job);
 void enqueue_hploc(const HierarchyJob& job);
+
+/// Makes H-PLOC's tree cheaper, and then finds the costs that `hierarchy` asks for.
+void enqueue_reinsertion(ReinsertionJob job, const HierarchyJob& hierarchy);
 
 /// Counters of a collapse, which start as zeros. Allocation is one atomic operation for both.
 struct CollapseCounters {
