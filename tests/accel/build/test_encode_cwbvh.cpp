@@ -101,6 +101,44 @@ TEST(EncodeCwbvh, WallsOfARoomAreFlat) {
   EXPECT_GE(flat, 0.9 * walls);
 }
 
+/// A table with two legs and things on it; its top is the second child.
+CwbvhChildren make_table(TestRandom& random) {
+  CwbvhChildren children;
+  children.count = 8;
+  const float top = static_cast<float>(random.uniform(0.5, 1.2));
+  const auto flat = [](const Vec3& low, const Vec3& high) { return hit_bounds(low, high, low); };
+  children.bounds[0] = {{1, 1, 0}, {1.1f, 2, top}};
+  children.bounds[1] = flat({1, 1, top}, {3, 2, top});
+  children.bounds[2] = {{2.9f, 1, 0}, {3, 2, top}};
+  for (int c = 3; c < 8; ++c) {
+    const Vec3 at(1.2f + 0.3f * static_cast<float>(c - 3), 1.3f, top);
+    const Vec3 size = Vec3(0.2f) + point_in_cube(random, 0.1f);
+    children.bounds[c] = {at, at + size};
+  }
+  for (int c = 0; c < 8; ++c) children.triangles[c] = c == 1 ? 2 : 0;
+  return children;
+}
+
+// Rays that leave the table do not meet it again, and boxes stay tight.
+TEST(EncodeCwbvh, FlatChildrenInsideANodeAreFlat) {
+  TestRandom random(9);
+  int flat = 0, coarse = 0;
+  constexpr int tables = 1000;
+  for (int i = 0; i < tables; ++i) {
+    const CwbvhChildren children = make_table(random);
+    expect_tight_and_conservative(children);
+    const CwbvhSlots slots = assign_cwbvh_slots(children);
+    const CwbvhNode node = encode_cwbvh_node(children, slots, 0, 0);
+    for (int s = 0; s < cwbvh_width; ++s) {
+      if (slots.child[s] == 1) flat += node.planes[2][2 * s] == node.planes[2][2 * s + 1] ? 1 : 0;
+    }
+    ASSERT_LE(node.step(2), 1.5f / 16);
+    coarse += node.step(2) > 1.5f / 64 ? 1 : 0;
+  }
+  EXPECT_GE(flat, 0.95 * tables);
+  EXPECT_LE(coarse, 0.05 * tables);
+}
+
 TEST(EncodeCwbvh, FieldsNameEachChildOnce) {
   TestRandom random(5);
   for (int i = 0; i < 10'000; ++i) {

@@ -1,62 +1,17 @@
 // Encodes one node of the compressed wide BVH; the builders of both devices use it.
 #pragma once
 
-#include "common/accel/cwbvh.h"
-#include "common/geometry/bounds.h"
+#include "common/accel/build/wide/cwbvh_grid.h"
 
 namespace pt {
 
 inline constexpr std::uint8_t no_cwbvh_child = 0xff;
-
-/// The children that a wide node is to have, in any order.
-struct CwbvhChildren {
-  int count = 0;  ///< 0..cwbvh_width
-  Bounds bounds[cwbvh_width];
-  std::uint32_t triangles[cwbvh_width];  ///< 1..cwbvh_leaf_max; 0: an inner node
-};
 
 /// Slot -> child, or no_cwbvh_child. Inner nodes lie in memory in the order of their slots, and so
 /// do the leaves' triangles.
 struct CwbvhSlots {
   std::uint8_t child[cwbvh_width];
 };
-
-/// The grid of one axis: origin + step * q.
-struct CwbvhGrid {
-  float origin, step;  ///< the step has 16 significant bits
-
-  /// The largest q at or below x >= origin, and the smallest at or above; planes that x misses by
-  /// no more than the tolerance count as met.
-  PT_HD float floor_of(float x) const { return floorf(coordinate_of(x) + snap); }
-  PT_HD float ceil_of(float x) const { return ceilf(fmaxf(coordinate_of(x) - snap, 0.0f)); }
-
-  // With the margins of hit_bounds, walls of a room up to twice as long as wide are flat. What is
-  // left of the tolerance is the traversal's.
-  static constexpr float snap = 4.0f / 4096.0f;
-  static constexpr float fit = 0.5f / 4096.0f;
-
- private:
-  PT_HD float coordinate_of(float x) const { return add_rounded(x, -origin) / step; }
-};
-
-/// A step of 16 significant bits, rounded to nearest; never 0.
-PT_HD float round_cwbvh_step(float step) {
-  const std::uint32_t bits = (float_to_bits(step) + 0x80u) & 0xffffff00u;
-  return bits_to_float(bits < 0x00800000u ? 0x00800000u : bits);
-}
-
-/// A fine grid that covers [low, high], both of which lie on it, wherever a step can be found whose
-/// upper 24 bits say it well enough; |low|, |high| < 1e30.
-PT_HD CwbvhGrid make_cwbvh_grid(float low, float high) {
-  const float extent = add_rounded(high, -low);
-  for (int last = 255; last >= 128; --last) {
-    const auto count = static_cast<float>(last);
-    const float step = round_cwbvh_step(extent / count);
-    const float rest = fabsf(fused_multiply_add(step, -count, extent));
-    if (rest <= step * CwbvhGrid::fit) return {low, step};
-  }
-  return {low, round_cwbvh_step(extent * (1.0f / 254.0f))};
-}
 
 /// How far along the diagonal of `slot` a child lies: what the slots' assignment minimises in sum.
 /// Bit `axis` of a slot is set for children further along that axis.
@@ -112,7 +67,6 @@ PT_HD CwbvhNode encode_cwbvh_node(const CwbvhChildren& children, const CwbvhSlot
   for (int c = 0; c < children.count; ++c) all.grow(children.bounds[c]);
   if (all.is_empty()) all = {Vec3(0.0f), Vec3(0.0f)};
   CwbvhNode node;
-  node.origin = all.min;
   node.child_base = child_base;
   node.triangle_base = triangle_base;
   std::uint32_t inner = 0, leaves = 0, pairs = 0;
@@ -126,7 +80,8 @@ PT_HD CwbvhNode encode_cwbvh_node(const CwbvhChildren& children, const CwbvhSlot
   const std::uint32_t masks[3] = {inner, leaves, pairs};
   PT_UNROLL(3)
   for (int i = 0; i < 3; ++i) {
-    const CwbvhGrid grid = make_cwbvh_grid(all.min[i], all.max[i]);
+    const CwbvhGrid grid = fit_cwbvh_grid(children, i, all.min[i], all.max[i]);
+    node.origin[i] = grid.origin;
     node.packed[i] = float_to_bits(grid.step) | masks[i];
     for (int s = 0; s < cwbvh_width; ++s) {
       const std::uint8_t c = slots.child[s];
