@@ -132,6 +132,7 @@ const std::vector<ImageKind> triangle_kinds = [] {
       for (const std::string& builder : names_where(TreeBuilder::hploc, is_device_builder)) {
         settings.back().second = builder;
         kinds.push_back({name + "_" + accel + "_" + builder, settings});
+        std::ranges::replace(kinds.back().name, '-', '_');
       }
     }
   }
