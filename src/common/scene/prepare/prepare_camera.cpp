@@ -7,62 +7,12 @@
 #include "common/error/error.h"
 #include "common/geometry/primitive_bounds.h"
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/prepare/near_space.h"
 
 namespace pt {
 namespace {
 
 Vec3 to_vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-/// Where camera rays are before they reach the near plane, and a little more: depths from 0 to
-/// `near`, within a ball.
-class NearSpace {
- public:
-  NearSpace(const CameraParameters& parameters, int width, int height)
-      : near_(1.001f * parameters.near_clip) {
-    const Camera camera = make_camera(parameters, width, height);
-    origin_ = camera.origin, forward_ = camera.forward;
-    const float lens = std::max(glm::length(camera.lens_x), glm::length(camera.lens_y));
-    for (const float x : {-4.0f, static_cast<float>(width) + 4.0f}) {  // a filter's width beyond
-      for (const float y : {-4.0f, static_cast<float>(height) + 4.0f}) {
-        const Vec3 to_corner = camera.corner + x * camera.step_x + y * camera.step_y;
-        const float depth = glm::dot(to_corner, forward_);
-        const float reach =
-            camera.is_orthographic
-                ? glm::length(to_corner) + near_
-                : lens + near_ * (glm::length(to_corner) + lens) / std::max(depth, 1e-30f);
-        radius_ = std::max(radius_, 1.001f * reach);
-      }
-    }
-  }
-
-  bool meets(const Bounds& box) const {
-    const Vec3 nearest = glm::clamp(origin_, box.min, box.max);
-    float least = HUGE_VALF, most = -HUGE_VALF;
-    for (int corner = 0; corner < 8; ++corner) {
-      const float depth =
-          depth_of({(corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
-                    (corner & 4 ? box.max : box.min).z});
-      least = std::min(least, depth), most = std::max(most, depth);
-    }
-    return glm::length(nearest - origin_) <= radius_ && least <= near_ && most >= 0.0f;
-  }
-
-  bool meets(const Vec3& a, const Vec3& b, const Vec3& c) const {
-    const auto [least, most] = std::minmax({depth_of(a), depth_of(b), depth_of(c)});
-    if (least > near_ || most < 0.0f) return false;
-    Bounds box;
-    box.grow(a), box.grow(b), box.grow(c);
-    if (!meets(box)) return false;
-    const Vec3 n = glm::cross(b - a, c - a);
-    return std::abs(glm::dot(n, origin_ - a)) <= radius_ * glm::length(n);
-  }
-
- private:
-  float depth_of(const Vec3& p) const { return glm::dot(p - origin_, forward_); }
-
-  Vec3 origin_{0.0f}, forward_{0.0f};
-  float near_, radius_ = 0.0f;
-};
 
 bool meets_mesh(const NearSpace& space, const Mesh& mesh) {
   return std::ranges::any_of(mesh.triangles, [&](const TriangleIndices& t) {
