@@ -368,8 +368,11 @@ struct ShadeSurface {
     const Hit hit = pool.load_hit(slot);
     PoolSink<streams, Traits::has_media> sink{pool, samples, slot, has_lights};
     if constexpr (streams) {
-      meet_surface<Traits>(scene, ray, hit, path, limits,
-                           StreamedSteps{source, samples, path, sink}, sink);
+      // As meet_surface, which compilers may call: then it would be handed the scene likewise.
+      const StreamedSteps steps{source, samples, path, sink};
+      follow_scattering<Traits>(
+          Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, steps), path,
+          sink);
     } else {
       const PathId id_of_path = samples.id_of(path.index);
       auto random = source.open(id_of_path);

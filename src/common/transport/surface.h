@@ -182,15 +182,15 @@ PT_HD std::uint32_t material_index_at(const Scene& scene, const Hit& hit) {
              : scene.triangles.triangles[hit.primitive - primitives].material;
 }
 
-/// A sphere in a scene of which some have a frame. Not inlined: few scenes have any, and its code
-/// gives the kernel that shades all scenes with instances 880 bytes of stack instead of 80, which
-/// cost `instances` 6 and 8 % on an H200.
-PT_NOINLINE inline Surface framed_sphere(const Scene& scene, const Hit& hit, Surface surface) {
-  const SphereFrame frame = load_wide(&scene.sphere_frames[hit.primitive]);
+/// A sphere in a scene of which some have a frame. Not inlined, since few scenes have any; and
+/// called with values alone: the scene, a kernel's parameter, would be handed on in local memory,
+/// which gives the kernel that shades all scenes with instances 800 bytes of stack instead of 72.
+PT_NOINLINE inline Surface framed_sphere(const SphereFrame* its_frame, float radius,
+                                         Surface surface) {
+  const SphereFrame frame = load_wide(its_frame);
   const Vec3 local = frame.local(surface.point.normal);
   if (surface.material.is(Material::textured)) surface.uv = sphere_uv(local);
   if (surface.material.is(Material::tangents)) {
-    const float radius = scene.primitives.spheres[hit.primitive].radius();
     surface.dp_du = sphere_dp_du(frame, local, radius);
     surface.dp_dv = sphere_dp_dv(frame, local, radius);
   }
@@ -209,7 +209,10 @@ PT_HD Surface surface_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   const std::uint32_t material = scene.material_of[hit.primitive];
   const Surface surface = {point, point.normal, material, scene.material(material)};
   if constexpr (Traits::lighting == Lighting::full) {  // where there are no quads
-    if (scene.sphere_frames != nullptr) return framed_sphere(scene, hit, surface);
+    if (scene.sphere_frames != nullptr) {
+      return framed_sphere(&scene.sphere_frames[hit.primitive],
+                           scene.primitives.spheres[hit.primitive].radius(), surface);
+    }
   }
   return surface;
 }
