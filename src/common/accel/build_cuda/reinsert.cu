@@ -4,44 +4,24 @@
 namespace pt::device_build {
 namespace {
 
-// One thread per candidate, a kernel per step: each needs all of the step before.
-
 __global__ void __launch_bounds__(block_size) link_all(const __grid_constant__ ReinsertionJob job) {
   const std::uint32_t node = blockIdx.x * blockDim.x + threadIdx.x;
   if (node < job.count) link_children(job, node);
 }
 
-__global__ void __launch_bounds__(block_size)
-    find_moves(const __grid_constant__ ReinsertionJob job) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < job.candidates()) find_move(job, i);
-}
-
-__global__ void __launch_bounds__(block_size)
-    lock_moves(const __grid_constant__ ReinsertionJob job) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i >= job.candidates()) return;
+__device__ inline void lock_links_atomically(const ReinsertionJob& job, std::uint32_t i) {
   lock_links(job, i, [](std::uint64_t* lock, std::uint64_t key) {
     atomicMax(reinterpret_cast<unsigned long long*>(lock), key);
   });
 }
 
+/// A step of a pass, by one thread per candidate: a kernel each, which needs all of the step
+/// before.
+template <void (*step)(const ReinsertionJob&, std::uint32_t)>
 __global__ void __launch_bounds__(block_size)
-    claim_moves(const __grid_constant__ ReinsertionJob job) {
+    reinsertion_step(const __grid_constant__ ReinsertionJob job) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < job.candidates()) claim_links(job, i);
-}
-
-__global__ void __launch_bounds__(block_size)
-    break_all_cycles(const __grid_constant__ ReinsertionJob job) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < job.candidates()) break_cycles(job, i);
-}
-
-__global__ void __launch_bounds__(block_size)
-    apply_moves(const __grid_constant__ ReinsertionJob job) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  if (i < job.candidates()) apply_move(job, i);
+  if (i < job.candidates()) step(job, i);
 }
 
 /// For refit_upwards: nodes and their costs in device memory.
@@ -80,11 +60,11 @@ void make_moves(const ReinsertionJob& job) {
   check_cuda(cudaMemsetAsync(job.locks, 0, 2 * std::uint64_t{job.count} * sizeof *job.locks),
              "clear locks");
   const unsigned blocks = blocks_for(job.candidates());
-  find_moves<<<blocks, block_size>>>(job);
-  lock_moves<<<blocks, block_size>>>(job);
-  claim_moves<<<blocks, block_size>>>(job);
-  break_all_cycles<<<blocks, block_size>>>(job);
-  apply_moves<<<blocks, block_size>>>(job);
+  reinsertion_step<find_move><<<blocks, block_size>>>(job);
+  reinsertion_step<lock_links_atomically><<<blocks, block_size>>>(job);
+  reinsertion_step<claim_links><<<blocks, block_size>>>(job);
+  reinsertion_step<break_cycles><<<blocks, block_size>>>(job);
+  reinsertion_step<apply_move><<<blocks, block_size>>>(job);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/geometry/bounds.h"
+#include "common/geometry/convex_polygon.h"
 #include "common/scene/data/camera.h"
 
 namespace pt {
@@ -58,11 +59,10 @@ class NearSpace {
     Bounds box;
     box.grow(a), box.grow(b), box.grow(c);
     if (!meets(box)) return false;
-    const glm::dvec3 origin(origin_);
-    std::vector<glm::dvec3> part = {glm::dvec3(a) - origin, glm::dvec3(b) - origin,
-                                    glm::dvec3(c) - origin};
+    ConvexPolygon part;
+    for (const Vec3& p : {a, b, c}) part.add(glm::dvec3(p) - glm::dvec3(origin_));
     for (const Side& side : sides_) part = part_inside(part, side);
-    return !part.empty();
+    return part.count > 0;
   }
 
  private:
@@ -74,18 +74,10 @@ class NearSpace {
 
   void add_side(const Vec3& normal, float most) { sides_.push_back({glm::dvec3(normal), most}); }
 
-  /// Sutherland and Hodgman 1974, 'Reentrant Polygon Clipping'.
-  static std::vector<glm::dvec3> part_inside(const std::vector<glm::dvec3>& polygon,
-                                             const Side& side) {
-    std::vector<glm::dvec3> part;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const glm::dvec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-      const double a = side.most - glm::dot(side.normal, from);
-      const double b = side.most - glm::dot(side.normal, to);
-      if (a >= 0) part.push_back(from);
-      if ((a >= 0) != (b >= 0)) part.push_back(from + a / (a - b) * (to - from));
-    }
-    return part;
+  static ConvexPolygon part_inside(const ConvexPolygon& polygon, const Side& side) {
+    return clip(
+        polygon, [&](const glm::dvec3& p) { return glm::dot(side.normal, p) - side.most; },
+        [](const glm::dvec3&) {});
   }
 
   template <class Visit>
