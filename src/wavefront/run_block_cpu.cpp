@@ -14,12 +14,15 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
                const Scene& scene, const Slots& slots, std::uint32_t count, Send&& send) {
   RayBlock rays;
   for (std::uint32_t i = 0; i < count; ++i) {
+    const Ray ray = stage.pool.load_ray(slots[i]);
+    float length = infinite_distance;
     std::uint32_t key = 0;
     if (traits.has_masks) {
       const PathState path = stage.pool.load_path_id(slots[i]);
       key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.index)), path.rays);
+      length = ray_length(scene, ray.direction, key);
     }
-    rays.append(stage.pool.load_ray(slots[i]), infinite_distance, key);
+    rays.append(ray, length, key);
   }
   std::array<Hit, RayBlock::size_max> hits;
   intersect_closest_block(traits, scene, rays, hits.data());

@@ -31,7 +31,11 @@ struct MaskedRays : Rays {
                                  int& count) const {
     const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
     if (static_cast<int>(lane) < count) {
-      record.t_min = __uint_as_float(key_of(this->rays.slot(first + lane)));
+      const auto path_key = [this](std::uint32_t path_index) {
+        return mask_key<MaskedTraits>(scene, names.id_of(path_index));
+      };
+      record.t_min =
+          __uint_as_float(this->key_of(scene, this->rays.slot(first + lane), path_key, record));
     }
     return first;
   }
@@ -42,12 +46,6 @@ struct MaskedRays : Rays {
 
  private:
   using MaskedTraits = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
-
-  __device__ std::uint32_t key_of(std::uint32_t slot) const {
-    return this->ray_key(slot, [this](std::uint32_t path_index) {
-      return mask_key<MaskedTraits>(scene, names.id_of(path_index));
-    });
-  }
 };
 
 }  // namespace pt

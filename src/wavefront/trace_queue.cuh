@@ -50,11 +50,14 @@ struct QueuedPaths {
     return rays.pool.path_lanes(lanes_of(rays), rays.slot(ray_index));
   }
 
-  /// For masks. `path_key` gives a path's key by its index.
+  /// For masks: the key of the ray, which it may end. `path_key` gives a path's key by its index.
   template <class PathKey>
-  __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
+  __device__ std::uint32_t key_of(const Scene& scene, std::uint32_t slot, PathKey&& path_key,
+                                  RayRecord& record) const {
     const PathState path = rays.pool.load_path_id(slot);
-    return next_ray_key(path_key(path.index), path.rays);
+    const std::uint32_t key = next_ray_key(scene, path_key(path.index), path.rays);
+    record.t_max = ray_length(scene, record.direction, key);
+    return key;
   }
 };
 
@@ -85,10 +88,11 @@ struct QueuedShadowRays {
   }
 
   template <class PathKey>
-  __device__ std::uint32_t ray_key(std::uint32_t slot, PathKey&& path_key) const {
+  __device__ std::uint32_t key_of(const Scene& scene, std::uint32_t slot, PathKey&& path_key,
+                                  RayRecord&) const {
     std::uint32_t path_index;
     rays.pool.load_shadow(slot, path_index);
-    return shadow_ray_key(path_key(path_index), rays.pool.load_shadow_rays(slot));
+    return shadow_ray_key(scene, path_key(path_index), rays.pool.load_shadow_rays(slot));
   }
 };
 

@@ -106,17 +106,19 @@ TEST_P(AovPlanes, AreMadeOfTheirSamples) {
 }
 
 // The camera of `cornell` is a pinhole before a box of axis-parallel walls.
-TEST(Aovs, OfTheCornellBoxFitTogether) {
+void expect_planes_fit_together(float near_clip) {
   const Options o = with(Options(), {{"scene", "cornell"},
                                      {"device", "cpu"},
                                      {"width", "32"},
                                      {"height", "32"},
                                      {"spp", "1"},
                                      {"aov", all_names}});
+  SceneData scene = build_scene(o);
+  scene.camera.near_clip = near_clip;
   const DeviceInfo device = choose_device(o.device);
-  const SceneData scene = make_scene_for(o, device);
+  prepare_scene_for(scene, o, device);
   const Vec3 eye = scene.camera.look_from;
-  const Image image = render_options(o).image;
+  const Image image = take_image(*make_renderer(o, scene, device), {}).image;
   const auto vector = [&](std::size_t layer, std::size_t i) {
     const float* v = &image.layers[layer].values[3 * i];
     return Vec3(v[0], v[1], v[2]);
@@ -138,6 +140,11 @@ TEST(Aovs, OfTheCornellBoxFitTogether) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(vector(0, i)[c], diffuse[c], 1e-5f);
   }
   EXPECT_GT(hits, 900u);
+}
+
+TEST(Aovs, OfTheCornellBoxFitTogether) {
+  expect_planes_fit_together(0.0f);
+  expect_planes_fit_together(1.5f);  // depth is the distance from the camera all the same
 }
 
 // What Mitsuba 3.9.1's aov `uv:uv` shows of these shapes: a rectangle's v grows with y, PLY's is as

@@ -168,6 +168,13 @@ TEST_F(CudaMasks, PersistentWarpsAskThem) {
   }
 }
 
+TEST_F(CudaMasks, LimitCameraRays) {
+  for (const char* finish : {"0", "auto"}) {
+    expect_equal(limited_room(), {{"finish-paths", finish}}, true);
+  }
+  expect_equal(limited_room(), {{"accel", "bvh2"}}, false);
+}
+
 TEST_F(CudaMasks, AThreadPerRayAsksThemAmongSpheresAndInstances) {
   const Settings tiny{{"pool-size", "3001"}, {"finish-paths", "0"}};
   SceneData with_sphere = masked_room();

@@ -305,5 +305,15 @@ TEST(SortingOfMasks, GivesEachPathWhatItGetsAlone) {
   paths.expect_what_each_gets_alone<MaskedTraits>();
 }
 
+TEST(SortingOfMasks, EndsCameraRaysAtTheFarPlane) {
+  const Options options = with(small_image(), {{"width", "31"}, {"height", "23"}});
+  SceneData scene = limited_room();
+  prepare_scene(scene, options);
+  ASSERT_TRUE(is_limited(scene.camera));
+  SortedPaths paths(scene, options);
+  paths.sort<MaskedTraits>(1, 31 * 23 * 2);
+  paths.expect_what_each_gets_alone<MaskedTraits>();
+}
+
 }  // namespace
 }  // namespace pt

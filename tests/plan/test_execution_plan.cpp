@@ -46,9 +46,6 @@ SceneProperties changed(SceneProperties scene, Change&& change) {
 SceneProperties masked_mesh() {
   return changed(mesh(), [](SceneProperties& s) { s.has_masks = true; });
 }
-SceneProperties clipped_mesh() {
-  return changed(mesh(), [](SceneProperties& s) { s.limits_camera_rays = true; });
-}
 /// `open`: with boundaries that have no BSDF.
 SceneProperties filled_glass(bool open = false) {
   return changed(mesh(),
@@ -244,8 +241,6 @@ const std::vector<Row>& rows() {
        mesh_and_sphere(),
        gpu(),
        {{"accel", "bvh2"}, {"persistent", "off"}}},
-      {"clip planes", {}, clipped_mesh(), gpu(), {{"accel", "bvh2"}, {"persistent", "off"}}},
-      {"clip planes on a CPU", {}, clipped_mesh(), cpu(), {{"accel", "bvh2"}}},
       {"triangles in a megakernel",
        mega(),
        mesh(five_kinds),
@@ -413,7 +408,7 @@ TEST(ExecutionPlan, TakesTheModeThatWasFaster) {
 TEST(ExecutionPlan, TakesTheSameModeWhenTheSceneIsPrepared) {
   for (const SceneProperties& scene :
        {spheres(51), spheres(300), quads(9), mesh(), mesh(five_kinds | bit(kind_of<Metal>)),
-        masked_mesh(), clipped_mesh(), forest(), filled_glass(), filled_glass(true)}) {
+        masked_mesh(), forest(), filled_glass(), filled_glass(true)}) {
     for (const DeviceProperties& device : {gpu(), gpu(64), cpu(), cpu(false)}) {
       const ExecutionPlan plan = plan_of({{"mode", "auto"}}, scene, device);
       const SceneProperties prepared = changed(scene, [&](SceneProperties& s) {
@@ -524,8 +519,6 @@ TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
                  "--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA");
   expect_refused({{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
                  "--accel cwbvh: threads trace triangles alone in it on CUDA");
-  expect_refused({{"accel", "cwbvh"}}, clipped_mesh(), gpu(),
-                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
   expect_refused({{"accel", "cwbvh"}}, mesh_and_sphere(), gpu(),
                  "--accel cwbvh: threads trace triangles alone in it on CUDA");
   EXPECT_TRUE(plan_of({{"accel", "cwbvh"}, {"stages", "fused"}}, forest(), gpu()).fused);
@@ -551,11 +544,9 @@ TEST(ExecutionPlan, SpheresLieInGlobalMemoryForMostKernels) {
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {
-  for (const SceneProperties& scene : {masked_mesh(), clipped_mesh()}) {
-    expect_refused({{"accel", "embree"}}, scene, cpu(),
-                   "--accel embree: scene '' has masks, clip planes or hidden emitters; expected "
-                   "brute, bvh2 or cwbvh");
-  }
+  expect_refused({{"accel", "embree"}}, masked_mesh(), cpu(),
+                 "--accel embree: scene '' has masks, media, a far plane or hidden emitters; "
+                 "expected brute, bvh2 or cwbvh");
 }
 
 TEST(ExecutionPlan, IsPrintedInColumns) {

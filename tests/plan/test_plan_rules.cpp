@@ -77,12 +77,12 @@ TEST(SceneOptions, VotesAreForTrianglesAlone) {
               scene == "instances:20"
                   ? ""
                   : "--kernel sort: traces triangles and their instances alone; scene '" + scene +
-                        "' has spheres, masks or media among instances, boundaries without a BSDF, "
-                        "clip planes, hidden emitters or no triangles, expected auto or loop");
+                        "' has spheres, masks or media among instances, boundaries without a BSDF "
+                        "or no triangles, expected auto or loop");
     EXPECT_EQ(
         refusal(scene, "kernel", "vote"),
         "--kernel vote: traces triangles alone; scene '" + scene +
-            "' has spheres, instances, masks, media, clip planes, hidden emitters or no triangles, "
+            "' has spheres, instances, masks, media, a far plane, hidden emitters or no triangles, "
             "expected auto or loop");
     EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
   }

@@ -130,6 +130,36 @@ TEST(Camera, RaysOfOneFilmPointMeetInTheFocalPlane) {
   }
 }
 
+// Of any kind of camera, at the image's corners, too; and hardly more.
+TEST(CameraExtent, HoldsWhereRaysBegin) {
+  TestRandom random(8);
+  for (int i = 0; i < 300; ++i) {
+    CameraParameters parameters = random_parameters(random);
+    if (!well_conditioned(parameters)) continue;
+    parameters.aperture *= static_cast<float>(i % 2);
+    parameters.near_clip = i % 3 == 0 ? 0.0f : static_cast<float>(random.log_uniform(0.01, 10));
+    parameters.orthographic = i % 5 == 0;
+    parameters.orthographic_size = {3.0f, 1.0f};
+    parameters.principal_point = {static_cast<float>(random.uniform(-0.3, 0.3)), 0.1f};
+    const int width = 40 + i % 40, height = 130 - 2 * (i % 40);
+    const Camera camera = make_camera(parameters, width, height);
+    const float extent = camera_extent(parameters, width, height);
+    float most = 0;
+    for (int k = 0; k < 400; ++k) {
+      const bool is_corner = k < 100;
+      const auto u = [&] { return static_cast<float>(random.unit()); };
+      const float x =
+          is_corner ? k % 2 * static_cast<float>(width) : u() * static_cast<float>(width);
+      const float y =
+          is_corner ? k / 2 % 2 * static_cast<float>(height) : u() * static_cast<float>(height);
+      const Ray ray = camera_ray(camera, x, y, u(), u());
+      most = std::max(most, glm::length(ray.origin - parameters.look_from));
+    }
+    ASSERT_LE(most, extent) << i;
+    ASSERT_LE(extent, 3.2f * most + 1e-4f) << i;
+  }
+}
+
 TEST(Camera, TheLensIsUniform) {
   const CameraParameters parameters{{0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 40, 3, 2};
   const Camera camera = make_camera(parameters, 10, 10);

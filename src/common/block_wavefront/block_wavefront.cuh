@@ -122,7 +122,11 @@ struct BlockRays {
     float distance = infinite_distance;
     const Ray ray = is_shadow(ray_id) ? slot.load_shadow_ray(distance) : slot.load_ray();
     float key = 0.0f;  // instead of t_min, which is 0
-    if constexpr (Traits::has_masks) key = __uint_as_float(key_of(ray_id));
+    if constexpr (Traits::has_masks) {
+      const std::uint32_t ray_key = key_of(ray_id);
+      if (!is_shadow(ray_id)) distance = ray_length(scene, ray.direction, ray_key);
+      key = __uint_as_float(ray_key);
+    }
     return {ray.origin, key, ray.direction, distance};
   }
 
@@ -177,8 +181,8 @@ struct BlockRays {
   __device__ std::uint32_t key_of(std::uint32_t ray_id) const {
     const PathSlot& slot = slots[ray_id / 2];
     const std::uint32_t key = mask_key<Traits>(scene, samples.id_of(slot.load_path_index()));
-    return is_shadow(ray_id) ? shadow_ray_key(key, slot.load_rays())
-                             : next_ray_key(key, slot.load_rays());
+    return is_shadow(ray_id) ? shadow_ray_key(scene, key, slot.load_rays())
+                             : next_ray_key(scene, key, slot.load_rays());
   }
 };
 

@@ -120,8 +120,7 @@ class Planner {
   std::pair<MegakernelKind, std::string> automatic_megakernel() const {
     using enum MegakernelKind;
     if (is_specialized()) return {loop, "spheres and quads alone: the paper's loop"};
-    if (scene_.spheres > 0 || scene_.limits_camera_rays)
-      return {loop, "the others trace triangles alone, without clip planes or hidden emitters"};
+    if (scene_.spheres > 0) return {loop, "the others trace triangles alone"};
     if (!scene_.has_plain_instances()) return {loop, "the others know no masks among instances"};
     if (has_open_media()) return {loop, "the others know no boundaries without a BSDF"};
     if (o_.work != Work::persistent) return {loop, "--work " + to_string(o_.work)};
@@ -173,7 +172,7 @@ class Planner {
   /// blocks; for threads that follow rays alone binary ones are faster.
   std::pair<Accel, std::string> automatic_tree() const {
     const char* const alone = "rays are traced one by one, for which binary trees are faster";
-    if (scene_.limits_camera_rays || has_open_media()) return {Accel::bvh2, alone};
+    if (has_open_media()) return {Accel::bvh2, alone};
     if (is_on_gpu(Mode::megakernel)) {
       if (plan_.megakernel == MegakernelKind::loop) return {Accel::bvh2, alone};
       return {Accel::cwbvh, "what --kernel " + to_string(plan_.megakernel) + " traces"};
@@ -207,8 +206,8 @@ class Planner {
 
   bool warps_can_persist() const {
     return is_on_gpu(Mode::wavefront) && !is_specialized() &&
-           compaction_info(o_.compaction).appends && scene_.spheres == 0 &&
-           !scene_.limits_camera_rays && !has_open_media() && scene_.has_plain_instances();
+           compaction_info(o_.compaction).appends && scene_.spheres == 0 && !has_open_media() &&
+           scene_.has_plain_instances();
   }
 
   void choose_scene_memory() {

@@ -36,7 +36,7 @@ bool is_general(const SceneProperties& scene, const Options& o) {
 
 bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
   return is_general(scene, o) && scene.spheres == 0 && scene.has_plain_instances() &&
-         !scene.limits_camera_rays && !scene.has_open_boundaries;
+         !scene.has_open_boundaries;
 }
 
 bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
@@ -71,7 +71,7 @@ constexpr SceneRule rules[] = {
                      MegakernelKind::sort);
      },
      has_plain_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, masks, media, clip planes, hidden "
+     "traces triangles alone; scene '{}' has spheres, instances, masks, media, a far plane, hidden "
      "emitters or no triangles, expected auto or loop"},
     {"kernel",
      [](const Options& o) {
@@ -80,8 +80,7 @@ constexpr SceneRule rules[] = {
      },
      has_triangles_alone,
      "traces triangles and their instances alone; scene '{}' has spheres, masks or media among "
-     "instances, boundaries without a BSDF, clip planes, hidden emitters or no triangles, expected "
-     "auto or loop"},
+     "instances, boundaries without a BSDF or no triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -223,7 +222,7 @@ void check_plan(const ExecutionPlan& plan, const Options& options, const ScenePr
                 const DeviceProperties& device) {
   if (plan.accel == Accel::embree && scene.has_masked_kernels())
     throw Error(
-        fmt::format("--accel embree: scene '{}' has masks, clip planes or hidden emitters; "
+        fmt::format("--accel embree: scene '{}' has masks, media, a far plane or hidden emitters; "
                     "expected brute, bvh2 or cwbvh",
                     scene.name));
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);

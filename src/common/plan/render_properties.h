@@ -16,11 +16,10 @@ struct SceneProperties {
   std::size_t triangles = 0;  ///< of the meshes
   std::size_t instances = 0;
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
-  bool has_masks = false;            ///< materials that are not opaque everywhere
+  bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
   bool has_open_boundaries = false;  ///< surfaces may let light through
   bool has_emitters = false;         ///< surfaces that shine
-  bool limits_camera_rays = false;   ///< clip planes or hidden emitters
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
   // Known when the scene has been prepared:
@@ -29,7 +28,7 @@ struct SceneProperties {
   std::size_t scan_bytes = 0;           ///< of the spheres that CUDA scans
   std::optional<std::size_t> emitters;  ///< lights that can be sampled
 
-  bool has_masked_kernels() const { return has_masks || limits_camera_rays || has_media; }
+  bool has_masked_kernels() const { return has_masks || has_media; }
   bool has_only_triangles() const { return spheres == 0 && instances == 0; }
   /// No instances, or some that warps trace in wide trees.
   bool has_plain_instances() const { return instances == 0 || (!has_masks && !has_media); }

@@ -172,7 +172,7 @@ void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFi
            "where a flight ends is no random number that a chain could keep; expected path");
   }
   if (traits.has_masks) {
-    refuse("a scene with masks, clip planes or hidden emitters",
+    refuse("a scene with masks, a far plane or hidden emitters",
            "whether a mask hides is no random number that a chain could keep; "
            "expected materials without an opacity between 0 and 1");
   }

@@ -88,7 +88,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
 /// What a camera ray meets behind boundaries of media without a BSDF.
 struct ViewThroughMedia {
   Ray ray;                ///< from the last of them
-  float distance = 0.0f;  ///< from the camera to there
+  float distance = 0.0f;  ///< from the near plane to there
   Hit hit;
   Color transmittance = Color(1.0f);
   bool collides = false;
@@ -136,17 +136,19 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   const Vec4 u = random.draw(scatter_block(0));
   is_negative = scene.filter.is_negative(u.x, u.y);
   Ray ray = generate_camera_path(scene, id.pixel, u);
+  const float near_plane = scene.camera.distance_of_near_plane(ray.direction);
   const std::uint32_t key = mask_key<Traits>(scene, id);
   if constexpr (Traits::has_media) {
     ViewThroughMedia view = look_through_media<Traits>(scene, ray, key);
     FirstHit first = first_hit<Traits>(scene, view.ray, view.hit, random.draw(scatter_block(1)));
-    if (!view.hit.is_miss()) first.distance += view.distance;
-    first.collision = view.collides ? view.collision : first.distance;
+    if (!view.hit.is_miss()) first.distance += near_plane + view.distance;
+    first.collision = view.collides ? near_plane + view.collision : first.distance;
     first.transmittance = view.transmittance;
     return first;
   }
   const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, key, 0));
   FirstHit first = first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
+  if (!hit.is_miss()) first.distance += near_plane;
   first.collision = first.distance;
   return first;
 }

@@ -37,13 +37,10 @@ PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
 }
 
 /// In a scene with masks: among what a camera ray may meet, if the ray is one.
-PT_HD Hit closest_primitive_in_view(const Scene& scene, Ray ray, const ViewInterval& view,
-                                    std::uint32_t ray_key) {
+PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uint32_t ray_key) {
   const bool is_limited = is_limited_camera_ray(scene, ray_key);
-  // From the near plane on: of a sphere that it cuts the ray hits the far side.
-  if (view.near > 0.0f) ray.origin += view.near * ray.direction;
   Hit hit;
-  hit.t = view.near > 0.0f ? view.far - view.near : view.far;
+  hit.t = ray_length(scene, ray.direction, ray_key);
   traverse_bvh2(scene.bvh_nodes, scene.primitives, ray, hit.t,
                 [&](float t, std::uint32_t primitive, float& t_max) {
                   const bool hidden =
@@ -53,20 +50,18 @@ PT_HD Hit closest_primitive_in_view(const Scene& scene, Ray ray, const ViewInter
                   t_max = hit.t;
                   return false;
                 });
-  if (view.near > 0.0f) hit.t += view.near;
-  return hit;
+  return hit.is_miss() ? Hit() : hit;
 }
 
 /// Both among the triangles; `ray_key` is for masks.
 template <class Traits>
-PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_min, float t_max,
-                           std::uint32_t ray_key) {
+PT_HD Hit closest_triangle(const Scene& scene, const Ray& ray, float t_max, std::uint32_t ray_key) {
   if constexpr (Traits::has_masks) {
-    MaskedQuery<ClosestTriangle, MaskTest> query(t_min, t_max, {scene, ray_key});
+    MaskedQuery<ClosestTriangle, MaskTest> query(0.0f, t_max, {scene, ray_key});
     traverse_triangles<Traits::accel, Traits::has_instances>(scene.triangles, ray, query);
     return query.result();
   } else {
-    return closest_triangle<Traits::accel, Traits::has_instances>(scene.triangles, ray, t_min,
+    return closest_triangle<Traits::accel, Traits::has_instances>(scene.triangles, ray, 0.0f,
                                                                   t_max);
   }
 }
@@ -90,20 +85,15 @@ PT_HD Hit intersect_closest(const Scene& scene, const Ray& ray, std::uint32_t ra
     return closest_primitive<Traits>(scene, ray);
   } else {
     Hit nearest;
-    float t_min = 0.0f, t_max = nearest.t;
+    float t_max = nearest.t;
     if constexpr (Traits::has_masks) {
-      ViewInterval view;
-      if (is_limited_camera_ray(scene, ray_key)) view = scene.camera.view_of(ray.direction);
-      t_min = view.near, t_max = view.far;
-      if (scene.primitives.count() > 0) {
-        nearest = closest_primitive_in_view(scene, ray, view, ray_key);
-        if (!nearest.is_miss()) t_max = nearest.t;
-      }
+      if (scene.primitives.count() > 0) nearest = closest_primitive_in_view(scene, ray, ray_key);
+      t_max = nearest.is_miss() ? ray_length(scene, ray.direction, ray_key) : nearest.t;
     } else if (Traits::geometry == Geometry::mixed && scene.primitives.count() > 0) {
       nearest = closest_primitive<Traits>(scene, ray);
       t_max = nearest.t;
     }
-    Hit hit = closest_triangle<Traits>(scene, ray, t_min, t_max, ray_key);
+    Hit hit = closest_triangle<Traits>(scene, ray, t_max, ray_key);
     if (hit.is_miss()) return nearest;
     hit.primitive += scene.primitives.count();
     return hit;

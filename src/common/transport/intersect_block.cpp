@@ -10,8 +10,8 @@ namespace {
 template <Accel accel, Geometry geometry>
 using Plain = Traits<accel, geometry, Lighting::sky>;
 
-// What no block is made for: instances, limits of camera rays, and a processor without lanes. Calls
-// function(traits) with the traits of one ray.
+// What no block is made for: instances, and a processor without lanes. Calls function(traits) with
+// the traits of one ray.
 template <class Function>
 auto alone(const BlockTraits& traits, Function&& function) {
   if (traits.has_masks) return function(MaskedRays{});
@@ -28,7 +28,7 @@ using PrimitivesBesides = Plain<Accel::bvh2, Geometry::mixed>;
 bool has_block(const BlockTraits& traits, const Scene& scene) {
   const bool has_lanes =
       traits.accel == Accel::brute ? brute_block() != nullptr : tree_block() != nullptr;
-  return scene.triangles.instance_count == 0 && has_lanes && !scene.camera.is_limited;
+  return scene.triangles.instance_count == 0 && has_lanes;
 }
 
 // As MaskedQuery does, of the ray's own hit.
@@ -64,8 +64,9 @@ void intersect_closest_block(const BlockTraits& traits, const Scene& scene, RayB
   } else {
     first_number = scene.primitives.count();
     for (std::uint32_t i = 0; i < rays.count && first_number > 0; ++i) {
-      hits[i] = closest_primitive<PrimitivesBesides>(scene, rays.ray(i));
-      rays.t_max[i] = hits[i].t;
+      hits[i] = traits.has_masks ? closest_primitive_in_view(scene, rays.ray(i), rays.key[i])
+                                 : closest_primitive<PrimitivesBesides>(scene, rays.ray(i));
+      if (!hits[i].is_miss()) rays.t_max[i] = hits[i].t;
     }
     if (traits.accel == Accel::brute) {
       rays.fill_lanes();

@@ -27,27 +27,25 @@ PT_HD std::uint32_t mask_key(const Scene& scene, const PathId& id) {
 
 /// Of the ray after `rays_traced` others of the path, and of the shadow ray from where the last of
 /// them ended.
-PT_HD std::uint32_t next_ray_key(std::uint32_t path_key, std::uint32_t rays_traced) {
-  return combine_hash(path_key, 2 * rays_traced);
-}
-PT_HD std::uint32_t shadow_ray_key(std::uint32_t path_key, std::uint32_t rays_traced) {
-  return combine_hash(path_key, 2 * rays_traced + 1);
-}
-
-/// The same in a scene with surfaces that camera rays do not hit: there the last bit marks camera
-/// rays.
+/// In a scene with surfaces that camera rays do not hit, the last bit marks camera rays.
 PT_HD std::uint32_t next_ray_key(const Scene& scene, std::uint32_t path_key,
                                  std::uint32_t rays_traced) {
-  const std::uint32_t key = next_ray_key(path_key, rays_traced);
+  const std::uint32_t key = combine_hash(path_key, 2 * rays_traced);
   return scene.camera.is_limited ? (key & ~1u) | (rays_traced == 0 ? 1u : 0u) : key;
 }
 PT_HD std::uint32_t shadow_ray_key(const Scene& scene, std::uint32_t path_key,
                                    std::uint32_t rays_traced) {
-  const std::uint32_t key = shadow_ray_key(path_key, rays_traced);
+  const std::uint32_t key = combine_hash(path_key, 2 * rays_traced + 1);
   return scene.camera.is_limited ? key & ~1u : key;
 }
 PT_HD bool is_limited_camera_ray(const Scene& scene, std::uint32_t ray_key) {
   return scene.camera.is_limited && (ray_key & 1u) != 0;
+}
+
+/// How far along the path's next ray something may be met: of camera rays to the far plane.
+PT_HD float ray_length(const Scene& scene, const Vec3& direction, std::uint32_t ray_key) {
+  if (!is_limited_camera_ray(scene, ray_key)) return infinite_distance;
+  return scene.camera.distance_in_view(direction);
 }
 
 PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& uv) {

@@ -49,4 +49,12 @@ inline SceneData masked_room() {
   return scene;
 }
 
+/// The same through a camera that does not see all of it: a near plane, a far plane, and lamps that
+/// camera rays do not meet.
+inline SceneData limited_room() {
+  SceneData scene = masked_room();
+  scene.camera.near_clip = 4, scene.camera.far_clip = 6, scene.camera.hides_emitters = true;
+  return scene;
+}
+
 }  // namespace pt

@@ -1,4 +1,4 @@
-// A thin-lens perspective or an orthographic camera, precomputed so that a camera ray costs six
+// A thin-lens perspective or an orthographic camera, precomputed so that a camera ray costs nine
 // multiply-adds.
 #pragma once
 
@@ -26,14 +26,14 @@ struct CameraParameters {
   bool orthographic = false;     ///< parallel rays; neither angle of view nor lens
   Vec2 orthographic_size{1, 1};  ///< half the width of what is seen; half the height of what a
                                  ///< square image would see
-  float near_clip = 0.0f;        ///< camera rays hit nothing in front of the plane at this distance
-  float far_clip = infinite_distance;  ///< nor behind this one
+  float near_clip = 0.0f;        ///< distance of the plane where camera rays begin
+  float far_clip = infinite_distance;  ///< camera rays hit nothing behind the plane there
   bool hides_emitters = false;         ///< camera rays pass through emitters and see no environment
 };
 
 /// Whether camera rays ignore some surfaces that other rays hit.
 PT_HD bool is_limited(const CameraParameters& camera) {
-  return camera.near_clip > 0.0f || camera.far_clip < infinite_distance || camera.hides_emitters;
+  return camera.far_clip < infinite_distance || camera.hides_emitters;
 }
 
 /// The tangent of half the vertical angle of view of an image of this size.
@@ -54,28 +54,28 @@ PT_HD float vertical_tangent(const CameraParameters& parameters, int width, int 
   }
 }
 
-/// Distances along a ray.
-struct ViewInterval {
-  float near = 0.0f, far = infinite_distance;
-};
-
 /// Directions are relative to `origin`; pixel (0, 0) is the upper left corner.
 struct Camera {
   Vec3 origin;
-  Vec3 corner;          ///< from the origin to the upper left corner of the focal plane
-  Vec3 step_x;          ///< one pixel to the right
-  Vec3 step_y;          ///< one pixel down
-  Vec3 lens_x, lens_y;  ///< half axes of the lens disk
-  Vec3 forward;         ///< unit length: the axis, and the direction of all orthographic rays
-  float near_clip = 0.0f, far_clip = infinite_distance;  ///< along the axis
+  Vec3 corner;             ///< from the origin to the upper left corner of the focal plane
+  Vec3 step_x;             ///< one pixel to the right
+  Vec3 step_y;             ///< one pixel down
+  Vec3 lens_x, lens_y;     ///< half axes of the lens disk
+  Vec3 forward;            ///< unit length: the axis, and the direction of all orthographic rays
+  float near_clip = 0.0f;  ///< along the axis
+  float near_part = 0.0f;  ///< of the way from the lens to the focal plane
+  float view_length = infinite_distance;  ///< from the near to the far plane, along the axis
   bool is_orthographic = false;
   bool hides_emitters = false;
   bool is_limited = false;  ///< camera rays ignore some surfaces that other rays hit
 
-  /// The part of a camera ray in which it may meet something.
-  PT_HD ViewInterval view_of(const Vec3& direction) const {
-    const float stretch = 1.0f / dot(direction, forward);
-    return {near_clip * stretch, fminf(far_clip * stretch, infinite_distance)};
+  /// How far from the pinhole or the lens a camera ray begins.
+  PT_HD float distance_of_near_plane(const Vec3& direction) const {
+    return near_clip / dot(direction, forward);
+  }
+  /// How far along a camera ray something may be met.
+  PT_HD float distance_in_view(const Vec3& direction) const {
+    return fminf(view_length / dot(direction, forward), infinite_distance);
   }
 };
 
@@ -94,7 +94,7 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
   const Vec3 step_y = -pixel_y * up;
   const float plane_distance = orthographic ? 0.0f : parameters.focus_distance;
   const float lens_radius = orthographic ? 0.0f : 0.5f * parameters.aperture;
-  Camera camera{parameters.look_from,
+  Camera camera{parameters.look_from - (orthographic ? parameters.near_clip : 0.0f) * backward,
                 -plane_distance * backward - 0.5f * static_cast<float>(width) * step_x -
                     0.5f * static_cast<float>(height) * step_y,
                 step_x,
@@ -103,7 +103,8 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
                 lens_radius * up,
                 -backward,
                 parameters.near_clip,
-                parameters.far_clip,
+                orthographic ? 0.0f : parameters.near_clip / plane_distance,
+                parameters.far_clip - parameters.near_clip,
                 orthographic,
                 parameters.hides_emitters};
   const Vec2& shift = parameters.principal_point;
@@ -123,7 +124,8 @@ PT_HD Ray camera_ray(const Camera& camera, float x, float y, float u0, float u1)
   const Vec3 offset = lens.x * camera.lens_x + lens.y * camera.lens_y;
   const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
   if (!specialized && camera.is_orthographic) return {camera.origin + to_focus, camera.forward};
-  return {camera.origin + offset, normalize(to_focus - offset)};
+  const Vec3 way = to_focus - offset;
+  return {add_scaled(camera.origin + offset, camera.near_part, way), normalize(way)};
 }
 
 }  // namespace pt

@@ -67,6 +67,7 @@ struct SceneData {
   SceneNames names;
   SceneDefaults defaults;
   CameraParameters camera;
+  float camera_extent = 0.0f;  ///< set_camera: within this distance of look_from camera rays begin
   Sky sky;
   EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
   Sun sun;                      ///< likewise

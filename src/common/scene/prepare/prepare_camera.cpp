@@ -7,32 +7,11 @@
 #include "common/error/error.h"
 #include "common/geometry/primitive_bounds.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/near_space.h"
 
 namespace pt {
 namespace {
 
 Vec3 to_vec3(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
-
-bool meets_mesh(const NearSpace& space, const Mesh& mesh) {
-  return std::ranges::any_of(mesh.triangles, [&](const TriangleIndices& t) {
-    return space.meets(mesh.positions[t.v[0]], mesh.positions[t.v[1]], mesh.positions[t.v[2]]);
-  });
-}
-
-bool near_plane_cuts(const SceneData& scene, int width, int height) {
-  const NearSpace space(scene.camera, width, height);
-  for (const Sphere& s : scene.spheres) {
-    if (space.meets(sphere_bounds(s))) return true;
-  }
-  for (const Quad& q : scene.quads) {
-    if (space.meets(quad_bounds(q))) return true;
-  }
-  // What instances hold is not looked at one by one.
-  if (!scene.instances.empty() && space.meets(scene_bounds(scene))) return true;
-  return std::ranges::any_of(
-      scene.meshes, [&](const Mesh& mesh) { return mesh.group == 0 && meets_mesh(space, mesh); });
-}
 
 }  // namespace
 
@@ -84,9 +63,8 @@ void check_camera(const CameraParameters& camera) {
   }
 }
 
-void drop_idle_clips(SceneData& scene, int width, int height) {
+void drop_idle_far_plane(SceneData& scene) {
   CameraParameters& camera = scene.camera;
-  if (camera.near_clip > 0.0f && !near_plane_cuts(scene, width, height)) camera.near_clip = 0.0f;
   if (camera.far_clip >= infinite_distance) return;
   const Bounds bounds = scene_bounds(scene);
   const Vec3 forward = glm::normalize(camera.look_at - camera.look_from);
@@ -94,6 +72,22 @@ void drop_idle_clips(SceneData& scene, int width, int height) {
   if (glm::dot(farthest - camera.look_from, forward) < 0.999f * camera.far_clip) {
     camera.far_clip = infinite_distance;
   }
+}
+
+float camera_extent(const CameraParameters& parameters, int width, int height) {
+  constexpr float filter = 4.0f;  // pixels that a filter reaches beyond the image, and more
+  const Camera camera = make_camera(parameters, width, height);
+  float extent = 0.0f;
+  for (const float x : {-filter, static_cast<float>(width) + filter}) {
+    for (const float y : {-filter, static_cast<float>(height) + filter}) {
+      const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
+      const Vec3 origin =
+          camera.origin + (camera.is_orthographic ? 1.0f : camera.near_part) * to_focus;
+      extent = std::max(extent, glm::length(origin - parameters.look_from));
+    }
+  }
+  const float lens = std::max(glm::length(camera.lens_x), glm::length(camera.lens_y));
+  return 1.001f * (extent + lens * (1.0f + camera.near_part));
 }
 
 }  // namespace pt

@@ -32,11 +32,8 @@ void build_structure(SceneData& scene, const Bounds& others) {
   const std::vector<Bounds> bounds = primitive_bounds(scene);
   Bounds all;
   for (const Bounds& b : bounds) all.grow(b);
-  all.grow(scene.camera.look_from);
-  if (scene.camera.orthographic) {  // whose rays begin about it
-    const Vec3 around(4.0f * (scene.camera.orthographic_size.x + scene.camera.orthographic_size.y));
-    all.grow(scene.camera.look_from - around), all.grow(scene.camera.look_from + around);
-  }
+  all.grow(scene.camera.look_from - scene.camera_extent);
+  all.grow(scene.camera.look_from + scene.camera_extent);
   if (!others.is_empty()) all.grow(others);
   const float scale = std::max(max_abs(all.min), max_abs(all.max));
   const auto sphere_count = static_cast<std::uint32_t>(scene.spheres.size());
@@ -95,7 +92,7 @@ Vec3 median_center(const std::vector<Sphere>& spheres) {
 // the camera. Widened by more than that, the scan loses no hit.
 void make_scan(SceneData& scene) {
   const Vec3 center = median_center(scene.spheres);
-  float extent = glm::length(scene.camera.look_from - center) + scene.camera.aperture;
+  float extent = glm::length(scene.camera.look_from - center) + scene.camera_extent;
   for (const Sphere& s : scene.spheres) {
     extent = std::max(extent, glm::length(s.center - center) + s.radius());
   }

@@ -25,17 +25,17 @@ void set_camera(SceneData& scene, const CameraParameters& camera, const Options&
   scene.camera = camera;
   override_camera(scene.camera, options.camera);
   check_camera(scene.camera);
-  drop_idle_clips(scene, options.width, options.height);
+  drop_idle_far_plane(scene);
+  scene.camera_extent = camera_extent(scene.camera, options.width, options.height);
 }
 
 }  // namespace
 
 bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options) {
   if (scene.primitive_count() > 0) return false;  // their bounds and scans depend on its place
-  const bool was_orthographic = scene.camera.orthographic;
+  const bool was_orthographic = scene.camera.orthographic, was_limited = is_limited(scene.camera);
   set_camera(scene, camera, options);
-  return scene.camera.orthographic == was_orthographic &&
-         is_limited(scene.camera) == scene.properties.limits_camera_rays;
+  return scene.camera.orthographic == was_orthographic && is_limited(scene.camera) == was_limited;
 }
 
 void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device) {

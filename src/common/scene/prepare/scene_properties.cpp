@@ -32,14 +32,14 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.triangles = scene.triangle_count();
   properties.instances = scene.instances.size();
   properties.is_primitive_only = has_primitives_only(scene);
-  properties.has_masks = std::ranges::any_of(scene.materials, is_masked);
+  properties.has_masks =
+      is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
   properties.has_media = !scene.media.empty();
   properties.has_open_boundaries =
       scene.media_overlap ||
       std::ranges::any_of(scene.materials, [](const auto& m) { return m.passes; });
   properties.has_emitters = std::ranges::any_of(
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
-  properties.limits_camera_rays = is_limited(scene.camera);
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);
   return properties;
