@@ -16,6 +16,7 @@ from lib import harness
 from lib.harness import Experiment, HarnessError, Plot
 from lib.journal import Journal
 from lib.program import failure_of, version_of
+from lib.session import is_complete
 
 ITEMS = ["64K", "1M", "4M", "16M", "64M"]
 CPU_ITEMS = ["64K", "1M", "4M", "16M"]
@@ -92,11 +93,15 @@ def run(experiment, arguments):
             print(shlex.join([str(program), *command]))
         return 0
     path = harness.table_path(experiment, device, arguments)
-    key = json.dumps([version_of(program), device.name, commands])
-    journal = Journal(path.with_suffix(".journal"), hashlib.sha256(key.encode()).hexdigest()[:16],
-                      arguments.fresh, lambda _: True)
+    parts = json.dumps([version_of(program), device.name, commands])
+    key = hashlib.sha256(parts.encode()).hexdigest()[:16]
+    if not arguments.fresh and is_complete(path, key):
+        print(f"measured already by this program and command (--fresh measures again)\n"
+              f"table: {path}")
+        return 0
+    journal = Journal(path.with_suffix(".journal"), key, arguments.fresh, lambda _: True)
     journal.begin(date=harness.now())
-    facts = {**harness.provenance(experiment, program, device, arguments),
+    facts = {**harness.provenance(experiment, program, device, arguments), "key": key,
              "plot": asdict(experiment.plot)}
 
     def save(rows, complete=False):

@@ -107,6 +107,8 @@ def about_mark(table):
                                   "series").items():
         values = [(row, interval(row, table.plot["y"])) for row in rows]
         values = [(row, value) for row, value in values if value]
+        if not values:
+            continue
         above = in_groups([row for row, value in values
                            if value.known and value.low > table.plot["mark"]], "panel")
         count = sum(map(len, above.values()))

@@ -148,7 +148,7 @@ class Ranks(unittest.TestCase):
         self.assertFalse((self.folder / "a.exr").exists())
 
     def test_a_checkpoint_of_some_ranks_goes_on_on_others(self):
-        scene = [*SMALL, "--scene", "cornell", "--spp", 3000, "--seed", 3]
+        scene = [*SMALL, "--scene", "cornell", "--spp", 8000, "--seed", 3]
         self.run_one(*scene, "-o", "one.exr")
         process = subprocess.Popen(self.command(3, [*scene, "--checkpoint", "c.exr,0.2", "-o", "a.exr"]),
                                    cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,

@@ -406,6 +406,26 @@ class Harness(unittest.TestCase):
         self.assertEqual(run(), 0)
         self.assertEqual(len(self.traced), 6 + 1)  # a complete table is not measured again
 
+    def test_compaction_is_measured_once(self):
+        compaction = importlib.import_module("compaction")
+        names = []
+
+        def measure(_program, name, *_):
+            names.append(name)
+            return [{"status": "measured", "name": name, "series": "scan", "cache": "warm",
+                     "strategy": "scan", "time_ms": "1", "gb_per_s": "1", "copy_share": "1"}]
+
+        def run(*more):
+            with contextlib.redirect_stdout(io.StringIO()), \
+                    mock.patch.object(compaction, "measure", measure), \
+                    mock.patch.object(harness, "draw", lambda path: ""):
+                return harness.main(compaction.EXPERIMENT, self.options("--quick", *more),
+                                    runner=compaction.run)
+        self.assertEqual((run(), run()), (0, 0))
+        self.assertEqual(len(names), 2)
+        self.assertEqual(run("--fresh"), 0)
+        self.assertEqual(len(names), 4)
+
     def test_a_missing_matplotlib_is_one_line(self):
         (self.folder / "matplotlib.py").write_text("raise ImportError('none here')\n")
         run = subprocess.run([sys.executable, EXPERIMENTS / "plot.py", "a.csv"], text=True,

@@ -440,6 +440,15 @@ class Report(unittest.TestCase):
                          ["worse than predicted", "as predicted", "better than predicted"])
         self.assertEqual(answer.count("10.0 %"), 3)
 
+    def test_a_series_without_numbers_is_not_judged(self):
+        """As of a table that was cut off."""
+        plot = {"kind": "lines", "y": "share", "mark": 0.8, "x_label": "items"}
+        rows = [toggle("scan", "1", 1, 2, 3, series="scan", x="1", share="0.9"),
+                toggle("cub", "1", 1, 2, 3, series="cub", x="1", share="")]
+        write(self.folder, "compaction", rows, facts("compaction", plot))
+        text = " ".join(of for _, of in verdicts.meaning(read_table(self.folder / "compaction.csv")))
+        self.assertNotIn("cub", text)
+
     def test_several_devices_that_nobody_measured(self):
         simulated = [{"experiment": "scaling", "name": "8 GPUs", "status": "measured", "x": 8,
                       "panel": "a", "series": "b", "efficiency_median": 0.9}]
