@@ -83,7 +83,7 @@ __global__ void __launch_bounds__(1024)
                const __grid_constant__ WorkDivision division, Source source,
                const __grid_constant__ PathLimits limits, StageClock* clock) {
   stamp_first_thread(clock, StageId::megakernel);
-  const Scene scene = storage.bind();
+  const Scene& scene = storage.bind();
   ThreadWork work(division, batch);
   trace_paths<Traits, branching>(scene, source, batch, limits, work);
 }

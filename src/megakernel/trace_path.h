@@ -16,8 +16,9 @@ namespace pt {
 /// threads of a warp together; where `wanted`, it names a new path or returns false; elsewhere it
 /// returns true. `bool any(bool)` is true when the argument is true for any thread of the warp.
 template <class Traits, Branching branching, class Source, class Work>
-PT_HD void trace_paths(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                       const PathLimits& limits, Work& work) {
+PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
+                                 const SampleBuffer& samples, const PathLimits& limits,
+                                 Work& work) {
   using Integrator = typename Traits::Integrator;
   PathState path;
   bool working = work.next(path.index, true);

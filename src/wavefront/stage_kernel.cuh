@@ -137,7 +137,7 @@ __global__ void __launch_bounds__(block_max<Stage>())
   stamp_first_thread(clock, id_of(stage));
   const std::uint32_t count = *queues.count;
   if (blockIdx.x * blockDim.x >= count) return;
-  const Scene scene = storage.bind();
+  const Scene& scene = storage.bind();
   const std::uint32_t* const slots = queues.begin();
   Appender appender(shared);
   constexpr StageId own_tag = stage_info(Stage::id).queue;

@@ -357,7 +357,6 @@ struct ShadeSurface {
       Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
 
-  /// As a function of its own it would be handed the scene in local memory.
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
     Ray ray;
@@ -368,11 +367,8 @@ struct ShadeSurface {
     const Hit hit = pool.load_hit(slot);
     PoolSink<streams, Traits::has_media> sink{pool, samples, slot, has_lights};
     if constexpr (streams) {
-      // As meet_surface, which compilers may call: then it would be handed the scene likewise.
       const StreamedSteps steps{source, samples, path, sink};
-      follow_scattering<Traits>(
-          Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, steps), path,
-          sink);
+      meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
     } else {
       const PathId id_of_path = samples.id_of(path.index);
       auto random = source.open(id_of_path);
@@ -488,7 +484,7 @@ struct FollowPaths {
   std::uint32_t rays_max;     ///< that a path gets here, at least 1
   bool starts_paths = false;  ///< in free slots: their first rays are never stored
 
-  PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
+  PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
     const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
     Ray ray;
     PathState path;

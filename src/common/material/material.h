@@ -104,7 +104,8 @@ PT_HD bool reflects_only(MaterialKind kind) {
 
 namespace detail {
 template <class List, int index, class Parameters, class Function>
-PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&& function) {
+PT_HD_IN_KERNEL auto visit_from(MaterialKind kind, const Parameters& parameters,
+                                Function&& function) {
   using Bsdf = TypeAt<index, List>;
   if constexpr (index + 1 < List::size) {
     if (kind != kind_of<Bsdf>) return visit_from<List, index + 1>(kind, parameters, function);
@@ -116,7 +117,7 @@ PT_HD auto visit_from(MaterialKind kind, const Parameters& parameters, Function&
 /// Calls `function` with the BSDF as a value of its own type, made of parameters (see bsdf.h).
 /// `List` is Bsdfs or a list with which it begins, if `kind` is one of it.
 template <class List = Bsdfs, class Parameters, class Function>
-PT_HD auto visit(MaterialKind kind, const Parameters& parameters, Function&& function) {
+PT_HD_IN_KERNEL auto visit(MaterialKind kind, const Parameters& parameters, Function&& function) {
   return detail::visit_from<List, 0>(kind, parameters, function);
 }
 

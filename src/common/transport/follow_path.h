@@ -9,9 +9,9 @@ namespace pt {
 /// the path continues: `ray` is then its next one. `path_key` is mask_key(), `flight` where the
 /// ray's has got already.
 template <class Traits, class Stream>
-PT_HD bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
-                      const PathLimits& limits, Stream& random, std::uint32_t path_key,
-                      const FreeFlight& flight = {}) {
+PT_HD_IN_KERNEL bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
+                                const PathLimits& limits, Stream& random, std::uint32_t path_key,
+                                const FreeFlight& flight = {}) {
   const auto key = [&] { return path_key; };
   PathRegisters<Traits, decltype(key)> registers{scene, key, radiance, ray};
   const Hit hit = next_hit<Traits>(scene, ray, path_key, path, flight);

@@ -28,14 +28,16 @@ struct PathIntegrator {
   }
 
   template <class Traits, class Steps>
-  PT_HD static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
-                                  PathState& path, const PathLimits& limits, const Steps& steps) {
+  PT_HD_IN_KERNEL static Scattering surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                            PathState& path, const PathLimits& limits,
+                                            const Steps& steps) {
     return shade_surface<Traits>(scene, ray, hit, path, limits, steps);
   }
 
   template <class Traits, class Steps>
-  PT_HD static Scattering medium(const Scene& scene, const Ray& ray, float distance,
-                                 PathState& path, const PathLimits& limits, const Steps& steps) {
+  PT_HD_IN_KERNEL static Scattering medium(const Scene& scene, const Ray& ray, float distance,
+                                           PathState& path, const PathLimits& limits,
+                                           const Steps& steps) {
     return scatter_in_medium<Traits>(scene, ray, distance, path, limits, steps);
   }
 };

@@ -35,7 +35,8 @@ PT_HD void leave_scene(const Scene& scene, const Vec3& direction, const PathStat
 
 /// Tells the sink what a surface does with a path.
 template <class Traits, class Sink>
-PT_HD void follow_scattering(const Scattering& scattering, const PathState& path, Sink& sink) {
+PT_HD_IN_KERNEL void follow_scattering(const Scattering& scattering, const PathState& path,
+                                       Sink& sink) {
   sink.emit(path, scattering.emitted);
   if (Traits::has_lights && !is_black(scattering.shadow.radiance)) {
     sink.cast(path, scattering.shadow);
@@ -51,8 +52,9 @@ PT_HD void follow_scattering(const Scattering& scattering, const PathState& path
 
 /// The ray has met a surface. `steps`: see surface_steps.h.
 template <class Traits, class Steps, class Sink>
-PT_HD void meet_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                        const PathLimits& limits, const Steps& steps, Sink& sink) {
+PT_HD_IN_KERNEL void meet_surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathLimits& limits, const Steps& steps,
+                                  Sink& sink) {
   follow_scattering<Traits>(
       Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, steps), path,
       sink);
@@ -60,8 +62,8 @@ PT_HD void meet_surface(const Scene& scene, const Ray& ray, const Hit& hit, Path
 
 /// The ray has collided in a medium.
 template <class Traits, class Steps, class Sink>
-PT_HD void collide(const Scene& scene, const Ray& ray, float distance, PathState& path,
-                   const PathLimits& limits, const Steps& steps, Sink& sink) {
+PT_HD_IN_KERNEL void collide(const Scene& scene, const Ray& ray, float distance, PathState& path,
+                             const PathLimits& limits, const Steps& steps, Sink& sink) {
   follow_scattering<Traits>(
       Traits::Integrator::template medium<Traits>(scene, ray, distance, path, limits, steps), path,
       sink);
@@ -69,8 +71,8 @@ PT_HD void collide(const Scene& scene, const Ray& ray, float distance, PathState
 
 /// One or the other.
 template <class Traits, class Steps, class Sink>
-PT_HD void meet(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                const PathLimits& limits, const Steps& steps, Sink& sink) {
+PT_HD_IN_KERNEL void meet(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
+                          const PathLimits& limits, const Steps& steps, Sink& sink) {
   if constexpr (Traits::has_media) {
     if (hit.is_collision()) {
       return collide<Traits>(scene, ray, hit.t, path, limits, steps, sink);
@@ -81,8 +83,9 @@ PT_HD void meet(const Scene& scene, const Ray& ray, const Hit& hit, PathState& p
 
 /// Both by one way through the code (shade_any.h).
 template <class Traits, class Sink>
-PT_HD void meet_anything(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                         const PathLimits& limits, const DrawnSteps& steps, Sink& sink) {
+PT_HD_IN_KERNEL void meet_anything(const Scene& scene, const Ray& ray, const Hit& hit,
+                                   PathState& path, const PathLimits& limits,
+                                   const DrawnSteps& steps, Sink& sink) {
   follow_scattering<Traits>(shade_any<Traits>(scene, ray, hit, path, limits, steps), path, sink);
 }
 

@@ -9,8 +9,9 @@ namespace pt {
 /// The integrator's surface(), for a hit or a miss. The scene must have a primitive, whose data a
 /// miss loads and then discards.
 template <class Traits>
-PT_HD Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                           const PathLimits& limits, const DrawnSteps& steps) {
+PT_HD_IN_KERNEL Scattering shade_any(const Scene& scene, const Ray& ray, const Hit& hit,
+                                     PathState& path, const PathLimits& limits,
+                                     const DrawnSteps& steps) {
   using Integrator = typename Traits::Integrator;
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;

@@ -125,8 +125,8 @@ PT_HD bool lets_through(const Scene& scene, const Material& material, std::uint3
 }
 
 /// A surface that lets light through.
-PT_HD Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
-                               PathState& path) {
+PT_HD_IN_KERNEL Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
+                                         PathState& path) {
   const BoundaryCrossing crossing =
       cross_boundary(scene, ray, surface.material_index, surface.point, path.medium.around);
   path.medium.around = crossing.around;
@@ -151,8 +151,9 @@ PT_HD Frame shading_frame(const Vec3& normal, const Vec3& dp_du) {
 /// it is absorbed, has traced all of its rays or loses at Russian roulette, which scatter().w
 /// decides.
 template <class Traits, class Steps>
-PT_HD Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                               const PathLimits& limits, const Steps& steps) {
+PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                         PathState& path, const PathLimits& limits,
+                                         const Steps& steps) {
   constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
   // The specialised kernels of the paper's scenes stay small: the others do the rest
   // (scene_options.h).

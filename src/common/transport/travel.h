@@ -83,8 +83,9 @@ PT_HD Hit next_hit(const Scene& scene, const Ray& ray, std::uint32_t path_key, P
 /// As shade_surface, for a collision `distance` along the ray: the medium emits, light is sampled,
 /// and the phase function decides where the path goes on.
 template <class Traits, class Steps>
-PT_HD Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float distance,
-                                   PathState& path, const PathLimits& limits, const Steps& steps) {
+PT_HD_IN_KERNEL Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float distance,
+                                             PathState& path, const PathLimits& limits,
+                                             const Steps& steps) {
   lanes_of(ray).count(LanePoint::shade_medium);
   const Medium medium = load_wide(scene.media.at(path.medium.around));
   const Vec3 point = add_scaled(ray.origin, distance, ray.direction);

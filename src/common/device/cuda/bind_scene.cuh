@@ -5,7 +5,7 @@
 
 namespace pt {
 
-__device__ inline Scene SceneStorage<SceneMemory::global>::bind() const { return scene; }
+__device__ inline const Scene& SceneStorage<SceneMemory::global>::bind() const { return scene; }
 
 __device__ inline Scene SceneStorage<SceneMemory::shared>::bind() const {
   extern __shared__ HalfSpheres shared_spheres[];

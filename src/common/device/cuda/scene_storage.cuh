@@ -18,7 +18,7 @@ template <>
 struct SceneStorage<SceneMemory::global> {
   static constexpr SceneMemory memory = SceneMemory::global;
   Scene scene;
-  __device__ Scene bind() const;
+  __device__ const Scene& bind() const;
 };
 
 template <>
