@@ -117,7 +117,7 @@ PT_HD Camera make_camera(const CameraParameters& parameters, int width, int heig
 }
 
 /// The ray through film position (x, y), in pixels; `u` in [0, 1)^2 chooses the point of the lens.
-/// `lean`: the camera is none of parallel rays.
+/// `specialized`: the camera is none of parallel rays.
 template <bool specialized = false>
 PT_HD Ray camera_ray(const Camera& camera, float x, float y, float u0, float u1) {
   const Disk lens = sample_unit_disk(u0, u1);
