@@ -3,6 +3,7 @@
 #include "common/image/compare/compare.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "cuda_test.h"
+#include "medium/filled_glasses.h"
 #include "mode_cases.h"
 #include "scene/lit_room.h"
 #include "scene/masked_room.h"
@@ -185,6 +186,38 @@ TEST_F(CudaMasks, AThreadPerRayAsksThemAmongSpheresAndInstances) {
   expect_equal(instanced, tiny, false);
   for (const std::string& compaction : names_where(Compaction::cub, writes_tags)) {
     expect_equal(masked_room(), {{"compaction", compaction}}, false);
+  }
+}
+
+class CudaKernels : public CudaTest {};
+
+// Traversal and spills take up to 860 bytes of a thread's local memory. A kernel that hands its
+// scene to functions has a copy of it there, too: 700 bytes, and up to twice the time.
+TEST_F(CudaKernels, KeepNoCopyOfTheScene) {
+  const auto glasses = [] { return filled_glasses(); };
+  for (const Room& room : {Room{"mixed", mixed_scene},
+                           {"masked", masked_room},
+                           {"limited", limited_room},
+                           {"media", glasses}}) {
+    for (const Settings& how :
+         std::vector<Settings>{{{"mode", "megakernel"}},
+                               {{"mode", "megakernel"}, {"accel", "bvh2"}},
+                               {{"mode", "wavefront"}},
+                               {{"mode", "wavefront"}, {"accel", "bvh2"}},
+                               {{"mode", "wavefront"}, {"stages", "fused"}, {"accel", "bvh2"}}}) {
+      const Options options =
+          with(with(Options(), how), {{"device", "cuda"}, {"width", "45"}, {"height", "41"}});
+      SceneData scene = room.make();
+      prepare_scene(scene, options);
+      const auto renderer = make_renderer(options, scene, choose_device(options.device));
+      take_image(*renderer);
+      RenderReport report;
+      renderer->describe(report);
+      ASSERT_FALSE(report.kernels.empty());
+      for (const KernelInfo& kernel : report.kernels) {
+        EXPECT_LT(kernel.spill_bytes, 1000u) << kernel.name << ", " << room.name;
+      }
+    }
   }
 }
 
