@@ -76,17 +76,16 @@ void drop_idle_far_plane(SceneData& scene) {
 
 float camera_extent(const CameraParameters& parameters, int width, int height) {
   constexpr float filter = 4.0f;  // pixels that a filter reaches beyond the image, and more
-  const Camera camera = make_camera(parameters, width, height);
+  Camera camera = make_camera(parameters, width, height);
+  const float lens = std::max(glm::length(camera.lens_x), glm::length(camera.lens_y));
+  camera.lens_x = camera.lens_y = Vec3(0.0f);
   float extent = 0.0f;
   for (const float x : {-filter, static_cast<float>(width) + filter}) {
     for (const float y : {-filter, static_cast<float>(height) + filter}) {
-      const Vec3 to_focus = camera.corner + x * camera.step_x + y * camera.step_y;
-      const Vec3 origin =
-          camera.origin + (camera.is_orthographic ? 1.0f : camera.near_part) * to_focus;
+      const Vec3 origin = camera_ray(camera, x, y, 0.0f, 0.0f).origin;
       extent = std::max(extent, glm::length(origin - parameters.look_from));
     }
   }
-  const float lens = std::max(glm::length(camera.lens_x), glm::length(camera.lens_y));
   return 1.001f * (extent + lens * (1.0f + camera.near_part));
 }
 
