@@ -3,20 +3,16 @@
 
 Measured by `ptexp compact` (docs/statistics.md), without a renderer around it.
 """
-import hashlib
-import json
 import shlex
 import sys
 import tempfile
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
 from lib import harness
-from lib.harness import Experiment, HarnessError, Plot
-from lib.journal import Journal
-from lib.program import failure_of, version_of
-from lib.session import is_complete
+from lib.grouped import measure_table, measured_of
+from lib.harness import Experiment, Plot
+from lib.program import failure_of
 
 ITEMS = ["64K", "1M", "4M", "16M", "64M"]
 CPU_ITEMS = ["64K", "1M", "4M", "16M"]
@@ -92,47 +88,29 @@ def run(experiment, arguments):
         for command in commands.values():
             print(shlex.join([str(program), *command]))
         return 0
-    path = harness.table_path(experiment, device, arguments)
-    parts = json.dumps([version_of(program), device.name, commands])
-    key = hashlib.sha256(parts.encode()).hexdigest()[:16]
-    if not arguments.fresh and is_complete(path, key):
-        print(f"measured already by this program and command (--fresh measures again)\n"
-              f"table: {path}")
+    path, rows = measure_table(
+        experiment, arguments, program, device, kind="items", parts=commands,
+        groups=((name, partial(measure, program, name, command, arguments))
+                for name, command in commands.items()))
+    if rows is None:
+        print(f"table: {path}")
         return 0
-    journal = Journal(path.with_suffix(".journal"), key, arguments.fresh, lambda _: True)
-    journal.begin(date=harness.now())
-    facts = {**harness.provenance(experiment, program, device, arguments), "key": key,
-             "plot": asdict(experiment.plot)}
-
-    def save(rows, complete=False):
-        measured = [row for row in rows if row["status"] == "measured"]
-        if measured:
-            harness.write_table(path, rows, {**facts, "complete": complete,
-                                             "conclusions": conclude(measured)})
-        return measured
-    rows = journal.measure_groups(
-        "items", ((name, partial(measure, program, name, command, arguments))
-                  for name, command in commands.items()), save)
-    failed = [row for row in rows if row["status"] == "failed"]
-    if len(failed) == len(rows):
-        journal.remove()
-        raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
-    measured = save(rows, complete=not failed)
+    measured = measured_of(rows)
     for row in measured:
         print(f"{row['name']:60} {1e3 * float(row['time_ms']):10.2f} us "
               f"{float(row['gb_per_s']):8.1f} GB/s, {float(row['copy_share']):5.3f} of a copy")
-    for row in failed:
-        print(f"{experiment.name}: failed: {row['name']}: {row['message']}", file=sys.stderr)
+    for row in rows:
+        if row["status"] == "failed":
+            print(f"{experiment.name}: failed: {row['name']}: {row['message']}", file=sys.stderr)
     print("\n".join(["", *conclude(measured), f"table: {path}", harness.draw(path)]))
-    if not failed:
-        journal.remove()
-    return 1 if failed else 0
+    return 0 if len(measured) == len(rows) else 1
 
 
 EXPERIMENT = Experiment(
     "compaction", __doc__.splitlines()[0], None,
     Plot("lines", "Compaction of tags", "items", "part of a copy's bandwidth", y="copy_share",
-         log_y=False, mark=TARGET))
+         log_y=False, mark=TARGET),
+    conclude=lambda rows, _arguments: conclude(rows))
 
 if __name__ == "__main__":
     sys.exit(harness.main(EXPERIMENT, runner=run))

@@ -1,6 +1,4 @@
 """Experiments on rays alone: sets of rays are made by `ptexp rays` and traced by `ptexp trace`."""
-import hashlib
-import json
 import shlex
 import tempfile
 from dataclasses import asdict, dataclass, field
@@ -8,11 +6,9 @@ from functools import partial
 from pathlib import Path
 
 from lib import harness
-from lib.harness import HarnessError
-from lib.journal import Journal
-from lib.program import failure_of, version_of
+from lib.grouped import measure_table, measured_of
+from lib.program import failure_of
 from lib.ray_files import reorder
-from lib.session import is_complete
 
 
 @dataclass
@@ -72,12 +68,6 @@ def measure(experiment, program, rays, arguments):
     return rows
 
 
-def key_of(program, device, sets):
-    """Equal for calls whose measurements may stand in one table."""
-    facts = json.dumps([version_of(program), device.name, list(map(asdict, sets))])
-    return hashlib.sha256(facts.encode()).hexdigest()[:16]
-
-
 def table_text(rows):
     lines = []
     for row in rows:
@@ -97,36 +87,17 @@ def run(experiment, arguments, sets_of):
         print("\n".join(shlex.join([str(program), *command])
                         for rays in sets for command in [rays.make, *rays.traces]))
         return 0
-    path = harness.table_path(experiment, device, arguments)
-    key = key_of(program, device, sets)
-    if not arguments.fresh and is_complete(path, key):
-        print(f"measured already by this program and command (--fresh measures again)\n"
-              f"{table_text(harness.read_rows(path))}\n\ntable: {path}")
-        return 0
-    journal = Journal(path.with_suffix(".journal"), key, arguments.fresh, lambda _: True)
-    journal.begin(date=harness.now())
-    facts = {**harness.provenance(experiment, program, device, arguments), "key": key,
-             **({"plot": asdict(experiment.plot)} if experiment.plot else {})}
 
-    def save(rows, complete=False):
-        measured = [row for row in rows if row["status"] == "measured"]
-        if measured:
-            experiment.finish(measured, arguments)
-            harness.write_table(path, rows, {
-                **facts, "complete": complete,
-                "conclusions": experiment.conclude(measured, arguments)})
-        return measured
-    with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
-        rows = journal.measure_groups(
-            "ray set", ((Path(rays.rays).name, partial(measure, experiment, program, rays, arguments))
-                        for rays in sets_of(device, arguments, folder)), save)
-    failed = [row for row in rows if row["status"] == "failed"]
-    if len(failed) == len(rows):
-        journal.remove()
-        raise HarnessError(f"nothing was measured: {rows[0]['message']}; no result was written")
-    measured = save(rows, complete=not failed)
+    def groups():
+        with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
+            for rays in sets_of(device, arguments, folder):
+                yield Path(rays.rays).name, partial(measure, experiment, program, rays, arguments)
+    path, rows = measure_table(experiment, arguments, program, device, kind="ray set",
+                               parts=list(map(asdict, sets)), groups=groups())
+    if rows is None:
+        print(f"{table_text(harness.read_rows(path))}\n\ntable: {path}")
+        return 0
+    measured = measured_of(rows)
     print("\n".join([table_text(rows), "", *experiment.conclude(measured, arguments),
                      f"table: {path}"]))
-    if not failed:
-        journal.remove()
-    return 1 if failed else 0
+    return 0 if len(measured) == len(rows) else 1
