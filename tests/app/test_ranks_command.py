@@ -44,6 +44,13 @@ def launcher():
     return found, f"no launcher of {name}"
 
 
+def loses_exit_codes():
+    """MPICH's launcher before 4.1 may return 0 after a signal that it has passed on: it takes ranks
+    that end then for killed by itself (https://github.com/pmodels/mpich/pull/5930)."""
+    version = re.match(r"MPICH\D*(\d+)\.(\d+)", library())
+    return version is not None and tuple(map(int, version.groups())) < (4, 1)
+
+
 class Ranks(unittest.TestCase):
     def setUp(self):
         self.mpirun, why = launcher()
@@ -148,15 +155,17 @@ class Ranks(unittest.TestCase):
         self.assertFalse((self.folder / "a.exr").exists())
 
     def test_a_checkpoint_of_some_ranks_goes_on_on_others(self):
-        scene = [*SMALL, "--scene", "cornell", "--spp", 8000, "--seed", 3]
+        scene = [*SMALL, "--scene", "cornell", "--spp", 3000, "--seed", 3]
         self.run_one(*scene, "-o", "one.exr")
         process = subprocess.Popen(self.command(3, [*scene, "--checkpoint", "c.exr,0.2", "-o", "a.exr"]),
                                    cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
         self.wait_for("c.exr")
         process.send_signal(signal.SIGUSR1)  # mpirun passes it on
-        process.communicate(timeout=TIMEOUT_S)
-        self.assertEqual(process.returncode, 128 + signal.SIGUSR1)
+        _, said = process.communicate(timeout=TIMEOUT_S)
+        self.assertIn("ptexp: interrupted", said)
+        if process.returncode != 0 or not loses_exit_codes():
+            self.assertEqual(process.returncode, 128 + signal.SIGUSR1, said)
         run = self.run_ranks(2, "resume", "c.exr", "-o", "b.exr")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assert_same_image("b.exr", "one.exr")
