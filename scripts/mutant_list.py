@@ -10,8 +10,9 @@ comments:
     before: TEXT         as the source has it; white space and line breaks do not matter
     after: TEXT
 
-`before` is an expression, or statements where it ends with `;` or `}`. It must be there exactly
-once. The copy holds both and chooses at run time: `PT_MUTANT(n) ? (after) : (before)`.
+`before` is an expression, or statements where it ends with `;` or `}`, which declare nothing that
+is used after them. It must be there exactly once. The copy holds both and chooses at run time:
+`PT_MUTANT(n) ? (after) : (before)`.
 """
 import re
 import zlib
@@ -104,8 +105,12 @@ class Mutant:
     def fail(self, message):
         raise ListError(f"{self.source}: [{self.id}] {self.file}: {message}")
 
+    @property
+    def is_statement(self):
+        return self.before.rstrip().endswith((";", "}"))
+
     def text(self, before):
-        if before.rstrip().endswith((";", "}")):
+        if self.is_statement:
             return f"{{ if (PT_MUTANT({self.number}u)) {{ {self.after} }} else {{ {before} }} }}"
         return f"(PT_MUTANT({self.number}u) ? ({self.after}) : ({before}))"
 
@@ -119,6 +124,14 @@ def is_balanced(text):
         elif character in pairs and (not open_ or open_.pop() != pairs[character]):
             return False
     return not open_
+
+
+def is_expression(text):
+    """False where something is missing or what begins is a statement; a compiler sees the rest."""
+    begins = (r"(if|else|for|while|do|return|case|auto|const|constexpr|static|using)\b"
+              r"|[{.,)?=<>|/%^]|&&|:[^:]")
+    ends = r"((?<!\+)\+|(?<!-)-|[*/%&|^<=?:,.(\[{])$"
+    return bool(text) and not re.match(begins, text) and not re.search(ends, text)
 
 
 def read_entry(source, lines):
@@ -138,6 +151,10 @@ def read_entry(source, lines):
     for text in (mutant.before, mutant.after):
         if not is_balanced(text):
             mutant.fail(f"'{text}': expected whole expressions or statements, with both brackets")
+        if not mutant.is_statement and not is_expression(text):
+            mutant.fail(f"'{text}': expected an expression, or a statement with its ';'")
+    if mutant.is_statement and re.match(r"(auto|const|constexpr|static|using)\b", mutant.before):
+        mutant.fail(f"'{mutant.before}': expected what declares nothing, such as its value")
     return mutant
 
 
@@ -171,9 +188,8 @@ def place_of(mutant, text):
         if len(found) != 1:
             mutant.fail(f"'{what}' is there {len(found)} times, expected once")
         begin, end = begin + found[0][0], begin + found[0][1]
-    is_statement = mutant.before.rstrip().endswith((";", "}"))
     ahead = re.sub(r"//[^\n]*", "", text[:begin]).rstrip()
-    if is_statement and not re.search(r"([;{}):]|\belse|^)$", ahead):
+    if mutant.is_statement and not re.search(r"([;{}):]|\belse|^)$", ahead):
         mutant.fail(f"'{mutant.before}': expected a whole statement, or an expression without ';'")
     return begin, end
 
