@@ -344,8 +344,8 @@ template <class Traits, class Source, class Executor>
 void run_finish(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   StageQueues paths = b.stage_queues(StageId::finish, &b.counters->finish, b.pool.tag);
   for (std::uint32_t*& next : paths.next) next = nullptr;  // no stage follows
-  constexpr std::uint32_t to_the_end = ~0u;
-  execute.run(FollowPaths<Traits, Source>{context, StageId::finish, to_the_end}, paths);
+  constexpr std::uint32_t all_rays = ~0u;
+  execute.run(FollowPaths<Traits, Source>{context, StageId::finish, all_rays}, paths);
 }
 
 std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene);

@@ -7,6 +7,7 @@
 #include "common/scene/prepare/prepare_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"
+#include "scene/small_scenes.h"
 
 namespace pt {
 namespace {

@@ -98,8 +98,8 @@ class CellWalk {
   PT_HD static float end_of(std::uint32_t cell, std::uint32_t count, float from,
                             float inverse_way) {
     const bool ends = inverse_way > 0.0f ? cell + 1 < count : inverse_way < 0.0f && cell > 0;
-    const float wall = static_cast<float>(cell + (inverse_way > 0.0f ? 1 : 0));
-    return ends ? multiply_rounded(wall - from, inverse_way) : infinite_distance;
+    const float plane = static_cast<float>(cell + (inverse_way > 0.0f ? 1 : 0));
+    return ends ? multiply_rounded(plane - from, inverse_way) : infinite_distance;
   }
 
   // The ray, in units of cells; 0 is the inverse of a direction of 0:
