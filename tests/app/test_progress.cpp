@@ -177,11 +177,17 @@ TEST(Measure, StoppedBetweenRendersKeepsTheCompleteOnes) {
   EXPECT_EQ(measurement.runs.size(), 2u);
 }
 
+/// Shells' background jobs ignore SIGINT.
+void let_signals_through() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_DFL);
+}
+
 TEST(Interrupt, EndsAtOnceWhileThereIsNothingToKeep) {
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
   for (const int signal : {SIGINT, SIGTERM}) {
     EXPECT_EXIT(
         {
+          let_signals_through();
           end_on_signal(": no image written");
           std::raise(signal);
           std::exit(1);
@@ -195,6 +201,7 @@ TEST(Interrupt, SetsAFlagHoweverOftenItComes) {
   for (const int signal : {SIGINT, SIGTERM}) {
     EXPECT_EXIT(
         {
+          let_signals_through();
           end_on_signal();
           note_signals();
           if (interrupted()) std::exit(1);

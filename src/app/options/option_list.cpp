@@ -476,10 +476,10 @@ const std::vector<OptionEntry>& option_list() {
   return list;
 }
 
-const OptionEntry& find_option(const std::string& name) {
+const OptionEntry& find_option(std::string_view name) {
   const auto& list = option_list();
   const auto found = std::ranges::find(list, name, &OptionEntry::name);
-  if (found == list.end()) throw std::logic_error("no option is named " + name);
+  if (found == list.end()) throw std::logic_error("no option is named " + std::string(name));
   return *found;
 }
 

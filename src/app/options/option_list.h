@@ -6,6 +6,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/options/options.h"
@@ -55,7 +56,7 @@ struct Setting {
 bool determines_image(const OptionEntry& entry);
 
 /// Throws std::logic_error when there is no such option: a programmer's mistake.
-const OptionEntry& find_option(const std::string& name);
+const OptionEntry& find_option(std::string_view name);
 
 /// The name as a JSON key or CSV column: "max-depth" -> "max_depth".
 std::string option_key(const OptionEntry& entry);

@@ -112,6 +112,21 @@ bool exists_beside(const std::string& path, void*) {
          std::filesystem::is_regular_file(path, ignored);
 }
 
+/// tinygltf 2.9 asks for a file's size before it reads it, and refuses 2 GiB and more.
+template <class Loader, class Callbacks>
+void set_sizes(Loader& loader, Callbacks& callbacks) {
+  if constexpr (requires { callbacks.GetFileSizeInBytes; }) {
+    callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string* problem,
+                                      const std::string& path, void*) {
+      std::error_code failure;
+      *size = std::filesystem::file_size(path, failure);
+      if (failure) *problem += failure.message();
+      return !failure;
+    };
+    loader.SetMaxExternalFileSize(std::numeric_limits<std::size_t>::max());
+  }
+}
+
 /// tinygltf's complaints as one line. It takes a skin's inverseBindMatrices for required.
 std::string one_line(const std::string& complaints) {
   std::string result;
@@ -137,7 +152,14 @@ ReadModel read_model(const std::filesystem::path& path) {
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
   Folder files{std::filesystem::absolute(path).parent_path(), {}};
-  loader.SetFsCallbacks({exists_beside, found_path, read_beside, tinygltf::WriteWholeFile, &files});
+  tinygltf::FsCallbacks callbacks{};
+  callbacks.FileExists = exists_beside;
+  callbacks.ExpandFilePath = found_path;
+  callbacks.ReadWholeFile = read_beside;
+  callbacks.WriteWholeFile = tinygltf::WriteWholeFile;
+  callbacks.user_data = &files;
+  set_sizes(loader, callbacks);
+  loader.SetFsCallbacks(callbacks);
   const std::string folder = files.path.string();
   const auto size = static_cast<unsigned int>(bytes.size());
   tinygltf::Model model;
