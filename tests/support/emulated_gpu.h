@@ -54,6 +54,7 @@ class EmulatedBlock {
     }
     // Some thread waits for one that has gone another way.
     if (!std::ranges::all_of(threads_, &Thread::is_done)) std::abort();
+    current_block = nullptr;
   }
 
   static EmulatedBlock& current() { return *current_block; }

@@ -113,7 +113,7 @@ TEST_F(ObjMaterials, AMeshForEachMaterial) {
   const ObjFile file = read(
       "mtllib a.mtl\nf 1 2 3\nusemtl red wine\nf 1 2 3\nf 3 2 1\nusemtl blue\nf 1 2 3\n"
       "usemtl red wine\nf 2 1 3\nusemtl nobody\nf 1 2 3\n",
-      "newmtl red wine\nKd 1 0 0\n\nnewmtl unused\nKd 0 1 0\r\nnewmtl blue\nKd 0 0 1\n");
+      "newmtl red wine\nKd 1 0 0\nnewmtl unused\nKd 0 1 0\r\n\tnewmtl  blue\nKd 0 0 1\n");
   ASSERT_EQ(file.meshes.size(), 3u);
   std::size_t triangles_of_red = 0;
   for (const Mesh& mesh : file.meshes) {

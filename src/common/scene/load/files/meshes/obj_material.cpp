@@ -118,17 +118,41 @@ ObjMaterial convert(const tinyobj::material_t& mtl, const std::filesystem::path&
   return result;
 }
 
+/// The text with the number of each material in place of its name, which goes to `names`: after
+/// 2.0.0rc10 tinyobjloader ends a name at its first space.
+std::string number_materials(std::string_view text, std::vector<std::string>& names) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    std::string_view rest = line;
+    const bool begins_material = next_word(rest) == "newmtl";
+    const std::string_view name = trim(rest);
+    if (begins_material && !name.empty()) {
+      result += fmt::format("newmtl {}\n", names.size());
+      names.emplace_back(name);
+    } else {
+      result.append(line) += '\n';
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 void decode_mtl(std::string_view bytes, const std::filesystem::path& path, ObjFile& file) {
-  std::istringstream stream{std::string(without_byte_order_mark(bytes))};
+  std::vector<std::string> names;
+  std::istringstream stream{number_materials(without_byte_order_mark(bytes), names)};
   std::map<std::string, int> numbers;
   std::vector<tinyobj::material_t> materials;
   std::string warnings, errors;
   tinyobj::LoadMtl(&numbers, &materials, &stream, &warnings, &errors);
   if (!errors.empty()) throw Error(errors);
-  for (const tinyobj::material_t& material : materials) {
-    if (!material.name.empty()) file.materials.push_back(convert(material, path, file.warnings));
+  for (tinyobj::material_t& material : materials) {
+    if (material.name.empty()) continue;
+    material.name = names.at(std::stoul(material.name));
+    file.materials.push_back(convert(material, path, file.warnings));
   }
 }
 

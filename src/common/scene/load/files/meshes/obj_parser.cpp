@@ -13,12 +13,6 @@
 namespace pt {
 namespace {
 
-std::string_view trim(std::string_view text) {
-  while (!text.empty() && is_text_space(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_text_space(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 float next_float(std::string_view& line) {
   return static_cast<float>(parse_number(next_word(line)));
 }

@@ -19,6 +19,12 @@ double out_of_range(std::string_view word) {
 
 }  // namespace
 
+std::string_view trim(std::string_view text) {
+  while (!text.empty() && is_text_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_text_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 std::string_view next_word(std::string_view& text) {
   const auto begin = std::find_if_not(text.begin(), text.end(), is_text_space);
   const auto end = std::find_if(begin, text.end(), is_text_space);

@@ -12,6 +12,9 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
   return text.starts_with("\xef\xbb\xbf") ? text.substr(3) : text;
 }
 
+/// Without the white space around it.
+std::string_view trim(std::string_view text);
+
 /// Takes the next word, without the white space around it, off the front of `text`; empty at the
 /// end.
 std::string_view next_word(std::string_view& text);

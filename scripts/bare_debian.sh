@@ -1,0 +1,37 @@
+# shellcheck shell=bash
+# A bare Debian in a folder, in which scripts/deb_test and scripts/fresh_test run a newcomer's
+# commands. Needs root (debootstrap, chroot), a network, and a Debian. Sourced after common.sh.
+
+# of this machine
+# shellcheck disable=SC2034 # for those that source this
+debian_release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
+
+# make_bare_debian RELEASE FOLDER: anew, from this machine's mirror.
+make_bare_debian() {
+  local release=$1 tree=$2 mirror file
+  ((EUID == 0)) || die "root is needed: debootstrap and chroot"
+  install_missing debootstrap
+  # shellcheck disable=SC2016 # apt-get's own variables
+  mirror=$(apt-get indextargets --format '$(SITE)' "Codename: $debian_release" | head -n 1)
+  [[ -n $mirror ]] || die "apt-get indextargets names no mirror of $debian_release"
+  remove_bare_debian "$tree"
+  mkdir -p "$tree"
+  debootstrap --variant=minbase --include=ca-certificates "$release" "$tree" "$mirror"
+  for file in /etc/apt/apt.conf.d/*proxy*; do # how this machine reaches its mirror
+    [[ ! -e $file ]] || cp "$file" "$tree/etc/apt/apt.conf.d/"
+  done
+  mountpoint --quiet "$tree/proc" || mount -t proc proc "$tree/proc"
+}
+
+# in_bare_debian FOLDER COMMAND...
+in_bare_debian() {
+  local tree=$1
+  shift
+  chroot "$tree" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 "$@"
+}
+
+# remove_bare_debian FOLDER: but not what is mounted there.
+remove_bare_debian() {
+  if mountpoint --quiet "$1/proc"; then umount "$1/proc"; fi
+  rm -rf --one-file-system "$1"
+}
