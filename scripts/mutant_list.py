@@ -100,7 +100,9 @@ class Mutant:
 
     @property
     def is_device_only(self):
-        return self.file.endswith(CUDA_SUFFIXES) and self.file not in EMULATED
+        """By its file, or by the tests that should see it."""
+        return (self.file.endswith(CUDA_SUFFIXES) and self.file not in EMULATED) or (
+            bool(self.tests) and all(name.startswith("Cuda") for name in self.tests.split(":")))
 
     def fail(self, message):
         raise ListError(f"{self.source}: [{self.id}] {self.file}: {message}")
