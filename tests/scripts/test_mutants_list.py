@@ -58,6 +58,8 @@ class MutantsList(unittest.TestCase):
         self.refuse(entry + "\n[two] a.h\na bug\nbefore: b + c\nafter: c\n", "a + b + c", "overlaps")
         self.refuse(entry.replace("a + b", "f(a"), "f(a)", "with both brackets")
         self.refuse(entry.replace("a + b", "b;"), "return a && b;", "a whole statement")
+        self.refuse("[one] a.h\na bug\nbefor: a\nafter: b\n", "a", "'befor: a'")
+        self.refuse("one a.h\na bug\nbefore: a\nafter: b\n", "a", "expected")
 
     def test_halves_of_expressions_and_declarations_are_named(self):
         for before in ("if (a) b", "a &&", "const int c = a", ".b(a)", "{a, b},"):
@@ -65,8 +67,6 @@ class MutantsList(unittest.TestCase):
         self.refuse("[one] a.h\na bug\nbefore: a\nafter:\n", "a", "an expression, or")
         self.refuse("[one] a.h\na bug\nbefore: const int c = a;\nafter: a;\n", "const int c = a;",
                     "declares nothing")
-        self.refuse("[one] a.h\na bug\nbefor: a\nafter: b\n", "a", "'befor: a'")
-        self.refuse("one a.h\na bug\nbefore: a\nafter: b\n", "a", "expected")
 
     def test_surroundings_choose_among_equal_ones(self):
         text = self.apply("[one] a.h\na bug\nwithin: g(a)\nbefore: a\nafter: b\n", "f(a); g(a);")
