@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/error/error.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {
@@ -49,6 +50,17 @@ std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Te
     found = stored_.emplace(key, store(image)).first;
   }
   return add_stored(found->second, look);
+}
+
+std::uint32_t TextureStore::add_file_if_readable(
+    const std::filesystem::path& path, const Texture& look, const std::optional<Color>& weights,
+    const std::function<void(const std::string&)>& report) {
+  try {
+    return add_file(path, look, weights);
+  } catch (const Error& error) {
+    report(error.what());
+    return no_texture;
+  }
 }
 
 std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string& name,

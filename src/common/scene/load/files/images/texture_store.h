@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -25,6 +26,12 @@ class TextureStore {
   /// With `weights` it is grey (grey_image).
   std::uint32_t add_file(const std::filesystem::path& path, const Texture& look = {},
                          const std::optional<Color>& weights = {});
+
+  /// As add_file, but a picture that cannot be read is no_texture, and `report` is told why in one
+  /// line that names the file; the caller uses a colour in its place.
+  std::uint32_t add_file_if_readable(const std::filesystem::path& path, const Texture& look,
+                                     const std::optional<Color>& weights,
+                                     const std::function<void(const std::string&)>& report);
 
   /// The same of a file's content. `name` stands for it in errors and must be its own: the same
   /// name is the same image.
