@@ -41,7 +41,8 @@ struct MaskedRays : Rays {
   }
 
   __device__ bool hides(const Query& query, std::uint32_t slot, const TriangleHit& hit) const {
-    return mask_hides(&scene, query.key(), slot, hit.b1, hit.b2);
+    return mask_hides(MaskView(scene), scene.triangles.triangles, query.key(), slot, hit.b1,
+                      hit.b2);
   }
 
  private:

@@ -38,7 +38,8 @@ PT_HD std::uint32_t shadow_ray_key(const Scene& scene, std::uint32_t path_key,
   const std::uint32_t key = combine_hash(path_key, 2 * rays_traced + 1);
   return scene.camera.is_limited ? key & ~1u : key;
 }
-PT_HD bool is_limited_camera_ray(const Scene& scene, std::uint32_t ray_key) {
+template <class SceneOrMasks>
+PT_HD bool is_limited_camera_ray(const SceneOrMasks& scene, std::uint32_t ray_key) {
   return scene.camera.is_limited && (ray_key & 1u) != 0;
 }
 
@@ -48,10 +49,46 @@ PT_HD float ray_length(const Scene& scene, const Vec3& direction, std::uint32_t 
   return scene.camera.distance_in_view(direction);
 }
 
-PT_HD float opacity_at(const Scene& scene, const Opacity& opacity, const Vec2& uv) {
+/// What of a scene decides about masks, by the scene's names.
+struct MaskView {
+  const Opacity* opacities;
+  const CornerAttributes* corners;
+  const Texture* textures;
+  const std::byte* texels;
+  struct {
+    bool is_limited;
+  } camera;
+
+  PT_HD explicit MaskView(const Scene& scene)
+      : opacities(scene.opacities),
+        corners(scene.corners),
+        textures(scene.textures),
+        texels(scene.texels),
+        camera{scene.camera.is_limited} {}
+};
+
+template <class SceneOrMasks>
+PT_HD float opacity_at(const SceneOrMasks& scene, const Opacity& opacity, const Vec2& uv) {
   if (opacity.texture == no_texture) return opacity.offset;
   const Color c = sample_texture(scene.textures, opacity.texture, scene.texels, uv);
   return fused_multiply_add(opacity.scale, grey_of(c), opacity.offset);
+}
+
+/// Whether the ray passes a triangle that it meets at (b1, b2). `instance_index` gives the
+/// instance's InstanceRecord::index, 0 in scenes without instances.
+template <class SceneOrMasks, class InstanceIndex>
+PT_HD bool passes_mask(const SceneOrMasks& scene, std::uint32_t ray_key, const Triangle& triangle,
+                       float b1, float b2, InstanceIndex&& instance_index) {
+  const Opacity opacity = load_wide(&scene.opacities[triangle.material]);
+  if (opacity.hides_from_camera() && is_limited_camera_ray(scene, ray_key)) return true;
+  Vec2 uv(b1, b2);
+  if ((triangle.attributes & TriangleAttributes::uvs) != 0) {
+    uv = load_wide(&scene.corners[triangle.id]).uv_at(Vec3(1.0f - b1 - b2, b1, b2));
+  }
+  const float there = opacity_at(scene, opacity, uv);
+  if (opacity.cutoff > 0.0f) return !(there >= opacity.cutoff);
+  return !(to_unit_float(combine_hash(combine_hash(ray_key, triangle.id), instance_index())) <
+           there);
 }
 
 /// What MaskedQuery needs of triangles.
@@ -60,19 +97,9 @@ struct MaskTest {
   std::uint32_t ray_key;
 
   PT_HD bool hides(const Triangle& triangle, const TriangleHit& hit, std::uint32_t instance) const {
-    const Opacity opacity = load_wide(&scene.opacities[triangle.material]);
-    if (opacity.hides_from_camera() && is_limited_camera_ray(scene, ray_key)) return true;
-    Vec2 uv(hit.b1, hit.b2);
-    if ((triangle.attributes & TriangleAttributes::uvs) != 0) {
-      uv = load_wide(&scene.corners[triangle.id])
-               .uv_at(Vec3(1.0f - hit.b1 - hit.b2, hit.b1, hit.b2));
-    }
-    const float there = opacity_at(scene, opacity, uv);
-    if (opacity.cutoff > 0.0f) return !(there >= opacity.cutoff);
-    const std::uint32_t instance_index =
-        scene.triangles.instance_count > 0 ? scene.triangles.instances[instance].index : 0;
-    return !(to_unit_float(combine_hash(combine_hash(ray_key, triangle.id), instance_index)) <
-             there);
+    return passes_mask(scene, ray_key, triangle, hit.b1, hit.b2, [&] {
+      return scene.triangles.instance_count > 0 ? scene.triangles.instances[instance].index : 0;
+    });
   }
 };
 
