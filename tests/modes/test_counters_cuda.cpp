@@ -95,12 +95,23 @@ TEST_P(CountersOf, EveryKernelIsCountedAndTheImageStays) {
   expect_same(take_image(*renderer), before);
 }
 
-// Misses only, each new: what a wave moves is known to the byte but for the queues' atomics.
+struct WaveOfMisses {
+  const char *stages, *layout;
+  double unmerged;  ///< bytes per new path that half-written sectors may add
+};
+
+// Misses only, each new: what a wave moves is known to the byte but for the queues' atomics. Where
+// the two halves of a ray share a sector (the layout `sectors`), two instructions write them, and
+// L1 does not always merge them into one write of the sector: under load, 0.2 of the sectors are
+// written twice on an H100.
 TEST_F(CudaTest, CountersOfAWaveOfMissesAreThosePredicted) {
   if (counts_lanes) GTEST_SKIP() << "a build with PTEXP_DIVERGENCE writes its own counts, too";
-  for (const char* stages : {"split", "fused"}) {
+  const WaveOfMisses cases[] = {
+      {"split", "soa", 0}, {"split", "sectors", 32}, {"fused", "soa", 0}, {"fused", "sectors", 0}};
+  for (const WaveOfMisses& one : cases) {
     Options options = cuda_options("wavefront", {{"scene", "spheres"},
-                                                 {"stages", stages},
+                                                 {"stages", one.stages},
+                                                 {"layout", one.layout},
                                                  {"spheres", "0"},
                                                  {"look-from", "0,10,0"},
                                                  {"look-at", "0,100,1"},
@@ -124,10 +135,14 @@ TEST_F(CudaTest, CountersOfAWaveOfMissesAreThosePredicted) {
           kernel.kernel != "shade_miss" && kernel.kernel != "bounce") {
         continue;
       }
-      SCOPED_TRACE(kernel.kernel);
+      SCOPED_TRACE(std::string(one.stages) + ", " + one.layout + ": " + kernel.kernel);
       const auto& [read, written] = kernel.predicted;
+      const bool begins = kernel.kernel == "generate";
+      const double unmerged =
+          begins ? one.unmerged * static_cast<double>(rendered.counts.paths) : 0.0;
       EXPECT_GT(written, 4e6);
-      EXPECT_NEAR(bytes_from_sm(kernel.values), written, 0.1 * written);
+      EXPECT_GE(bytes_from_sm(kernel.values), 0.99 * written);
+      EXPECT_LE(bytes_from_sm(kernel.values), 1.1 * written + unmerged);
       EXPECT_NEAR(bytes_to_sm(kernel.values), read, 0.1 * read + 2e6);
     }
   }

@@ -1,7 +1,8 @@
 // What the stages of a wave have to move by the layout of their data: each record of the path pool,
 // each entry of a queue and each sample that a stage reads or writes, once. The scene, random
 // states and the film are not among it. The hardware moves more where a warp's slots are not side
-// by side, for it moves sectors of 32 bytes; results/ has the comparison.
+// by side, for it moves sectors of 32 bytes, and where two instructions write the halves of a
+// sector (a ray in the layout `sectors`), which L1 merges in part. results/ has the comparison.
 #pragma once
 
 #include <array>

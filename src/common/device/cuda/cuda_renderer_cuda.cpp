@@ -172,6 +172,10 @@ void CudaRenderer::load_kernels() {
   // Set-up filled memory on the default stream, for which stream_ does not wait.
   check_cuda(cudaDeviceSynchronize(), "setting up");
   Window window = image_window();
+  Film empty;
+  empty.window = window;
+  store_film(empty);  // so that nothing is read that was not written (initcheck)
+  reset_clock();
   window.width = std::min(window.width, 8u), window.height = std::min(window.height, 4u);
   RenderRun run;
   if (has_chains()) {
