@@ -6,7 +6,7 @@ root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd)
 # Debian and Ubuntu packages that building and testing needs.
 ptexp_packages=(build-essential cmake ninja-build ccache git python3 python3-dev python3-venv python3-pip
   libglm-dev libopenexr-dev libtbb-dev libpng-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-  libpugixml-dev libtinyobjloader-dev libtinygltf-dev libstb-dev libembree-dev libgtest-dev
+  libpugixml-dev libtinygltf-dev libstb-dev libembree-dev libgtest-dev
   libjpeg-dev zlib1g-dev libxxhash-dev libcpp-httplib-dev
   libnanovdb-dev libblosc-dev)
 

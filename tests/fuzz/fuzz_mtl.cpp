@@ -1,20 +1,18 @@
-#include "common/error/error_context.h"
-#include "common/scene/load/files/meshes/obj_material.h"
+#include "common/scene/load/obj/mtl_materials.h"
 #include "fuzz.h"
-
-// Instead of the library's own object code, so that the fuzzer sees into it.
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   pt::expect_result_or_error([&] {
-    pt::ObjFile file;
-    pt::explaining("input", [&] {  // as its callers do
-      pt::decode_mtl(pt::as_bytes(data, size), "folder/a.mtl", file);
-    });
-    for (const pt::ObjMaterial& material : file.materials) {
-      const pt::Color& albedo = material.material.color(0);
-      for (int c = 0; c < 3; ++c) {
+    pt::SceneData scene;
+    pt::CountedWarnings warnings;
+    pt::obj::NamedFiles files(warnings);
+    pt::obj::MtlTextures textures({"folder"}, files, scene, warnings);
+    for (const auto& material : pt::obj::parse_mtl(pt::as_bytes(data, size), "a.mtl", warnings)) {
+      pt::obj::add_material(material, textures, scene, warnings);
+    }
+    for (const pt::MaterialDescription& material : scene.materials) {
+      const pt::Color& albedo = material.color(0);
+      for (int c = 0; c < 3 && material.node == pt::MaterialNode::none; ++c) {
         if (!(albedo[c] >= 0.0f && albedo[c] <= 1.0f)) std::abort();
       }
     }

@@ -1,7 +1,7 @@
 // Files whose names differ from what other files call them in case only, of all formats.
 #include "common/scene/load/files/find_file.h"
-#include "common/scene/load/files/meshes/mesh_files.h"
 #include "load/gltf_files.h"
+#include "load/obj_files.h"
 
 namespace pt {
 namespace {
@@ -59,12 +59,13 @@ TEST(FindFile, BuffersAndImagesOfGltf) {
 TEST(FindFile, MaterialsAndMapsOfObj) {
   const TempFolder folder;
   write_text(folder.file("One.MTL"), "newmtl m\nmap_Kd Wood.png\n");
-  write_text(folder.file("WOOD.PNG"), "x");
+  write_text(folder.file("WOOD.PNG"), "P5 1 1 255\nx");
   write_text(folder.file("one.obj"),
              "mtllib one.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  const ObjFile file = read_obj_with_materials(folder.file("one.obj"));
-  EXPECT_EQ(file.materials.at(1).albedo_map, std::filesystem::path(folder.file("WOOD.PNG")));
-  EXPECT_EQ(file.warnings.size(), 2u);
+  const LoadedObj file(folder.file("one.obj"));
+  EXPECT_EQ(file.scene.textures.size(), 1u);
+  ASSERT_EQ(file.warnings.size(), 1u);
+  EXPECT_EQ(file.count("One.MTL, whose case differs, is used (and 1 more, also 'Wood.png')"), 1);
 }
 
 }  // namespace

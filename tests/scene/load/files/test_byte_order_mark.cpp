@@ -4,6 +4,7 @@
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
 #include "load/gltf_files.h"
+#include "load/obj_files.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -22,10 +23,9 @@ TEST(ByteOrderMark, IsSkippedInMtl) {
   const TempFolder folder;
   write_text(folder.file("a.mtl"), mark + "newmtl red\nKd 1 0 0\n");
   write_text(folder.file("a.obj"), mark + "mtllib a.mtl\nusemtl red\n" + triangle);
-  const ObjFile file = read_obj_with_materials(folder.file("a.obj"));
+  const LoadedObj file(folder.file("a.obj"));
   EXPECT_TRUE(file.warnings.empty());
-  ASSERT_EQ(file.meshes.size(), 1u);
-  EXPECT_EQ(file.materials.at(file.meshes[0].material).material.color(0), Color(1, 0, 0));
+  EXPECT_EQ(file.material("red").color(0), Color(1, 0, 0));
 }
 
 TEST(ByteOrderMark, IsSkippedInPly) {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "common/geometry/mesh.h"
-#include "common/scene/data/material_description.h"
 
 namespace pt {
 
@@ -33,27 +32,9 @@ struct MeshFileOptions {
 /// integers are in the sRGB curve, floats are linear. May return an empty mesh.
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options = {});
 
-/// All faces of an OBJ file as one mesh, ignoring its materials.
+/// All faces of an OBJ file as one mesh, ignoring its materials. A line that is wrong is left out,
+/// and what needs it, with a warning. May return an empty mesh.
 Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options = {});
-
-/// A material of an MTL file as the nearest of ours.
-struct ObjMaterial {
-  std::string name;
-  MaterialDescription material;
-  std::filesystem::path albedo_map, emission_map;  ///< beside the MTL file; empty: none
-  std::filesystem::path opacity_map = {}, bump_map = {}, specular_map = {};
-  float bump_scale = 1.0f;
-};
-
-struct ObjFile {
-  std::vector<Mesh> meshes;  ///< one a material in use; Mesh::material is a number in `materials`
-  std::vector<ObjMaterial> materials;  ///< never empty: faces without a material are grey
-  std::vector<std::string> warnings;   ///< what the file asks for and we do otherwise
-};
-
-/// An OBJ file with the materials of its MTL files.
-ObjFile read_obj_with_materials(const std::filesystem::path& path,
-                                const MeshFileOptions& options = {});
 
 /// Shape number `shape_index` (0 is the first) of Mitsuba's .serialized, version 3 or 4. Flags that
 /// do not say how precise its numbers are get a warning: they are floats.

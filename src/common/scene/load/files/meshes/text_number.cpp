@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "common/error/error.h"
+#include "common/error/quoted.h"
 
 namespace pt {
 namespace {
@@ -25,6 +26,12 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
 std::string_view next_word(std::string_view& text) {
   const auto begin = std::find_if_not(text.begin(), text.end(), is_text_space);
   const auto end = std::find_if(begin, text.end(), is_text_space);
@@ -38,7 +45,7 @@ double parse_number(std::string_view word) {
   const char* end = digits.data() + digits.size();
   const auto [stop, failure] = std::from_chars(digits.data(), end, value);
   if (failure == std::errc::invalid_argument || stop != end) {
-    throw Error(fmt::format("expected a number, found '{}'", word.substr(0, 40)));
+    throw Error(fmt::format("expected a number, found {}", quoted(word, 40)));
   }
   return failure == std::errc::result_out_of_range ? out_of_range(digits) : value;
 }

@@ -1,6 +1,7 @@
 // Words and numbers in text.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace pt {
@@ -14,6 +15,9 @@ inline std::string_view without_byte_order_mark(std::string_view text) {
 
 /// Without the white space around it.
 std::string_view trim(std::string_view text);
+
+/// With ASCII letters in lower case.
+std::string lower_case(std::string_view text);
 
 /// Takes the next word, without the white space around it, off the front of `text`; empty at the
 /// end.
