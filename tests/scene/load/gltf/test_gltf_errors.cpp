@@ -1,4 +1,6 @@
 // The glTF loader: files that are malformed get one line, never a crash.
+#include <sys/stat.h>
+
 #include "load/gltf_files.h"
 
 namespace pt {
@@ -17,6 +19,21 @@ void expect_error_with(const std::string& pointer, const Json& value, const std:
   maker.root[Json::json_pointer(pointer)] = value;
   SCOPED_TRACE(pointer + " = " + value.dump());
   expect_load_error(maker.gltf(), part);
+}
+
+/// The same with a value that is lost: one warning, and a scene.
+void expect_warning_with(const std::string& pointer, const Json& value, const std::string& part) {
+  GltfMaker maker = triangle_file();
+  maker.root["nodes"].push_back({{"mesh", 0}});
+  maker.root["scenes"][0]["nodes"] = {0, 1};
+  maker.root["materials"] = {Json::object()};
+  maker.root["meshes"][0]["primitives"][0]["material"] = 0;
+  maker.root[Json::json_pointer(pointer)] = value;
+  SCOPED_TRACE(pointer + " = " + value.dump());
+  const Loaded loaded(maker);
+  EXPECT_EQ(loaded.count(part), 1u) << testing::PrintToString(loaded.messages);
+  EXPECT_FALSE(loaded.scene.meshes.empty());
+  expect_error([&] { Loaded strict(maker, true); }, "--strict");
 }
 
 constexpr const char* position = "meshes[0].primitives[0].attributes.POSITION";
@@ -94,13 +111,12 @@ TEST(GltfErrors, MeshesAreChecked) {
   expect_error_with("/meshes/0/primitives/0/attributes/NORMAL", 1, "attributes.NORMAL");
   expect_error_with("/meshes/0/primitives/0/indices", 0, "meshes[0].primitives[0].indices");
   expect_error_with("/meshes/0/primitives/0/mode", 7, "meshes[0].primitives[0].mode");
-  expect_error_with("/meshes/0/primitives/0/material", 0, "materials[0] does not exist");
   expect_error_with("/meshes/0/primitives", 3, "meshes[0].primitives: expected an array");
   expect_error_with("/accessors/1/count", 2, "meshes[0].primitives[0]");
   GltfMaker maker = triangle_file();
   maker.root["meshes"][0]["primitives"][0]["indices"] =
       maker.indices(std::initializer_list<std::uint8_t>{0, 1, 255});
-  expect_load_error(maker.gltf(), "meshes[0].primitives[0].indices: entry 2 is 255");
+  expect_load_error(maker.gltf(), "meshes[0].primitives[0].indices: index 255");
   GltfMaker infinite;
   infinite.mesh({{"attributes",
                   {{"POSITION", infinite.floats({0, 0, 0, 1, HUGE_VALF, 0, 0, 1, 0}, "VEC3")}}}});
@@ -108,22 +124,112 @@ TEST(GltfErrors, MeshesAreChecked) {
 }
 
 TEST(GltfErrors, NodesFormTrees) {
-  expect_error_with("/nodes/0/children", {0}, "nodes[0]: a cycle");
-  expect_error_with("/nodes/0/children", {5}, "nodes[0].children: nodes[5] does not exist");
-  expect_error_with("/nodes/0/mesh", 5, "nodes[0].mesh: meshes[5] does not exist");
-  expect_error_with("/scenes/0/nodes", {0, 0}, "nodes[0]: a cycle or two parents");
-  expect_error_with("/scene", 2, "scenes[2] does not exist");
-  expect_error_with("/nodes/0/rotation", {0, 0, 0, 0}, "nodes[0].rotation");
-  expect_error_with("/nodes/0/scale", {1, 2}, "nodes[0].scale");
-  expect_error_with("/nodes/0/scale", "x", "nodes[0].scale");
-  expect_error_with("/nodes/0/translation", {1, 2, 1e300}, "nodes[0].translation");
-  expect_error_with("/nodes/0/matrix", {1, 2, 3}, "nodes[0].matrix");
-  expect_error_with("/nodes/0/matrix",
-                    Json::array({1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "last row");
+  expect_warning_with("/nodes/0/children", {0}, "nodes[0]: a cycle or two parents");
+  expect_warning_with("/nodes/0/children", {5}, "nodes[0].children: nodes[5] does not exist");
+  expect_warning_with("/nodes/0/mesh", 5, "nodes[0].mesh: meshes[5] does not exist");
+  expect_warning_with("/scenes/0/nodes", {0, 0, 1}, "nodes[0]: a cycle or two parents");
+  expect_warning_with("/scene", 2, "scene: scenes[2] does not exist, there are 1: the first");
   GltfMaker cycle = triangle_file();
   cycle.root["nodes"] = {
       {{"mesh", 0}, {"children", {1}}}, {{"children", {2}}}, {{"children", {1}}}};
-  expect_load_error(cycle.gltf(), "nodes[1]: a cycle");
+  EXPECT_EQ(Loaded(cycle).count("nodes[1]: a cycle"), 1u);
+}
+
+TEST(GltfErrors, WrongPartsOfATransformationAreLeftOut) {
+  expect_warning_with("/nodes/0/rotation", {0, 0, 0, 0},
+                      "nodes[0].rotation: expected a quaternion");
+  expect_warning_with("/nodes/0/rotation", {0, 0, 1}, "nodes[0].rotation: expected 4 finite");
+  expect_warning_with("/nodes/0/scale", {1, 2}, "nodes[0].scale: expected 3 finite");
+  expect_warning_with("/nodes/0/scale", "x", "nodes[0].scale: expected a number");
+  expect_warning_with("/nodes/0/translation", {1, 2, 1e300}, "nodes[0].translation: expected 3");
+  expect_warning_with("/nodes/0/matrix", {1, 2, 3}, "nodes[0].matrix: expected 16");
+  expect_warning_with("/nodes/0/matrix",
+                      Json::array({1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}), "last row");
+  // The other parts stay.
+  GltfMaker maker = triangle_file();
+  maker.root["nodes"][0].update(
+      {{"translation", {5, 6, 7}}, {"rotation", {0, 0, 0, 0}}, {"scale", {2, 3, 4}}});
+  const Mesh mesh = Loaded(maker).scene.meshes.at(0);
+  EXPECT_EQ(mesh.positions[1], Vec3(7, 6, 7));
+  EXPECT_EQ(mesh.positions[2], Vec3(5, 12, 7));
+}
+
+TEST(GltfErrors, AMeshLosesWhatCannotBeDrawn) {
+  expect_warning_with("/meshes/0/primitives/0/material", 7, "materials[7] does not exist");
+  const auto with_indices = [](std::initializer_list<std::uint16_t> indices) {
+    GltfMaker maker = triangle_file();
+    maker.root["meshes"][0]["primitives"][0]["indices"] = maker.indices(indices);
+    return Loaded(maker);
+  };
+  const Loaded beyond = with_indices({0, 1, 2, 0, 2, 3, 0, 2, 1});
+  EXPECT_EQ(beyond.scene.meshes.at(0).triangles.size(), 2u);
+  EXPECT_EQ(beyond.count("indices: index 3, there are 3 vertices: its triangles are left out"), 1u);
+  const Loaded five = with_indices({0, 1, 2, 0, 2});
+  EXPECT_EQ(five.scene.meshes.at(0).triangles.size(), 1u);
+  EXPECT_EQ(five.count("5 vertices: expected three for each triangle"), 1u);
+  GltfMaker infinite;
+  const int positions =
+      infinite.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, HUGE_VALF, 0, 0, 7, 0, 0, 0, 7, 0}, "VEC3");
+  infinite.mesh({{"attributes", {{"POSITION", positions}}}});
+  const Loaded loaded(infinite);
+  EXPECT_EQ(loaded.scene.meshes.at(0).triangles.size(), 1u);
+  EXPECT_EQ(loaded.count("vertex 3 is not finite"), 1u);
+  for (const Vec3& p : loaded.scene.meshes[0].positions) EXPECT_TRUE(std::isfinite(p.x));
+  GltfMaker other = triangle_file();
+  other.root["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 7}});
+  EXPECT_EQ(Loaded(other).count("primitives[1].mode: 7: expected 0 to 6"), 1u);
+}
+
+TEST(GltfErrors, NumbersAndFlagsOfTheWrongFormAreLeftOut) {
+  expect_warning_with("/materials/0/doubleSided", 1, "materials[0].doubleSided: expected true or");
+  expect_warning_with("/materials/0/alphaCutoff", "x",
+                      "materials[0].alphaCutoff: expected a number");
+  expect_warning_with("/materials/0/alphaMode", "GLASS",
+                      "materials[0].alphaMode: 'GLASS': expected OPAQUE, MASK or BLEND");
+  expect_warning_with("/materials/0/emissiveFactor", {1, 1}, "emissiveFactor: expected");
+  expect_warning_with("/materials/0/emissiveFactor", {1, -1, 1}, "emissiveFactor: expected finite");
+  expect_warning_with("/materials/0/pbrMetallicRoughness", {{"baseColorFactor", {1, 1}}},
+                      "baseColorFactor: expected another number of components");
+  expect_warning_with("/materials/0/extensions", {{"KHR_materials_ior", {{"ior", 0.5}}}},
+                      "0.5: expected 0 or a number >= 1");
+  expect_warning_with("/materials/0/extensions", {{"KHR_materials_ior", {{"ior", "x"}}}},
+                      "KHR_materials_ior.ior: expected");
+  // Three components, as some write them, are opaque.
+  GltfMaker maker = with_material(
+      {{"alphaMode", "BLEND"}, {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1}}}}});
+  const MaterialDescription material = Loaded(maker, true).scene.materials.at(0);
+  EXPECT_EQ(material.color(0), Color(0.5f, 1, 1));
+  EXPECT_TRUE(material.opacity.is_opaque());
+}
+
+TEST(GltfErrors, LongNamesAreClipped) {
+  GltfMaker maker = triangle_file();
+  maker.root["extensionsUsed"] = {std::string(5 << 20, 'x')};
+  maker.root["images"] = {{{"uri", std::string(5 << 20, 'y') + ".png"}}};
+  maker.root["textures"] = {{{"source", 0}}};
+  maker.root["materials"] = {{{"name", std::string(5 << 20, 'z')},
+                              {"alphaMode", std::string(5 << 20, 'a')},
+                              {"emissiveFactor", {1, 1, 1}},
+                              {"emissiveTexture", {{"index", 0}}}}};
+  maker.root["meshes"][0]["primitives"][0]["material"] = 0;
+  const Loaded loaded(maker);
+  EXPECT_GE(loaded.messages.size(), 3u);
+  for (const std::string& message : loaded.messages) EXPECT_LT(message.size(), 1000u);
+  const auto message_of = [](const GltfMaker& bad) -> std::string {
+    try {
+      Loaded loaded_bad(bad);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  maker.root["meshes"][0][std::string(5 << 20, 'k')] = {{"indices", "x"}};
+  EXPECT_LT(message_of(maker).size(), 1000u);
+  GltfMaker buffer = triangle_file();
+  buffer.root["buffers"] = Json::array();
+  buffer.root["extensionsRequired"] = {std::string(5 << 20, 'r')};
+  EXPECT_LT(message_of(buffer).size(), 1000u);
+  EXPECT_NE(message_of(buffer), "no error");
 }
 
 TEST(GltfErrors, LongChainsOfNodesAreNoTrouble) {
@@ -172,15 +278,97 @@ TEST(GltfErrors, ImagesAndTextures) {
   GltfMaker maker = triangle_file();
   maker.root["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
   maker.root["meshes"][0]["primitives"][0]["material"] = 0;
-  expect_load_error(maker.gltf(), "materials[0].pbrMetallicRoughness.baseColorTexture.index");
+  const auto expect_warning = [&](const std::string& part) {
+    const Loaded loaded(maker);
+    EXPECT_GE(loaded.count(part), 1u) << part << ": " << testing::PrintToString(loaded.messages);
+    EXPECT_EQ(loaded.count("the factor alone is used"), 1u) << part;
+  };
+  expect_warning("materials[0].pbrMetallicRoughness.baseColorTexture.index: textures[0]");
   maker.root["textures"] = {{{"source", 0}}};
-  expect_load_error(maker.gltf(), "textures[0].source");
+  expect_warning("textures[0].source: images[0] does not exist");
   maker.root["images"] = {{{"bufferView", 9}}};
-  expect_load_error(maker.gltf(), "bufferView");
+  expect_warning("images[0]: bufferViews[9] does not exist");
   maker.root["images"] = {{{"bufferView", 0}}};  // no image
-  EXPECT_EQ(Loaded(maker).count("images[0]"), 1u);
+  expect_warning("images[0]");
   maker.root["images"] = {Json::object()};
-  expect_load_error(maker.gltf(), "image[0]");
+  expect_warning("images[0]: neither uri nor bufferView");
+  for (const char* uri :
+       {"data:image/png;base64,", "data:image/png;base64,*", "data:image/png,%89PNG", "data:x",
+        "data:image/webp;base64,AAAA", "data:;base64,AAAA"}) {
+    maker.root["images"] = {{{"uri", uri}}};
+    expect_warning("images[0]");
+  }
+}
+
+TEST(GltfErrors, OtherVersionsAndCompressionsAreNamed) {
+  expect_load_error(
+      R"({"asset": {"version": "1.0"}, "accessors": {}, "meshes": {"m": {"primitives": []}}})",
+      "asset.version: 1.0: this version of glTF is not supported");
+  expect_load_error(R"({"accessors": {}, "meshes": {"m": {"primitives": []}}})", "glTF 1.0");
+  std::string glb = triangle_file().glb();
+  glb[4] = 1;
+  expect_load_error(glb, "header: version 1 of .glb, as in glTF 1.0, is not supported");
+  // Compressed, with no other data.
+  GltfMaker draco = triangle_file();
+  draco.root["meshes"][0]["primitives"][0]["indices"] =
+      draco.indices(std::initializer_list<std::uint16_t>{0, 1, 2});
+  draco.root["meshes"][0]["primitives"][0]["extensions"] = {
+      {"KHR_draco_mesh_compression", {{"bufferView", 0}, {"attributes", {{"POSITION", 0}}}}}};
+  EXPECT_EQ(Loaded(draco).scene.meshes.size(), 1u) << "data beside it are used";
+  for (Json& accessor : draco.root["accessors"]) accessor.erase("bufferView");
+  expect_load_error(draco.gltf(), "KHR_draco_mesh_compression is not supported");
+  draco.root["meshes"][0]["primitives"][0].erase("indices");
+  expect_load_error(draco.gltf(), "KHR_draco_mesh_compression is not supported");
+  draco.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  expect_load_error(draco.gltf(), "extensionsRequired: KHR_draco_mesh_compression is not");
+  Json meshopt = triangle_file().with_buffer("data:application/octet-stream;base64,AAAA");
+  meshopt["buffers"].push_back(
+      {{"byteLength", 36}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
+  expect_load_error(meshopt.dump(), "buffers[1].uri: missing: the data is in EXT_meshopt");
+  meshopt["extensionsRequired"] = {"EXT_meshopt_compression"};
+  expect_load_error(meshopt.dump(), "extensionsRequired: EXT_meshopt_compression is not");
+  expect_load_error(triangle_file().with_buffer("").dump(), "buffers[0].uri: missing");
+}
+
+TEST(GltfErrors, OnlyRegularFilesAreRead) {
+  TempFolder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {pipe, std::string("/dev/zero"), folder.file("")}) {
+    expect_error([&] { load_gltf(path, {}); }, "not a regular file");
+  }
+  write_text(folder.file("scene.gltf"), triangle_file().with_buffer("pipe").dump());
+  expect_error([&] { load_gltf(folder.file("scene.gltf"), {}); }, "not a regular file");
+  // A picture is only a warning.
+  GltfMaker maker =
+      with_material({{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", {{"index", 0}}}});
+  maker.root["textures"] = {{{"source", 0}}};
+  maker.root["images"] = {{{"uri", "pipe"}}};
+  write_text(folder.file("scene.gltf"), maker.gltf());
+  std::size_t warned = 0;
+  LoadOptions options;
+  options.warn = [&](const std::string& line) {
+    warned += line.find("cannot read 'pipe'") != line.npos;
+  };
+  EXPECT_EQ(load_gltf(folder.file("scene.gltf"), options).meshes.size(), 1u);
+  EXPECT_EQ(warned, 1u);
+}
+
+// Each alone would be allowed.
+TEST(GltfErrors, ZerosOfAWholeFileAreLimited) {
+  GltfMaker maker = triangle_file();
+  const int indices = maker.indices(std::initializer_list<std::uint32_t>{0, 1, 2});
+  const int zeros =
+      maker.push("accessors", {{"componentType", 5126}, {"count", 1 << 22}, {"type", "VEC3"}});
+  maker.root["accessors"][zeros]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", 1}, {"componentType", 5125}}},
+      {"values", {{"bufferView", 0}}}};
+  for (int i = 0; i < 20; ++i) {
+    maker.root["meshes"][0]["primitives"].push_back(
+        {{"attributes", {{"POSITION", zeros}}}, {"indices", indices}});
+  }
+  expect_load_error(maker.gltf(), "elements without a bufferView: expected at most 16777216 in a");
 }
 
 /// Prefixes of a .glb file, and copies with a byte changed, are an Error or a scene. (All prefixes

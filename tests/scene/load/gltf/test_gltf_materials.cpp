@@ -36,10 +36,11 @@ TEST(GltfMaterials, TheDefaultMaterialIsRoughWhiteMetal) {  // so says the speci
   EXPECT_EQ(material.scalar(2), 1.0f);
 }
 
-TEST(GltfMaterials, TransmissionIsGlass) {
+TEST(GltfMaterials, TransmissionIntoAVolumeIsGlass) {
   GltfMaker maker = with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 1, 1}}}},
                                    {"extensions",
                                     {{"KHR_materials_transmission", {{"transmissionFactor", 0.4}}},
+                                     {"KHR_materials_volume", {{"thicknessFactor", 0.1}}},
                                      {"KHR_materials_ior", {{"ior", 1.33}}}}}});
   const MaterialDescription water = material_of(maker);
   EXPECT_EQ(water.kind, kind_of<Principled>);

@@ -1,6 +1,7 @@
 #include "common/scene/load/gltf/cameras.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pt::gltf {
 
@@ -9,7 +10,7 @@ namespace {
 constexpr int image_height = 720;  // glTF gives an aspect ratio and no size
 
 void set_image_shape(double aspect, SceneData& scene) {
-  if (!(aspect > 0.0)) return;
+  if (!(aspect > 0.0) || !std::isfinite(aspect)) return;
   scene.defaults.height = image_height;
   scene.defaults.width =
       static_cast<int>(std::clamp(std::round(aspect * image_height), 1.0, 65535.0));
@@ -17,42 +18,56 @@ void set_image_shape(double aspect, SceneData& scene) {
 
 float to_degrees(double radians) { return static_cast<float>(radians * 180.0 / 3.14159265358979); }
 
-void set_perspective(const File& file, const tinygltf::PerspectiveCamera& source,
+void set_perspective(File& file, const tinygltf::PerspectiveCamera& source,
                      const std::string& place, SceneData& scene) {
-  if (!(source.yfov > 0.0 && source.yfov < 3.14159265)) {
-    file.fail(place + ".perspective.yfov",
-              fmt::format("{}: expected radians between 0 and pi", source.yfov));
+  if (source.yfov > 0.0 && source.yfov < 3.14159265) {
+    scene.camera.fov_degrees = to_degrees(source.yfov);
+  } else {
+    file.report(place + ".perspective.yfov",
+                fmt::format("{}: expected radians between 0 and pi: {} degrees are used",
+                            source.yfov, scene.camera.fov_degrees));
   }
-  scene.camera.fov_degrees = to_degrees(source.yfov);
   set_image_shape(source.aspectRatio, scene);
 }
 
+/// The image's width shows 2 xmag, whatever its shape; pixels are square. Rays begin at znear and
+/// end at zfar.
 void set_orthographic(File& file, const tinygltf::OrthographicCamera& source,
                       const std::string& place, SceneData& scene) {
-  file.report(place,
-              "orthographic camera: a perspective one with a field of view of 5 degrees is "
-              "used, which sees as much at the scene's middle");
-  const double half_height = std::abs(source.ymag);
-  if (!(half_height > 0.0) || !std::isfinite(static_cast<float>(half_height))) {
-    file.fail(place + ".orthographic.ymag", "expected a number that is not 0");
-  }
+  const auto magnitude = [&](double value, const char* key) {
+    const double size = std::abs(value);
+    if (size > 0.0 && std::isfinite(static_cast<float>(size))) return size;
+    file.report(place + ".orthographic." + key,
+                "expected a number that is not 0: square pixels decide");
+    return 0.0;
+  };
+  double half_width = magnitude(source.xmag, "xmag"), half_height = magnitude(source.ymag, "ymag");
+  if (half_width == 0.0) half_width = half_height > 0.0 ? half_height : 1.0;
+  if (half_height == 0.0) half_height = half_width;
   CameraParameters& camera = scene.camera;
-  camera.fov_degrees = 5.0f;
-  const double distance = half_height / std::tan(2.5 * 3.14159265358979 / 180.0);
-  const Vec3 direction = normalize(camera.look_at - camera.look_from);
-  camera.look_from = camera.look_at - static_cast<float>(distance) * direction;
-  camera.focus_distance = static_cast<float>(distance);
-  set_image_shape(std::abs(source.xmag) / half_height, scene);
+  camera.orthographic = true;
+  camera.orthographic_size = Vec2(static_cast<float>(half_width));
+  set_image_shape(half_width / half_height, scene);
+  if (source.znear >= 0.0 && source.zfar > source.znear) {
+    camera.near_clip = static_cast<float>(source.znear);
+    camera.far_clip = std::min(static_cast<float>(source.zfar), infinite_distance);
+  } else {
+    file.report(place + ".orthographic",
+                fmt::format("znear {}, zfar {}: expected 0 <= znear < zfar: nothing is cut off",
+                            source.znear, source.zfar));
+  }
 }
 
 /// Looks along the node's -z with +y up; its scale has no effect (specification, section 3.10).
-void set_pose(const File& file, const PlacedNode& node, const Bounds& bounds,
-              CameraParameters& camera) {
+/// False, and a warning, for a node that has no such directions.
+bool set_pose(File& file, const PlacedNode& node, const Bounds& bounds, CameraParameters& camera) {
   const Vec3 forward = node.to_world.vector({0, 0, -1});
   const Vec3 up = node.to_world.vector({0, 1, 0});
   const Vec3 side = glm::cross(forward, up);
   if (!(glm::length(forward) > 0.0f && glm::length(up) > 0.0f && glm::length(side) > 0.0f)) {
-    file.fail(node_place(node.node), "the camera's transformation is singular");
+    file.report(node_place(node.node),
+                "the camera's transformation is singular: the camera is left out");
+    return false;
   }
   const Vec3 direction = normalize(forward);
   camera.look_from = node.to_world.translation();
@@ -61,6 +76,7 @@ void set_pose(const File& file, const PlacedNode& node, const Bounds& bounds,
   camera.focus_distance = depth > 0.0f && std::isfinite(depth) ? depth : 1.0f;
   camera.look_at = camera.look_from + camera.focus_distance * direction;
   camera.up = normalize(up);
+  return true;
 }
 
 }  // namespace
@@ -69,11 +85,14 @@ bool set_camera(File& file, const std::vector<PlacedNode>& nodes, const Bounds& 
                 SceneData& scene) {
   for (const PlacedNode& node : nodes) {
     const int index = file.model.nodes[static_cast<std::size_t>(node.node)].camera;
-    if (index < 0) continue;
-    const auto& source =
-        file.at(file.model.cameras, index, "cameras", node_place(node.node) + ".camera");
+    if (index < 0 ||
+        !file.has(file.model.cameras, index, "cameras", node_place(node.node) + ".camera",
+                  "the node has no camera") ||
+        !set_pose(file, node, bounds, scene.camera)) {
+      continue;
+    }
+    const tinygltf::Camera& source = file.model.cameras[static_cast<std::size_t>(index)];
     const std::string place = fmt::format("cameras[{}]", index);
-    set_pose(file, node, bounds, scene.camera);
     if (source.type == "perspective") {
       set_perspective(file, source.perspective, place, scene);
     } else {

@@ -8,8 +8,7 @@
 namespace pt::gltf {
 
 /// Sets the scene's camera and the image's shape from the first node with a camera; false if there
-/// is none. An orthographic camera becomes a perspective one far away that sees as much at the
-/// middle of `bounds`, the scene's.
+/// is none. `bounds` are the scene's: the camera is focused on their middle.
 bool set_camera(File& file, const std::vector<PlacedNode>& nodes, const Bounds& bounds,
                 SceneData& scene);
 

@@ -1,9 +1,13 @@
 #include "common/scene/load/gltf/gltf.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <unordered_map>
+#include <utility>
 
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/load/files/meshes/move_mesh.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/bake.h"
@@ -13,6 +17,8 @@
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
+#include "common/scene/load/gltf/skins.h"
+#include "common/scene/load/gltf/uv_sets.h"
 
 namespace pt {
 
@@ -20,80 +26,142 @@ namespace {
 
 using namespace gltf;
 
-void check_extensions(File& file) {
-  const auto is_known = [](const std::string& name) {
-    return std::ranges::find(known_extensions, name) != known_extensions.end();
-  };
-  for (const std::string& name : file.model.extensionsRequired) {
-    if (!is_known(name) && std::ranges::find(image_extensions, name) == image_extensions.end()) {
-      file.fail("extensionsRequired", fmt::format("{:.80} is not supported", name));
-    }
-  }
+void report_ignored(File& file) {
   for (const std::string& name : file.model.extensionsUsed) {
-    if (!is_known(name)) {
+    if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
       file.report("extensionsUsed", fmt::format("{:.80} is ignored", name));
     }
   }
+  if (!file.model.animations.empty()) {
+    file.report("animations", "animations are ignored: everything is as its nodes place it");
+  }
 }
 
-void report_ignored(File& file) {
-  if (!file.model.animations.empty()) file.report("animations", "animations are ignored");
-  if (!file.model.skins.empty()) file.report("skins", "skins are ignored");
-}
+/// A mesh in a shape of its own: with the weights of its morph targets, which a node may set, and
+/// moved by a skin, which no two nodes share here.
+struct Shape {
+  int mesh = -1;
+  std::vector<double> weights;
+  int skinned_by = -1;  ///< the node with the skin, -1: none
 
-/// Meshes by the nodes that use them.
-using Uses = std::map<int, std::vector<const PlacedNode*>>;
+  auto operator<=>(const Shape&) const = default;
+};
+using Uses = std::map<Shape, std::vector<const PlacedNode*>>;
 
-Uses uses_of_meshes(const File& file, const std::vector<PlacedNode>& nodes) {
+Uses uses_of_meshes(File& file, const std::vector<PlacedNode>& nodes) {
   Uses uses;
   for (const PlacedNode& node : nodes) {
-    const int mesh = file.model.nodes[static_cast<std::size_t>(node.node)].mesh;
-    if (mesh < 0) continue;
-    file.at(file.model.meshes, mesh, "meshes", node_place(node.node) + ".mesh");
-    uses[mesh].push_back(&node);
+    const auto& source = file.model.nodes[static_cast<std::size_t>(node.node)];
+    if (source.mesh < 0 || !file.has(file.model.meshes, source.mesh, "meshes",
+                                     node_place(node.node) + ".mesh", "the node has no mesh")) {
+      continue;
+    }
+    const auto& mesh = file.model.meshes[static_cast<std::size_t>(source.mesh)];
+    Shape shape{source.mesh, source.weights.empty() ? mesh.weights : source.weights,
+                source.skin >= 0 ? node.node : -1};
+    for (double& weight : shape.weights) {
+      if (!std::isfinite(static_cast<float>(weight))) weight = 0.0;
+    }
+    uses[shape].push_back(&node);
   }
   return uses;
 }
 
-void add_group(const std::vector<Mesh>& meshes, const std::vector<const PlacedNode*>& nodes,
-               std::uint32_t group, SceneData& scene) {
-  for (const Mesh& mesh : meshes) {
-    scene.meshes.push_back(mesh);
-    scene.meshes.back().group = group;
+/// Adds the meshes of the file to the scene.
+class MeshAdder {
+ public:
+  MeshAdder(File& file, const std::vector<PlacedNode>& nodes, const LoadOptions& options,
+            SceneData& scene)
+      : file_(file), scene_(scene), materials_(file, scene), colors_(scene, options) {
+    for (const PlacedNode& node : nodes) places_[node.node] = node.to_world;
   }
-  for (const PlacedNode* node : nodes) scene.instances.push_back({group, node->to_world});
-}
 
-void add_meshes(File& file, const std::vector<PlacedNode>& nodes, const LoadOptions& options,
-                SceneData& scene) {
-  Materials materials(file, scene);
-  VertexColors colors(scene, options);
-  std::uint32_t groups = 0;
-  for (const auto& [index, users] : uses_of_meshes(file, nodes)) {
-    std::vector<Mesh> meshes;
-    for (PrimitiveMesh& primitive : read_primitives(file, index)) {
-      const std::string place = fmt::format("meshes[{}]", index);
-      primitive.mesh.material = materials.material_index(primitive.material, place);
-      colors.tint(primitive.mesh, materials.is_unlit(primitive.material), file.describe(place));
-      meshes.push_back(std::move(primitive.mesh));
+  void add(const Shape& shape, const std::vector<const PlacedNode*>& users) {
+    bool in_world = false;
+    const std::vector<Part> parts = read_parts(shape, *users.front(), in_world);
+    if (parts.empty()) return;
+    if (in_world) {
+      for (const Part& part : parts) push(part.mesh, part.shines_back);
+      return;
     }
-    if (meshes.empty()) continue;
     // Instances need a map that can be inverted.
-    std::vector<const PlacedNode*> instances, baked;
+    std::vector<const PlacedNode*> instances;
     for (const PlacedNode* user : users) {
-      const bool is_instance = users.size() > 1 && user->to_world.determinant() != 0.0f;
-      (is_instance ? instances : baked).push_back(user);
-    }
-    for (const PlacedNode* user : baked) {
-      for (const Mesh& mesh : meshes) {
-        scene.meshes.push_back(mesh);
-        bake(file, user->to_world, node_place(user->node), scene.meshes.back());
+      if (users.size() > 1 && user->to_world.determinant() != 0.0f) {
+        instances.push_back(user);
+        continue;
+      }
+      for (const Part& part : parts) {
+        Mesh mesh = part.mesh;
+        bake(file_, user->to_world, node_place(user->node), mesh);
+        push(std::move(mesh), part.shines_back);
       }
     }
-    if (!instances.empty()) add_group(meshes, instances, ++groups, scene);
+    if (!instances.empty()) add_group(parts, instances);
   }
-  colors.finish();
-}
+
+  void finish() { colors_.finish(); }
+
+ private:
+  struct Part {
+    Mesh mesh;
+    bool shines_back = false;  ///< on its back, too
+  };
+
+  /// `in_world`: a skin has put them into world space.
+  std::vector<Part> read_parts(const Shape& shape, const PlacedNode& user, bool& in_world) {
+    std::vector<Affine> joints;
+    if (shape.skinned_by >= 0) {
+      const int skin = file_.model.nodes[static_cast<std::size_t>(shape.skinned_by)].skin;
+      joints = joint_matrices(file_, skin, places_, node_place(shape.skinned_by));
+    }
+    in_world = !joints.empty();
+    const std::string place = fmt::format("meshes[{}]", shape.mesh);
+    std::vector<Part> parts;
+    for (PrimitiveMesh& primitive : read_primitives(file_, shape.mesh, shape.weights)) {
+      if (in_world && primitive.influences.per_vertex > 0) {
+        apply_skin(file_, joints, primitive.influences, place, primitive.mesh);
+      } else if (in_world) {
+        file_.report(place,
+                     "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is "
+                     "placed by its node");
+        bake(file_, user.to_world, place, primitive.mesh);
+      }
+      const int material = primitive.material;
+      for (UvPart& uv : split_by_uv_sets(file_, std::move(primitive),
+                                         sets_of_textures(file_, material), place)) {
+        uv.mesh.material = materials_.material_index(material, uv.maps);
+        const bool shines_back = materials_.shines_on_both_sides(uv.mesh.material);
+        colors_.tint(uv.mesh, materials_.is_unlit(material), file_.describe(place));
+        parts.push_back({std::move(uv.mesh), shines_back});
+      }
+    }
+    return parts;
+  }
+
+  void push(Mesh mesh, bool shines_back) {
+    if (mesh.triangles.empty()) return;
+    if (shines_back) scene_.meshes.push_back(back_of(mesh));
+    scene_.meshes.push_back(std::move(mesh));
+  }
+
+  void add_group(const std::vector<Part>& parts, const std::vector<const PlacedNode*>& nodes) {
+    ++groups_;
+    for (const Part& part : parts) {
+      Mesh mesh = part.mesh;
+      mesh.group = groups_;
+      push(std::move(mesh), part.shines_back);
+    }
+    for (const PlacedNode* node : nodes) scene_.instances.push_back({groups_, node->to_world});
+  }
+
+  File& file_;
+  SceneData& scene_;
+  Materials materials_;
+  VertexColors colors_;
+  std::unordered_map<int, Affine> places_;  ///< by node
+  std::uint32_t groups_ = 0;
+};
 
 }  // namespace
 
@@ -101,13 +169,18 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   ReadModel read = read_model(path);
   File file(path.string(), std::move(read.model), options);
   for (const std::string& warning : read.warnings) file.report("", warning);
-  check_extensions(file);
   report_ignored(file);
   SceneData scene;
   scene.name = path.filename().string();
   const std::vector<PlacedNode> nodes = place_nodes(file);
-  add_meshes(file, nodes, options, scene);
-  if (scene.meshes.empty()) file.fail("", "no triangles in the scene: expected at least one");
+  MeshAdder meshes(file, nodes, options, scene);
+  for (const auto& [shape, users] : uses_of_meshes(file, nodes)) meshes.add(shape, users);
+  meshes.finish();
+  if (scene.meshes.empty()) {
+    const std::string& last = file.last_report();
+    file.fail("", "no triangles in the scene: expected at least one" +
+                      (last.empty() ? "" : fmt::format(" (warned: {})", last)));
+  }
   add_lights(file, nodes, scene);
   const Bounds bounds = scene_bounds(scene);
   if (!std::isfinite(glm::length(bounds.max - bounds.min))) {

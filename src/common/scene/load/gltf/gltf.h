@@ -13,13 +13,15 @@ namespace pt {
 /// and nits are taken as W/sr, W/m^2 and W/(m^2 sr). A scene without a camera gets one that frames
 /// it, a scene without light a studio's; `options.warn` is told so.
 ///
-/// What has no counterpart here is replaced by the nearest that has, and reported once a kind:
-/// what the principled BSDF has otherwise, colours of vertices beside textures by their mean.
-/// Ignored: points and lines, skins, morph targets and animations.
+/// Meshes have the shape of their default weights, and skins that of their nodes. What has no
+/// counterpart here is replaced by the nearest that has, and reported once a kind: what the
+/// principled BSDF has otherwise, colours of vertices beside textures by their mean. Ignored:
+/// points and lines, animations. A value or an element that cannot be used is left out, with a
+/// warning.
 ///
 /// Throws Error, one line with the file and the object's place in it
-/// (meshes[3].primitives[0].attributes.POSITION), for a file that is missing, malformed or needs
-/// an extension that we lack.
+/// (meshes[3].primitives[0].attributes.POSITION), for a file that is missing, whose structure is
+/// malformed or that needs an extension that we lack.
 SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace pt

@@ -33,6 +33,13 @@ MaterialDescription with_surface_of(const MaterialDescription& before, MaterialD
   return bsdf;
 }
 
+/// Whether light that enters goes through a solid; else the surface is an infinitely thin wall
+/// (KHR_materials_transmission, KHR_materials_volume).
+bool has_thickness(const tinygltf::Material& source) {
+  const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
+  return volume && number_or(*volume, "thicknessFactor", 0.0f) > 0.0f;
+}
+
 float extension_number(const tinygltf::Material& source, const char* extension, const char* key,
                        float fallback) {
   const auto* value = find_extension(source.extensions, extension);
@@ -41,20 +48,23 @@ float extension_number(const tinygltf::Material& source, const char* extension, 
 
 }  // namespace
 
-std::uint32_t Materials::material_index(int index, const std::string& place) {
-  const auto known = numbers_.find(index);
+std::uint32_t Materials::material_index(int index, const UvMaps& maps) {
+  const auto known = numbers_.find({index, maps});
   if (known != numbers_.end()) return known->second;
+  textures_.set_uv_maps(maps);
   std::uint32_t result;
+  bool both_sides = false;
   if (index < 0) {
-    result = add(tinygltf::Material(), place);
+    result = add(tinygltf::Material(), "", both_sides);
   } else {
-    const auto& source = file_.at(file_.model.materials, index, "materials", place + ".material");
+    const auto& source = file_.model.materials[static_cast<std::size_t>(index)];
     const std::string material_place = fmt::format(
         "materials[{}]{}", index, source.name.empty() ? "" : fmt::format(" '{:.60}'", source.name));
-    result = add(source, material_place);
+    result = add(source, material_place, both_sides);
     if (!source.name.empty()) scene_.names.materials[result] = source.name;
   }
-  numbers_.emplace(index, result);
+  if (both_sides) two_sided_.insert(result);
+  numbers_.emplace(std::pair(index, maps), result);
   return result;
 }
 
@@ -64,9 +74,11 @@ bool Materials::is_unlit(int index) const {
                         "KHR_materials_unlit");
 }
 
-MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place) {
+MaterialDescription Materials::convert(const tinygltf::Material& source, const std::string& place,
+                                       bool& both_sides) {
   MaterialDescription result;
   set_opacity(source, place, result);
+  bool passes = false;
   if (find_extension(source.extensions, "KHR_materials_unlit")) {
     file_.report(place,
                  "KHR_materials_unlit: black that emits the base colour is used, and lights "
@@ -75,19 +87,42 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
     result.emission.radiance = result.color(0);
     result.emission.texture = result.parameters[color_parameter].texture;
     result.parameters[color_parameter] = {};
-    return result;
-  }
-  const auto* glossiness = find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
-  if (glossiness) {
-    set_specular_glossiness(*glossiness, place, result);
   } else {
-    set_metallic_roughness(source, place, result);
+    const auto* glossiness =
+        find_extension(source.extensions, "KHR_materials_pbrSpecularGlossiness");
+    if (glossiness) {
+      set_specular_glossiness(*glossiness, place, result);
+      result.one_sided = !source.doubleSided;
+    } else {
+      passes = set_metallic_roughness(source, place, result);
+    }
+    set_emission(source, place, result);
   }
-  set_emission(source, place, result);
-  const bool passes = result.kind == kind_of<Principled> &&
-                      !is_black(result.parameters[Principled::Index::spec_trans].value);
-  result.one_sided = !passes && !source.doubleSided;
+  both_sides = source.doubleSided && !is_black(result.emission.radiance) &&
+               shine_on_both_sides(place, passes, result);
   return result;
+}
+
+/// A surface shines on the side of its normal, so that there will be two, one behind the other.
+/// Where they are veils, both together must let through what one would, and show as much of what
+/// they emit.
+bool Materials::shine_on_both_sides(const std::string& place, bool passes,
+                                    MaterialDescription& result) {
+  if (passes) {
+    file_.report(place, "doubleSided, emissive and transmissive: light from the front side only");
+    return false;
+  }
+  Opacity& opacity = result.opacity;
+  if (opacity.is_constant() && opacity.offset > 0.0f && opacity.offset < 1.0f) {
+    const float both = opacity.offset;
+    opacity.offset = 1.0f - std::sqrt(1.0f - both);
+    result.emission.radiance *= both / opacity.offset;
+  } else if (!opacity.is_constant() && opacity.cutoff == 0.0f) {
+    file_.report(place,
+                 "doubleSided, emissive and BLEND with a texture: two surfaces are used, so that "
+                 "what is half transparent lets a quarter through");
+  }
+  return true;
 }
 
 void Materials::set_base(const tinygltf::Material& source, const std::string& place,
@@ -107,7 +142,7 @@ Parameter Materials::number_of(float factor, const TextureUse& use, const std::s
   return result;
 }
 
-void Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
+bool Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
                                        MaterialDescription& result) {
   result = with_surface_of(result, describe_all<Principled>(0));
   set_base(source, place, result);
@@ -117,10 +152,75 @@ void Materials::set_metallic_roughness(const tinygltf::Material& source, const s
   Parameter* p = result.parameters;
   p[Principled::Index::roughness] = number_of(unit(pbr.roughnessFactor), use, at, green);
   p[Principled::Index::metallic] = number_of(unit(pbr.metallicFactor), use, at, blue);
-  set_transmission(source, place, result);
-  set_index(source, place, result);
+  const Parameter clear = transmission(source, place);
+  bool passes = !is_black(clear.value);
+  const bool is_thin = !has_thickness(source);
+  const Base base = base_of(source, place, passes && !is_thin);
+  p[Principled::Index::eta].value = Color(base.eta);
+  const bool mirrors = !is_black(base.mirror);
+  passes = passes && !mirrors;  // Fresnel's term is 1
+  result.one_sided = !passes && !source.doubleSided;
+  if (passes && !is_thin) {
+    p[Principled::Index::spec_trans] = clear;
+    set_volume(source, place, result);
+  }
   set_sheen(source, place, result);
   set_clearcoat(source, place, result);
+  if (mirrors) make_mirror(base.mirror, result);
+  if (passes && is_thin) make_thin(clear, result);
+  return passes;
+}
+
+std::uint32_t Materials::add_part(MaterialDescription part, float metallic) {
+  part.opacity = {};
+  if (part.kind == kind_of<Principled> && part.node == MaterialNode::none) {
+    part.parameters[Principled::Index::metallic] = {Color(metallic), no_texture};
+  }
+  return scene_.add_material(part);
+}
+
+MaterialDescription Materials::with_metal(const MaterialDescription& principled,
+                                          const MaterialDescription& base) {
+  const Parameter& metallic = principled.parameters[Principled::Index::metallic];
+  if (is_black(metallic.value)) return with_surface_of(principled, base);
+  if (metallic.texture == no_texture && metallic.value.x >= 1.0f) return principled;
+  // A base that mirrors is metal itself.
+  const std::uint32_t below = add_part(base, base.scalar(Principled::Index::metallic));
+  return with_surface_of(principled, make_blend(metallic, below, add_part(principled, 1.0f)));
+}
+
+void Materials::make_thin(const Parameter& clear, MaterialDescription& result) {
+  using Thin = PrincipledThin::Index;
+  MaterialDescription wall = describe_all<PrincipledThin>(0);
+  wall.parameters[Thin::base_color] = result.parameters[Principled::Index::base_color];
+  wall.parameters[Thin::roughness] = result.parameters[Principled::Index::roughness];
+  wall.parameters[Thin::eta] = result.parameters[Principled::Index::eta];
+  wall.parameters[Thin::spec_trans].value = Color(1.0f);
+  const Parameter& metallic = result.parameters[Principled::Index::metallic];
+  if (clear.texture == no_texture && clear.value.x >= 1.0f) {
+    result = with_metal(result, wall);
+  } else if (clear.texture == no_texture && metallic.texture == no_texture) {
+    // One blend: what is not clear has the metal's share of it.
+    const float weight = clear.value.x * (1.0f - metallic.value.x);
+    const std::uint32_t opaque = add_part(result, metallic.value.x / (1.0f - weight));
+    result = with_surface_of(result,
+                             make_blend({Color(weight), no_texture}, opaque, add_part(wall, 0.0f)));
+  } else {
+    const std::uint32_t opaque = add_part(result, 0.0f);
+    result = with_metal(result, make_blend(clear, opaque, add_part(wall, 0.0f)));
+  }
+}
+
+void Materials::make_mirror(const Color& reflectance, MaterialDescription& result) {
+  const float weight = max_abs(reflectance);
+  MaterialDescription mirror = result;
+  mirror.parameters[color_parameter] = {reflectance / weight, no_texture};
+  mirror.parameters[Principled::Index::metallic] = {Color(1.0f), no_texture};
+  if (weight < 1.0f) {
+    const std::uint32_t diffuse = add_part(result, 0.0f);
+    mirror = make_blend({Color(weight), no_texture}, diffuse, add_part(mirror, 1.0f));
+  }
+  result = with_metal(result, mirror);
 }
 
 void Materials::set_specular_glossiness(const tinygltf::Value& source, const std::string& place,
@@ -134,31 +234,27 @@ void Materials::set_specular_glossiness(const tinygltf::Value& source, const std
   }
 }
 
-void Materials::set_transmission(const tinygltf::Material& source, const std::string& place,
-                                 MaterialDescription& result) {
+Parameter Materials::transmission(const tinygltf::Material& source, const std::string& place) {
   const auto* extension = find_extension(source.extensions, "KHR_materials_transmission");
-  if (!extension) return;
-  const float transmission = unit(number_or(*extension, "transmissionFactor", 0.0f));
-  if (transmission == 0.0f) return;
-  file_.report(place, "KHR_materials_transmission: solid glass is used");
-  result.parameters[Principled::Index::spec_trans] =
-      number_of(transmission, texture_use(member(*extension, "transmissionTexture")),
-                place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
-  set_volume(source, place, result);
+  const float factor = extension ? unit(number_or(*extension, "transmissionFactor", 0.0f)) : 0.0f;
+  if (factor == 0.0f) return {Color(0.0f), no_texture};
+  return number_of(factor, texture_use(member(*extension, "transmissionTexture")),
+                   place + ".extensions.KHR_materials_transmission.transmissionTexture", red);
 }
 
-/// What the colour leaves of light after the distance. The mesh itself says how thick it is: a
-/// thickness of 0 means that it is a thin wall, and its texture is for renderers that trace no
-/// rays.
+/// What the colour leaves of light after the distance. The mesh itself says how thick it is; the
+/// texture of thickness is for renderers that trace no rays.
 void Materials::set_volume(const tinygltf::Material& source, const std::string& place,
                            MaterialDescription& result) {
   const auto* volume = find_extension(source.extensions, "KHR_materials_volume");
-  if (!volume || !(number_or(*volume, "thicknessFactor", 0.0f) > 0.0f)) return;
+  if (!volume) return;
   constexpr float endless = std::numeric_limits<float>::infinity();
   const float distance = number_or(*volume, "attenuationDistance", endless);
   if (!(distance > 0.0f)) {
-    file_.fail(place + ".extensions.KHR_materials_volume.attenuationDistance",
-               fmt::format("{}: expected > 0", distance));
+    file_.report_value(place + ".extensions.KHR_materials_volume.attenuationDistance",
+                       "attenuationDistance",
+                       fmt::format("{}: expected > 0: nothing is absorbed", distance));
+    return;
   }
   constexpr float blackest = 1e-6f;  // of a colour; black would absorb everything at once
   const Color color = clamped(vector_or(*volume, "attenuationColor", Color(1.0f)));
@@ -176,28 +272,38 @@ void Materials::set_volume(const tinygltf::Material& source, const std::string& 
 }
 
 /// KHR_materials_ior, and KHR_materials_specular as another index with the reflectance that it
-/// asks for.
-void Materials::set_index(const tinygltf::Material& source, const std::string& place,
-                          MaterialDescription& result) {
+/// asks for, where nothing is bent by it.
+Materials::Base Materials::base_of(const tinygltf::Material& source, const std::string& place,
+                                   bool bends) {
   float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
-  if (!std::isfinite(ior) || ior < 1.0f) {
-    file_.fail(place + ".extensions.KHR_materials_ior.ior", fmt::format("{}: expected >= 1", ior));
+  if (!std::isfinite(ior) || (ior < 1.0f && ior != 0.0f)) {
+    file_.report_value(place + ".extensions.KHR_materials_ior.ior", "ior",
+                       fmt::format("{}: expected 0 or a number >= 1: 1.5 is used", ior));
+    ior = 1.5f;
   }
-  const bool passes = !is_black(result.parameters[Principled::Index::spec_trans].value);
+  // With an index of 0 all is reflected, for materials that were specular-glossiness.
+  const float reflectance = ior == 0.0f ? 1.0f : normal_reflectance(ior);
+  constexpr float mirror = 0.5f;  // no glass; the principled BSDF would not take it from the base
+  Color hue(1.0f);
+  float scale = 1.0f;
   if (const auto* specular = find_extension(source.extensions, "KHR_materials_specular")) {
     const Color tint = vector_or(*specular, "specularColorFactor", Color(1.0f));
-    if (passes || texture_use(member(*specular, "specularTexture")) ||
-        texture_use(member(*specular, "specularColorTexture")) || tint != Color(tint.x)) {
+    const bool is_coloured = tint != Color(tint.x) && reflectance <= mirror;
+    if (bends || texture_use(member(*specular, "specularTexture")) ||
+        texture_use(member(*specular, "specularColorTexture")) || is_coloured) {
       file_.report(place,
                    "KHR_materials_specular: its factor times the largest component of its colour "
                    "is used, without textures and not on what light passes");
     }
     const float factor = unit(number_or(*specular, "specularFactor", 1.0f)) * max_abs(tint);
-    const float root = std::sqrt(std::min(normal_reflectance(ior) * factor, 0.99f));
-    if (!passes) ior = (1.0f + root) / (1.0f - root);
+    const float root = std::sqrt(std::min(reflectance * factor, 0.99f));
+    if (!bends && reflectance <= mirror) ior = (1.0f + root) / (1.0f - root);
+    scale = factor;
+    if (max_abs(tint) > 0.0f) hue = tint / max_abs(tint);
   }
+  if (reflectance > mirror) return {1.001f, clamped(reflectance * scale * hue)};
   // At 1 nothing would be reflected by metals, too, and nothing bent.
-  result.parameters[Principled::Index::eta].value = Color(std::max(ior, 1.001f));
+  return {std::max(ior, 1.001f), Color(0.0f)};
 }
 
 void Materials::set_sheen(const tinygltf::Material& source, const std::string& place,
@@ -241,14 +347,12 @@ void Materials::set_emission(const tinygltf::Material& source, const std::string
   const Color emission = strength * to_color(source.emissiveFactor);
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(emission[i]) || emission[i] < 0.0f) {
-      file_.fail(place + ".emissiveFactor", "expected finite numbers >= 0");
+      file_.report(place + ".emissiveFactor", "expected finite numbers >= 0: nothing is emitted");
+      return;
     }
   }
   result.emission.radiance = emission;
   if (is_black(emission)) return;
-  if (source.doubleSided) {
-    file_.report(place, "doubleSided and emissive: light from the front side only");
-  }
   if (const TextureUse use = texture_use(source.emissiveTexture)) {
     result.emission.texture = textures_.add_color(use, place + ".emissiveTexture");
   }
@@ -256,7 +360,14 @@ void Materials::set_emission(const tinygltf::Material& source, const std::string
 
 void Materials::set_opacity(const tinygltf::Material& source, const std::string& place,
                             MaterialDescription& result) {
-  if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") return;
+  if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") {
+    if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
+      file_.report(place + ".alphaMode", fmt::format("'{:.40}': expected OPAQUE, MASK or BLEND: "
+                                                     "OPAQUE is used",
+                                                     source.alphaMode));
+    }
+    return;
+  }
   const auto& pbr = source.pbrMetallicRoughness;
   const auto factor = static_cast<float>(pbr.baseColorFactor[3]);
   std::uint32_t alpha = no_texture;
@@ -273,14 +384,11 @@ void Materials::set_opacity(const tinygltf::Material& source, const std::string&
   }
 }
 
-std::uint32_t Materials::add(const tinygltf::Material& source, const std::string& place) {
-  MaterialDescription material = convert(source, place);
-  TextureUse use{source.normalTexture.index, source.normalTexture.texCoord, {}};
+std::uint32_t Materials::add(const tinygltf::Material& source, const std::string& place,
+                             bool& both_sides) {
+  MaterialDescription material = convert(source, place, both_sides);
+  const TextureUse use = texture_use(source.normalTexture);
   if (!use) return scene_.add_material(material);
-  if (const auto* transform =
-          find_extension(source.normalTexture.extensions, "KHR_texture_transform")) {
-    use.transform = *transform;
-  }
   const auto scale = static_cast<float>(source.normalTexture.scale);
   const std::uint32_t map = textures_.add_normals(use, place + ".normalTexture");
   if (map == no_texture) return scene_.add_material(material);

@@ -22,12 +22,8 @@ bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-void read_positions(const File& file, int accessor, const std::string& place, Mesh& mesh) {
-  mesh.positions = read_vec3s(file, accessor, place);
-  const auto bad = std::find_if_not(mesh.positions.begin(), mesh.positions.end(), is_finite);
-  if (bad != mesh.positions.end()) {
-    file.fail(place, fmt::format("vertex {} is not finite", bad - mesh.positions.begin()));
-  }
+std::string attribute_place(const std::string& place, const std::string& name) {
+  return place + ".attributes." + name;
 }
 
 void check_count(const File& file, std::size_t count, const Mesh& mesh, const std::string& place) {
@@ -36,9 +32,25 @@ void check_count(const File& file, std::size_t count, const Mesh& mesh, const st
   }
 }
 
-void read_normals(File& file, int accessor, const std::string& place, Mesh& mesh) {
-  mesh.normals = read_vec3s(file, accessor, place);
-  check_count(file, mesh.normals.size(), mesh, place);
+/// Adds what the morph targets move an attribute by. Targets without a weight have 0.
+void add_morphs(const File& file, const tinygltf::Primitive& primitive,
+                const std::vector<double>& weights, const char* attribute, const std::string& place,
+                std::vector<Vec3>& values) {
+  for (std::size_t i = 0; i < primitive.targets.size() && i < weights.size(); ++i) {
+    const auto found = primitive.targets[i].find(attribute);
+    const auto weight = static_cast<float>(weights[i]);
+    if (found == primitive.targets[i].end() || weight == 0.0f) continue;
+    const std::string target_place = fmt::format("{}.targets[{}].{}", place, i, attribute);
+    const std::vector<Vec3> moves = read_vec3s(file, found->second, target_place);
+    if (moves.size() != values.size()) {
+      file.fail(target_place,
+                fmt::format("{} elements, but {} has {}", moves.size(), attribute, values.size()));
+    }
+    for (std::size_t v = 0; v < values.size(); ++v) values[v] += weight * moves[v];
+  }
+}
+
+void unitize_normals(File& file, const std::string& place, Mesh& mesh) {
   for (Vec3& n : mesh.normals) {
     const float length = glm::length(n);
     if (!(length > 0.0f) || !std::isfinite(length)) {
@@ -51,14 +63,54 @@ void read_normals(File& file, int accessor, const std::string& place, Mesh& mesh
 }
 
 /// glTF's v goes down from the image's head, Mesh's goes up from its foot.
-void read_uvs(const File& file, int accessor, const std::string& place, Mesh& mesh) {
+std::vector<Vec2> read_uvs(const File& file, int accessor, const std::string& place,
+                           const Mesh& mesh) {
   const std::vector<float> values = read_floats(file, accessor, 2, place);
   check_count(file, values.size() / 2, mesh, place);
-  mesh.uvs.resize(values.size() / 2);
-  for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+  std::vector<Vec2> uvs(values.size() / 2);
+  for (std::size_t i = 0; i < uvs.size(); ++i) {
     const float u = values[2 * i], v = values[2 * i + 1];
-    mesh.uvs[i] = {std::isfinite(u) ? u : 0.0f, std::isfinite(v) ? 1.0f - v : 0.0f};
+    uvs[i] = {std::isfinite(u) ? u : 0.0f, std::isfinite(v) ? 1.0f - v : 0.0f};
   }
+  return uvs;
+}
+
+/// JOINTS_0, JOINTS_1, ... with their weights, whose sum becomes 1: exporters quantise them.
+Influences read_influences(const File& file, const tinygltf::Primitive& primitive, const Mesh& mesh,
+                           const std::string& place) {
+  Influences result;
+  const std::size_t vertices = mesh.positions.size();
+  const auto& attributes = primitive.attributes;
+  std::vector<std::vector<float>> joints, weights;
+  for (int set = 0;; ++set) {
+    const std::string names[2] = {fmt::format("JOINTS_{}", set), fmt::format("WEIGHTS_{}", set)};
+    const auto joint = attributes.find(names[0]), weight = attributes.find(names[1]);
+    if (joint == attributes.end() || weight == attributes.end()) break;
+    joints.push_back(read_floats(file, joint->second, 4, attribute_place(place, names[0])));
+    weights.push_back(read_floats(file, weight->second, 4, attribute_place(place, names[1])));
+    check_count(file, joints.back().size() / 4, mesh, attribute_place(place, names[0]));
+    check_count(file, weights.back().size() / 4, mesh, attribute_place(place, names[1]));
+  }
+  result.per_vertex = 4 * joints.size();
+  for (std::size_t v = 0; v < vertices && !joints.empty(); ++v) {
+    float sum = 0.0f;
+    for (std::size_t set = 0; set < joints.size(); ++set) {
+      for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
+        const float weight = weights[set][i] > 0.0f ? weights[set][i] : 0.0f;
+        result.joints.push_back(static_cast<std::uint32_t>(joints[set][i]));
+        result.weights.push_back(weight);
+        sum += weight;
+      }
+    }
+    float* first = &result.weights[v * result.per_vertex];
+    if (sum > 0.0f && std::isfinite(sum)) {
+      for (std::size_t i = 0; i < result.per_vertex; ++i) first[i] /= sum;
+    } else {
+      std::fill(first, first + result.per_vertex, 0.0f);
+      first[0] = 1.0f;
+    }
+  }
+  return result;
 }
 
 /// RGB or RGBA, linear.
@@ -81,32 +133,54 @@ void read_colors(File& file, int accessor, const std::string& place, Mesh& mesh)
 
 std::vector<std::uint32_t> vertex_sequence(const File& file, const tinygltf::Primitive& primitive,
                                            const Mesh& mesh, const std::string& place) {
-  if (primitive.indices < 0) {
-    std::vector<std::uint32_t> sequence(mesh.positions.size());
-    std::iota(sequence.begin(), sequence.end(), 0u);
-    return sequence;
-  }
-  const std::string indices_place = place + ".indices";
-  std::vector<std::uint32_t> sequence = read_indices(file, primitive.indices, indices_place);
-  for (std::size_t i = 0; i < sequence.size(); ++i) {
-    if (sequence[i] >= mesh.positions.size()) {
-      file.fail(indices_place, fmt::format("entry {} is {}, there are {} vertices", i, sequence[i],
-                                           mesh.positions.size()));
-    }
-  }
+  if (primitive.indices >= 0) return read_indices(file, primitive.indices, place + ".indices");
+  std::vector<std::uint32_t> sequence(mesh.positions.size());
+  std::iota(sequence.begin(), sequence.end(), 0u);
   return sequence;
 }
 
+/// Leaves out triangles of vertices that do not exist or are nowhere.
+void drop_bad_triangles(File& file, const std::string& place, Mesh& mesh) {
+  std::vector<TriangleIndices> kept;
+  kept.reserve(mesh.triangles.size());
+  for (const TriangleIndices& triangle : mesh.triangles) {
+    const auto beyond = std::ranges::find_if(
+        triangle.v, [&](std::uint32_t v) { return v >= mesh.positions.size(); });
+    if (beyond != std::end(triangle.v)) {
+      file.report_value(place + ".indices", "index",
+                        fmt::format("index {}, there are {} vertices: its triangles are left out",
+                                    *beyond, mesh.positions.size()));
+      continue;
+    }
+    const auto bad = std::ranges::find_if(
+        triangle.v, [&](std::uint32_t v) { return !is_finite(mesh.positions[v]); });
+    if (bad != std::end(triangle.v)) {
+      file.report_value(attribute_place(place, "POSITION"), "vertex",
+                        fmt::format("vertex {} is not finite: its triangles are left out", *bad));
+      continue;
+    }
+    kept.push_back(triangle);
+  }
+  mesh.triangles = std::move(kept);
+  if (mesh.triangles.empty()) return;
+  const Vec3 used = mesh.positions[mesh.triangles[0].v[0]];
+  for (Vec3& p : mesh.positions) {
+    if (!is_finite(p)) p = used;  // of no triangle, but the mesh's bounds hold all
+  }
+}
+
 /// (specification, section 3.7.2.1)
-std::vector<TriangleIndices> make_triangles(const File& file, int mode,
+std::vector<TriangleIndices> make_triangles(File& file, int mode,
                                             const std::vector<std::uint32_t>& v,
                                             const std::string& place) {
   std::vector<TriangleIndices> triangles;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     if (v.size() % 3 != 0) {
-      file.fail(place, fmt::format("{} vertices: expected three for each triangle", v.size()));
+      file.report(place, fmt::format("{} vertices: expected three for each triangle: the last are "
+                                     "left out",
+                                     v.size()));
     }
-    for (std::size_t i = 0; i < v.size(); i += 3) {
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
       triangles.push_back({{v[i], v[i + 1], v[i + 2]}});
     }
     return triangles;
@@ -122,52 +196,89 @@ std::vector<TriangleIndices> make_triangles(const File& file, int mode,
   return triangles;
 }
 
-void report_ignored(File& file, const tinygltf::Primitive& primitive, const std::string& place) {
-  if (!primitive.targets.empty()) file.report(place, "morph targets are ignored");
+/// A primitive without data of its own: in an extension that compresses it, or nowhere.
+bool has_positions(File& file, const tinygltf::Primitive& primitive, const std::string& place) {
+  const auto positions = primitive.attributes.find("POSITION");
+  if (positions == primitive.attributes.end()) {
+    file.report(place, "a primitive without POSITION is ignored");
+    return false;
+  }
+  const auto& accessor = file.at(file.model.accessors, positions->second, "accessors",
+                                 attribute_place(place, "POSITION"));
+  if (accessor.bufferView >= 0 || accessor.sparse.isSparse) return true;
+  const auto& extensions = primitive.extensions;
+  file.report(attribute_place(place, "POSITION"),
+              extensions.empty()
+                  ? "an accessor without a bufferView, all zeros: the primitive is ignored"
+                  : fmt::format("{:.80} is not supported: a primitive whose data is in it is left "
+                                "out",
+                                extensions.begin()->first));
+  return false;
 }
 
-Mesh read_primitive(File& file, const tinygltf::Primitive& primitive, const std::string& place) {
-  const auto place_of = [&](const char* name) { return place + ".attributes." + name; };
-  Mesh mesh;
+void read_uv_sets(const File& file, const tinygltf::Primitive& primitive, const std::string& place,
+                  PrimitiveMesh& result) {
+  for (const auto& [name, accessor] : primitive.attributes) {
+    constexpr std::string_view prefix = "TEXCOORD_";
+    if (!name.starts_with(prefix) || name.size() != prefix.size() + 1) continue;
+    const int set = name.back() - '0';
+    if (set < 0 || set > 9) continue;
+    result.uv_sets[set] = read_uvs(file, accessor, attribute_place(place, name), result.mesh);
+  }
+}
+
+PrimitiveMesh read_primitive(File& file, const tinygltf::Primitive& primitive,
+                             const std::vector<double>& weights, const std::string& place) {
+  PrimitiveMesh result;
+  if (!has_positions(file, primitive, place)) return result;
+  Mesh& mesh = result.mesh;
   const auto& attributes = primitive.attributes;
-  const auto positions = attributes.find("POSITION");
-  if (positions == attributes.end()) {
-    file.report(place, "a primitive without POSITION is ignored");
-    return mesh;
-  }
-  read_positions(file, positions->second, place_of("POSITION"), mesh);
+  mesh.positions = read_vec3s(file, attributes.at("POSITION"), attribute_place(place, "POSITION"));
+  add_morphs(file, primitive, weights, "POSITION", place, mesh.positions);
   if (const auto normals = attributes.find("NORMAL"); normals != attributes.end()) {
-    read_normals(file, normals->second, place_of("NORMAL"), mesh);
+    const std::string normals_place = attribute_place(place, "NORMAL");
+    mesh.normals = read_vec3s(file, normals->second, normals_place);
+    check_count(file, mesh.normals.size(), mesh, normals_place);
+    add_morphs(file, primitive, weights, "NORMAL", place, mesh.normals);
+    unitize_normals(file, normals_place, mesh);
   }
-  if (const auto uvs = attributes.find("TEXCOORD_0"); uvs != attributes.end()) {
-    read_uvs(file, uvs->second, place_of("TEXCOORD_0"), mesh);
-  }
+  read_uv_sets(file, primitive, place, result);
   if (const auto colors = attributes.find("COLOR_0"); colors != attributes.end()) {
-    read_colors(file, colors->second, place_of("COLOR_0"), mesh);
+    read_colors(file, colors->second, attribute_place(place, "COLOR_0"), mesh);
   }
+  result.influences = read_influences(file, primitive, mesh, place);
   mesh.triangles =
       make_triangles(file, primitive.mode, vertex_sequence(file, primitive, mesh, place), place);
-  report_ignored(file, primitive, place);
-  return mesh;
+  drop_bad_triangles(file, place, mesh);
+  return result;
 }
 
 }  // namespace
 
-std::vector<PrimitiveMesh> read_primitives(File& file, int mesh) {
+std::vector<PrimitiveMesh> read_primitives(File& file, int mesh,
+                                           const std::vector<double>& weights) {
   std::vector<PrimitiveMesh> result;
   const auto& primitives = file.model.meshes[static_cast<std::size_t>(mesh)].primitives;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const std::string place = fmt::format("meshes[{}].primitives[{}]", mesh, i);
     const int mode = primitives[i].mode;
     if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-      file.fail(place + ".mode", fmt::format("{}: expected 0 to 6", mode));
+      file.report(place + ".mode",
+                  fmt::format("{}: expected 0 to 6: the primitive is left out", mode));
+      continue;
     }
     if (mode < TINYGLTF_MODE_TRIANGLES) {
       file.report(place, "points and lines are ignored");
       continue;
     }
-    PrimitiveMesh read{read_primitive(file, primitives[i], place), primitives[i].material};
-    if (!read.mesh.triangles.empty()) result.push_back(std::move(read));
+    PrimitiveMesh read = read_primitive(file, primitives[i], weights, place);
+    if (read.mesh.triangles.empty()) continue;
+    const int material = primitives[i].material;
+    if (material >= 0 && file.has(file.model.materials, material, "materials", place + ".material",
+                                  "the default material is used")) {
+      read.material = material;
+    }
+    result.push_back(std::move(read));
   }
   return result;
 }

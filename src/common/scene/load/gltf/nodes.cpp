@@ -8,25 +8,23 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-void check_numbers(const File& file, const Numbers& values, std::size_t count,
-                   const std::string& place) {
+/// Whether the values can be used; if not, that is reported.
+bool are_numbers(File& file, const Numbers& values, std::size_t count, const std::string& place) {
   const auto is_finite = [](double x) { return std::isfinite(static_cast<float>(x)); };
-  if (values.size() != count || !std::all_of(values.begin(), values.end(), is_finite)) {
-    file.fail(place, fmt::format("expected {} finite numbers", count));
-  }
+  if (values.size() == count && std::all_of(values.begin(), values.end(), is_finite)) return true;
+  file.report(place, fmt::format("expected {} finite numbers: it is left out", count));
+  return false;
 }
 
 Vec3 to_vec3(const Numbers& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-Affine from_matrix(const File& file, const Numbers& m, const std::string& place) {
-  check_numbers(file, m, 16, place);
+Affine from_matrix(File& file, const Numbers& m, const std::string& place) {
+  if (!are_numbers(file, m, 16, place)) return {};
   const double off =
       std::max({std::abs(m[3]), std::abs(m[7]), std::abs(m[11]), std::abs(m[15] - 1)});
-  if (off > 1e-5) {
-    file.fail(place, "expected a last row of 0, 0, 0, 1");
-  }
+  if (off > 1e-5) file.report(place, "expected a last row of 0, 0, 0, 1, which is used");
   Affine result;
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {
@@ -37,10 +35,13 @@ Affine from_matrix(const File& file, const Numbers& m, const std::string& place)
 }
 
 /// The rotation of a quaternion x, y, z, w, which need not have unit length.
-Affine from_quaternion(const File& file, const Numbers& q, const std::string& place) {
-  check_numbers(file, q, 4, place);
+Affine from_quaternion(File& file, const Numbers& q, const std::string& place) {
+  if (!are_numbers(file, q, 4, place)) return {};
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  if (!(length > 0)) file.fail(place, "expected a quaternion that is not zero");
+  if (!(length > 0)) {
+    file.report(place, "expected a quaternion that is not zero: nothing is rotated");
+    return {};
+  }
   const double x = q[0] / length, y = q[1] / length, z = q[2] / length, w = q[3] / length;
   const auto row = [](double a, double b, double c) {
     return Vec4(static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), 0.0f);
@@ -51,28 +52,28 @@ Affine from_quaternion(const File& file, const Numbers& q, const std::string& pl
 }
 
 /// matrix, or translation * rotation * scale
-Affine local_transform(const File& file, const tinygltf::Node& node, const std::string& place) {
+Affine local_transform(File& file, const tinygltf::Node& node, const std::string& place) {
   if (!node.matrix.empty()) return from_matrix(file, node.matrix, place + ".matrix");
   Affine result;
-  if (!node.translation.empty()) {
-    check_numbers(file, node.translation, 3, place + ".translation");
+  if (!node.translation.empty() && are_numbers(file, node.translation, 3, place + ".translation")) {
     result = translate(to_vec3(node.translation));
   }
   if (!node.rotation.empty()) {
     result = result * from_quaternion(file, node.rotation, place + ".rotation");
   }
-  if (!node.scale.empty()) {
-    check_numbers(file, node.scale, 3, place + ".scale");
+  if (!node.scale.empty() && are_numbers(file, node.scale, 3, place + ".scale")) {
     result = result * scale(to_vec3(node.scale));
   }
   return result;
 }
 
 /// Of the default scene, or all nodes without a parent where the file has no scenes.
-std::vector<int> root_nodes(const File& file) {
+std::vector<int> root_nodes(File& file) {
   const auto& model = file.model;
   if (!model.scenes.empty()) {
-    return file.at(model.scenes, std::max(model.defaultScene, 0), "scenes", "scene").nodes;
+    const int scene = std::max(model.defaultScene, 0);
+    const bool is_there = file.has(model.scenes, scene, "scenes", "scene", "the first is used");
+    return model.scenes[is_there ? static_cast<std::size_t>(scene) : 0].nodes;
   }
   std::vector<bool> has_parent(model.nodes.size());
   for (const auto& node : model.nodes) {
@@ -100,7 +101,7 @@ bool is_finite(const Affine& m) {
 
 std::string node_place(int node) { return fmt::format("nodes[{}]", node); }
 
-std::vector<PlacedNode> place_nodes(const File& file) {
+std::vector<PlacedNode> place_nodes(File& file) {
   const auto& nodes = file.model.nodes;
   std::vector<PlacedNode> result;
   std::vector<bool> seen(nodes.size());
@@ -109,8 +110,9 @@ std::vector<PlacedNode> place_nodes(const File& file) {
   const auto push = [&](const std::vector<int>& children, const Affine& parent,
                         const std::string& place) {
     for (auto child = children.rbegin(); child != children.rend(); ++child) {
-      file.at(nodes, *child, "nodes", place);
-      waiting.push_back({*child, parent});
+      if (file.has(nodes, *child, "nodes", place, "it is left out")) {
+        waiting.push_back({*child, parent});
+      }
     }
   };
   push(root_nodes(file), Affine{}, "scenes");
@@ -119,10 +121,16 @@ std::vector<PlacedNode> place_nodes(const File& file) {
     waiting.pop_back();
     const auto index = static_cast<std::size_t>(placed.node);
     const std::string place = node_place(placed.node);
-    if (seen[index]) file.fail(place, "a cycle or two parents: the nodes must form trees");
+    if (seen[index]) {
+      file.report(place, "a cycle or two parents: nodes form trees, so it is placed once");
+      continue;
+    }
     seen[index] = true;
     placed.to_world = placed.to_world * local_transform(file, nodes[index], place);
-    if (!is_finite(placed.to_world)) file.fail(place, "its transformation overflows");
+    if (!is_finite(placed.to_world)) {
+      file.report(place, "its transformation overflows: it is left out with its children");
+      continue;
+    }
     result.push_back(placed);
     push(nodes[index].children, placed.to_world, place + ".children");
   }

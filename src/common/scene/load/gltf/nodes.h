@@ -16,9 +16,10 @@ struct PlacedNode {
 /// "nodes[7]"
 std::string node_place(int node);
 
-/// All nodes of the default scene, parents before their children, in the order of the file. Throws
-/// Error for a node that is its own ancestor or has two parents, and for a transformation that is
-/// not affine.
-std::vector<PlacedNode> place_nodes(const File& file);
+/// All nodes of the default scene, parents before their children, in the order of the file. A node
+/// that is its own ancestor or has two parents is placed once, a part of a transformation that
+/// cannot be used is left out, and a node that no number can place is lost with its children; each
+/// is reported.
+std::vector<PlacedNode> place_nodes(File& file);
 
 }  // namespace pt::gltf

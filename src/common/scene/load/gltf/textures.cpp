@@ -6,7 +6,7 @@ namespace pt::gltf {
 
 namespace {
 
-TextureWrap to_wrap(const File& file, int wrap, const std::string& place) {
+TextureWrap to_wrap(File& file, int wrap, const std::string& place) {
   switch (wrap) {
     case TINYGLTF_TEXTURE_WRAP_REPEAT:
       return TextureWrap::repeat;
@@ -15,16 +15,19 @@ TextureWrap to_wrap(const File& file, int wrap, const std::string& place) {
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return TextureWrap::mirror;
     default:
-      file.fail(place, fmt::format("{}: expected 10497, 33071 or 33648", wrap));
+      file.report(place, fmt::format("{}: expected 10497, 33071 or 33648: repeat is used", wrap));
+      return TextureWrap::repeat;
   }
 }
 
 /// Path tracing averages over a pixel, so that mipmaps, minFilter's subject, have no part.
-void apply_sampler(const File& file, const tinygltf::Texture& texture, const std::string& place,
+void apply_sampler(File& file, const tinygltf::Texture& texture, const std::string& place,
                    Texture& look) {
-  if (texture.sampler < 0) return;
-  const auto& sampler =
-      file.at(file.model.samplers, texture.sampler, "samplers", place + ".sampler");
+  if (texture.sampler < 0 || !file.has(file.model.samplers, texture.sampler, "samplers",
+                                       place + ".sampler", "repeat is used")) {
+    return;
+  }
+  const auto& sampler = file.model.samplers[static_cast<std::size_t>(texture.sampler)];
   const std::string sampler_place = fmt::format("samplers[{}]", texture.sampler);
   look.wrap_u = to_wrap(file, sampler.wrapS, sampler_place + ".wrapS");
   look.wrap_v = to_wrap(file, sampler.wrapT, sampler_place + ".wrapT");
@@ -44,22 +47,38 @@ void apply_transform(const tinygltf::Value& transform, Texture& look) {
   look.v_row[0] = -vu, look.v_row[1] = vv, look.v_row[2] = 1.0f - vv - offset.y;
 }
 
-}  // namespace
-
-TextureUse texture_use(const tinygltf::TextureInfo& info) {
-  TextureUse use{info.index, info.texCoord, {}};
-  if (const auto* transform = find_extension(info.extensions, "KHR_texture_transform")) {
-    use.transform = *transform;
-    use.tex_coord = integer_or(use.transform, "texCoord", use.tex_coord);
+/// First the map, then what the texture does with the coordinates.
+void apply_uv_map(const UvMap& map, Texture& look) {
+  for (float* row : {look.u_row, look.v_row}) {
+    const float a = row[0], b = row[1];
+    for (int i = 0; i < 3; ++i)
+      row[i] = a * map.u_row[i] + b * map.v_row[i] + (i == 2 ? row[2] : 0);
   }
+}
+
+/// KHR_texture_transform may name another set of coordinates.
+TextureUse with_transform(TextureUse use, const tinygltf::Value* transform) {
+  if (!transform) return use;
+  use.transform = *transform;
+  use.tex_coord = integer_or(*transform, "texCoord", use.tex_coord);
   return use;
 }
 
+}  // namespace
+
+template <class Info>
+TextureUse texture_use(const Info& info) {
+  return with_transform({info.index, info.texCoord, {}},
+                        find_extension(info.extensions, "KHR_texture_transform"));
+}
+template TextureUse texture_use(const tinygltf::TextureInfo&);
+template TextureUse texture_use(const tinygltf::NormalTextureInfo&);
+
+template <>
 TextureUse texture_use(const tinygltf::Value& info) {
-  TextureUse use{integer_or(info, "index", -1), integer_or(info, "texCoord", 0), {}};
-  use.transform = member(member(info, "extensions"), "KHR_texture_transform");
-  use.tex_coord = integer_or(use.transform, "texCoord", use.tex_coord);
-  return use;
+  const tinygltf::Value& transform = member(member(info, "extensions"), "KHR_texture_transform");
+  return with_transform({integer_or(info, "index", -1), integer_or(info, "texCoord", 0), {}},
+                        transform.IsObject() ? &transform : nullptr);
 }
 
 const tinygltf::Texture& Textures::texture(const TextureUse& use, const std::string& place) const {
@@ -69,11 +88,6 @@ const tinygltf::Texture& Textures::texture(const TextureUse& use, const std::str
 const tinygltf::Image& Textures::image_at(int source, const TextureUse& use) const {
   return file_.at(file_.model.images, source, "images",
                   fmt::format("textures[{}].source", use.texture));
-}
-
-void Textures::check(const TextureUse& use, const std::string& place) const {
-  const int source = texture(use, place).source;
-  if (source >= 0) image_at(source, use);
 }
 
 Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::string& place) const {
@@ -114,19 +128,18 @@ TextureImage Textures::integers(const TextureUse& use, const std::string& place)
 std::uint32_t Textures::decode(const TextureUse& use, const std::string& place,
                                TextureFormat format, const std::optional<Color>& weights) {
   const Encoded image = encoded_image(use, place);
-  if (use.tex_coord != 0) {
-    file_.report(place, "texture coordinates other than TEXCOORD_0: those are used instead");
-  }
   Texture look;
   look.format = format;
   apply_sampler(file_, texture(use, place), fmt::format("textures[{}]", use.texture), look);
   if (use.transform.IsObject()) apply_transform(use.transform, look);
+  if (const auto map = uv_maps_.find(use.tex_coord); map != uv_maps_.end()) {
+    apply_uv_map(map->second, look);
+  }
   return store_.add_memory(image.bytes, image.name, look, weights);
 }
 
 std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,
                             const std::optional<Color>& weights, const char* instead) {
-  check(use, place);
   try {
     return decode(use, place, format, weights);
   } catch (const Error& error) {
@@ -136,7 +149,6 @@ std::uint32_t Textures::add(const TextureUse& use, const std::string& place, Tex
 }
 
 Color Textures::mean(const TextureUse& use, const std::string& place) {
-  check(use, place);
   TextureImage image;
   try {
     image = integers(use, place);

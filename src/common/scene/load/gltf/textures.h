@@ -1,6 +1,8 @@
 // Textures: images, samplers and KHR_texture_transform.
 #pragma once
 
+#include <compare>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -20,9 +22,21 @@ struct TextureUse {
   explicit operator bool() const { return texture >= 0; }
 };
 
-TextureUse texture_use(const tinygltf::TextureInfo& info);
-/// The same within an extension; null: none.
+/// `info`: of a material; texture_use(Value): within an extension; null: none.
+template <class Info>
+TextureUse texture_use(const Info& info);
+template <>
 TextureUse texture_use(const tinygltf::Value& info);
+
+/// From a mesh's texture coordinates to those of another set of the file, both with v up.
+struct UvMap {
+  float u_row[3] = {1, 0, 0};
+  float v_row[3] = {0, 1, 0};
+
+  auto operator<=>(const UvMap&) const = default;
+};
+/// By the number of the set; those that are not in it are the mesh's own.
+using UvMaps = std::map<int, UvMap>;
 
 class Textures {
  public:
@@ -31,6 +45,9 @@ class Textures {
 
   // Each gives the number in the scene; `place` is that of the textureInfo. An image that cannot be
   // decoded is no_texture, with a warning.
+
+  /// Of the mesh whose textures are added from now on.
+  void set_uv_maps(const UvMaps& maps) { uv_maps_ = maps; }
 
   /// A colour texture (sRGB).
   std::uint32_t add_color(const TextureUse& use, const std::string& place) {
@@ -67,13 +84,12 @@ class Textures {
                        const std::optional<Color>& weights);
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
   const tinygltf::Image& image_at(int source, const TextureUse& use) const;
-  /// A wrong number is an Error; a picture that we lack, or cannot decode, is not.
-  void check(const TextureUse& use, const std::string& place) const;
   Encoded encoded_image(const TextureUse& use, const std::string& place) const;
   TextureImage integers(const TextureUse& use, const std::string& place) const;
 
   File& file_;
   TextureStore store_;
+  UvMaps uv_maps_;
 };
 
 }  // namespace pt::gltf

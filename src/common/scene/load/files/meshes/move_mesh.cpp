@@ -1,7 +1,10 @@
 #include "common/scene/load/files/meshes/move_mesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "common/geometry/bounds.h"
 
 namespace pt {
 namespace {
@@ -34,6 +37,27 @@ void wind_by_normals(Mesh& mesh) {
     const Vec3 shading = mesh.normals[a] + mesh.normals[b] + mesh.normals[c];
     if (glm::dot(geometric, shading) < 0.0f) turn(triangle);
   }
+}
+
+Mesh back_of(const Mesh& mesh) {
+  Mesh back = mesh;
+  turn_mesh(back);
+  Bounds bounds;
+  for (const Vec3& p : mesh.positions) bounds.grow(p);
+  const float extent = glm::length(bounds.max - bounds.min);
+  const float reach = std::max(max_abs(bounds.min), max_abs(bounds.max));
+  const float offset = std::max(1e-5f * extent, 4e-6f * reach);
+  std::vector<Vec3> normals(mesh.positions.size(), Vec3(0.0f));
+  for (const TriangleIndices& t : back.triangles) {
+    const Vec3& p = back.positions[t.v[0]];
+    const Vec3 n = glm::cross(back.positions[t.v[1]] - p, back.positions[t.v[2]] - p);
+    for (const std::uint32_t v : t.v) normals[v] += n;
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const float length = glm::length(normals[i]);
+    if (length > 0.0f) back.positions[i] += (offset / length) * normals[i];
+  }
+  return back;
 }
 
 }  // namespace pt

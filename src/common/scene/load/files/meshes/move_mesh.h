@@ -15,4 +15,7 @@ void turn_mesh(Mesh& mesh);
 /// Winds each triangle so that its geometric normal is on the side of its vertices' normals.
 void wind_by_normals(Mesh& mesh);
 
+/// The other side of a lamp that shines on both: a surface of its own, a little behind the first.
+Mesh back_of(const Mesh& mesh);
+
 }  // namespace pt

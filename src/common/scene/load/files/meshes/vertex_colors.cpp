@@ -107,7 +107,9 @@ void VertexColors::tint(Mesh& mesh, bool emits, const std::string& place) {
   if (is_new) {
     const std::uint32_t texture = by_vertex();
     entry->second = changed(mesh.material, [&](MaterialDescription& m) {
-      (emits ? m.emission.texture : m.parameters[color_parameter].texture) = texture;
+      if (emits) m.emission.texture = texture;
+      // The first parameter of a blend is its weight.
+      if (!emits && m.node == MaterialNode::none) m.parameters[color_parameter].texture = texture;
     });
   }
   mesh.material = entry->second;

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "common/error/host_memory.h"
 #include "common/scene/load/gltf/document/elements.h"
 
 namespace pt::gltf {
 
 namespace {
 
-/// An accessor without a buffer view is all zeros; a file of a few bytes must not fill the memory.
+/// Of all accessors without a buffer view.
 constexpr std::size_t max_zeros = std::size_t{1} << 24;
 
 /// (specification, section 3.6.2.2 and, for the division, KHR_mesh_quantization)
@@ -61,9 +62,13 @@ const tinygltf::Accessor& checked_accessor(const File& file, int index, int comp
                                            const std::string& place) {
   const auto& accessor = file.at(file.model.accessors, index, "accessors", place);
   const bool is_vector = accessor.type >= TINYGLTF_TYPE_VEC2 && accessor.type <= TINYGLTF_TYPE_VEC4;
-  const int actual = accessor.type == TINYGLTF_TYPE_SCALAR ? 1 : (is_vector ? accessor.type : 0);
+  const int actual = accessor.type == TINYGLTF_TYPE_SCALAR ? 1
+                     : accessor.type == TINYGLTF_TYPE_MAT4 ? 16
+                                                           : (is_vector ? accessor.type : 0);
   if (actual != components) {
-    const std::string expected = components == 1 ? "SCALAR" : fmt::format("VEC{}", components);
+    const std::string expected = components == 1    ? "SCALAR"
+                                 : components == 16 ? "MAT4"
+                                                    : fmt::format("VEC{}", components);
     file.fail(place, "another type, expected " + expected);
   }
   return accessor;
@@ -75,12 +80,21 @@ Elements dense_elements(const File& file, const tinygltf::Accessor& accessor, in
     return locate(file, accessor.bufferView, accessor.byteOffset, accessor.count,
                   accessor.componentType, components, place);
   }
-  if (accessor.count > max_zeros) {
-    file.fail(place, fmt::format("{} elements without a bufferView: expected at most {}",
+  if (accessor.count > max_zeros - file.zeros) {
+    file.fail(place, fmt::format("{} elements without a bufferView: expected at most {} in a file",
                                  accessor.count, max_zeros));
   }
+  file.zeros += accessor.count;
   component_size(file, accessor.componentType, place);
   return {nullptr, accessor.count, 0, accessor.componentType, components};
+}
+
+/// Several primitives may name one accessor, so that a small file asks for much memory. `bytes`: of
+/// each element, with what meshes are made of it.
+void check_memory(const Elements& elements, std::size_t bytes, const std::string& place) {
+  constexpr std::size_t small = std::size_t{1} << 20;
+  const std::size_t all = elements.count * bytes;
+  if (all > small) check_host_memory(all, place);
 }
 
 /// Calls replace(element, values, i) for each element `element` that the sparse part replaces by
@@ -120,6 +134,7 @@ std::vector<float> read_floats(const File& file, int index, int components,
   const auto& accessor = checked_accessor(file, index, components, place);
   const Elements elements = dense_elements(file, accessor, components, place);
   const auto width = static_cast<std::size_t>(components);
+  check_memory(elements, 2 * width * sizeof(float), place);
   std::vector<float> result(elements.count * width, 0.0f);
   const auto copy = [&](std::size_t to, const Elements& from, std::size_t element) {
     for (int i = 0; i < components; ++i) {
@@ -140,6 +155,7 @@ std::vector<std::uint32_t> read_indices(const File& file, int index,
   const auto& accessor = checked_accessor(file, index, 1, place);
   check_index_type(file, accessor.componentType, place);
   const Elements elements = dense_elements(file, accessor, 1, place);
+  check_memory(elements, 2 * sizeof(std::uint32_t), place);
   std::vector<std::uint32_t> result(elements.count, 0);
   if (elements.first) {
     for (std::size_t i = 0; i < elements.count; ++i) result[i] = to_index(elements, i);

@@ -8,9 +8,9 @@
 
 namespace pt::gltf {
 
-/// The accessor's elements, `components` (1 to 4) numbers each. Integers are converted: normalised
-/// ones to [0, 1] or [-1, 1], others by value. Throws Error at `place` where the accessor has
-/// another shape or exceeds its buffer.
+/// The accessor's elements, `components` (1 to 4, or 16) numbers each. Integers are converted:
+/// normalised ones to [0, 1] or [-1, 1], others by value. Throws Error at `place` where the
+/// accessor has another shape or exceeds its buffer.
 std::vector<float> read_floats(const File& file, int accessor, int components,
                                const std::string& place);
 

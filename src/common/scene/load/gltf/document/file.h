@@ -33,10 +33,17 @@ inline constexpr std::array<std::string_view, 12> known_extensions = {
     "KHR_mesh_quantization",
     "KHR_texture_transform"};
 
+/// Names in files may be as long as the files: messages are not.
+inline std::string clipped(const std::string& text) {
+  constexpr std::size_t longest = 500;
+  return text.size() <= longest ? text : text.substr(0, longest) + " ...";
+}
+
 /// A place is a path of names and numbers such as meshes[3].primitives[0].
 [[noreturn]] inline void fail(const std::string& file, const std::string& place,
                               const std::string& message) {
-  throw Error(fmt::format("{}: {}{}{}", file, place, place.empty() ? "" : ": ", message));
+  throw Error(fmt::format(
+      "{}: {}", file, clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", message))));
 }
 
 class File {
@@ -45,6 +52,9 @@ class File {
       : model(std::move(objects)), name_(std::move(name)), options_(load_options) {}
 
   const tinygltf::Model model;
+  /// Of accessors without a bufferView, which are all zeros, read so far: a file of a few bytes
+  /// must not fill the memory.
+  mutable std::size_t zeros = 0;
 
   [[noreturn]] void fail(const std::string& place, const std::string& message) const {
     gltf::fail(name_, place, message);
@@ -52,12 +62,22 @@ class File {
 
   /// Reports what is ignored or replaced, and by what; the same message once, with its first place.
   void report(const std::string& place, const std::string& message) {
-    if (!reported_.insert(message).second) return;
-    options_.report(fmt::format("{}: {}{}{}", name_, place, place.empty() ? "" : ": ", message));
+    const std::string text = clipped(message);
+    if (!reported_.insert(text).second) return;
+    last_report_ = clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", text));
+    options_.report(fmt::format("{}: {}", name_, last_report_));
+  }
+  const std::string& last_report() const { return last_report_; }
+
+  /// Reports that something is wrong at `place` and what is used instead: the same kind once,
+  /// whatever its numbers. `kind` is what all its messages begin with.
+  void report_value(const std::string& place, const std::string& kind, const std::string& message) {
+    if (!kinds_.insert(kind).second) return;
+    report(place, message);
   }
 
   /// A name for a part of the file.
-  std::string describe(const std::string& place) const { return name_ + ": " + place; }
+  std::string describe(const std::string& place) const { return name_ + ": " + clipped(place); }
 
   /// Says what was chosen where the file leaves it open.
   void note(const std::string& message) const {
@@ -74,10 +94,22 @@ class File {
     return objects[static_cast<std::size_t>(index)];
   }
 
+  /// Whether there is objects[index]. If not, that is reported at `place`, with what is done
+  /// instead.
+  template <class T>
+  bool has(const std::vector<T>& objects, int index, const char* kind, const std::string& place,
+           const char* instead) {
+    if (index >= 0 && static_cast<std::size_t>(index) < objects.size()) return true;
+    report(place, fmt::format("{}[{}] does not exist, there are {}: {}", kind, index,
+                              objects.size(), instead));
+    return false;
+  }
+
  private:
   std::string name_;
   const LoadOptions& options_;
-  std::set<std::string> reported_;
+  std::set<std::string> reported_, kinds_;
+  std::string last_report_;
 };
 
 }  // namespace pt::gltf

@@ -37,6 +37,7 @@ const std::map<std::string, unsigned, std::less<>> forms = {
     {"index", integer},
     {"indices", integer | object},
     {"input", integer},
+    {"inverseBindMatrices", integer},
     {"light", integer},
     {"magFilter", integer},
     {"material", integer},
@@ -96,6 +97,7 @@ const std::map<std::string, unsigned, std::less<>> forms = {
     {"alphaMode", string},
     {"doubleSided", boolean},
     {"mimeType", string},
+    {"name", string},
     {"normalized", boolean},
     {"type", string},
     {"uri", string},
@@ -192,6 +194,13 @@ std::string describe(unsigned form) {
 std::string expected_form(const std::string& key, const Json& value) {
   const auto form = forms.find(key);
   return form == forms.end() || has_form(value, form->second) ? "" : describe(form->second);
+}
+
+bool may_be_lost(const std::string& key) {
+  const auto form = forms.find(key);
+  if (key == "normalized") return false;
+  return key == "alphaMode" || key == "mimeType" || key == "name" ||
+         (form != forms.end() && (form->second & ~unsigned{number | numbers | boolean}) == 0);
 }
 
 }  // namespace pt::gltf

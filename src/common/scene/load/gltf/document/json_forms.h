@@ -10,4 +10,8 @@ namespace pt::gltf {
 /// not known may be anything. Integers are from 0 to 2^31 - 1, as tinygltf stores them.
 std::string expected_form(const std::string& key, const nlohmann::json& value);
 
+/// Whether a value of the wrong form may be left out: it is a quantity or a flag, not part of the
+/// file's structure.
+bool may_be_lost(const std::string& key);
+
 }  // namespace pt::gltf

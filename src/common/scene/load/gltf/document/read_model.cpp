@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/scene/load/files/find_file.h"
-#include "common/scene/load/files/scene_files.h"
+#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/gltf/document/check_json.h"
 #include "common/scene/load/gltf/document/file.h"
 
@@ -16,26 +14,22 @@ namespace pt::gltf {
 
 namespace {
 
-std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    throw Error(fmt::format("{}: cannot be read", path.string()));
-  }
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw Error(fmt::format("{}: cannot be read", path.string()));
-  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw Error(fmt::format("{}: larger than 4 GiB, which glTF does not allow", path.string()));
-  }
-  SceneFiles::note(path, bytes);
-  return bytes;
+/// A pipe, a device or a folder is refused, not waited for.
+MappedFile map_file(const std::filesystem::path& path) try {
+  return MappedFile(path);
+} catch (const Error& error) {
+  throw Error(fmt::format("{}: cannot be read: {}", path.string(), error.what()));
 }
 
 /// tinygltf's, of buffers and pictures beside the model.
 bool read_beside(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
-                 void* user) {
-  if (!tinygltf::ReadWholeFile(bytes, error, path, user)) return false;
-  SceneFiles::note(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+                 void*) try {
+  const MappedFile file(path);
+  bytes->assign(file.bytes().begin(), file.bytes().end());
   return true;
+} catch (const std::exception& problem) {
+  *error = problem.what();
+  return false;
 }
 
 std::uint32_t word_at(std::string_view bytes, std::size_t offset) {
@@ -50,7 +44,11 @@ constexpr std::uint32_t json_chunk = 0x4e4f534a, bin_chunk = 0x004e4942;
 std::string_view glb_json(std::string_view bytes, const std::string& file) {
   if (bytes.size() < 20) fail(file, "header", "truncated: expected 20 bytes or more");
   const std::uint64_t version = word_at(bytes, 4), length = word_at(bytes, 8);
-  if (version != 2) fail(file, "header", fmt::format("version {}: expected 2", version));
+  if (version != 2) {
+    fail(file, "header",
+         fmt::format("version {} of .glb, as in glTF {}.0, is not supported: expected 2", version,
+                     version));
+  }
   if (length > bytes.size()) {
     fail(file, "header", fmt::format("truncated: {} bytes of {}", bytes.size(), length));
   }
@@ -68,17 +66,32 @@ std::string_view glb_json(std::string_view bytes, const std::string& file) {
   return bytes.substr(20, json_length);
 }
 
-void parse_and_check(std::string_view text, const std::string& file) {
-  nlohmann::json root;
+nlohmann::json parse(std::string_view text, const std::string& file) {
   try {
-    root = nlohmann::json::parse(text);
+    return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& error) {
     // '[json.exception.parse_error.101] parse error at line 1, column 2: ...'
     const std::string message = error.what();
     const std::size_t end_of_id = message.find("] ");
     fail(file, "", end_of_id == std::string::npos ? message : message.substr(end_of_id + 2));
   }
-  check_json(root, file);
+}
+
+/// The file with another JSON.
+std::string with_json(std::string_view bytes, std::string_view old_json,
+                      const nlohmann::json& root) {
+  std::string json = root.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  if (old_json.size() == bytes.size()) return json;
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string_view rest = bytes.substr(20 + old_json.size());
+  std::string result(bytes.substr(0, 20));
+  const auto set_word = [&](std::size_t offset, std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    std::memcpy(result.data() + offset, &word, sizeof word);
+  };
+  set_word(8, 20 + json.size() + rest.size());
+  set_word(12, json.size());
+  return result.append(json).append(rest);
 }
 
 bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int,
@@ -108,8 +121,7 @@ std::string found_path(const std::string& path, void* user) {
 /// Only what lies at the path that the file names: tinygltf would also look in the working folder.
 bool exists_beside(const std::string& path, void*) {
   std::error_code ignored;
-  return std::filesystem::path(path).is_absolute() &&
-         std::filesystem::is_regular_file(path, ignored);
+  return std::filesystem::path(path).is_absolute() && std::filesystem::exists(path, ignored);
 }
 
 /// tinygltf 2.9 asks for a file's size before it reads it, and refuses 2 GiB and more.
@@ -145,9 +157,18 @@ std::string one_line(const std::string& complaints) {
 
 ReadModel read_model(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const std::string bytes = read_bytes(path);
+  const MappedFile mapped = map_file(path);
+  std::string_view bytes = mapped.bytes();
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+    fail(file, "", "larger than 4 GiB, which glTF does not allow");
+  }
   const bool is_glb = bytes.starts_with("glTF");
-  parse_and_check(is_glb ? glb_json(bytes, file) : bytes, file);
+  const std::string_view text = is_glb ? glb_json(bytes, file) : bytes;
+  nlohmann::json root = parse(text, file);
+  check_promises(root, file, is_glb);
+  const Mended mended = check_json(root, file);
+  std::string rewritten;
+  if (mended.changed) bytes = rewritten = with_json(bytes, text, root);
 
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(keep_encoded, nullptr);
@@ -178,9 +199,8 @@ ReadModel read_model(const std::filesystem::path& path) {
   if (!loaded && error.empty()) error = one_line(warning);
   if (!loaded && error.empty()) error = "not a glTF file that tinygltf can read";
   if (!error.empty()) fail(file, "", error);
-  if (!model.asset.version.starts_with("2.")) {
-    fail(file, "asset.version", fmt::format("{:.20}: expected 2.x", model.asset.version));
-  }
+  if (!model.asset.version.starts_with("2.")) fail(file, "asset.version", "missing: expected 2.x");
+  files.warnings.insert(files.warnings.end(), mended.lines.begin(), mended.lines.end());
   return {std::move(model), std::move(files.warnings)};
 }
 

@@ -11,7 +11,8 @@ namespace pt::gltf {
 
 struct ReadModel {
   tinygltf::Model model;
-  std::vector<std::string> warnings;  ///< of names that differ from their files' in case
+  std::vector<std::string>
+      warnings;  ///< of names that differ from their files' in case, of what was mended
 };
 
 /// Reads a .gltf or .glb file (its first bytes decide) with its buffers. Images stay encoded:

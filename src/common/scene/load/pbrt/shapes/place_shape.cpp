@@ -37,28 +37,6 @@ void set_power(Context& context, const ShapeEntity& entity, const ShapeMaterial&
   material.emission.radiance *= static_cast<float>(shape.power * static_cast<double>(parts) / k);
 }
 
-/// The other side of a lamp that shines on both: a surface of its own, a little behind the first.
-Mesh back_of(const Mesh& mesh) {
-  Mesh back = mesh;
-  turn_mesh(back);
-  Bounds bounds;
-  for (const Vec3& p : mesh.positions) bounds.grow(p);
-  const float extent = glm::length(bounds.max - bounds.min);
-  const float reach = std::max(max_abs(bounds.min), max_abs(bounds.max));
-  const float offset = std::max(1e-5f * extent, 4e-6f * reach);
-  std::vector<Vec3> normals(mesh.positions.size(), Vec3(0.0f));
-  for (const TriangleIndices& t : back.triangles) {
-    const Vec3& p = back.positions[t.v[0]];
-    const Vec3 n = glm::cross(back.positions[t.v[1]] - p, back.positions[t.v[2]] - p);
-    for (const std::uint32_t v : t.v) normals[v] += n;
-  }
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const float length = glm::length(normals[i]);
-    if (length > 0.0f) back.positions[i] += (offset / length) * normals[i];
-  }
-  return back;
-}
-
 /// The scale of a map that keeps angles, or none.
 std::optional<float> uniform_scale(const Affine& map) {
   const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
