@@ -52,7 +52,7 @@ LAYERS = [
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
     # Scenes in files and in code make scene data, which is prepared for tracing as the plan says.
-    ("loaders", ["common/scene/load/*"], ["builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
+    ("loaders", ["common/scene/load/*"], ["transport", "builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
     ("builtin", ["common/scene/builtin/*"], ["prepare", "scene", *BUILDERS]),
     ("prepare", ["common/scene/prepare/*"], ["scene", "plan", "image", *BUILDERS]),
     # What of a scene can be changed, by name.

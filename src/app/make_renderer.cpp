@@ -43,7 +43,9 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                      const Warn& warn) {
   if (is_scene_file(options.scene)) {
     const SceneFiles files;
-    SceneData scene = load_scene_file(options.scene, {options.definitions, options.strict, warn});
+    SceneData scene = load_scene_file(
+        options.scene,
+        {options.definitions, options.strict, warn, {}, options.default_lighting, options.camera});
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;
@@ -52,6 +54,9 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
     throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
                             options.strict ? "strict" : "define", options.scene));
   }
+  if (options.default_lighting != DefaultLighting::automatic)
+    throw Error(fmt::format("--default-lighting: is for scene files; '{}' is a built-in scene",
+                            options.scene));
   if (options.create_world == WorldBuilder::host) return build_scene(options);
 #ifdef PTEXP_CUDA
   if (device.choice.kind == DeviceChoice::Kind::cuda) {

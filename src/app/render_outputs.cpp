@@ -1,5 +1,7 @@
 #include "app/render_outputs.h"
 
+#include <algorithm>
+
 #include "app/film_header.h"
 #include "app/report/csv_file.h"
 #include "common/error/error.h"
@@ -23,6 +25,13 @@ std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoi
   const bool is_measured = exposure.kind == Kind::measured ||
                            (exposure.kind == Kind::scene && by_default && ending == ".png");
   return Exposure{is_measured ? measure_exposure(image) : exposure.stops, is_measured};
+}
+
+std::string black_image_text(const Options& options, const Image& image) {
+  constexpr float least = 1e-6f;
+  const bool is_part = options.part.count > 1 || options.crop;
+  if (is_part || std::ranges::any_of(image.rgb, [](float x) { return !(x < least); })) return "";
+  return "the image is black: no light of the scene reaches what the camera sees";
 }
 
 ImageMetadata image_header(const Options& options, const RenderReport& report,

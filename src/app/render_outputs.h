@@ -24,6 +24,9 @@ struct Exposure {
 std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoice& exposure,
                                      const Image& image, bool by_default);
 
+/// What is said of an image that shows nothing; empty: it shows something, or is a part.
+std::string black_image_text(const Options& options, const Image& image);
+
 /// Options, device, times, and what makes an image one that can be verified.
 ImageMetadata image_header(const Options& options, const RenderReport& report,
                            const std::string& scene_hash);

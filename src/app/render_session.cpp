@@ -150,6 +150,8 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   result.image = result.device_image ? result.device_image->frame() : renderer.image();
   renderer.describe(report);
   report.runs = measurement.runs;
+  if (const std::string text = black_image_text(ready.options, result.image); warn && !text.empty())
+    warn(text);
   result.header = image_header(ready.options, report, ready.scene.source_hash);
   if (ready.options.counters && is_complete(ready.options, report))
     report.counters = count_hardware(renderer, warn);

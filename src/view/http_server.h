@@ -40,7 +40,9 @@ class HttpSite {
 };
 
 /// Of 127.0.0.1 alone. The site gets GET and POST requests; bodies of more than 4 KiB or of unknown
-/// length, compressed ones and those of several parts are refused unread.
+/// length, compressed ones and those of several parts are refused unread. A request has 5 seconds,
+/// its head 16 KiB and 100 lines, and of many connections the one that sends for longest makes room
+/// for others. Ranges are ignored.
 class HttpServer {
  public:
   static constexpr std::size_t most_body_bytes = 4096;
@@ -53,7 +55,7 @@ class HttpServer {
   int port() const;
 
   /// Answers, by threads of its own, while `goes_on()`, which this thread asks 20 times a second.
-  /// Waits for answers that are on their way. Throws Error.
+  /// Waits a moment for answers that are on their way. Throws Error.
   void serve(HttpSite& site, const std::function<bool()>& goes_on);
 
  private:

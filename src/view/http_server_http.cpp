@@ -1,30 +1,24 @@
-// HTTP by cpp-httplib: the only file that knows it.
+// HTTP by cpp-httplib.
 #include <fmt/format.h>
-#include <httplib.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <charconv>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "common/error/error.h"
+#include "view/guarded_stream_http.h"
 #include "view/http_server.h"
 
 namespace pt {
 namespace {
 
-constexpr int threads = 32;         // a browser has six connections at most
-constexpr int silence_limit_s = 5;  // of who keeps a thread waiting
+constexpr int threads = 32;  // a browser has six connections at most
 constexpr auto asks_every = std::chrono::milliseconds(50);
-
-/// Of all answers: a browser keeps nothing, shows nothing in other pages and tells no address.
-const httplib::Headers careful_headers{
-    {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
-    {"X-Content-Type-Options", "nosniff"},
-    {"Cache-Control", "no-store"},
-    {"Referrer-Policy", "no-referrer"},
-    {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Cross-Origin-Opener-Policy", "same-origin"}};
+constexpr auto goodbye = std::chrono::milliseconds(300);  // for answers on their way at the end
 
 /// A header that stands there twice is none: others might believe the other one.
 std::string header(const httplib::Request& request, const char* name) {
@@ -71,15 +65,93 @@ std::optional<HttpReply> refuse_body(const httplib::Request& request) {
   return std::nullopt;
 }
 
+/// Has every connection answered by GuardedStream, in threads of which slow requests cannot hold
+/// all.
+class GuardedServer : public httplib::Server {
+ public:
+  GuardedServer() {
+    new_task_queue = [this] { return new Threads(connections_); };
+  }
+
+  /// Ends: what was not read yet is not answered, the rest within a moment.
+  void end() {
+    stop();
+    connections_.end_requests();
+    const auto limit = std::chrono::steady_clock::now() + goodbye;
+    while (is_running() && std::chrono::steady_clock::now() < limit)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    connections_.end_all();
+  }
+
+ private:
+  /// Makes room among the threads for each connection that comes.
+  class Threads : public httplib::TaskQueue {
+   public:
+    explicit Threads(Connections& connections) : connections_(connections), pool_(threads) {}
+
+    /// Returns what the library's version wants.
+    auto enqueue(std::function<void()> task)
+        -> decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr)) override {
+      connections_.arrives(threads);
+      return pool_.enqueue([this, task = std::move(task)] {
+        task();
+        connections_.leaves();
+      });
+    }
+    void shutdown() override { pool_.shutdown(); }
+
+   private:
+    Connections& connections_;
+    httplib::ThreadPool pool_;
+  };
+
+  using Setup = std::function<void(httplib::Request&)>;
+  using Strings = const std::string&;
+
+  bool process_and_close_socket(socket_t socket) override {
+    bool done = false;
+    if (connections_.begins(socket)) {
+      GuardedStream stream(socket, connections_);
+      done = answer_by(&GuardedServer::process_request, stream);
+      stream.finish();
+      connections_.ends(socket);
+    }
+    ::shutdown(socket, SHUT_RDWR);
+    ::close(socket);
+    return done;
+  }
+
+  // process_request of 0.11 and of 0.18.
+  bool answer_by(bool (Server::*process)(httplib::Stream&, bool, bool&, const Setup&),
+                 GuardedStream& stream) {
+    bool is_closed = false;
+    return (this->*process)(stream, true, is_closed, ignore_ranges);
+  }
+  bool answer_by(bool (Server::*process)(httplib::Stream&, Strings, int, Strings, int, bool, bool&,
+                                         const Setup&),
+                 GuardedStream& stream) {
+    bool is_closed = false;
+    return (this->*process)(stream, "", 0, "", 0, true, is_closed, ignore_ranges);
+  }
+
+  /// The library would cut the body but leave the status 200.
+  static void ignore_ranges(httplib::Request& request) {
+    request.headers.erase("Range");
+    request.ranges.clear();
+  }
+
+  Connections connections_;
+};
+
 }  // namespace
 
 struct HttpServer::Library {
-  httplib::Server server;
+  GuardedServer server;
   int port = 0;
 };
 
 HttpServer::HttpServer(int port) : library_(std::make_unique<Library>()) {
-  httplib::Server& server = library_->server;
+  GuardedServer& server = library_->server;
   // The library's own options let two programs share a port, of which one hears nothing.
   server.set_socket_options([](int socket) {
     const int yes = 1;
@@ -101,7 +173,7 @@ int HttpServer::port() const { return library_->port; }
 
 void HttpServer::serve(HttpSite& site, const std::function<bool()>& goes_on) {
   using Answered = httplib::Server::HandlerResponse;
-  httplib::Server& server = library_->server;
+  GuardedServer& server = library_->server;
   const auto refuse = [&](const httplib::Request& request, httplib::Response& response) {
     std::optional<HttpReply> refusal = site.refuse(read(request));
     if (!refusal) refusal = refuse_body(request);
@@ -111,11 +183,7 @@ void HttpServer::serve(HttpSite& site, const std::function<bool()>& goes_on) {
   const auto answer = [&](const httplib::Request& request, httplib::Response& response) {
     write(site.answer(read(request)), response);
   };
-  server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
   server.set_default_headers(careful_headers);
-  server.set_keep_alive_max_count(1);  // else each connection keeps a thread
-  server.set_read_timeout(silence_limit_s);
-  server.set_write_timeout(silence_limit_s);
   server.set_tcp_nodelay(true);
   server.set_expect_100_continue_handler([&](const auto& request, auto& response) {
     return refuse(request, response) ? response.status : 100;
@@ -139,7 +207,7 @@ void HttpServer::serve(HttpSite& site, const std::function<bool()>& goes_on) {
   });
   while (goes_on() && !has_ended) std::this_thread::sleep_for(asks_every);
   while (!has_ended && !server.is_running()) std::this_thread::sleep_for(asks_every);
-  server.stop();
+  server.end();
   listener.join();
   if (!is_sound) throw Error(fmt::format("--port {}: no connection can be taken any more", port()));
 }

@@ -164,9 +164,10 @@ LiveRender::Task LiveRender::next_task() {
   }
   // By turns, also when every camera lasts for one pass only.
   std::size_t chosen = last_;
-  do {
+  for (std::size_t turn = 0; turn < views.size(); ++turn) {
     chosen = (chosen + 1) % views.size();
-  } while (views[chosen].samples > least);
+    if (views[chosen].samples <= least) break;
+  }
   last_ = chosen;
   const int samples = views[chosen].samples;
   return {number_, state_.settings, chosen, target_ - samples, samples == 0};

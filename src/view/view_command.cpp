@@ -30,7 +30,8 @@ int view_command(const ViewCommand& command) {
   server.serve(site, [&] {
     site.look_for_viewers();
     if (!interrupted()) return true;
-    live.end();  // who waits is answered
+    end_on_signal();  // another one does not wait
+    live.end();       // who waits is answered
     return false;
   });
   fmt::print(stderr, "ptexp: interrupted\n");

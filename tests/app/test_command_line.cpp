@@ -61,6 +61,7 @@ const std::map<std::string, std::string>& other_values() {
       {"scene", "rtow"},
       {"define", "a=1"},
       {"strict", "on"},
+      {"default-lighting", "off"},
       {"scene-from-disk", "on"},
       {"checkpoint", "c.exr,20.5"},
       {"part", "3/16"},

@@ -1,4 +1,5 @@
 // What a page may ask for, and what it is told otherwise.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "view/change_settings.h"
@@ -46,6 +47,36 @@ TEST(ChangeSettings, NamesTheKeyAndWhatWasExpected) {
       {R"({"scene": "x"})",
        "\"scene\": no such key; expected \"orbit\", \"mode\" or \"exposure\""}};
   for (const auto& [json, message] : cases) EXPECT_EQ(refusal(json), message) << json;
+}
+
+TEST(ChangeSettings, TakesBothEndsOfEachRange) {
+  const std::pair<const char*, std::pair<double, double>> ranges[] = {
+      {R"({{"exposure": {}}})", {-100, 100}},
+      {R"({{"orbit": {{"yaw": {}}}}})", {-1e6, 1e6}},
+      {R"({{"orbit": {{"pitch": {}}}}})", {-180, 180}},
+      {R"({{"orbit": {{"zoom": {}}}}})", {1e-3, 1e3}}};
+  for (const auto& [form, ends] : ranges) {
+    const auto said = [form = form](double x) {
+      return refusal(fmt::format(fmt::runtime(form), x));
+    };
+    for (const double end : {ends.first, ends.second}) EXPECT_EQ(said(end), "") << form << end;
+    EXPECT_NE(said(ends.first - 1e-3), "") << form;
+    EXPECT_NE(said(ends.second + 1e-3), "") << form;
+  }
+  EXPECT_EQ(read_change(R"({"orbit": {"yaw": 7}})").orbit, (Orbit{7, 0, 1}));
+  EXPECT_EQ(mode_name({Mode::megakernel}), "megakernel");
+  EXPECT_EQ(mode_name({Mode::wavefront, Mode::megakernel}), "split");
+}
+
+TEST(Viewers, NoMoreThanSoMany) {
+  Viewers viewers;
+  for (std::size_t i = 0; i < Viewers::most; ++i) viewers.saw(std::to_string(i), 0);
+  viewers.saw("one more", 100);
+  EXPECT_FALSE(viewers.any(100)) << "was not counted";
+  viewers.saw("one more", 100);
+  EXPECT_TRUE(viewers.any(100)) << "there is room again";
+  viewers.left("one more");
+  EXPECT_FALSE(viewers.any(100));
 }
 
 TEST(Viewers, AreForgottenWhenTheyAreSilent) {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <thread>
 
 #include "app/progress.h"
@@ -15,6 +17,36 @@ using namespace pt;
 using Words = std::vector<std::pair<std::string, std::string>>;
 
 constexpr double patience_s = 120;  // a machine may be busy
+
+/// Ends the program if a test hangs, which no expectation would see.
+class Watch {
+ public:
+  Watch() = default;
+  ~Watch() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_over_ = true;
+    }
+    over_.notify_all();
+    thread_.join();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable over_;
+  bool is_over_ = false;
+  std::thread thread_{[this] {
+    std::unique_lock lock(mutex_);
+    const auto limit = std::chrono::duration<double>(3 * patience_s);
+    if (over_.wait_for(lock, limit, [&] { return is_over_; })) return;
+    std::fputs("a LiveRender hangs\n", stderr);
+    std::abort();
+  }};
+};
+
+struct WatchedRender : private Watch, public LiveRender {
+  using LiveRender::LiveRender;
+};
 
 std::vector<Setting> settings_of(const Words& more = {}) {
   Words words{{"scene", "cornell"}, {"output", "page.png"}, {"width", "32"},
@@ -65,7 +97,7 @@ TEST(NextPass, DoublesTheSamplesWithinItsTime) {
 
 TEST(LiveRender, HasTheBitsOfARenderAtOnce) {
   for (const char* const mode : {"serial", "megakernel", "wavefront"}) {
-    LiveRender live(settings_of({{"mode", mode}}), {});
+    WatchedRender live(settings_of({{"mode", mode}}), {});
     live.set_watched(true);
     const LiveState state = wait_until(live, is_done);
     ASSERT_EQ(state.views.size(), 1u);
@@ -76,13 +108,13 @@ TEST(LiveRender, HasTheBitsOfARenderAtOnce) {
 
 TEST(LiveRender, KeepsTheCamerasOptions) {
   const Words words{{"look-from", "250,250,-700"}, {"fov", "50"}};
-  LiveRender live(settings_of(words), {});
+  WatchedRender live(settings_of(words), {});
   live.set_watched(true);
   expect_same(*wait_until(live, is_done).views.front().image, rendered(words));
 }
 
 TEST(LiveRender, BeginsAnewWhereTheCameraMoves) {
-  LiveRender live(settings_of(), {});
+  WatchedRender live(settings_of(), {});
   live.set_watched(true);
   wait_until(live, is_done);
   const LiveSettings moved{live.state().settings.modes, {30, 10, 0.8}};
@@ -96,15 +128,46 @@ TEST(LiveRender, BeginsAnewWhereTheCameraMoves) {
 }
 
 TEST(LiveRender, OnlyTheLastOfManyCamerasIsFinished) {
-  LiveRender live(settings_of(), {});
+  WatchedRender live(settings_of(), {});
   live.set_watched(true);
   const std::vector<Mode> modes = live.state().settings.modes;
   for (int i = 1; i <= 40; ++i) live.change({modes, {i * 2.0, 0, 1}});
   expect_same(*wait_until(live, is_done).views.front().image, rendered({}, {80, 0, 1}));
 }
 
+/// A change every 10 ms is faster than a pass of this size.
+TEST(LiveRender, ShowsImagesWhileTheCameraMoves) {
+  WatchedRender live(settings_of({{"width", "320"}, {"height", "240"}, {"mode", "serial"}}), {});
+  live.set_watched(true);
+  const std::vector<Mode> modes = live.state().settings.modes;
+  const auto images = [&] { return live.state().views.front().image_number; };
+  wait_until(live, [](const LiveState& state) { return state.views.front().image_number > 0; });
+  std::uint64_t last = images();
+  int seen = 0;
+  const double begin_s = Progress::steady_seconds();
+  for (int i = 1; seen < 3 && Progress::steady_seconds() - begin_s < patience_s / 4; ++i) {
+    live.change({modes, {i * 0.5, 0, 1}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    if (images() == last) continue;
+    last = images();
+    ++seen;
+  }
+  EXPECT_EQ(seen, 3) << "images while the camera moves";
+}
+
+TEST(LiveRender, MeasuresItsPasses) {
+  WatchedRender live(settings_of(), {});
+  EXPECT_EQ(live.state().views.front().msamples_per_s, 0);
+  live.set_watched(true);
+  const LiveView view = wait_until(live, is_done).views.front();
+  EXPECT_EQ(view.pass_samples, 5) << "of 13: 1, 1, 2, 4, 5";
+  EXPECT_GT(view.pass_ms, 0);
+  EXPECT_LT(view.pass_ms, 1e3 * patience_s);
+  EXPECT_DOUBLE_EQ(view.msamples_per_s, 32 * 24 * view.pass_samples / view.pass_ms / 1e3);
+}
+
 TEST(LiveRender, RendersNothingWhileNobodyWatches) {
-  LiveRender live(settings_of({{"spp", "1000000"}}), {});
+  WatchedRender live(settings_of({{"spp", "1000000"}}), {});
   EXPECT_EQ(live.wait(live.state().version, 0.3).status, LiveStatus::idle);
   EXPECT_EQ(live.state().views.front().samples, 0);
   live.set_watched(true);
@@ -121,7 +184,7 @@ TEST(LiveRender, RendersNothingWhileNobodyWatches) {
 }
 
 TEST(LiveRender, APauseLeavesNoTraceInTheImage) {
-  LiveRender live(settings_of({{"spp", "60"}}), {});
+  WatchedRender live(settings_of({{"spp", "60"}}), {});
   for (int ms = 1; !is_done(live.state()); ++ms) {  // longer each time, so that it ends
     live.set_watched(true);
     std::this_thread::sleep_for(std::chrono::milliseconds(ms));
@@ -132,7 +195,7 @@ TEST(LiveRender, APauseLeavesNoTraceInTheImage) {
 }
 
 TEST(LiveRender, TwoModesRenderTheSameImageByTurns) {
-  LiveRender live(settings_of(), {});
+  WatchedRender live(settings_of(), {});
   live.change({{Mode::wavefront, Mode::megakernel}, {}});
   std::atomic<bool> ends{false};
   int furthest = 0;
@@ -160,14 +223,14 @@ TEST(LiveRender, TwoModesRenderTheSameImageByTurns) {
 
 TEST(LiveRender, TakesOptionsOfOneModeInAll) {
   const Words words{{"mode", "wavefront"}, {"pool-size", "1000"}};
-  LiveRender live(settings_of(words), {});
+  WatchedRender live(settings_of(words), {});
   live.set_watched(true);
   live.change({{Mode::serial}, {}});
   expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
 }
 
 TEST(LiveRender, AnotherExposureRendersNothing) {
-  LiveRender live(settings_of({{"exposure", "1.5"}}), {});
+  WatchedRender live(settings_of({{"exposure", "1.5"}}), {});
   EXPECT_EQ(live.state().exposure, 1.5f);
   live.set_watched(true);
   const LiveState before = wait_until(live, is_done);
@@ -181,18 +244,19 @@ TEST(LiveRender, AnotherExposureRendersNothing) {
 TEST(LiveRender, SaysWhatCannotBeRendered) {
   EXPECT_THROW(LiveRender(settings_of({{"scene", "no-such-scene"}}), {}), Error);
   EXPECT_THROW(LiveRender(settings_of({{"look-from", "1,1,1"}, {"look-at", "1,1,1"}}), {}), Error);
-  LiveRender live(settings_of({{"device", "cpu:2"}}), {});  // serial has one
+  WatchedRender live(settings_of({{"device", "cpu:2"}}), {});  // serial has one
   live.set_watched(true);
   live.change({{Mode::serial}, {}});
   const LiveState failed =
       wait_until(live, [](const LiveState& state) { return state.status == LiveStatus::failed; });
+  ASSERT_EQ(failed.status, LiveStatus::failed);
   EXPECT_NE(failed.error.find("--mode serial"), std::string::npos) << failed.error;
   live.change({{Mode::wavefront}, {}});
   expect_same(*wait_until(live, is_done).views.front().image, rendered({}));
 }
 
 TEST(LiveRender, EndsAtOnceAndAnswersWhoWaits) {
-  LiveRender live(settings_of({{"spp", "1000000"}}), {});
+  WatchedRender live(settings_of({{"spp", "1000000"}}), {});
   live.set_watched(true);
   std::thread waiter([&] {
     for (std::uint64_t version = 0, i = 0; i < 3; ++i) version = live.wait(version, 1).version;

@@ -197,7 +197,8 @@ class Render(Program):
         view, = state["views"]
         self.assertEqual((view["mode"], view["samples"]), ("auto", 20))
         self.assertGreater(view["pass_ms"], 0)
-        self.assertGreater(view["msamples_per_s"], 0)
+        self.assertAlmostEqual(view["msamples_per_s"],
+                               64 * 48 * view["pass_samples"] / view["pass_ms"] / 1e3, 6)
         self.assertEqual(self.image(), self.rendered("--spp", "20"))
 
     def test_exposure_changes_the_picture_alone(self):
@@ -374,6 +375,134 @@ class Refusals(Program):
                      "GET / HTTP/1.1\r\nHost: " + "x" * 9000 + "\r\n\r\n"):
             self.assertIn(self.raw(text), (400, 403, 414), text[:20])
         self.assertEqual(self.ask("")[0], 200)
+
+
+class SlowAndEndless(Program):
+    """What does not end, or only after a long time, costs neither memory nor the page."""
+
+    def connect(self):
+        connection = socket.create_connection(("127.0.0.1", self.port), timeout=TIMEOUT_S)
+        self.addCleanup(connection.close)
+        return connection
+
+    def send(self, parts, most=1 << 26):
+        """Sends until the server has had enough: (status, bytes that were sent)."""
+        connection, sent = self.connect(), 0
+        with contextlib.suppress(BrokenPipeError, ConnectionResetError):
+            for part in parts:
+                connection.sendall(part)
+                sent += len(part)
+                if sent > most:
+                    break
+        reply = b""
+        with contextlib.suppress(ConnectionResetError):
+            while part := connection.recv(65536):
+                reply += part
+        match = re.match(rb"HTTP/1.1 (\d+) ", reply)
+        return int(match[1]) if match else None, sent, reply
+
+    def memory_mb(self):
+        status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
+        return int(re.search(r"VmRSS:\s+(\d+)", status)[1]) / 1024
+
+    def test_requests_without_an_end(self):
+        self.start()
+        before = self.memory_mb()
+        head = f"POST /{self.token}/settings HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n".encode()
+        for first, part, expected in (
+                (b"GET / HTTP/1.1\r\n", b"A: " + b"x" * 7000 + b"\r\n", 431),
+                (b"GET / HTTP/1.1\r\n", b"a:b\r\n", 431),
+                (b"GET / HTTP/1.1\r\nA: ", b"x" * 8000, 431),
+                (b"GET /", b"x" * 8000, 431),
+                (b"GET / HTTP/1.1\r\n", b"\n", 400),
+                (b"", b"\0" * 8000, 431),
+                (head + b"Content-Length: 4096\r\n\r\n", b" " * 4096, 400),
+                (head + b"Content-Length: 1000000000\r\n\r\n", b" " * 8000, 413),
+                (head + b"Transfer-Encoding: chunked\r\n\r\n", b"8\r\nxxxxxxxx\r\n", 411),
+                (head + b"Transfer-Encoding: chunked\r\n\r\n", b"1" * 8000, 411),
+                (head + b"Content-Length: 1000000000\r\nTransfer-Encoding: x\r\n\r\n", b" ", 411)):
+            def parts(first=first, part=part):
+                yield first
+                while True:
+                    yield part
+            status, sent, reply = self.send(parts())
+            self.assertIn(status, (expected, None), first + part[:10])
+            self.assertLess(sent, 1 << 24, first + part[:10])
+            if status == 431:
+                self.assertIn(b"Content-Security-Policy: default-src 'none'", reply)
+                self.assertIn(b"expected at most 16384 bytes and 100 lines", reply)
+        self.assertLess(self.memory_mb() - before, 20)
+        self.assertEqual(self.ask("")[0], 200)
+
+    def test_both_sides_of_the_limits(self):
+        self.start()
+        first = f"GET /{self.token}/ HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n".encode()
+        for lines, expected in ((97, 200), (98, 431)):  # with two before and an empty one
+            self.assertEqual(self.send([first + b"a:b\r\n" * lines + b"\r\n"])[0], expected, lines)
+        first += b"b:" + b"x" * 8000 + b"\r\na:"
+        room = 16384 - len(first) - len(b"\r\nc:\r\n\r\n") - 4000
+        for more, expected in ((0, 200), (1, 431)):
+            head = first + b"x" * 4000 + b"\r\nc:" + b"x" * (room + more) + b"\r\n\r\n"
+            self.assertEqual(len(head), 16384 + more)
+            self.assertEqual(self.send([head])[0], expected, more)
+
+    def test_a_range_is_ignored(self):
+        self.start()
+        whole = len(self.ask("")[2])
+        for value in ("bytes=0-9", "bytes=5-", "bytes=-3", "bytes=0-1,4-5", "bytes=999999-"):
+            status, headers, body = self.ask("", headers={"Range": value})
+            self.assertEqual(status, 200, value)
+            self.assertIsNone(headers["Content-Range"], value)
+            self.assertLess(abs(len(body) - whole), 10, value)
+            self.assertEqual(self.request("GET", "/", headers={"Range": value})[0], 404)
+
+    def slow(self, count):
+        """Connections that send a byte every half second, without an end."""
+        connections = [self.connect() for _ in range(count)]
+        for connection in connections:
+            connection.sendall(b"GET / HTTP/1.1\r\nX: ")
+        over = threading.Event()
+
+        def drip():
+            while not over.wait(0.5):
+                for connection in connections:
+                    with contextlib.suppress(OSError):
+                        connection.send(b"a")
+        thread = threading.Thread(target=drip)
+        thread.start()
+        self.addCleanup(thread.join)
+        self.addCleanup(over.set)
+        return connections
+
+    def test_slow_connections_leave_room_for_the_page(self):
+        self.start()
+        slow = self.slow(100)
+        begin = time.monotonic()
+        for _ in range(5):
+            self.assertEqual(self.ask("")[0], 200)
+        self.assertLess(time.monotonic() - begin, 4)
+        replies = []
+        for connection in slow:
+            with contextlib.suppress(ConnectionResetError):
+                replies.append(connection.recv(4096))
+        self.assertLess(time.monotonic() - begin, 12, "a request has five seconds")
+        self.assertTrue(any(reply.startswith(b"HTTP/1.1 408 ") for reply in replies))
+        idle = self.connect()
+        self.assertEqual(idle.recv(10), b"", "closed without a word")
+
+    def test_a_signal_ends_it_within_a_second(self):
+        for number, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            process = self.start()
+            self.slow(40)
+            self.connect()  # idle, as browsers keep one
+            waiter = threading.Thread(target=lambda: self.ask("state?after=1"))
+            waiter.start()
+            time.sleep(0.5)
+            begin = time.monotonic()
+            process.send_signal(number)
+            self.assertEqual(process.wait(timeout=TIMEOUT_S), code)
+            self.assertLess(time.monotonic() - begin, 2)  # a second, on a busy machine
+            waiter.join()
 
 
 class CommandLine(Program):

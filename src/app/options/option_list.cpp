@@ -119,7 +119,7 @@ void add_image(std::vector<OptionEntry>& list) {
                [](const Options& o) { return exposure_text(o.exposure); }),
            "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
            "is middle grey. Default: 0; auto for the .png of a scene file\n"
-           "in photometric units or without lights. No effect on .exr")
+           "in photometric units or in default lighting. No effect on .exr")
       .add(custom(
                "crop", OptionForm::text, "X0,Y0,X1,Y1",
                [](Options& o, const std::string& s) { o.crop = parse_crop("crop", s); },
@@ -227,6 +227,10 @@ void add_scene(std::vector<OptionEntry>& list) {
                [](Options& o, const std::string&) { o.strict = true; },
                [](const Options& o) { return o.strict ? "on" : "off"; }),
            "Unsupported features of a scene file are errors, not warnings")
+      .add(choice("default-lighting", &Options::default_lighting),
+           "A soft light from behind and above the camera. auto: where a\n"
+           "scene file has no light, or a .gltf, .glb or .obj has none\n"
+           "that reaches what its camera sees")
       .add(custom(
                "scene-from-disk", OptionForm::flag, "",
                [](Options& o, const std::string&) { o.scene_from_disk = true; },

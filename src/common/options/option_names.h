@@ -132,6 +132,11 @@ inline constexpr auto enum_names<RunEnd> =
 template <>
 inline constexpr auto enum_names<WorldBuilder> = std::to_array<EnumName<WorldBuilder>>(
     {{WorldBuilder::host, "host"}, {WorldBuilder::device, "device"}});
+template <>
+inline constexpr auto enum_names<DefaultLighting> =
+    std::to_array<EnumName<DefaultLighting>>({{DefaultLighting::automatic, "auto"},
+                                              {DefaultLighting::on, "on"},
+                                              {DefaultLighting::off, "off"}});
 /// The stages that --stage-block has.
 template <>
 inline constexpr auto enum_names<StageId> = [] {

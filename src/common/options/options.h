@@ -32,6 +32,7 @@ enum class RngKind { philox, xorwow };
 enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc, hploc_reinsert };
 enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };
+enum class DefaultLighting { automatic, on, off };
 
 using StageBlocks = std::array<int, stage_count>;  ///< threads per block, by StageId
 /// Measured on an H200 (results/). Shading, the stage with most code, gains by large blocks, whose
@@ -159,7 +160,8 @@ struct Options {
   int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
   WorldBuilder create_world = WorldBuilder::host;
   std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
-  bool strict = false;           ///< what a scene file has and ptexp lacks is an error
+  bool strict = false;  ///< what a scene file has and ptexp lacks is an error
+  DefaultLighting default_lighting = DefaultLighting::automatic;  ///< of scene files
   bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
 

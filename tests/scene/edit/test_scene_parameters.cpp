@@ -7,6 +7,7 @@
 
 #include "common/scene/data/plastic_material.h"
 #include "common/scene/edit/bsdf_parameters.h"
+#include "common/scene/edit/material_names.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "common/scene/edit/set_material.h"
 #include "load/mitsuba_scene.h"
@@ -102,6 +103,179 @@ TEST(SceneParameters, RefuseWhatCannotBe) {
                Error);
   set(scene, "instances.0.to_world", {1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
   EXPECT_EQ(scene.instances[0].to_world.point(Vec3(1.0f)), Vec3(6, 7, 8));
+}
+
+/// A scene of 3 materials without names and 2 with that name, and one of each other thing.
+SceneData scene_of_all() {
+  SceneData scene;
+  scene.camera.aperture = 0.1f;
+  MaterialDescription lamp = make_diffuse(Color(0.5f));
+  lamp.emission.radiance = Color(3, 4, 5);
+  const std::uint32_t a = scene.add_material(lamp), b = scene.add_material(lamp);
+  scene.names.materials = {{a, "one"}, {b, "one"}};
+  scene.names.emitters = {{a, "lamp"}, {b, "lamp"}};
+  scene.add_material(make_plastic(Color(0.5f), Color(1.0f), {1.5f, false}));
+  MaterialDescription blend;
+  blend.node = MaterialNode::blend;
+  blend.parameters[0].value = Color(0.25f);
+  blend.children[0] = a, blend.children[1] = b;
+  scene.add_material(blend);
+  MaterialDescription thin = make_diffuse(Color(0.5f));
+  thin.opacity = constant_opacity(0.75f);
+  scene.add_material(thin);
+  scene.delta_lights.resize(3);
+  scene.names.delta_lights = {{0, "bulb"}, {2, "bulb"}};
+  scene.sun.one_minus_cos = 1e-5f;
+  scene.instances = {{1, {}}, {1, {}}};
+  return scene;
+}
+
+TEST(SceneParameters, AreAllThatASceneHas) {
+  const std::vector<std::string> expected{"camera.origin",
+                                          "camera.target",
+                                          "camera.up",
+                                          "camera.fov",
+                                          "camera.aperture",
+                                          "camera.focus_distance",
+                                          "materials.one.albedo",
+                                          "materials.one.opacity",
+                                          "materials.one_2.albedo",
+                                          "materials.one_2.opacity",
+                                          "materials.material_2.diffuse",
+                                          "materials.material_2.specular",
+                                          "materials.material_2.eta",
+                                          "materials.material_2.opacity",
+                                          "materials.material_3.weight",
+                                          "materials.material_4.albedo",
+                                          "materials.material_4.opacity",
+                                          "lights.lamp.radiance",
+                                          "lights.lamp_2.radiance",
+                                          "lights.bulb.intensity",
+                                          "lights.light_1.intensity",
+                                          "lights.bulb_2.intensity",
+                                          "lights.sky.nadir",
+                                          "lights.sky.zenith",
+                                          "lights.sun.radiance",
+                                          "instances.0.to_world",
+                                          "instances.1.to_world"};
+  SceneData scene = scene_of_all();
+  EXPECT_EQ(names_in(scene), expected);
+  for (const SceneParameter& p : scene_parameters(scene))
+    EXPECT_EQ(p.is_of_camera, p.name.starts_with("camera.")) << p.name;
+
+  scene.camera.orthographic = true;  // without a field of view, a lens or a plane in focus
+  std::vector<std::string> others(expected.begin(), expected.begin() + 3);
+  others.insert(others.end(), expected.begin() + 6, expected.end());
+  EXPECT_EQ(names_in(scene), others);
+}
+
+TEST(SceneParameters, AMaskIsNoNumber) {
+  SceneData scene = scene_of_all();
+  const auto opacities = [&] {
+    return std::ranges::count_if(
+        names_in(scene), [](const std::string& name) { return name.ends_with(".opacity"); });
+  };
+  EXPECT_EQ(opacities(), 4);
+  scene.materials[4].opacity = textured_opacity(1.0f, 0);
+  EXPECT_EQ(opacities(), 3);
+  scene.materials[4].opacity = {0.75f, 0.0f, no_texture, 0.5f};
+  EXPECT_EQ(opacities(), 3) << "there or not, by its cutoff";
+  set(scene, "materials.one.opacity", {0.5f});
+  EXPECT_EQ(scene.materials[0].opacity.offset, 0.5f);
+  EXPECT_EQ(scene.materials[0].opacity.scale, 0.0f);
+  EXPECT_EQ(scene.materials[0].opacity.texture, no_texture);
+}
+
+/// Numbers that differ from what is there and from each other.
+std::vector<float> other_values(const SceneParameter& p, std::size_t count) {
+  if (p.name.ends_with("to_world")) return {2, 3, 4, 5, 6, 8, 9, 1, 3, 1, 7, 2, 0, 0, 0, 1};
+  std::vector<float> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(1.25f + 0.125f * static_cast<float>(i));
+  return values;
+}
+
+TEST(SceneParameters, EachIsReadBackAndChangesNoOther) {
+  const SceneData before = scene_of_all();
+  for (const SceneParameter& p : scene_parameters(before)) {
+    SceneData scene = before;
+    const std::vector<float> values = other_values(p, p.get(before).size());
+    std::size_t size = 1;
+    for (const std::size_t n : p.shape) size *= n;
+    EXPECT_EQ(size, values.size()) << p.name;
+    p.set(scene, values);
+    EXPECT_EQ(p.get(scene), values) << p.name;
+    EXPECT_NE(p.get(before), values) << p.name;
+    for (const SceneParameter& other : scene_parameters(before)) {
+      const SceneData& expected = other.name == p.name ? scene : before;
+      EXPECT_EQ(other.get(scene), other.get(expected)) << other.name;
+    }
+  }
+}
+
+TEST(SceneParameters, AreWhatTheirNamesSay) {
+  SceneData scene = scene_of_all();
+  set(scene, "camera.origin", {1, 2, 3}), set(scene, "camera.target", {4, 5, 6});
+  set(scene, "camera.up", {0, 0, 1}), set(scene, "camera.fov", {33});
+  set(scene, "camera.aperture", {0.5f}), set(scene, "camera.focus_distance", {7});
+  EXPECT_EQ(scene.camera.look_from, Vec3(1, 2, 3));
+  EXPECT_EQ(scene.camera.look_at, Vec3(4, 5, 6));
+  EXPECT_EQ(scene.camera.up, Vec3(0, 0, 1));
+  EXPECT_EQ(scene.camera.fov_degrees, 33);
+  EXPECT_EQ(scene.camera.aperture, 0.5f);
+  EXPECT_EQ(scene.camera.focus_distance, 7);
+  set(scene, "lights.lamp_2.radiance", {1, 2, 3}), set(scene, "lights.bulb_2.intensity", {4, 5, 6});
+  EXPECT_EQ(scene.materials[1].emission.radiance, Color(1, 2, 3));
+  EXPECT_EQ(scene.delta_lights[2].intensity, Color(4, 5, 6));
+  set(scene, "lights.sky.nadir", {1, 1, 2}), set(scene, "lights.sky.zenith", {1, 2, 2});
+  set(scene, "lights.sun.radiance", {9, 8, 7});
+  EXPECT_EQ(scene.sky.nadir, Color(1, 1, 2));
+  EXPECT_EQ(scene.sky.zenith, Color(1, 2, 2));
+  EXPECT_EQ(scene.sun.radiance, Color(9, 8, 7));
+  set(scene, "materials.material_3.weight", {0.75f});
+  EXPECT_EQ(scene.materials[3].parameters[0].value.x, 0.75f);
+  set(scene, "materials.one_2.albedo", {0.1f, 0.2f, 0.3f});
+  EXPECT_EQ(scene.materials[1].color(0), Color(0.1f, 0.2f, 0.3f));
+}
+
+TEST(SceneParameters, NoLightTakesANegativeNumber) {
+  for (const SceneParameter& p : scene_parameters(scene_of_all())) {
+    if (!p.name.starts_with("lights.")) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      SceneData scene = scene_of_all();
+      std::vector<float> values{1, 1, 1};
+      values[i] = -1e-3f;
+      EXPECT_THROW(p.set(scene, values), Error) << p.name << ' ' << i;
+      EXPECT_EQ(p.get(scene), p.get(scene_of_all())) << p.name;
+      values[i] = 0;
+      EXPECT_NO_THROW(p.set(scene, values)) << p.name;
+    }
+  }
+}
+
+TEST(SceneParameters, AMapCanBeInvertedAndIsAffine) {
+  for (const int i : {12, 13, 14, 15}) {
+    SceneData scene = scene_of_all();
+    std::vector<float> map{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    map[static_cast<std::size_t>(i)] += 1;
+    EXPECT_THROW(set(scene, "instances.1.to_world", map), Error) << i;
+  }
+}
+
+TEST(MaterialNames, ThoseOfNodesGoToWhatTheyAreMadeOf) {
+  SceneData scene;
+  const std::uint32_t a = scene.add_material(make_diffuse(Color(0.5f)));
+  const std::uint32_t b = scene.add_material(make_diffuse(Color(0.5f)));
+  const std::uint32_t c = scene.add_material(make_diffuse(Color(0.5f)));
+  MaterialDescription blend = make_mapped(MaterialNode::blend, {}, 0);
+  blend.children[0] = a, blend.children[1] = b;
+  const std::uint32_t blended = scene.add_material(blend);
+  const std::uint32_t bumped = scene.add_material(make_mapped(MaterialNode::bump_map, {}, c));
+  scene.names.materials = {{blended, "mix"}, {bumped, "rough"}};
+  EXPECT_EQ(material_names(scene),
+            (std::vector<std::string>{"mix.0", "mix.1", "rough", "mix", "rough"}));
+  scene.names.materials[a] = "mix.1";  // the name of another
+  EXPECT_EQ(material_names(scene),
+            (std::vector<std::string>{"mix.1", "mix.1_2", "rough", "mix", "rough"}));
 }
 
 }  // namespace

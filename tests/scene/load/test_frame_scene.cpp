@@ -68,5 +68,19 @@ TEST(FrameScene, ABallTouchesTheSameFrame) {
   expect_filled(scene, surface);
 }
 
+TEST(FrameScene, AQuadFillsItsFrame) {
+  SceneData scene;
+  scene.add_quad({1, 2, 3}, {4, 0, 0}, {0, 5, 1}, scene.add_material(MaterialDescription()));
+  std::vector<Vec3> box;  // that it is in
+  for (int i = 0; i < 8; ++i) box.emplace_back(i & 1 ? 5 : 1, i & 2 ? 7 : 2, i & 4 ? 4 : 3);
+  expect_filled(scene, box);
+  const CameraParameters camera = frame_scene(scene);
+  EXPECT_EQ(camera.look_at, Vec3(3, 4.5f, 3.5f));
+  const Vec3 way = camera.look_from - camera.look_at;
+  EXPECT_NEAR(glm::length(way), camera.focus_distance, 1e-4f);
+  const Vec3 expected = glm::length(way) * glm::normalize(Vec3(1.0f, 0.7f, 1.5f));
+  EXPECT_NEAR(glm::length(way - expected), 0, 1e-4f) << "from the front, right and above";
+}
+
 }  // namespace
 }  // namespace pt

@@ -102,16 +102,4 @@ CameraParameters frame_scene(const SceneData& scene) {
   return framing.camera();
 }
 
-bool has_light(const SceneData& scene) {
-  const auto emits = [&](std::uint32_t material) {
-    return !is_black(scene.materials[material].emission.radiance);
-  };
-  return !is_black(scene.sky.nadir) || !is_black(scene.sky.zenith) || scene.environment.width > 0 ||
-         !scene.delta_lights.empty() ||
-         std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                     [&](const Mesh& mesh) { return emits(mesh.material); }) ||
-         std::any_of(scene.sphere_material.begin(), scene.sphere_material.end(), emits) ||
-         std::any_of(scene.quad_material.begin(), scene.quad_material.end(), emits);
-}
-
 }  // namespace pt

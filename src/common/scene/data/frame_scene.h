@@ -14,7 +14,4 @@ Bounds scene_bounds(const SceneData& scene);
 /// of any shape, whose smaller side the scene all but fills. It looks at the middle of the bounds.
 CameraParameters frame_scene(const SceneData& scene);
 
-/// Is anything to be seen by: a sky, an environment, a light or a surface that emits?
-bool has_light(const SceneData& scene);
-
 }  // namespace pt

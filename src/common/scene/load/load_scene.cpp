@@ -27,12 +27,10 @@ void complete(const std::filesystem::path& path, const LoadOptions& options, Sce
   }
   scene.name = path.filename().string();
   scene.camera = frame_scene(scene);
-  const bool is_lit = has_light(scene);
-  if (!is_lit) add_studio(scene);
+  const std::string light = light_model(options, true, scene);
   if (options.warn) {
     options.warn(fmt::format("{}: the format has no camera: one that frames the scene is used{}{}",
-                             path.string(),
-                             is_lit ? "" : ", and no light: ", is_lit ? "" : studio_text));
+                             path.string(), light.empty() ? "" : "; ", light));
   }
 }
 
@@ -54,15 +52,24 @@ SceneData load_obj_alone(const std::filesystem::path& path, const LoadOptions& o
   return scene;
 }
 
+/// A format whose files say what lights them.
+template <SceneData (*load)(const std::filesystem::path&, const LoadOptions&)>
+SceneData load_lit(const std::filesystem::path& path, const LoadOptions& options) {
+  SceneData scene = load(path, options);
+  const std::string light = light_scene(options, scene);
+  if (options.warn && !light.empty()) options.warn(fmt::format("{}: {}", path.string(), light));
+  return scene;
+}
+
 struct Format {
   const char* ending;
   SceneData (*load)(const std::filesystem::path&, const LoadOptions&);
 };
 
-constexpr std::array<Format, 6> formats = {{{".xml", load_mitsuba_xml},
+constexpr std::array<Format, 6> formats = {{{".xml", load_lit<load_mitsuba_xml>},
                                             {".gltf", load_gltf},
                                             {".glb", load_gltf},
-                                            {".pbrt", load_pbrt},
+                                            {".pbrt", load_lit<load_pbrt>},
                                             {".obj", load_obj_alone},
                                             {".ply", load_ply}}};
 

@@ -7,6 +7,7 @@
 
 #include "common/error/error.h"
 #include "common/geometry/mesh.h"
+#include "common/options/options.h"
 
 namespace pt {
 
@@ -16,6 +17,8 @@ struct LoadOptions {
   std::function<void(const std::string&)> warn;  ///< called with one line; empty: silence
   /// Of a scene that is described in memory: what its shapes of the type "mesh" name as their data.
   std::map<std::string, Mesh> meshes{};
+  DefaultLighting default_lighting = DefaultLighting::automatic;
+  CameraOverrides camera{};  ///< through which default lighting is decided, besides the file's
 
   /// For what a loader replaces or ignores. `message` names the file, the place, and what is used
   /// instead.

@@ -186,14 +186,13 @@ SceneData load_gltf(const std::filesystem::path& path, const LoadOptions& option
   if (!std::isfinite(glm::length(bounds.max - bounds.min))) {
     file.fail("", "the scene is too large for numbers of 32 bits");
   }
-  if (!set_camera(file, nodes, bounds, scene)) {
+  const bool is_framed = !set_camera(file, nodes, bounds, scene);
+  if (is_framed) {
     file.note("no camera: one that frames the scene is used");
     scene.camera = frame_scene(scene);
   }
-  if (!has_light(scene)) {
-    file.note(fmt::format("no light: {} is used", studio_text));
-    add_studio(scene);
-  }
+  if (const std::string light = light_model(options, is_framed, scene); !light.empty())
+    file.note(light);
   return scene;
 }
 

@@ -11,7 +11,7 @@ namespace pt {
 /// The default scene of the file (its first one where it names none). A mesh that one node uses is
 /// put into world space, one that several use becomes a group and instances. Lights' candela, lux
 /// and nits are taken as W/sr, W/m^2 and W/(m^2 sr). A scene without a camera gets one that frames
-/// it, a scene without light a studio's; `options.warn` is told so.
+/// it, one that its own light does not show default lighting; `options.warn` is told so.
 ///
 /// Meshes have the shape of their default weights, and skins that of their nodes. What has no
 /// counterpart here is replaced by the nearest that has, and reported once a kind: what the

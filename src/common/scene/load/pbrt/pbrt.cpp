@@ -21,7 +21,7 @@ using pbrt::Description;
 using pbrt::Reporter;
 
 /// What a viewer needs and the file does not bring.
-void complete(Context& context) {
+void complete(Context& context, const LoadOptions& options) {
   SceneData& scene = context.scene;
   const Description& description = context.description;
   if (!description.camera) {
@@ -31,7 +31,7 @@ void complete(Context& context) {
     }
     context.reporter.note(description.place, "no Camera: one that frames the scene is used");
   }
-  if (context.lit) return;
+  if (context.lit || options.default_lighting == DefaultLighting::off) return;
   add_studio(scene);
   const std::string text = fmt::format("no light that is supported: {} is used", studio_text);
   if (description.lights.empty()) return context.reporter.note(description.place, text);
@@ -54,7 +54,7 @@ SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& option
   pbrt::add_lights(context);
   pbrt::add_shapes(context);
   if (context.white_kelvins > 0.0f) pbrt::balance_lights(scene, double{context.white_kelvins});
-  complete(context);
+  complete(context, options);
   return scene;
 }
 

@@ -62,7 +62,7 @@ std::filesystem::path Context::resolve(const Element& at, const std::string& nam
 }
 
 void Context::add_studio_if_dark() {
-  if (lit_) return;
+  if (lit_ || options_.default_lighting == DefaultLighting::off) return;
   add_studio(scene);
   const Element& at = graph_.scene().element();
   if (left_out_.empty()) return note(at, fmt::format("no light: {} is used", studio_text));
