@@ -98,5 +98,197 @@ TEST(MitsubaSpectrum, WavelengthsMustAscend) {
   expect_error([] { reflectance("500:1,400:1"); }, "ascending");
 }
 
+/// A spectrum as a plugin, in the two ways of writing one.
+std::string plugin(const char* tag, const char* type, const char* name, const std::string& inside) {
+  return fmt::format("<{0} type='{1}' name='{2}'>{3}</{0}>", tag, type, name, inside);
+}
+
+std::string string_of(const char* name, const char* value) {
+  return fmt::format("<string name='{}' value='{}'/>", name, value);
+}
+
+struct PluginRow {
+  const char* type;
+  std::string inside;
+  Color reflectance, radiance;
+};
+
+// Golden, but for the sampled ones and blackbody, which Mitsuba's RGB variants lack: those are
+// what the same samples are as a <spectrum value>.
+std::vector<PluginRow> plugin_rows() {
+  const std::string wavelengths = string_of("wavelengths", "450, 650");
+  const std::string two = string_of("values", "0.2, 0.8");
+  const std::string range = number("wavelength_min", 400) + number("wavelength_max", 700);
+  const std::string one_two = string_of("values", "1, 2");
+  const Color rising(0.686533f, 0.49604f, 0.0954527f);
+  const Color bright(2.14f, 1.40424f, 1.01714f);
+  const Color all(-1.0f);  // not looked at
+  const Color rgb(0.2f, 0.5f, 0.7f);
+  return {
+      {"d65", number("scale", 0.4), Color(0.4f), Color(0.4f)},
+      {"d65", "", Color(1.0f), Color(1.0f)},
+      {"d65",
+       "<rgb name='color' value='.2 .3 .4'/>" + number("scale", 0.5),
+       {0.1f, 0.15f, 0.2f},
+       {0.1f, 0.15f, 0.2f}},
+      {"d65",
+       "<vector name='color' x='.2' y='.3' z='.4'/>",
+       {0.2f, 0.3f, 0.4f},
+       {0.2f, 0.3f, 0.4f}},
+      {"d65",
+       number("scale", 0.5) + "<texture type='uniform'>" + number("value", 0.3) + "</texture>",
+       Color(0.3f), Color(0.3f)},
+      {"uniform", number("value", 0.4), Color(0.4f), Color(0.4f)},
+      {"uniform", "<integer name='value' value='1'/>", Color(1.0f), Color(1.0f)},
+      {"uniform", number("value", 0.4) + number("wavelength_min", 500), Color(0.4f), Color(0.4f)},
+      {"srgb", "<rgb name='color' value='.2 .5 .7'/>", rgb, rgb},
+      {"srgb", "<vector name='color' x='.2' y='.5' z='.7'/>", rgb, rgb},
+      {"srgb",
+       "<rgb name='color' value='2 .5 .7'/><boolean name='unbounded' value='true'/>",
+       {1.0f, 0.5f, 0.7f},
+       {2.0f, 0.5f, 0.7f}},
+      {"rgb", "<rgb name='value' value='.2 .5 .7'/>", rgb, rgb},
+      {"rawconstant", number("value", 0.4), Color(0.4f), Color(0.4f)},
+      {"rawconstant", "<vector name='value' value='.2 .5 .7'/>", rgb, rgb},
+      {"irregular", wavelengths + two, rising, all},
+      {"irregular", string_of("wavelengths", "400 700") + one_two, all, bright},
+      {"irregular", "<spectrum name='value' value='450:0.2, 650:0.8'/>", rising, all},
+      {"regular", range + one_two, all, bright},
+      {"regular", string_of("range", "400, 700") + one_two, all, bright},
+      {"regular", number("lambda_min", 400) + number("lambda_max", 700) + one_two, all, bright},
+      {"regular", "<spectrum name='value' value='400:1, 700:2'/>", all, bright},
+      {"regular", string_of("values", "0.7, 0.7, 0.7"), {0.69929f, 0.699212f, 0.699161f}, all},
+      {"spectrum", "<spectrum name='value' value='450:0.2, 650:0.8'/>", rising, all},
+  };
+}
+
+TEST(MitsubaSpectrum, PluginsAreReadAsSpectraAndAsTextures) {
+  for (const PluginRow& row : plugin_rows()) {
+    for (const char* tag : {"spectrum", "texture"}) {
+      SCOPED_TRACE(fmt::format("{} {} {}", tag, row.type, row.inside));
+      const std::string bsdf =
+          "<bsdf type='diffuse'>" + plugin(tag, row.type, "reflectance", row.inside) + "</bsdf>";
+      const MaterialDescription material = material_with(bsdf, "3.0.0");
+      if (row.reflectance.x >= 0) expect_mitsubas(material.color(0), row.reflectance);
+      EXPECT_FALSE(material.is_textured());
+      if (row.radiance.x >= 0) {
+        expect_mitsubas(radiance(plugin(tag, row.type, "radiance", row.inside)), row.radiance);
+      }
+    }
+  }
+}
+
+// In every parameter that has a colour or a number.
+TEST(MitsubaSpectrum, PluginsStandWhereColoursAndNumbersDo) {
+  const auto half = [](const char* name) {
+    return plugin("texture", "uniform", name, number("value", 0.5));
+  };
+  const auto rgb = [](const char* name) {
+    return plugin("texture", "srgb", name, "<rgb name='color' value='.1 .2 .6'/>");
+  };
+  const auto bsdf = [](const std::string& type, const std::string& inside) {
+    return load_xml("<shape type='rectangle'><bsdf type='" + type + "'>" + inside +
+                    "</bsdf></shape>")
+        .scene.materials.back();
+  };
+  EXPECT_EQ(bsdf("principled", half("roughness")).scalar(1), 0.5f);
+  EXPECT_EQ(bsdf("principled", half("metallic")).scalar(2), 0.5f);
+  EXPECT_EQ(bsdf("principledthin", half("diff_trans")).scalar(9), 0.5f);
+  EXPECT_EQ(bsdf("roughconductor", half("alpha")).scalar(3), 0.5f);
+  EXPECT_FLOAT_EQ(bsdf("roughconductor", rgb("alpha")).scalar(4), 0.3f) << "the mean";
+  EXPECT_EQ(bsdf("roughdielectric", half("alpha_v")).scalar(4), 0.5f);
+  EXPECT_EQ(bsdf("conductor", half("eta")).color(1), Color(0.5f));
+  EXPECT_EQ(bsdf("conductor", half("eta")).color(2), Color(1.0f));
+  EXPECT_EQ(bsdf("conductor", rgb("k")).color(2), Color(0.1f, 0.2f, 0.6f));
+  EXPECT_EQ(bsdf("conductor", rgb("k")).color(1), Color(0.0f)) << "k alone is k and eta 0";
+  EXPECT_EQ(bsdf("conductor", half("specular_reflectance")).color(0), Color(0.5f));
+  EXPECT_EQ(bsdf("plastic", rgb("specular_reflectance")).color(1), Color(0.1f, 0.2f, 0.6f));
+  const std::string diffuse = "<bsdf type='diffuse'/>";
+  EXPECT_EQ(bsdf("mask", half("opacity") + diffuse).opacity.offset, 0.5f);
+  EXPECT_FLOAT_EQ(bsdf("mask", rgb("opacity") + diffuse).opacity.offset, 0.3f)
+      << "golden: the mean";
+  EXPECT_FLOAT_EQ(bsdf("blendbsdf", rgb("weight") + diffuse + diffuse).scalar(0), 0.3f);
+
+  const SceneData lights =
+      load_xml("<emitter type='point'>" + rgb("intensity") + "</emitter><emitter type='spot'>" +
+               rgb("intensity") + "</emitter><emitter type='directional'>" + rgb("irradiance") +
+               "</emitter><emitter type='projector'>" + rgb("irradiance") + "</emitter>" +
+               "<emitter type='constant'>" + rgb("radiance") + "</emitter>")
+          .scene;
+  ASSERT_EQ(lights.delta_lights.size(), 4u);
+  for (int i = 0; i < 4; ++i) {
+    const float factor = i == 3 ? pi : 1.0f;
+    expect_near(lights.delta_lights[static_cast<std::size_t>(i)].intensity / factor,
+                {0.1f, 0.2f, 0.6f}, 1e-6f);
+  }
+  EXPECT_EQ(lights.sky.zenith, Color(0.1f, 0.2f, 0.6f));
+
+  const auto medium = [&](const std::string& inside) {
+    return load_xml(
+               "<shape type='sphere'><bsdf type='null'/><medium type='homogeneous' "
+               "name='interior'>" +
+               inside + "</medium></shape>")
+        .scene.media.at(0);
+  };
+  EXPECT_EQ(medium(rgb("albedo")).albedo, Color(0.1f, 0.2f, 0.6f));
+  EXPECT_EQ(medium(half("sigma_t")).extinction, Color(0.5f));
+  const std::string within =
+      "<volume type='constvolume' name='albedo'>" + rgb("value") + "</volume>";
+  EXPECT_EQ(medium(within).albedo, Color(0.1f, 0.2f, 0.6f));
+}
+
+TEST(MitsubaSpectrum, ADaylightWithinWhichAPictureLiesIsThePicture) {
+  const LoadedScene loaded = load_xml(
+      "<sensor type='perspective'/><shape type='rectangle'><emitter type='area'><texture "
+      "type='d65' "
+      "name='radiance'><texture type='checkerboard'/></texture></emitter></shape>");
+  EXPECT_TRUE(loaded.warnings.empty());
+  EXPECT_EQ(loaded.scene.textures.at(0).kind, TextureKind::checkerboard);
+}
+
+// CIE 1931: the light of a black body is yellowish, white and bluish; its colour is that of the
+// spectrum in steps of 1 nm.
+TEST(MitsubaSpectrum, BlackBodiesAsPlugins) {
+  for (const double kelvin : {2700.0, 4500.0, 9000.0}) {
+    const Color whole =
+        radiance(fmt::format("<blackbody name='radiance' temperature='{}'/>", kelvin));
+    const std::string temperature = number("temperature", kelvin);
+    for (const char* tag : {"spectrum", "texture"}) {
+      EXPECT_EQ(radiance(plugin(tag, "blackbody", "radiance", temperature)), whole);
+      const std::string scaled = temperature + number("scale", 0.25);
+      expect_mitsubas(radiance(plugin(tag, "blackbody", "radiance", scaled)), 0.25f * whole);
+    }
+    const Color blue = radiance(
+        plugin("spectrum", "blackbody", "radiance", temperature + number("wavelength_max", 480)));
+    const Color rest = radiance(
+        plugin("spectrum", "blackbody", "radiance", temperature + number("wavelength_min", 480)));
+    EXPECT_GT(blue.z, 0.3f * whole.z);
+    EXPECT_EQ(blue.x < whole.x, true);
+    EXPECT_LT(rest.z, 0.7f * whole.z);
+  }
+}
+
+TEST(MitsubaSpectrum, BadPluginsAreErrors) {
+  const auto fails = [](const char* type, const std::string& inside, const std::string& part) {
+    expect_error([&] { radiance(plugin("texture", type, "radiance", inside)); }, part);
+  };
+  fails("irregular", string_of("wavelengths", "400 500 600") + string_of("values", "1 2"),
+        "3 wavelengths and 2 values");
+  fails("irregular", string_of("wavelengths", "500 400") + string_of("values", "1 2"), "ascending");
+  fails("irregular", "", "two values or more");
+  fails("regular", string_of("values", "1"), "two values or more");
+  fails("uniform", string_of("value", "1 x"), "expected a colour");
+}
+
+TEST(MitsubaSpectrum, WhatIsBelowZeroIsZero) {
+  const LoadedScene loaded = load_xml(
+      "<emitter type='constant'><rgb name='radiance' value='-1 1 2'/></emitter>"
+      "<shape type='rectangle'><bsdf type='diffuse'><float name='reflectance' value='-1'/></bsdf>"
+      "</shape>");
+  EXPECT_EQ(loaded.scene.sky.zenith, Color(0, 1, 2));
+  EXPECT_EQ(loaded.scene.materials.at(0).color(0), Color(0.0f));
+  EXPECT_EQ(loaded.count("a negative component of a colour: 0 is used"), 1);
+}
+
 }  // namespace
 }  // namespace pt

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -12,7 +13,8 @@ namespace {
 
 Color radiance_of(Context& context, const Object& emitter, std::string_view name) {
   emitter.ignore({"sampling_weight"});
-  return read_plain_color(context, emitter, name, Color(1.0f), Quantity::emission);
+  return read_plain_color(context, emitter, emission_name(emitter, name), Color(1.0f),
+                          Quantity::emission);
 }
 
 void add_point(Context& context, const Object& emitter) {
@@ -34,13 +36,16 @@ void add_spot(Context& context, const Object& emitter) {
   const Affine to_world = emitter.transform("to_world");
   light.position = to_world.translation();
   light.direction = glm::normalize(to_world.vector({0, 0, 1}));
-  const float cutoff = emitter.number("cutoff_angle", 20.0f);
-  const float beam = emitter.number("beam_width", 0.75f * cutoff);
+  float cutoff = emitter.number("cutoff_angle", 20.0f);
+  float beam = emitter.number("beam_width", 0.75f * cutoff);
   if (!(cutoff > 0.0f && cutoff <= 180.0f && beam >= 0.0f && beam <= cutoff)) {
-    fail(emitter.element(),
-         fmt::format("spot: beam_width {} and cutoff_angle {}; expected degrees with 0 <= "
-                     "beam_width <= cutoff_angle <= 180",
-                     beam, cutoff));
+    const float given_beam = beam, given_cutoff = cutoff;
+    cutoff = std::clamp(cutoff, 0.0f, 180.0f), beam = std::clamp(beam, 0.0f, cutoff);
+    context.warn_once("spot angles", emitter.element(),
+                      fmt::format("spot: beam_width {} and cutoff_angle {}; expected degrees with "
+                                  "0 <= beam_width <= cutoff_angle <= 180: {} and {} are used",
+                                  given_beam, given_cutoff, beam, cutoff));
+    if (cutoff == 0.0f) return;
   }
   light.cos_inner = cosine(beam);
   light.cos_outer = cosine(cutoff);
@@ -60,7 +65,8 @@ void add_directional(Context& context, const Object& emitter) {
   const Vec3 along = emitter.transform("to_world").vector({0, 0, 1});
   const Vec3 direction = emitter.vector("direction", along);
   if (!(glm::length(direction) > 0.0f)) {
-    fail(emitter.element(), "directional: the direction has length zero");
+    return context.warn_once("direction", emitter.element(),
+                             "directional: the direction has length zero: the light is left out");
   }
   light.direction = glm::normalize(direction);
   context.scene.delta_lights.push_back(light);

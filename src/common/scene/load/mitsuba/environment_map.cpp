@@ -67,13 +67,15 @@ void add_environment_map(Context& context, const Object& emitter) {
   }
   EnvironmentData& environment = context.scene.environment;
   try {
-    const Image image =
-        read_radiance_image(context.resolve(*filename, filename->required("value")));
+    const auto path = context.resolve(*filename, filename->required("value"));
+    const Image image = read_radiance_image(path);
     environment.width = image.width;
     environment.height = image.height;
     environment.pixels = scaled_pixels(image, scale, mirrored);
   } catch (const Error& error) {
-    fail(*filename, error.what());
+    context.warn_unreadable(*filename, error.what(), "radiance 1 from all sides is used");
+    environment.width = environment.height = 1;
+    environment.pixels = {Color(scale)};
   }
   environment.to_world = rotation * rotate({0, 1, 0}, 180.0f);
 }

@@ -64,8 +64,11 @@ void read_filter(Context& context, const Object& filter) {
         fmt::format("reconstruction filter '{}' is not supported: box is used", type));
   }
   if (choice.kind != FilterKind::mitchell && !(choice.a > 0.0f)) {
-    fail(filter.element(),
-         fmt::format("filter '{}' of size {}; expected one above 0", type, choice.a));
+    context.warn_once("filter size", filter.element(),
+                      fmt::format("filter '{}' of size {}; expected one above 0: its default is "
+                                  "used",
+                                  type, choice.a));
+    choice = default_filter(choice.kind);
   }
   context.scene.defaults.filter = choice;
 }
@@ -88,7 +91,9 @@ void read_sampler(Context& context, const Object& sampler) {
   sampler.ignore({"seed", "scramble", "jitter", "dimension"});
   if (!count) return;
   if (*count < 1) {
-    fail(sampler.element(), fmt::format("sample_count {}; expected 1 or more", *count));
+    return context.warn_once(
+        "sample_count", sampler.element(),
+        fmt::format("sample_count {}; expected 1 or more: it is ignored", *count));
   }
   context.scene.defaults.spp = count;
 }

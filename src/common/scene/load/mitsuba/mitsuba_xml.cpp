@@ -39,6 +39,7 @@ void load_sensor(Context& context, const Object& root) {
 
 void load_objects(Context& context, const Object& root) {
   for (const Object* shape : root.children("shape")) add_shape(context, *shape, 0);
+  context.expect_some_shape();
   load_sensor(context, root);
   add_grids(context);
   // What the camera sees is up to it.

@@ -28,12 +28,13 @@ FovAxis fov_axis_of(const Object& sensor) {
 
 /// Millimetres, of film 36 mm x 24 mm: "50mm".
 double focal_length_mm(const Object& sensor) {
-  std::string text = sensor.text("focal_length", "50mm");
+  const std::string given = sensor.text("focal_length", "50mm");
+  std::string text = given;
   if (text.size() > 2 && text.ends_with("mm")) text.resize(text.size() - 2);
   const std::optional<double> length = parse_number(text);
   if (!length || !(*length > 0)) {
     fail(sensor.element(),
-         fmt::format("focal_length '{}'; expected a length above 0, such as 50mm", text));
+         fmt::format("focal_length '{}'; expected a length above 0, such as 50mm", given));
   }
   return *length;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/scene/load/files/images/color_atlas.h"
+#include "common/scene/load/files/material_parts.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {
@@ -55,37 +56,35 @@ std::uint32_t VertexColors::texture_index_of(std::uint32_t& texture) {
 }
 
 VertexColors::Use VertexColors::use_of(std::uint32_t material_index) const {
-  const MaterialDescription& material = scene_.materials[material_index];
   Use use;
   const auto note = [&](std::uint32_t texture) {
     if (texture == no_texture) return;
     (texture == vertex_ ? use.by_vertex : texture == face_ ? use.by_face : use.others) = true;
   };
-  for (const Parameter& p : material.parameters) note(p.texture);
-  note(material.emission.texture), note(material.opacity.texture);
-  if (material.node == MaterialNode::none) {
-    use.others |= uses_tangent(material);
-    return use;
-  }
-  use.others |= material.node >= MaterialNode::normal_map;
-  for (const std::uint32_t child : material.children) {
-    const Use inside = use_of(child);
-    use.by_vertex |= inside.by_vertex, use.by_face |= inside.by_face;
-    use.others |= inside.others;
+  for (const MaterialDescription* part : parts_of(scene_, material_index)) {
+    for (const Parameter& p : part->parameters) note(p.texture);
+    note(part->emission.texture), note(part->opacity.texture);
+    const bool is_bsdf = part->node == MaterialNode::none;
+    use.others |= is_bsdf ? uses_tangent(*part) : part->node >= MaterialNode::normal_map;
   }
   return use;
 }
 
-/// The number of a copy with the change to the material and to what it is made of.
+/// The number of a copy with the change to the material and to what it is made of, each once.
 std::uint32_t VertexColors::changed(std::uint32_t material_index, const Change& change) {
+  std::map<std::uint32_t, std::uint32_t> copies;
+  return changed(material_index, change, copies);
+}
+
+std::uint32_t VertexColors::changed(std::uint32_t material_index, const Change& change,
+                                    std::map<std::uint32_t, std::uint32_t>& copies) {
+  if (const auto copy = copies.find(material_index); copy != copies.end()) return copy->second;
   MaterialDescription material = scene_.materials[material_index];
   if (material.node != MaterialNode::none) {
-    const bool same = material.children[0] == material.children[1];
-    material.children[0] = changed(material.children[0], change);
-    material.children[1] = same ? material.children[0] : changed(material.children[1], change);
+    for (std::uint32_t& child : material.children) child = changed(child, change, copies);
   }
   change(material);
-  return scene_.add_material(material);
+  return copies[material_index] = scene_.add_material(material);
 }
 
 void VertexColors::tint(Mesh& mesh, bool emits, const std::string& place) {

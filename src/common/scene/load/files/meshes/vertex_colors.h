@@ -55,6 +55,8 @@ class VertexColors {
   std::uint32_t texture_index_of(std::uint32_t& texture);
   Use use_of(std::uint32_t material) const;
   std::uint32_t changed(std::uint32_t material, const Change& change);
+  std::uint32_t changed(std::uint32_t material, const Change& change,
+                        std::map<std::uint32_t, std::uint32_t>& copies);
   void report_lack(const char* attribute, bool lacks);
   /// Whether the mesh's colours are to have texels; else its material is without them.
   bool shows_texels(Mesh& mesh);

@@ -76,12 +76,12 @@ std::optional<VolumeQuantity> read_volume_quantity(Context& context, const Objec
                                                    std::string_view name, const Color& fallback,
                                                    Quantity quantity) {
   if (const Element* element = medium.find(name)) {
-    return VolumeQuantity{read_color(context, *element, quantity)};
+    return VolumeQuantity{read_color(context, *element, quantity, fallback)};
   }
   const Object* nested = medium.child_named(name);
   if (!nested) return VolumeQuantity{fallback};
-  if (nested->tag() == "spectrum") {
-    return VolumeQuantity{read_spectrum_object(context, *nested, quantity)};
+  if (is_spectrum(*nested)) {
+    return VolumeQuantity{read_spectrum_object(context, *nested, quantity, fallback)};
   }
   if (nested->tag() != "volume") return std::nullopt;
   if (nested->type() == "constvolume") {

@@ -30,26 +30,25 @@ void add_file(Context& context, const Object& shape, const Target& target) {
   options.face_normals = shape.boolean("face_normals", false);
   options.flip_v = !shape.boolean("flip_tex_coords", shape.type() == "obj");
   const int index = shape.integer("shape_index").value_or(0);
-  const Affine to_world = shape.transform("to_world");
   Mesh mesh;
   try {
     mesh = shape.type() == "obj"   ? read_obj(path, options)
            : shape.type() == "ply" ? read_ply(path, options)
                                    : read_serialized(path, index, options);
   } catch (const Error& error) {
-    fail(*filename, error.what());
+    return context.leave_out(shape, *filename, error.what());
   }
   for (const std::string& warning : warnings) {
     context.warn_once(warning, *filename, fmt::format("{}: {}", path.string(), warning));
   }
-  add_mesh(context, shape, target, std::move(mesh), to_world);
+  add_mesh(context, shape, target, std::move(mesh), target.to_world);
 }
 
 /// A mesh of LoadOptions::meshes.
 void add_memory(Context& context, const Object& shape, const Target& target) {
   const Mesh* mesh = context.memory_mesh(shape.text("data", ""));
   if (!mesh) fail(shape.element(), "shape 'mesh': expected vertices and triangles");
-  add_mesh(context, shape, target, *mesh, shape.transform("to_world"));
+  add_mesh(context, shape, target, *mesh, target.to_world);
 }
 
 }  // namespace pt::mitsuba

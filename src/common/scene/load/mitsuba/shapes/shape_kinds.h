@@ -7,6 +7,7 @@ namespace pt::mitsuba {
 
 /// Where a shape goes and what it is made of.
 struct Target {
+  Affine to_world;  ///< invertible
   std::uint32_t group;
   std::uint32_t material;
   bool textured;    ///< shading asks where on it a point lies

@@ -25,8 +25,8 @@ void add_emission(Context& context, const Object& emitter, Surface& surface) {
   }
   context.add_lit();
   emitter.ignore({"sampling_weight"});
-  const ColorTexture radiance =
-      read_color_texture(context, emitter, "radiance", Color(1.0f), Quantity::emission);
+  const ColorTexture radiance = read_color_texture(
+      context, emitter, emission_name(emitter, "radiance"), Color(1.0f), Quantity::emission);
   surface.material.emission = {radiance.color, radiance.texture};
   if (surface.invisible) {
     context.warn_once("invisible emitter", emitter.element(),

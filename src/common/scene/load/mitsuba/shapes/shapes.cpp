@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <map>
 
+#include "common/scene/load/files/material_parts.h"
 #include "common/scene/load/mitsuba/shapes/shape_kinds.h"
+#include "common/scene/load/mitsuba/xml/transforms.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -27,15 +29,45 @@ const std::map<std::string_view, Adder>& adders() {
   return table;
 }
 
-/// The group that a shapegroup becomes where an instance first asks for it.
+/// The group that a shapegroup becomes where an instance first asks for it; 0 where it is empty.
 std::uint32_t group_of(Context& context, const Object& shapegroup) {
   const auto group_index = static_cast<std::uint32_t>(context.groups.size() + 1);
   const auto [entry, is_new] = context.groups.try_emplace(&shapegroup, group_index);
-  const std::uint32_t group = entry->second;
   if (is_new) {
-    for (const Object* shape : shapegroup.children("shape")) add_shape(context, *shape, group);
+    const std::size_t before = context.scene.meshes.size();
+    for (const Object* shape : shapegroup.children("shape")) {
+      add_shape(context, *shape, group_index);
+    }
+    if (context.scene.meshes.size() == before) entry->second = 0;
   }
-  return group;
+  return entry->second;
+}
+
+/// Where to_world squeezes a shape flat along its z, the nearest map that does not; none where it
+/// leaves less than a plane.
+std::optional<Affine> unsqueezed(Affine map) {
+  const Vec3 x = map.vector({1, 0, 0}), y = map.vector({0, 1, 0});
+  const Vec3 normal = glm::cross(x, y);
+  const float area = glm::length(normal);
+  if (!(area > 1e-6f * glm::length(x) * glm::length(y))) return std::nullopt;
+  const Vec3 z = 1e-4f * std::max(glm::length(x), glm::length(y)) / area * normal;
+  for (int i = 0; i < 3; ++i) map.row[i].z = z[i];
+  return map;
+}
+
+/// to_world, which can be inverted; else none, and the shape is left out.
+std::optional<Affine> place_of(Context& context, const Object& shape) {
+  const Element* at = shape.find_transform("to_world");
+  if (!at) return Affine();
+  const Affine map = read_transform(*at);
+  if (!is_singular(map)) return map;
+  if (const std::optional<Affine> flat = unsqueezed(map)) {
+    context.warn_once("flat shape", *at,
+                      "to_world squeezes a shape flat: it is a ten-thousandth as thick as wide");
+    return flat;
+  }
+  context.leave_out(shape, *at, "<transform> is singular (it flattens the shape)");
+  return std::nullopt;
 }
 
 void add_instance(Context& context, const Object& shape, std::uint32_t group) {
@@ -50,26 +82,22 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
   }
   const Affine to_world = shape.transform("to_world");
   const std::uint32_t group_index = group_of(context, *shapegroup);
-  const auto is_of_group = [&](const Mesh& mesh) { return mesh.group == group_index; };
-  if (std::ranges::any_of(context.scene.meshes, is_of_group)) {
-    context.scene.instances.push_back({group_index, to_world});
-  }
+  if (group_index != 0) context.scene.instances.push_back({group_index, to_world});
 }
 
 /// Whether shading asks where on the surface a point lies.
-bool is_textured(const SceneData& scene, std::uint32_t material_index) {
-  const MaterialDescription& material = scene.materials[material_index];
-  if (material.is_textured() || uses_tangent(material)) return true;
-  return material.node != MaterialNode::none &&
-         (is_textured(scene, material.children[0]) || is_textured(scene, material.children[1]));
+bool is_textured(const SceneData& scene, std::uint32_t material) {
+  return any_part(scene, material, [](const MaterialDescription& part) {
+    return part.is_textured() || uses_tangent(part);
+  });
 }
 
 /// Whether it asks in which directions texture coordinates grow.
-bool needs_tangents(const SceneData& scene, std::uint32_t material_index) {
-  const MaterialDescription& material = scene.materials[material_index];
-  if (material.node == MaterialNode::none) return uses_tangent(material);
-  return material.node >= MaterialNode::normal_map || needs_tangents(scene, material.children[0]) ||
-         needs_tangents(scene, material.children[1]);
+bool needs_tangents(const SceneData& scene, std::uint32_t material) {
+  return any_part(scene, material, [](const MaterialDescription& part) {
+    return part.node == MaterialNode::none ? uses_tangent(part)
+                                           : part.node >= MaterialNode::normal_map;
+  });
 }
 
 bool needs_mesh(const Context& context, std::uint32_t material_index) {
@@ -96,8 +124,10 @@ void add_shape(Context& context, const Object& shape, std::uint32_t group) {
   }
   const std::optional<std::uint32_t> material = material_of(context, shape, group);
   if (!material) return shape.ignore_all();
+  const std::optional<Affine> to_world = place_of(context, shape);
+  if (!to_world) return;
   adder->second(context, shape,
-                {group, *material, is_textured(context.scene, *material),
+                {*to_world, group, *material, is_textured(context.scene, *material),
                  needs_tangents(context.scene, *material), needs_mesh(context, *material)});
 }
 

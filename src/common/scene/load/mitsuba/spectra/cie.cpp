@@ -64,9 +64,10 @@ Color spectrum_to_rgb(const Samples& samples, Quantity quantity) {
       value, quantity == Quantity::emission ? Illuminant::equal_energy : Illuminant::d65));
 }
 
-Color blackbody_to_rgb(double kelvin) {
+Color blackbody_to_rgb(double kelvin, double from_nm, double to_nm) {
   constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
   const auto radiance = [&](double nm) {
+    if (nm < from_nm || nm > to_nm) return 0.0;
     const double m = nm * 1e-9;
     return 2e-9 * h * c * c / (std::pow(m, 5) * std::expm1(h * c / (m * k * kelvin)));
   };

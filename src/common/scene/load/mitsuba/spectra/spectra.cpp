@@ -4,12 +4,31 @@
 
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/mitsuba/xml/values.h"
 
 namespace pt::mitsuba {
+
+Samples sorted_samples(const Element& element, Samples samples) {
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    if (!(samples[i].first > samples[i - 1].first)) {
+      fail(element, "<spectrum>: expected wavelengths in ascending order");
+    }
+  }
+  return samples;
+}
+
+Color samples_color(Context& context, const Element& element, const Samples& samples,
+                    Quantity quantity) {
+  context.warn_once("spectrum", element,
+                    "<spectrum> of wavelengths: linear sRGB is used, as the CIE 1931 observer "
+                    "sees it");
+  return spectrum_to_rgb(samples, quantity);
+}
+
 namespace {
 
 float srgb_to_linear(float v) {  // IEC 61966-2-1
@@ -33,6 +52,7 @@ Color hex_color(const Element& element, const std::string& text) {
 }
 
 Color rgb_color(const Element& element) {
+  if (!element.attribute("value") && element.attribute("x")) return vector_attributes(element, 0.0);
   const std::string& text = element.required("value");
   if (!text.empty() && text[0] == '#') return hex_color(element, text);
   const std::vector<double> v = parse_numbers(element, text);
@@ -41,15 +61,6 @@ Color rgb_color(const Element& element) {
   }
   const Color color = v.size() == 1 ? Color(static_cast<float>(v[0])) : Color(v[0], v[1], v[2]);
   return element.tag == "srgb" ? decoded(color) : color;
-}
-
-Samples sorted_samples(const Element& element, Samples samples) {
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    if (!(samples[i].first > samples[i - 1].first)) {
-      fail(element, "<spectrum>: expected wavelengths in ascending order");
-    }
-  }
-  return samples;
 }
 
 /// "wavelength:value, ..."
@@ -64,14 +75,17 @@ Samples listed_samples(const Element& element, std::string text) {
   return sorted_samples(element, std::move(samples));
 }
 
-/// A file of lines "wavelength value"; # begins a comment.
-Samples sample_file(Context& context, const Element& element) {
+/// A file of lines "wavelength value"; # begins a comment. None where it cannot be read.
+std::optional<Samples> sample_file(Context& context, const Element& element) {
   const std::filesystem::path path = context.resolve(element, element.required("filename"));
   std::string text;
   try {
     text = MappedFile(path).bytes();
   } catch (const Error& error) {
-    fail(element, fmt::format("cannot read the spectrum {}: {}", path.string(), error.what()));
+    context.warn_unreadable(
+        element, fmt::format("cannot read the spectrum {}: {}", path.string(), error.what()),
+        "what is without it is used");
+    return std::nullopt;
   }
   std::istringstream file(text);
   std::string line, all;
@@ -79,7 +93,8 @@ Samples sample_file(Context& context, const Element& element) {
   return listed_samples(element, std::move(all));
 }
 
-Color spectrum_color(Context& context, const Element& element, Quantity quantity) {
+Color spectrum_color(Context& context, const Element& element, Quantity quantity,
+                     const Color& stand_in) {
   const std::string* text = element.attribute("value");
   if (text && text->find(':') == text->npos) {
     const Color color = rgb_color(element);
@@ -87,11 +102,9 @@ Color spectrum_color(Context& context, const Element& element, Quantity quantity
     const bool equal_energy = context.modern && quantity == Quantity::emission;
     return equal_energy ? color * Color(1.20479f, 0.948293f, 0.908916f) : color;
   }
-  const Samples samples = text ? listed_samples(element, *text) : sample_file(context, element);
-  context.warn_once("spectrum", element,
-                    "<spectrum> of wavelengths: linear sRGB is used, as the CIE 1931 observer "
-                    "sees it");
-  return spectrum_to_rgb(samples, quantity);
+  const std::optional<Samples> samples =
+      text ? listed_samples(element, *text) : sample_file(context, element);
+  return samples ? samples_color(context, element, *samples, quantity) : stand_in;
 }
 
 /// The temperature may have the unit of 0.x: "5000K".
@@ -105,31 +118,33 @@ Color blackbody_color(const Element& element) {
   return blackbody_to_rgb(*kelvin) * static_cast<float>(number_attribute(element, "scale", 1.0));
 }
 
-Color color_of(Context& context, const Element& element, Quantity quantity) {
-  if (element.tag == "spectrum") return spectrum_color(context, element, quantity);
+Color color_of(Context& context, const Element& element, Quantity quantity, const Color& stand_in) {
+  static const std::set<std::string_view> tags = {"rgb",     "srgb",   "float",
+                                                  "integer", "vector", "point"};
+  if (element.tag == "spectrum") return spectrum_color(context, element, quantity, stand_in);
   if (element.tag == "blackbody") return blackbody_color(element);
-  if (element.tag == "rgb" || element.tag == "srgb" || element.tag == "float" ||
-      element.tag == "integer") {
-    return rgb_color(element);
-  }
+  if (tags.contains(element.tag)) return rgb_color(element);
   fail(element,
        fmt::format("a <{}>; expected a colour: <rgb>, <spectrum> or <float>", element.tag));
 }
 
 }  // namespace
 
-Color read_color(Context& context, const Element& element, Quantity quantity) {
-  Color color = color_of(context, element, quantity);
+Color bounded_color(Context& context, const Element& element, Color color, Quantity quantity) {
+  const bool is_rgb = element.tag == "rgb" || element.tag == "srgb";
   for (int i = 0; i < 3; ++i) {
-    if (quantity == Quantity::index_of_refraction && color[i] < 0.0f) {
-      context.warn_once("negative index", element,
-                        "a negative component of an index of refraction: 0 is used");
-      color[i] = 0.0f;
-    }
-    if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) {
+    if (!std::isfinite(color[i]) ||
+        (color[i] < 0.0f && is_rgb && quantity == Quantity::reflectance)) {
       fail(element, fmt::format("a colour with the component {}; expected one that is finite and "
                                 "not negative",
                                 color[i]));
+    }
+    if (color[i] < 0.0f) {
+      const bool is_index = quantity == Quantity::index_of_refraction;
+      context.warn_once(is_index ? "negative index" : "negative color", element,
+                        fmt::format("a negative component of {}: 0 is used",
+                                    is_index ? "an index of refraction" : "a colour"));
+      color[i] = 0.0f;
     }
     if (quantity == Quantity::reflectance && color[i] > 1.0f) {
       context.warn_once("reflectance above 1", element,
@@ -140,17 +155,9 @@ Color read_color(Context& context, const Element& element, Quantity quantity) {
   return color;
 }
 
-Color read_spectrum_object(Context& context, const Object& object, Quantity quantity) {
-  if (object.type() == "d65") return Color(object.number("scale", 1.0f));
-  if (object.type() == "uniform") return Color(object.number("value", 1.0f));
-  if (object.type() == "blackbody") {
-    return blackbody_to_rgb(object.number("temperature", 6500.0f)) * object.number("scale", 1.0f);
-  }
-  const Color grey(quantity == Quantity::reflectance ? 0.5f : 1.0f);
-  context.warn_once(
-      "spectrum " + object.type(), object.element(),
-      fmt::format("spectrum '{}' is not supported: grey {} is used", object.type(), grey.x));
-  return grey;
+Color read_color(Context& context, const Element& element, Quantity quantity,
+                 const Color& stand_in) {
+  return bounded_color(context, element, color_of(context, element, quantity, stand_in), quantity);
 }
 
 }  // namespace pt::mitsuba

@@ -10,21 +10,39 @@ namespace pt::mitsuba {
 /// `number` is read from the first component; of a texture it is the luminance.
 enum class Quantity { reflectance, emission, index_of_refraction, plain, number };
 
-/// <rgb>, <srgb>, <spectrum>, <blackbody> or <float> as linear sRGB. Reflectances above 1 become 1
-/// and indices of refraction below 0 become 0 with a warning; other negative numbers are an Error.
-Color read_color(Context& context, const Element& element, Quantity quantity);
+/// <rgb>, <srgb>, <spectrum>, <blackbody>, <vector> or <float> as linear sRGB; `stand_in` in place
+/// of a file that cannot be read. Reflectances above 1 become 1 and what is below 0 becomes 0, with
+/// a warning; an <rgb> below 0 as a reflectance is an Error, as in Mitsuba.
+Color read_color(Context& context, const Element& element, Quantity quantity,
+                 const Color& stand_in);
 
-/// A <spectrum type="...">: d65 and uniform; others become grey with a warning.
-Color read_spectrum_object(Context& context, const Object& object, Quantity quantity);
+/// Whether an object is a spectrum: a <spectrum type="...">, or a <texture> of one of its types, as
+/// Mitsuba's own writer has it.
+bool is_spectrum(const Object& object);
+
+/// d65, uniform, srgb, rgb, rawconstant, blackbody, regular and irregular; `stand_in` for others,
+/// with a warning, and for a file that cannot be read.
+Color read_spectrum_object(Context& context, const Object& object, Quantity quantity,
+                           const Color& stand_in);
+
+/// The colour within what the quantity may be, as read_color() has it.
+Color bounded_color(Context& context, const Element& element, Color color, Quantity quantity);
 
 /// wavelength (nm, ascending) -> value
 using Samples = std::vector<std::pair<double, double>>;
+
+/// Throws Error where wavelengths do not ascend.
+Samples sorted_samples(const Element& element, Samples samples);
+
+/// spectrum_to_rgb(), of which a warning tells.
+Color samples_color(Context& context, const Element& element, const Samples& samples,
+                    Quantity quantity);
 
 /// Linear sRGB of a sampled spectrum, with the CIE 1931 observer, as Mitsuba's RGB variants have
 /// it. Emission is taken as it is; all else is seen under D65, so that 1 everywhere is white.
 Color spectrum_to_rgb(const Samples& samples, Quantity quantity);
 
-/// Planck's law, W / (m^2 sr nm), as linear sRGB.
-Color blackbody_to_rgb(double kelvin);
+/// Planck's law between two wavelengths in nm, W / (m^2 sr nm), as linear sRGB.
+Color blackbody_to_rgb(double kelvin, double from_nm = 0.0, double to_nm = 1e9);
 
 }  // namespace pt::mitsuba

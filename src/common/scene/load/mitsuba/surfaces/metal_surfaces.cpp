@@ -51,7 +51,8 @@ namespace {
 
 /// eta and k, or those of a metal by name, over the index of what is outside.
 void read_index(Context& context, const Object& bsdf, Parameter* eta_and_k) {
-  const bool given = bsdf.find("eta") || bsdf.child_named("eta") || bsdf.find("k");
+  const bool given =
+      bsdf.find("eta") || bsdf.child_named("eta") || bsdf.find("k") || bsdf.child_named("k");
   ColorTexture eta, k;
   if (given) {
     eta = read_color_texture(context, bsdf, "eta", Color(0.0f), Quantity::index_of_refraction);

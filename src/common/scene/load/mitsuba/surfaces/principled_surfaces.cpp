@@ -20,7 +20,14 @@ struct NumberReader {
 
 /// `eta`, or that of `specular`: 0.08 times it is the reflectance at normal incidence.
 float read_eta(Context& context, const Object& bsdf) {
-  const float specular = read_plain_number(context, bsdf, "specular", 0.5f);
+  float specular = read_plain_number(context, bsdf, "specular", 0.5f);
+  if (!(specular < 12.5f)) {
+    context.warn_once("specular", bsdf.element(),
+                      fmt::format("bsdf '{}': specular {} is 12.5 or more, which no index of "
+                                  "refraction has: 0.5 is used",
+                                  bsdf.type(), specular));
+    specular = 0.5f;
+  }
   const float by_specular = 2.0f / (1.0f - std::sqrt(0.08f * specular)) - 1.0f;
   const float eta = read_plain_number(context, bsdf, "eta", by_specular);
   if (!(eta > 0.0f) || !std::isfinite(eta)) {

@@ -25,11 +25,17 @@ void report_replaced(Context& context, const Object& bsdf, std::string_view by) 
                     fmt::format("bsdf '{}' is not supported: {}", bsdf.type(), by));
 }
 
+// Each once, although others may hold it 2^n times.
 Surface read_surface(Context& context, const Object& bsdf) {
+  if (const auto found = context.surfaces.find(&bsdf); found != context.surfaces.end()) {
+    return *found->second;
+  }
   const auto reader = readers().find(bsdf.type());
-  if (reader != readers().end()) return reader->second(context, bsdf);
-  report_replaced(context, bsdf, "diffuse grey is used");
-  return diffuse_of({Color(0.5f)});
+  if (reader == readers().end()) report_replaced(context, bsdf, "diffuse grey is used");
+  const Surface surface =
+      reader == readers().end() ? diffuse_of({Color(0.5f)}) : reader->second(context, bsdf);
+  context.surfaces.emplace(&bsdf, std::make_shared<const Surface>(surface));
+  return surface;
 }
 
 std::vector<std::string> surface_types() {

@@ -75,10 +75,14 @@ bool is_linear(Context& context, const Object& object) {
   return raw || gamma == 1.0f;
 }
 
-/// Mitsuba's, of which a texture makes a number.
+/// Mitsuba's, of which a picture makes a number.
 constexpr Color luminance_weights(0.212671f, 0.715160f, 0.072169f);
 
-ColorTexture read_bitmap(Context& context, const Object& object, Quantity quantity) {
+/// Of a colour without a picture, Mitsuba's number is this.
+Color mean_of(const Color& color) { return Color((color.x + color.y + color.z) / 3.0f); }
+
+ColorTexture read_bitmap(Context& context, const Object& object, Quantity quantity,
+                         const Color& stand_in) {
   Texture look;
   look.format = is_linear(context, object) ? TextureFormat::linear8 : TextureFormat::srgb8;
   read_filter(context, object, look);
@@ -92,11 +96,11 @@ ColorTexture read_bitmap(Context& context, const Object& object, Quantity quanti
   const Element* filename = object.find("filename");
   if (!filename) fail(object.element(), "texture 'bitmap' has no filename");
   const auto path = context.resolve(*filename, filename->required("value"));
-  try {
-    return {Color(1.0f), context.textures.add_file(path, look, weights)};
-  } catch (const Error& error) {
-    fail(*filename, error.what());
-  }
+  const std::uint32_t texture =
+      context.textures.add_file_if_readable(path, look, weights, [&](const std::string& why) {
+        context.warn_unreadable(*filename, why, "what is without it is used");
+      });
+  return {texture == no_texture ? stand_in : Color(1.0f), texture};
 }
 
 /// What one kind of a checkerboard's squares shows.
@@ -105,7 +109,7 @@ ColorTexture read_square(Context& context, const Object& object, const char* nam
   const bool is_number = quantity == Quantity::number;
   ColorTexture square = read_color_texture(context, object, name, Color(fallback),
                                            is_number ? quantity : Quantity::reflectance);
-  if (is_number) square.color = Color(dot(square.color, luminance_weights));
+  if (is_number) square.color = mean_of(square.color);
   if (square.texture == no_texture || !context.colors.is_ours(square.texture)) return square;
   // Their coordinates, which would be the checkerboard's as well, are not the mesh's.
   context.warn_once("checkerboard of colors", object.element(),
@@ -113,7 +117,7 @@ ColorTexture read_square(Context& context, const Object& object, const char* nam
   return {square.color, no_texture};
 }
 
-ColorTexture read_checkerboard(Context& context, const Object& object, Quantity quantity) {
+std::uint32_t add_checkerboard(Context& context, const Object& object, Quantity quantity) {
   ColorTexture first = read_square(context, object, "color0", 0.4f, quantity);
   ColorTexture second = read_square(context, object, "color1", 0.2f, quantity);
   if (quantity == Quantity::number) std::swap(first, second);  // as eval_1() of Mitsuba 3 has them
@@ -122,16 +126,28 @@ ColorTexture read_checkerboard(Context& context, const Object& object, Quantity 
   texture.color0 = first.color, texture.color1 = second.color;
   texture.nested[0] = first.texture, texture.nested[1] = second.texture;
   set_uv_map(texture, read_uv_map(object));
-  return {Color(1.0f), context.textures.add_plain(texture)};
+  return context.textures.add_plain(texture);
 }
 
-ColorTexture read_scale(Context& context, const Object& object, Quantity quantity) {
+/// Each once, although others may hold it 2^n times.
+ColorTexture read_checkerboard(Context& context, const Object& object, Quantity quantity) {
+  const std::pair key(&object, quantity == Quantity::number);
+  auto found = context.checkerboards.find(key);
+  if (found == context.checkerboards.end()) {
+    const std::uint32_t texture = add_checkerboard(context, object, quantity);
+    found = context.checkerboards.emplace(key, texture).first;
+  }
+  return {Color(1.0f), found->second};
+}
+
+ColorTexture read_scale(Context& context, const Object& object, Quantity quantity,
+                        const Color& stand_in) {
   ColorTexture result;
   if (const Object* nested = object.child("texture")) {
-    result = read_texture(context, *nested, quantity);
+    result = read_texture(context, *nested, quantity, stand_in);
   }
   if (const Element* value = object.find("value")) {
-    result.color *= read_color(context, *value, Quantity::plain);
+    result.color *= read_color(context, *value, Quantity::plain, stand_in);
   }
   const Color by = read_plain_color(context, object, "scale", Color(1.0f), Quantity::plain);
   result.color *= by;
@@ -152,53 +168,77 @@ ColorTexture read_mesh_attribute(Context& context, const Object& object, Quantit
   return {scale, no_texture};
 }
 
+/// Within a d65, which multiplies by white, what it multiplies: its scale is left out, as in the
+/// RGB variants of Mitsuba 3.9.
+const Object& without_d65(const Object& object) {
+  const Object* inside = &object;
+  while (inside->type() == "d65") {
+    const Object* nested = inside->child("texture");
+    if (!nested) nested = inside->child("spectrum");
+    if (!nested) break;
+    inside->ignore({"scale"});
+    inside = nested;
+  }
+  return *inside;
+}
+
 }  // namespace
 
-ColorTexture read_texture(Context& context, const Object& object, Quantity quantity) {
-  if (object.tag() == "spectrum") {
-    return {read_spectrum_object(context, object, quantity), no_texture};
+ColorTexture read_texture(Context& context, const Object& outer, Quantity quantity,
+                          const Color& stand_in) {
+  const Object& object = without_d65(outer);
+  if (is_spectrum(object)) {
+    return {read_spectrum_object(context, object, quantity, stand_in), no_texture};
   }
   if (object.tag() != "texture") {
     fail(object.element(), fmt::format("a <{}>; expected a <texture>", object.tag()));
   }
   const std::string type = object.type();
   if (type == "bitmap" || type == "ldrtexture" || type == "exrtexture") {
-    return read_bitmap(context, object, quantity);
+    return read_bitmap(context, object, quantity, stand_in);
   }
   if (type == "checkerboard") return read_checkerboard(context, object, quantity);
   if (type == "mesh_attribute") return read_mesh_attribute(context, object, quantity);
-  if (type == "scale") return read_scale(context, object, quantity);
-  const Color grey(quantity == Quantity::reflectance ? 0.5f : 1.0f);
+  if (type == "scale") return read_scale(context, object, quantity, stand_in);
   context.warn_once("texture " + type, object.element(),
-                    fmt::format("texture '{}' is not supported: grey {} is used", type, grey.x));
-  return {grey, no_texture};
+                    fmt::format("texture '{}' is not supported: {} is used", type, stand_in.x));
+  return {stand_in, no_texture};
 }
 
 ColorTexture read_color_texture(Context& context, const Object& owner, std::string_view name,
                                 const Color& fallback, Quantity quantity) {
   if (const Element* element = owner.find(name)) {
-    return {read_color(context, *element, quantity), no_texture};
+    return {read_color(context, *element, quantity, fallback), no_texture};
   }
   if (const Object* texture = owner.child_named(name)) {
-    return read_texture(context, *texture, quantity);
+    return read_texture(context, *texture, quantity, fallback);
   }
   return {fallback, no_texture};
+}
+
+std::string_view emission_name(const Object& emitter, std::string_view name) {
+  const bool given = emitter.find(name) || emitter.child_named(name);
+  const std::string_view old = "intensity";
+  return !given && (emitter.find(old) || emitter.child_named(old)) ? old : name;
 }
 
 ColorTexture read_number_texture(Context& context, const Object& owner, std::string_view name,
                                  float fallback) {
   ColorTexture result = read_color_texture(context, owner, name, Color(fallback), Quantity::number);
-  result.color = Color((result.color.x + result.color.y + result.color.z) / 3.0f);
+  result.color = mean_of(result.color);
   return result;
 }
 
 Color read_plain_color(Context& context, const Object& owner, std::string_view name,
                        const Color& fallback, Quantity quantity) {
-  if (const Element* element = owner.find(name)) return read_color(context, *element, quantity);
-  const Object* nested = owner.child_named(name);
-  if (!nested) return fallback;
-  if (nested->tag() == "spectrum") return read_spectrum_object(context, *nested, quantity);
-  context.warn_once(fmt::format("textured {} {}", owner.type(), name), nested->element(),
+  if (const Element* element = owner.find(name)) {
+    return read_color(context, *element, quantity, fallback);
+  }
+  const Object* outer = owner.child_named(name);
+  if (!outer) return fallback;
+  const Object& nested = without_d65(*outer);
+  if (is_spectrum(nested)) return read_spectrum_object(context, nested, quantity, fallback);
+  context.warn_once(fmt::format("textured {} {}", owner.type(), name), nested.element(),
                     fmt::format("a texture as {} of {} '{}' is not supported: {} is used", name,
                                 owner.tag(), owner.type(), fallback.x));
   return fallback;

@@ -139,12 +139,13 @@ Surface read_two_sided(Context& context, const Object& bsdf) {
   return front;
 }
 
+/// Opaque where the file names a picture that cannot be read.
 Surface read_mask(Context& context, const Object& bsdf) {
-  const ColorTexture opacity =
-      read_color_texture(context, bsdf, "opacity", Color(0.5f), Quantity::number);
+  const bool given = bsdf.find("opacity") || bsdf.child_named("opacity");
+  const ColorTexture opacity = read_number_texture(context, bsdf, "opacity", given ? 1.0f : 0.5f);
   Surface surface = read_surface(context, only_nested(bsdf));
   return node_of(surface.material,
-                 product(context, bsdf, textured_opacity(luminance(opacity.color), opacity.texture),
+                 product(context, bsdf, textured_opacity(opacity.color.x, opacity.texture),
                          surface.material.opacity));
 }
 
@@ -152,7 +153,7 @@ Surface read_normal_map(Context& context, const Object& bsdf) {
   const Object* named = bsdf.child_named("normalmap");
   const Object* texture = named ? named : bsdf.child("texture");
   if (!texture) fail(bsdf.element(), "bsdf 'normalmap' has no texture inside");
-  const ColorTexture map = read_texture(context, *texture, Quantity::plain);
+  const ColorTexture map = read_texture(context, *texture, Quantity::plain, Color(1.0f));
   if (map.texture == no_texture) {
     report_replaced(context, bsdf, "a map that is no image is left out");
     return read_surface(context, only_nested(bsdf));
@@ -163,7 +164,7 @@ Surface read_normal_map(Context& context, const Object& bsdf) {
 Surface read_bump_map(Context& context, const Object& bsdf) {
   const Object* texture = bsdf.child("texture");
   if (!texture) fail(bsdf.element(), fmt::format("bsdf '{}' has no texture inside", bsdf.type()));
-  const ColorTexture map = read_texture(context, *texture, Quantity::plain);
+  const ColorTexture map = read_texture(context, *texture, Quantity::plain, Color(1.0f));
   return read_map(context, bsdf, MaterialNode::bump_map, map,
                   bsdf.number("scale", 1.0f) * luminance(map.color));
 }
@@ -174,8 +175,7 @@ Surface read_blend(Context& context, const Object& bsdf) {
     fail(bsdf.element(),
          fmt::format("bsdf 'blendbsdf' has {} bsdfs inside; expected 2", parts.size()));
   }
-  const ColorTexture weight =
-      read_color_texture(context, bsdf, "weight", Color(0.5f), Quantity::number);
+  const ColorTexture weight = read_number_texture(context, bsdf, "weight", 0.5f);
   return blend(context, bsdf, weight, read_surface(context, *parts[0]),
                read_surface(context, *parts[1]));
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/mitsuba/xml/values.h"
 
@@ -31,8 +30,28 @@ Context::Context(SceneData& scene_data, const LoadOptions& load_options, const O
       options_(load_options),
       graph_(graph) {}
 
+void Context::report(const Element& at, const std::string& message) const {
+  options_.report(at.place() + ": " + shortened(message));
+}
+
 void Context::warn_once(const std::string& kind, const Element& at, const std::string& message) {
-  if (warned_.insert(kind).second) options_.report(at.place() + ": " + message);
+  if (warned_.size() < max_reports && warned_.insert(kind).second) report(at, message);
+}
+
+void Context::warn_unreadable(const Element& at, const std::string& why,
+                              const std::string& instead) {
+  warn_once("unreadable " + why, at, why + ": " + instead);
+}
+
+void Context::leave_out(const Object& shape, const Element& at, const std::string& why) {
+  shape.ignore_all();
+  warn_once("left out " + why, at, why + ": the shape is left out");
+  if (why_no_shape_.empty()) why_no_shape_ = at.place() + ": " + shortened(why);
+}
+
+void Context::expect_some_shape() const {
+  const bool none = scene.spheres.empty() && scene.quads.empty() && scene.meshes.empty();
+  if (none && !why_no_shape_.empty()) throw Error(why_no_shape_ + "; no shape is left");
 }
 
 const Mesh* Context::memory_mesh(const std::string& name) const {
@@ -41,24 +60,18 @@ const Mesh* Context::memory_mesh(const std::string& name) const {
 }
 
 void Context::note(const Element& at, const std::string& message) const {
-  if (options_.warn) options_.warn(at.place() + ": " + message);
+  if (options_.warn) options_.warn(at.place() + ": " + shortened(message));
 }
 
 std::filesystem::path Context::resolve(const Element& at, const std::string& name) {
   const std::filesystem::path beside = at.file->parent_path();
-  const std::filesystem::path folder = graph_.scene().element().file->parent_path();
-  std::vector<std::filesystem::path> folders = {beside, folder};
-  for (const std::string& path : graph_.search_paths()) folders.push_back(folder / path);
-  std::error_code ignored;
-  for (const std::filesystem::path& place : folders) {
-    if (std::filesystem::exists(place / name, ignored)) return place / name;
-  }
+  const SearchPath& path = graph_.search_path();
+  Folders folders = path.folders();
+  folders.push_back(path.scene());
+  folders.insert(at.tag == "spectrum" ? folders.begin() : folders.end(), beside);
   const auto warn = [&](const std::string& line) { warn_once("case " + name, at, line); };
-  for (const std::filesystem::path& place : folders) {
-    const std::filesystem::path found = find_file(place, name, warn);
-    if (!found.empty()) return found;
-  }
-  return beside / name;
+  const std::filesystem::path found = find_in(folders, name, warn);
+  return found.empty() ? beside / name : found;
 }
 
 void Context::add_studio_if_dark() {
@@ -71,10 +84,9 @@ void Context::add_studio_if_dark() {
     names += fmt::format("{}'{}' of line {}", names.empty() ? "" : ", ", emitter->type(),
                          emitter->element().line);
   }
-  options_.report(
-      fmt::format("{}: NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used "
-                  "instead, so brightness and colours are not the file's",
-                  at.place(), names, studio_text));
+  report(at, fmt::format("NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used "
+                         "instead, so brightness and colours are not the file's",
+                         names, studio_text));
 }
 
 void Context::report_unused() {
@@ -88,6 +100,7 @@ void Context::report_unused(const Object& object) {
   const Element* first = nullptr;
   std::string names;
   const auto add = [&](const std::string& name, const Element* at) {
+    if (warned_.size() >= max_reports) return;
     if (!warned_.insert(fmt::format("unused {} {}", whose, name)).second) return;
     names += (first ? ", " : "") + name;
     if (!first || at->line < first->line) first = at;
@@ -100,8 +113,7 @@ void Context::report_unused(const Object& object) {
     add(fmt::format("{} '{}'", nested.object->tag(), nested.object->type()), nested.element);
   }
   if (first) {
-    options_.report(
-        fmt::format("{}: not supported in {} and ignored: {}", first->place(), whose, names));
+    report(*first, fmt::format("not supported in {} and ignored: {}", whose, names));
   }
 }
 

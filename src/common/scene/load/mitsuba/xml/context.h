@@ -4,6 +4,7 @@
 #include <compare>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +18,8 @@
 #include "common/scene/load/mitsuba/xml/object.h"
 
 namespace pt::mitsuba {
+
+struct Surface;
 
 class Context {
  public:
@@ -35,10 +38,20 @@ class Context {
   /// Says what was chosen where the file leaves it open.
   void note(const Element& at, const std::string& message) const;
 
-  /// The existing file that a property names: beside the XML file that names it, beside the scene,
-  /// or on a <path>; failing that, one whose case differs, which is reported. Where there is none:
-  /// the first of these, for an error that names it.
+  /// The existing file that a property names, as Mitsuba resolves it: on a <path>, the last one
+  /// first, then beside the scene; then beside the XML file that names it, which for a <spectrum>
+  /// comes first. Else as find_in() has it, with a warning. Where there is none: beside the XML
+  /// file, for a message that names it.
   std::filesystem::path resolve(const Element& at, const std::string& name);
+
+  /// Warns that a file cannot be read, and what is used instead.
+  void warn_unreadable(const Element& at, const std::string& why, const std::string& instead);
+
+  /// Leaves out a shape that is of no use, with a warning.
+  void leave_out(const Object& shape, const Element& at, const std::string& why);
+
+  /// Throws Error where shapes were left out and none is there.
+  void expect_some_shape() const;
 
   /// Of the scene's description in memory; nullptr: there is none of that name.
   const Mesh* memory_mesh(const std::string& name) const;
@@ -64,7 +77,11 @@ class Context {
   /// Numbers of materials, of media that are supported, and of groups by shapegroup.
   std::map<MaterialParts, std::uint32_t> materials;
   std::map<const Object*, std::optional<std::uint16_t>> media;
-  std::map<const Object*, std::uint32_t> groups;
+  std::map<const Object*, std::uint32_t> groups;  ///< 0: a group of nothing
+
+  /// What has been read, so that what is named often is read once.
+  std::map<const Object*, std::shared_ptr<const Surface>> surfaces;
+  std::map<std::pair<const Object*, bool>, std::uint32_t> checkerboards;  ///< true: of numbers
 
   /// The grids of a medium, by what names them in `volumes`; nullptr: it has none.
   struct MediumGrids {
@@ -81,12 +98,14 @@ class Context {
 
  private:
   void report_unused(const Object& object);
+  void report(const Element& at, const std::string& message) const;
 
   const LoadOptions& options_;
   const ObjectGraph& graph_;
   std::set<std::string> warned_;
   bool lit_ = false;
   std::vector<const Object*> left_out_;
+  std::string why_no_shape_;  ///< of the first one that was left out
 };
 
 }  // namespace pt::mitsuba

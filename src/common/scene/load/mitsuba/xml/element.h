@@ -27,13 +27,19 @@ struct Element {
   std::string place() const;
 };
 
-/// Throws Error with the element's place before `message`.
+/// `message` without its middle where a file has made it long, and without control characters.
+std::string shortened(const std::string& message);
+
+/// So many kinds of warnings are given, of whatever a file holds.
+inline constexpr std::size_t max_reports = 200;
+
+/// Throws Error with the element's place before `message`, shortened.
 [[noreturn]] void fail(const Element& element, const std::string& message);
 
 /// Reads a scene and what it includes. Variables come from the options' definitions and from
 /// <default>, in this order of precedence. Throws Error with file and line for malformed XML,
-/// undefined variables, definitions that nothing uses, files that include each other and elements
-/// nested deeper than 64.
+/// undefined variables, definitions that nothing uses, files that include each other or the same
+/// file too often, variables that expand too far, and elements nested deeper than 64.
 Element read_document(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace pt::mitsuba

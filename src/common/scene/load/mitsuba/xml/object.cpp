@@ -75,10 +75,12 @@ bool Object::boolean(std::string_view name, bool fallback) const {
   const Element* at = find(name);
   if (!at) return fallback;
   const std::string& text = at->required("value");
-  if (text != "true" && text != "false") {
+  std::string lower = text;
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (lower != "true" && lower != "false") {
     fail(*at, fmt::format("{} is '{}'; expected true or false", name, text));
   }
-  return text == "true";
+  return lower == "true";
 }
 
 std::string Object::text(std::string_view name, const std::string& fallback) const {
@@ -88,15 +90,20 @@ std::string Object::text(std::string_view name, const std::string& fallback) con
 
 Vec3 Object::vector(std::string_view name, const Vec3& fallback) const {
   const Element* at = find(name);
-  return at ? vector_attributes(*at, 0.0, false) : fallback;
+  return at ? vector_attributes(*at, 0.0) : fallback;
+}
+
+const Element* Object::find_transform(std::string_view name) const {
+  const Element* at = find(name);
+  if (at && at->tag == "animation" && !at->children.empty()) at = &at->children.front();
+  if (at && at->tag != "transform")
+    fail(*at, fmt::format("{} is a <{}>; expected a <transform>", name, at->tag));
+  return at;
 }
 
 Affine Object::transform(std::string_view name) const {
-  const Element* at = find(name);
-  if (!at) return {};
-  if (at->tag != "transform")
-    fail(*at, fmt::format("{} is a <{}>; expected a <transform>", name, at->tag));
-  return read_invertible_transform(*at);
+  const Element* at = find_transform(name);
+  return at ? read_invertible_transform(*at) : Affine();
 }
 
 void Object::ignore(std::initializer_list<std::string_view> names) const {

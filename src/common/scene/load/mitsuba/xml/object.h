@@ -7,12 +7,13 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/math/transform.h"
-#include "common/scene/load/mitsuba/xml/element.h"
+#include "common/scene/load/mitsuba/xml/search_path.h"
 
 namespace pt::mitsuba {
 
@@ -50,7 +51,10 @@ class Object {
   bool boolean(std::string_view name, bool fallback) const;
   std::string text(std::string_view name, const std::string& fallback) const;
   Vec3 vector(std::string_view name, const Vec3& fallback) const;
-  Affine transform(std::string_view name) const;  ///< invertible; the identity where absent
+  /// Invertible; the identity where absent; of an <animation> its first one.
+  Affine transform(std::string_view name) const;
+  /// The <transform> itself, which may be singular.
+  const Element* find_transform(std::string_view name) const;
   void ignore(std::initializer_list<std::string_view> names) const;
   void ignore_all() const;  ///< properties and objects inside: nothing is reported as unused
 
@@ -82,18 +86,21 @@ class ObjectGraph {
 
   const Object& scene() const { return *objects_.front(); }
   const std::vector<std::unique_ptr<Object>>& objects() const { return objects_; }
-  const std::vector<std::string>& search_paths() const { return search_paths_; }  ///< <path>
+  const SearchPath& search_path() const { return search_path_; }
 
  private:
   Object* add(const Element& element, const LoadOptions& options);
   void add_child(Object& object, const Element& child, const LoadOptions& options);
+  void report_once(const std::string& kind, const Element& at, const std::string& message,
+                   const LoadOptions& options);
   void resolve_references();
   void check_cycles() const;
 
   std::vector<std::unique_ptr<Object>> objects_;
   std::map<std::string, const Object*> by_id_;
   std::vector<const Element*> aliases_;
-  std::vector<std::string> search_paths_;
+  std::set<std::string> reported_;
+  SearchPath search_path_;
 };
 
 }  // namespace pt::mitsuba

@@ -1,6 +1,7 @@
 // Elements to objects: ids, references, cycles.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "common/scene/load/mitsuba/xml/object.h"
@@ -25,28 +26,30 @@ bool is_property(const Element& element) {
 // So many objects inside each other, through references as well.
 constexpr int max_object_depth = 128;
 
-enum class Visit { none, open, done };
+constexpr int open = -1;  ///< in place of a height
 
-void visit_object(const Object& object, std::map<const Object*, Visit>& state, int depth) {
-  Visit& here = state[&object];
-  if (here == Visit::done) return;
-  if (here == Visit::open) {
+/// How many objects are inside of each other in `object`; `depth` is how many it is inside of.
+int height_of(const Object& object, std::map<const Object*, int>& heights, int depth) {
+  const auto [entry, is_new] = heights.try_emplace(&object, open);
+  int height = is_new ? 0 : entry->second;
+  if (height == open) {
     fail(object.element(),
          fmt::format("this <{}> contains itself through references", object.tag()));
   }
-  if (depth > max_object_depth) {
+  if (depth + height > max_object_depth) {
     fail(object.element(), fmt::format("objects are nested deeper than {}", max_object_depth));
   }
-  here = Visit::open;
+  if (!is_new) return height;
   for (const Object::Nested& nested : object.nested()) {
-    visit_object(*nested.object, state, depth + 1);
+    height = std::max(height, 1 + height_of(*nested.object, heights, depth + 1));
   }
-  state[&object] = Visit::done;
+  return entry->second = height;
 }
 
 }  // namespace
 
-ObjectGraph::ObjectGraph(const Element& root, const LoadOptions& options) {
+ObjectGraph::ObjectGraph(const Element& root, const LoadOptions& options)
+    : search_path_(root.file->parent_path()) {
   add(root, options);
   resolve_references();
   check_cycles();
@@ -74,15 +77,31 @@ void ObjectGraph::add_child(Object& object, const Element& child, const LoadOpti
   } else if (child.tag == "alias") {
     aliases_.push_back(&child);
   } else if (child.tag == "path") {
-    search_paths_.push_back(child.required("value"));
+    if (search_path_.add(child)) return;
+    const std::string& folder = child.required("value");
+    report_once("path " + folder, child,
+                fmt::format("<path>: there is no folder '{}': it is ignored", folder), options);
   } else if (is_property(child)) {
-    if (!object.add_property(child)) {
-      options.report(fmt::format("{}: '{}' is given twice in the same <{}>: this one is used",
-                                 child.place(), child.required("name"), object.tag()));
+    if (child.tag == "animation") {
+      report_once("animation", child, "<animation> is not supported: its first <transform> is used",
+                  options);
     }
+    if (object.add_property(child)) return;
+    report_once("twice " + child.required("name") + " " + object.tag(), child,
+                fmt::format("'{}' is given twice in the same <{}>: this one is used",
+                            child.required("name"), object.tag()),
+                options);
   } else {
-    options.report(fmt::format("{}: <{}> in <{}> is not known: it is ignored", child.place(),
-                               child.tag, object.tag()));
+    report_once("unknown " + child.tag, child,
+                fmt::format("<{}> in <{}> is not known: it is ignored", child.tag, object.tag()),
+                options);
+  }
+}
+
+void ObjectGraph::report_once(const std::string& kind, const Element& at,
+                              const std::string& message, const LoadOptions& options) {
+  if (reported_.size() < max_reports && reported_.insert(kind).second) {
+    options.report(at.place() + ": " + shortened(message));
   }
 }
 
@@ -109,8 +128,8 @@ void ObjectGraph::resolve_references() {
 }
 
 void ObjectGraph::check_cycles() const {
-  std::map<const Object*, Visit> state;
-  visit_object(scene(), state, 0);
+  std::map<const Object*, int> heights;
+  height_of(scene(), heights, 0);
 }
 
 }  // namespace pt::mitsuba

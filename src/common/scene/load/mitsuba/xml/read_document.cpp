@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <pugixml.hpp>
+#include <set>
 
-#include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/mitsuba/xml/element.h"
+#include "common/scene/load/mitsuba/xml/search_path.h"
 #include "common/scene/load/mitsuba/xml/variables.h"
 
 namespace pt::mitsuba {
@@ -14,6 +15,10 @@ namespace {
 
 constexpr int max_element_depth = 64;
 constexpr std::size_t max_include_depth = 16;
+
+// Of files that have been included before. Files of a few bytes may name each other 8^15 times.
+constexpr int max_repeats = 10000;
+constexpr std::size_t max_repeated_bytes = std::size_t{64} << 20;
 
 /// One file: where its lines begin.
 class SourceFile {
@@ -46,29 +51,30 @@ std::filesystem::path without_links(const std::filesystem::path& path) {
 
 class DocumentReader {
  public:
-  explicit DocumentReader(const LoadOptions& options)
-      : options_(options), variables_(options.definitions) {}
+  DocumentReader(const std::filesystem::path& path, const LoadOptions& options)
+      : options_(options), variables_(options.definitions), search_path_(path.parent_path()) {}
 
   Element read(const std::filesystem::path& path) {
     Element root = read_file(path);
+    if (root.tag != "scene") fail(root, fmt::format("<{}>; expected <scene>", root.tag));
     variables_.check_used(path.string());
     return root;
   }
 
  private:
   Element read_file(const std::filesystem::path& path) {
-    stack_.push_back(without_links(path));
+    stack_.push_back({path, without_links(path)});
     pugi::xml_document document;
     const SourceFile source = parse(path, document);
     Element root = element_of(document.document_element(), source, 0);
-    if (root.tag != "scene") fail(root, fmt::format("<{}>; expected <scene>", root.tag));
     stack_.pop_back();
     return root;
   }
 
-  SourceFile parse(const std::filesystem::path& path, pugi::xml_document& document) const {
+  SourceFile parse(const std::filesystem::path& path, pugi::xml_document& document) {
     try {
       const MappedFile file(path);
+      count_repeats(stack_.back().canonical, file.bytes().size());
       SourceFile source(path, file.bytes());
       const pugi::xml_parse_result result =
           document.load_buffer(file.bytes().data(), file.bytes().size());
@@ -78,7 +84,18 @@ class DocumentReader {
       }
       return source;
     } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", path.string(), error.what()));
+      throw Error(fmt::format("{}: {}", shortened(path.string()), shortened(error.what())));
+    }
+  }
+
+  void count_repeats(const std::filesystem::path& file, std::size_t size_bytes) {
+    if (files_.insert(file).second) return;
+    ++repeats_, repeated_bytes_ += size_bytes;
+    if (repeats_ > max_repeats || repeated_bytes_ > max_repeated_bytes) {
+      throw Error(
+          fmt::format("files are included again and again; expected at most {} times and "
+                      "{} bytes of them",
+                      max_repeats, max_repeated_bytes));
     }
   }
 
@@ -104,17 +121,31 @@ class DocumentReader {
     if (child.tag == "default") {
       variables_.add_default(child.required("name"), child.required("value"));
     } else if (child.tag == "include") {
-      for (Element& included : include(child).children) {
-        parent.children.push_back(std::move(included));
-      }
+      splice(parent, child);
     } else {
+      if (child.tag == "path") search_path_.add(child);
       parent.children.push_back(std::move(child));
     }
   }
 
+  /// What a <scene> holds, or another object as it is.
+  void splice(Element& parent, const Element& element) {
+    Element root = include(element);
+    if (root.tag == "scene") {
+      for (Element& included : root.children) parent.children.push_back(std::move(included));
+      return;
+    }
+    if (const std::string* name = element.attribute("name")) {
+      std::erase_if(root.attributes, [](const auto& one) { return one.first == "name"; });
+      root.attributes.emplace_back("name", *name);
+    }
+    parent.children.push_back(std::move(root));
+  }
+
   Element include(const Element& element) {
     const std::filesystem::path path = included_path(element);
-    if (std::find(stack_.begin(), stack_.end(), without_links(path)) != stack_.end()) {
+    const std::filesystem::path file = without_links(path);
+    if (std::ranges::any_of(stack_, [&](const Open& open) { return open.canonical == file; })) {
       fail(element, fmt::format("{} includes itself", path.string()));
     }
     if (stack_.size() >= max_include_depth) {
@@ -127,14 +158,20 @@ class DocumentReader {
     }
   }
 
+  /// Beside the file that names it, then beside those that include that one, then in <path>s.
   std::filesystem::path included_path(const Element& element) const {
     const std::string& name = element.required("filename");
-    const std::filesystem::path folder = stack_.back().parent_path();
+    Folders folders;
+    for (auto open = stack_.rbegin(); open != stack_.rend(); ++open) {
+      folders.push_back(open->path.parent_path());
+    }
+    folders.insert(folders.end(), search_path_.folders().begin(), search_path_.folders().end());
+    folders.push_back(stack_.back().canonical.parent_path());
     const auto warn = [&](const std::string& line) {
       options_.report(element.place() + ": " + line);
     };
-    const std::filesystem::path found = find_file(folder, name, warn);
-    return found.empty() ? folder / name : found;
+    const std::filesystem::path found = find_in(folders, name, warn);
+    return found.empty() ? folders.front() / name : found;
   }
 
   std::string substitute(const Element& element, const char* text) {
@@ -145,15 +182,23 @@ class DocumentReader {
     }
   }
 
+  struct Open {
+    std::filesystem::path path, canonical;
+  };
+
   const LoadOptions& options_;
   Variables variables_;
-  std::vector<std::filesystem::path> stack_;  ///< files being read
+  SearchPath search_path_;
+  std::vector<Open> stack_;  ///< files being read
+  std::set<std::filesystem::path> files_;
+  int repeats_ = 0;
+  std::size_t repeated_bytes_ = 0;
 };
 
 }  // namespace
 
 Element read_document(const std::filesystem::path& path, const LoadOptions& options) {
-  return DocumentReader(options).read(path);
+  return DocumentReader(path, options).read(path);
 }
 
 }  // namespace pt::mitsuba

@@ -27,14 +27,17 @@ Map matrix_of(const Element& element) {
   for (std::size_t i = 0; i < v.size(); ++i) {
     map[static_cast<int>(i % n)][static_cast<int>(i / n)] = v[i];
   }
-  if (map[0][3] != 0 || map[1][3] != 0 || map[2][3] != 0 || map[3][3] != 1) {
+  constexpr double rounding = 1e-4;
+  const glm::dvec4 last(map[0][3], map[1][3], map[2][3], map[3][3] - 1);
+  if (!glm::all(glm::lessThanEqual(glm::abs(last), glm::dvec4(rounding)))) {
     fail(element, "<matrix> is not affine; expected 0 0 0 1 as its last row");
   }
+  for (int i = 0; i < 4; ++i) map[i][3] = i == 3 ? 1 : 0;
   return map;
 }
 
 Map rotation_of(const Element& element) {
-  const DVec3 axis = vector_attributes(element, 0.0, false);
+  const DVec3 axis = vector_attributes(element, 0.0);
   const double length = glm::length(axis);
   if (!(length > 0)) fail(element, "<rotate> about an axis of length zero");
   const double angle = number_attribute(element, "angle", 0.0) * (std::acos(-1.0) / 180.0);
@@ -69,9 +72,9 @@ Map step_of(const Element& element) {
   if (element.tag == "lookat" || element.tag == "lookAt") return lookat_of(element);
   Map map(1.0);
   if (element.tag == "translate") {
-    map[3] = glm::dvec4(DVec3(vector_attributes(element, 0.0, false)), 1);
+    map[3] = glm::dvec4(DVec3(vector_attributes(element, 0.0)), 1);
   } else if (element.tag == "scale") {
-    const Vec3 by = vector_attributes(element, 1.0, true);
+    const Vec3 by = vector_attributes(element, 1.0);
     for (int i = 0; i < 3; ++i) map[i][i] = by[i];
   } else {
     fail(element, fmt::format("<{}> in <transform>; expected translate, rotate, scale, matrix or "

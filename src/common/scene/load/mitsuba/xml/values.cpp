@@ -63,13 +63,13 @@ double number_attribute(const Element& element, std::string_view name, double fa
   return *number;
 }
 
-Vec3 vector_attributes(const Element& element, double fallback, bool one_for_all) {
+Vec3 vector_attributes(const Element& element, double fallback) {
   if (const std::string* value = element.attribute("value")) {
     const std::vector<double> v = parse_numbers(element, *value);
-    if (v.size() == 1 && one_for_all) return Vec3(static_cast<float>(v[0]));
+    if (v.size() == 1) return Vec3(static_cast<float>(v[0]));
     if (v.size() != 3) {
       fail(element,
-           fmt::format("value=\"{}\" of <{}>; expected three numbers", *value, element.tag));
+           fmt::format("value=\"{}\" of <{}>; expected one or three numbers", *value, element.tag));
     }
     return {v[0], v[1], v[2]};
   }

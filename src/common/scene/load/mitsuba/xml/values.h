@@ -19,9 +19,8 @@ std::vector<double> parse_numbers(const Element& element, std::string_view text)
 /// The number in attribute `name`, or `fallback` where there is none. Throws Error.
 double number_attribute(const Element& element, std::string_view name, double fallback);
 
-/// x, y and z, or the three numbers of `value` (one stands for all three where `one_for_all`).
-/// Throws Error.
-Vec3 vector_attributes(const Element& element, double fallback, bool one_for_all);
+/// x, y and z, or the three numbers of `value`, of which one stands for all. Throws Error.
+Vec3 vector_attributes(const Element& element, double fallback);
 
 /// The three numbers in attribute `name`. Throws Error.
 Vec3 vector_attribute(const Element& element, std::string_view name);
