@@ -767,6 +767,17 @@ class Interruption(CommandLine):
                     self.assertIn(name, self.files())
                     self.assertEqual([n for n in self.files() if not n.endswith(".ppm")], [])
 
+    def test_what_was_rendered_is_told(self):
+        process = self.start("--scene", "cornell", "--width", "32", "--height", "32", "--spp", "3000000", "--repeat",
+                             "2", "--output", "a.exr", "--stats", "s.json", "--csv", "r.csv")
+        err = self.end(process, signal.SIGINT)
+        known = json.loads((self.folder / "s.json").read_text())
+        self.assertFalse(known["complete"])
+        self.assertRegex(err, rf"interrupted: image has {known['samples_done']} of 3000000 samples per pixel; no "
+                              r"row appended to r\.csv\n$")
+        self.assertGreater(known["samples_done"], 0)
+        self.assertEqual(self.files(), ["a.exr", "s.json"], "rows are for comparing")
+
     def test_sigusr1_says_why_nothing_is_kept(self):
         process = self.start("--width", "200", "--height", "100", "--spp", "1000000", "--output",
                              "a.ppm")

@@ -1,9 +1,11 @@
 // What reaches a terminal: characters, lengths and numbers of messages.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -172,6 +174,26 @@ TEST(CheckpointKeepers, SayOnceWhatFails) {
     EXPECT_THROW(keeper.finish(film), Error);
   }
   EXPECT_EQ(said.size(), 3u);
+}
+
+TEST(CheckpointKeepers, SaveOnceInAnInterval) {
+  int saved = 0;
+  CheckpointKeeper keeper(
+      0.3f, [&](const ImageFilm&) { ++saved; }, [](const std::string&) {});
+  const ImageFilm film({0, 0, 1, 1}, {});
+  const auto grow = [&] {
+    keeper.film_grew(film);
+    keeper.wait();
+  };
+  grow();
+  EXPECT_EQ(saved, 0) << "nothing is lost yet";
+  std::this_thread::sleep_for(std::chrono::milliseconds(350));
+  grow(), grow(), grow();
+  EXPECT_EQ(saved, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(350));
+  grow();
+  keeper.finish(film);
+  EXPECT_EQ(saved, 3);
 }
 
 }  // namespace

@@ -496,6 +496,10 @@ class Report(unittest.TestCase):
             kept = ("mode", "device_kind", "panel") if name != "toggles" else ("mode",)
             write(self.folder, name, [{**fields(row), **{key: row[key] for key in kept if key in row}}
                                       for row in rows], more)
+        # A scene of that name is in sentences, too.
+        write(self.folder, "defaults", [
+            {**toggle("", "x", 1, time, 4), "experiment": "defaults", "scene": evil, "panel": evil, "mode": mode}
+            for mode, time in (("megakernel", 2.0), ("wavefront", 3.0))], facts("defaults", TOGGLES))
         script = "javascript:alert(3)"
         write(self.folder, script, [{evil: evil, "b": 1, "c": evil + "2"}], None)
         (self.folder / "a<b>.png").write_bytes(PIXEL)
@@ -503,6 +507,13 @@ class Report(unittest.TestCase):
         svgs = self.folder.parent / "svgs"
         self.run_report(self.folder, "--plots", svgs)
         text = (self.folder / "report.html").read_text(encoding="utf-8")
+        other = self.folder.parent / evil.replace("/", "")
+        shutil.copytree(self.folder, other)
+        both = self.folder.parent / "both.html"
+        self.run_report(self.folder, other, "-o", both)
+        page = Page(both.read_text(encoding="utf-8"))
+        self.assertEqual((page.wrong, {name for name in page.attributes if name.startswith("on")}), ([], set()))
+        self.assertNotIn("<img src=x", both.read_text(encoding="utf-8"))
         clean = self.make(toggles=toggles(), image_size=sizes(), block_size=blocks((4, 3, 2, 1)))
         page, expected = Page(text), Page(clean)
         self.assertEqual(page.wrong, [])
@@ -565,6 +576,10 @@ class Report(unittest.TestCase):
         self.run_report(self.folder, other, "-o", page)
         self.assertIn("takes 4.00 times the time of Device A (geometric mean; from 2.00 to 16.0)",
                       page.read_text(encoding="utf-8"))  # 16, 2, 2; arithmetically 6.67
+        # The row of a name: A's time, B's, and B / A with the interval of the extremes.
+        row = re.search(r'<th scope="row">megakernel: default</th>(.*?)</tr>', text, re.S)[1]
+        self.assertEqual(re.findall('data-v="([^"]*)"', row), ["1.0", "2.0", "2.0"])
+        self.assertIn("2.00 [1.92, 2.08]", row)
         first, second = plots_in(text)
         self.assertEqual(self.places(first, "x"), self.places(second, "x"))
         shutil.copy(self.folder / "toggles.json", other / "toggles.json")
