@@ -1,8 +1,4 @@
 // ptexp: one image, rendered in several ways that can be compared.
-#include <fmt/format.h>
-
-#include <cctype>
-
 #include "app/compact_command.h"
 #include "app/compare_command.h"
 #include "app/doctor_command.h"
@@ -17,6 +13,7 @@
 #include "app/verify_command.h"
 #include "common/device/devices.h"
 #include "common/error/host_memory.h"
+#include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
 #include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
@@ -51,36 +48,36 @@ int execute(const ViewCommand& command) { return view_command(command); }
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())
-    fmt::print("{:<13} {}\n", scene.usage(), scene.description);
+    print("{:<13} {}\n", scene.usage(), scene.description);
   return 0;
 }
 
 int execute(const ListDevicesCommand&) {
   for (const DeviceInfo& device : list_devices())
-    fmt::print("{:<10} {} ({})\n", to_string(device.choice), device.name, device.detail);
+    print("{:<10} {} ({})\n", to_string(device.choice), device.name, device.detail);
   return 0;
 }
 
 int execute(const VersionCommand&) {
   const BuildInfo& build = build_info();
-  fmt::print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
-             build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
-             mpi_version());
+  print("ptexp {}\ncommit {}\nbuild {}, {}\nCUDA {}{}\nMPI {}\n", build.version, build.commit,
+        build.build_type, build.compiler, build.cuda, build.fast_math ? ", fast math" : "",
+        mpi_version());
   return 0;
 }
 
 int execute(const CompletionCommand& command) {
-  fmt::print("{}", completion_text(command));
+  print("{}", completion_text(command));
   return 0;
 }
 
 int execute(const ReferenceCommand& command) {
-  fmt::print("{}", reference_text(command));
+  print("{}", reference_text(command));
   return 0;
 }
 
 int execute(const HelpCommand& command) {
-  fmt::print("{}", command.text);
+  print("{}", command.text);
   return 0;
 }
 
@@ -88,13 +85,6 @@ int execute(const HelpCommand& command) {
 template <class AnyCommand>
 int execute(const AnyCommand& command, const Ranks& ranks) {
   return ranks.is_first() ? execute(command) : 0;
-}
-
-/// One line, whatever a file's name contains.
-void report_error(std::string message) {
-  for (char& c : message)
-    if (std::iscntrl(static_cast<unsigned char>(c))) c = '?';
-  fmt::print(stderr, "ptexp: error: {}\n", message);
 }
 
 int run(Ranks& ranks, const std::vector<std::string>& arguments) {
@@ -107,7 +97,7 @@ int run(Ranks& ranks, const std::vector<std::string>& arguments) {
   } catch (const RanksEnd& end) {
     return ranks.finish(end.code);
   } catch (const std::exception& error) {
-    return ranks.fail(message_of(error), 2, report_error);
+    return ranks.fail(message_of(error), 2, print_error);
   }
 }
 
@@ -115,13 +105,14 @@ int run(Ranks& ranks, const std::vector<std::string>& arguments) {
 }  // namespace pt
 
 int main(int argc, char** argv) {
+  pt::guard_streams();
   try {
     pt::ChannelSettings settings = pt::channel_settings();
     settings.before_abort = pt::remove_unfinished_file;
     pt::Ranks ranks(pt::open_channel(settings));
     return pt::run(ranks, {argv + 1, argv + argc});
   } catch (const std::exception& error) {
-    pt::report_error(error.what());
+    pt::print_error(pt::message_of(error));
     return 2;
   }
 }

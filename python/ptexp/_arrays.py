@@ -1,6 +1,8 @@
 """Arrays of whoever calls, as the module takes them."""
 from typing import Any
 
+MOST_INDEX = 2**32 - 1
+
 
 def floats(values: Any) -> Any:
     """float32, C order; a copy only where it is neither. Needs numpy for anything but arrays."""
@@ -20,6 +22,21 @@ def _converted(values: Any, kind: str) -> Any:
     if not isinstance(values, numpy.ndarray) and hasattr(values, "__dlpack__"):
         values = numpy.from_dlpack(values)
     array = numpy.asarray(values)
-    if kind == "uint32" and array.size and array.min() < 0:
-        raise ValueError("triangles: a negative index")
-    return numpy.ascontiguousarray(array, dtype=kind)
+    if array.dtype.kind not in "biufO":
+        raise ValueError(f"an array of {array.dtype}; expected numbers")
+    if kind == "uint32":
+        _check_indices(numpy, array)
+    with numpy.errstate(over="ignore"):  # infinities are refused by whoever has no use for them
+        return numpy.ascontiguousarray(array, dtype=kind)
+
+
+def _check_indices(numpy: Any, array: Any) -> None:
+    """A conversion makes another index of what is none: of 2^32 + 2 it makes 2, of NaN 0."""
+    if array.dtype.kind == "O":  # integers of any size
+        right = numpy.array([isinstance(x, int) and 0 <= x <= MOST_INDEX for x in array.flat], bool)
+    else:
+        with numpy.errstate(invalid="ignore"):
+            right = ((array >= 0) & (array <= MOST_INDEX) & (array == numpy.floor(array))).ravel()
+    if not right.all():
+        wrong = array.flat[int(numpy.argmin(right))]
+        raise ValueError(f"triangles: the index {wrong}; expected whole numbers from 0 to {MOST_INDEX}")

@@ -1,8 +1,10 @@
 """What goes wrong, as exceptions and warnings."""
+import os
 import re
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 __all__ = ["Error", "OptionError", "SceneWarning"]
 
@@ -31,6 +33,24 @@ class OptionError(Error, ValueError):
 
 class SceneWarning(UserWarning):
     """What a scene file asks for and ptexp does otherwise; and what a render could not do besides."""
+
+
+def text_of_path(path: Any) -> str:
+    """The name of a file as the program takes it."""
+    text = os.fspath(path)
+    text = os.fsdecode(text) if isinstance(text, bytes) else text
+    return checked_text(text)
+
+
+def checked_text(text: str) -> str:
+    """The text, if the program can be given it as UTF-8 that a zero byte ends."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise Error(f"{ascii(text)}: expected text without lone surrogates, a name in UTF-8") from None
+    if "\0" in text:
+        raise Error(f"{ascii(text)}: expected text without zero bytes")
+    return text
 
 
 def error_of(message: str) -> Error:

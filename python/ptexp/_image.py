@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any, Dict, Iterator, Optional, Union
 
 from . import _ptexp
+from ._errors import text_of_path
 
 
 class Layers(Mapping):
@@ -133,7 +134,7 @@ class Image:
             Error: the file cannot be written.
             OptionError: ``exposure`` is neither.
         """
-        self._native.save(os.fspath(path), "" if exposure is None else str(exposure))
+        self._native.save(text_of_path(path), "" if exposure is None else str(exposure))
 
     def __repr__(self) -> str:
         return f"<ptexp.Image {self.width}x{self.height}>"

@@ -4,7 +4,7 @@ import os
 from typing import Any, Dict, List, Tuple
 
 from . import _ptexp
-from ._errors import OptionError
+from ._errors import OptionError, checked_text
 
 TABLE = {option["keyword"]: option for option in _ptexp.options()}
 
@@ -60,7 +60,7 @@ def to_words(options: Dict[str, Any]) -> List[Tuple[str, str]]:
     for keyword, value in options.items():
         option = _find(keyword)
         if value is not None:
-            words += [(keyword, word) for word in _words(option, value)]
+            words += [(keyword, checked_text(word)) for word in _words(option, value)]
     return words
 
 

@@ -4,6 +4,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Union
 
 from . import _ptexp
 from ._dict import to_elements
+from ._errors import Error, text_of_path, warn
 from ._image import Image
 from ._options import as_documentation, check_of_render, to_words
 from ._params import Params
@@ -96,7 +97,7 @@ def load(scene: PathLike, **options: Any) -> Scene:
     Warns:
         SceneWarning: what the file asks for and ptexp does otherwise (``strict=True``: an Error).
     """
-    given = {**options, "scene": os.fspath(scene)}
+    given = {**options, "scene": text_of_path(scene)}
     return Scene(_ptexp.load(to_words(given)), given)
 
 
@@ -113,7 +114,7 @@ def render(
         scene: a :class:`Scene`, or what :func:`load` takes; a Scene is rendered again without
             being read again.
         progress: called with the samples done and wanted, of all pixels, up to 20 times a second,
-            in the thread that called. What it raises ends the render.
+            in the thread that called. What it raises ends the render and goes on to the caller.
         on_device: a GPU's image stays in its memory, for ``torch.from_dlpack(image)`` and the like
             (see :class:`Image`); the CPU's is in its memory anyway.
         **options: every option of the command line, as listed below. Flags are bools; on/off
@@ -130,8 +131,11 @@ def render(
         OptionError: an option is wrong, or has no effect in this mode or on this device.
         Error: what else the user can mend; also ``on_device`` with several devices, ``checkpoint``
             or ``part``, whose images the host puts together.
-        KeyboardInterrupt: Ctrl-C, at once on the CPU and after the batch on a GPU. The samples are
-            lost, unless ``checkpoint=`` was given.
+        KeyboardInterrupt: Ctrl-C, at once on the CPU and after the batch on a GPU.
+
+    Whatever is raised after a sample was finished (Ctrl-C, by ``progress``, a warning that a filter
+    makes an error, a file that cannot be written) has the image of the samples so far as its
+    attribute ``image``; the files that can be written are written first, as the program does.
 
     The interpreter's lock is released meanwhile.
     """
@@ -145,14 +149,43 @@ def render(
         raise TypeError("render has no use for explain: ptexp.explain(scene, ...) returns the plan")
     words = to_words(merged)
     if output is not None:
-        _ptexp.check_output(os.fspath(output))
-    image = Image(scene._native.render(words, progress, on_device))
-    if output is not None and image._native.has_image:
-        image.save(output)
-    image._native.write_statistics()
-    if not quiet:
-        print(image._native.table(), end="")
+        _ptexp.check_output(text_of_path(output))
+    native, raised, messages = scene._native.render(words, progress, on_device)
+    image = Image(native)
+    try:
+        _write(image, output)
+        if not quiet:
+            print(native.table(), end="")
+        if raised is not None:
+            raise raised
+        for message in messages:
+            warn(message)
+    except BaseException as error:
+        if native.has_image:
+            _give(image, error)
+        raise
     return image
+
+
+def _write(image: Image, output: Optional[PathLike]) -> None:
+    """The files that the options name: what one fails at does not keep the others from being written."""
+    problems = []
+    for is_wanted, write in ((output is not None and image._native.has_image, lambda: image.save(output)),
+                             (True, image._native.write_statistics)):
+        try:
+            if is_wanted:
+                write()
+        except Error as error:
+            problems.append(error)
+    if problems:
+        raise problems[0] if len(problems) == 1 else Error("; ".join(map(str, problems)))
+
+
+def _give(image: Image, error: BaseException) -> None:
+    try:
+        error.image = image  # type: ignore[attr-defined]
+    except (AttributeError, TypeError):  # an exception without room for it
+        pass
 
 
 def explain(scene: Union[Scene, PathLike], **options: Any) -> List[Dict[str, str]]:

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple, Tuple, Union
 
 from . import _ptexp
 from ._arrays import floats, indices
+from ._errors import text_of_path
 from ._image import Image, _as_array
 
 
@@ -97,7 +98,7 @@ def read_image(path: Union[str, "os.PathLike[str]"]) -> Image:
     Raises:
         Error: the file cannot be read.
     """
-    return Image(_ptexp.read_image(os.fspath(path)))
+    return Image(_ptexp.read_image(text_of_path(path)))
 
 
 def _is_file(image: Any) -> bool:

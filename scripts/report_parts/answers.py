@@ -1,19 +1,13 @@
 """The first section: which mode for my scene, which block size, what does each idea give."""
-from .html import html_table, paragraph, verdict_cell
+from html import escape
+
+from .html import Cell, html_table, paragraph, value_cell, verdict_cell
 from .scaling import several_devices
 from .size_map import size_map
 from .tables import in_groups, interval, number
-from .words import change, quotient, relation, show, with_interval
+from .words import change, quotient, relation, show
 
 NOT_MEASURED = "This was not measured: there is no table {}."
-
-
-def time_cell(value):
-    return f'<td class="n" data-v="{value.middle!r}">{with_interval(value)}</td>'
-
-
-def ratio_cell(value):
-    return f'<td class="n" data-v="{value.middle!r}">{with_interval(value)}</td>'
 
 
 def way(row):
@@ -61,7 +55,7 @@ def which_mode(device):
         unsure = relation(mega[0], wave[0]) == "unknown"
         winners.setdefault(winner + (", by values without a spread" if unsure else ""),
                            []).append(scene)
-        lines.append([scene, time_cell(mega[0]), time_cell(wave[0]), ratio_cell(ratio),
+        lines.append([scene, value_cell(mega[0]), value_cell(wave[0]), value_cell(ratio),
                       winner + (" (no spread known)" if unsure else ""), name, commit[:7]])
     if not lines:
         return paragraph(NOT_MEASURED.format("with both modes in it (image_size, defaults, scenes, "
@@ -90,8 +84,8 @@ def which_block(device):
         equal = [x for x, value in pairs[1:] if relation(least, value) == "overlap"]
         for x, value in pairs:
             losses.setdefault(x, []).append(value.middle / least.middle)
-        lines.append([panel, series, best, time_cell(least),
-                      f"<td>{', '.join(equal) or 'none'}</td>",
+        lines.append([panel, series, best, value_cell(least),
+                      Cell(f"<td>{escape(', '.join(equal) or 'none')}</td>"),
                       f"{worst} (x{show(most.middle / least.middle)})"])
     everywhere = {x: max(values) for x, values in losses.items() if len(values) == len(lines)}
     text = "No size was measured in every way of executing."
@@ -108,8 +102,8 @@ def which_block(device):
 
 def effect(idea, where, default, value, source):
     word, ratio = change(default, value)
-    return [idea, where, f'<td class="n" data-v="{ratio!r}">'
-            f"{with_interval(quotient(value, default))}</td>", verdict_cell(word), source]
+    return [idea, where, value_cell(quotient(value, default), repr(ratio)), verdict_cell(word),
+            source]
 
 
 def steps(device):

@@ -1,8 +1,7 @@
 """Two devices: the rows that both have, side by side."""
 import math
 
-from .answers import ratio_cell, time_cell
-from .html import html_table, paragraph, verdict_cell
+from .html import html_table, paragraph, value_cell, verdict_cell
 from .tables import interval
 from .words import change, quotient, show
 
@@ -35,7 +34,7 @@ def side_by_side(names, tables, column):
         word, ratio = change(a, b)
         counts[word] = counts.get(word, 0) + 1
         logs.append(math.log(ratio))
-        lines.append([name, time_cell(a), time_cell(b), ratio_cell(quotient(b, a)),
+        lines.append([name, value_cell(a), value_cell(b), value_cell(quotient(b, a)),
                       verdict_cell(word)])
     mean = math.exp(sum(logs) / len(logs))
     text = (f"Over {len(common)} configurations that both measured, {names[1]} takes "

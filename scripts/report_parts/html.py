@@ -1,6 +1,7 @@
 """Tables in HTML that sort by a click, and small pieces of the page."""
 import re
 from html import escape
+from urllib.parse import quote
 
 from .tables import interval, number
 from .words import show, with_interval
@@ -17,14 +18,24 @@ MOST_ROWS = 150  # of a table; the file has all
 OPEN_ROWS = 40  # longer tables are folded away, and paper names their files alone
 
 
+class Cell(str):
+    """HTML of a <td> that this program has made. All other texts are escaped."""
+
+
 def cell(text):
     """A number shows four digits and keeps all of them for sorting and reading."""
     value = number(text)
     if value is None or not value == value:  # NaN sorts nowhere
-        return f"<td{' class=long' * (len(text) > 60)}>{escape(text)}</td>"
+        return Cell(f"<td{' class=long' * (len(text) > 60)}>{escape(text)}</td>")
     shown = f"{value:,.0f}" if value == int(value) and abs(value) < 1e15 else show(value, 4)
     title = f' title="{escape(text)}"' if shown != text else ""
-    return f'<td class="n" data-v="{escape(text)}"{title}>{shown}</td>'
+    return Cell(f'<td class="n" data-v="{escape(text)}"{title}>{shown}</td>')
+
+
+def value_cell(value, text=None, digits=3):
+    """A value with its interval; `text`: with all digits."""
+    return Cell(f'<td class="n" data-v="{escape(text or repr(value.middle))}">'
+                f"{with_interval(value, digits=digits)}</td>")
 
 
 def row_head(text):
@@ -32,10 +43,9 @@ def row_head(text):
 
 
 def html_table(heads, rows, name="", caption="", rich=""):
-    """`rows` of texts, or of cells that are HTML already (they begin with <td). The
-    first of a row is its head. `rich` is HTML behind the caption."""
+    """`rows` of texts and Cells. The first of a row is its head. `rich` is HTML behind the caption."""
     rows = [[row_head(text) if column == 0 else text for column, text in enumerate(row)] for row in [
-        [text if text.startswith("<td") else cell(text) for text in row] for row in rows]]
+        [text if isinstance(text, Cell) else cell(text) for text in row] for row in rows]]
     right = [any(row[column].startswith('<td class="n"') for row in rows)
              for column in range(len(heads))]
     head = "".join(f'<th scope="col"{" class=n" * is_number}><button type="button">{escape(head)}'
@@ -51,7 +61,7 @@ def html_table(heads, rows, name="", caption="", rich=""):
 def verdict_cell(word, name=""):
     name = name or {"slower": "bad", "faster": "good", "refuted": "bad", "confirmed": "good",
             "depends": "mixed"}.get(word, "good" if word.startswith("yes") else "quiet")
-    return f'<td><span class="verdict {name}">{escape(word)}</span></td>'
+    return Cell(f'<td><span class="verdict {name}">{escape(word)}</span></td>')
 
 
 def varies(table, column):
@@ -84,7 +94,7 @@ def measure_of(row, column, columns):
     value = interval(row, stem) if column.endswith(("_median", "_ms")) else None
     if value is None or not value.known or not any(ENDS.fullmatch(c) for c in columns):
         return row[column]
-    return f'<td class="n" data-v="{escape(row[column])}">{with_interval(value, digits=4)}</td>'
+    return value_cell(value, row[column], 4)
 
 
 def without_ends(table, columns):
@@ -114,7 +124,7 @@ def table_of(table):
                       [[measure_of(row, column, table.columns) for column in columns]
                        for row in table.rows[:MOST_ROWS]],
                       "long" * (len(table.rows) > OPEN_ROWS), caption_of(table),
-                      f'. <a href="{escape(table.name)}.csv">All columns</a>')
+                      f'. <a href="{quote(table.name, safe="")}.csv">All columns</a>')
     if len(table.rows) > MOST_ROWS:
         text += (f'<p class="note">The first {MOST_ROWS} of {len(table.rows)} rows; '
                  f"{escape(table.name)}.csv has all.</p>")

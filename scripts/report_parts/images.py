@@ -3,6 +3,8 @@ The browser makes the difference (mix-blend-mode), so that nothing but the two f
 import base64
 from html import escape
 
+from .tables import printable
+
 REFERENCE = ".reference.png"
 
 
@@ -18,7 +20,7 @@ def pairs(folder):
 
 
 def one_pair(picture, reference):
-    name = escape(picture.stem)
+    name = escape(printable(picture.stem))
     return f"""<figure class="pair">
 <div class="frame"><img src="{embedded(reference)}" alt="{name}: the reference">
 <img class="over" src="{embedded(picture)}" alt="{name}"></div>
@@ -40,5 +42,5 @@ def image_section(folder, limit_bytes):
             parts.append(one_pair(picture, reference))
     if left_out:
         parts.append(f'<p class="note">Larger than {limit_bytes // 1024} KiB and so not on this '
-                     f'page: {escape(", ".join(left_out))}.</p>')
+                     f'page: {escape(printable(", ".join(left_out)))}.</p>')
     return "".join(parts)

@@ -37,8 +37,8 @@ def answers(devices):
 
 
 def audit_table(device):
-    rows = [[f"<td>{escape(claim)}<small>{escape(rule)}</small></td>", html.verdict_cell(verdict),
-             f"<td>{escape(numbers)}</td>", source]
+    rows = [[html.Cell(f"<td>{escape(claim)}<small>{escape(rule)}</small></td>"),
+             html.verdict_cell(verdict), html.Cell(f"<td>{escape(numbers)}</td>"), source]
             for claim, rule, verdict, numbers, source in audit(device)]
     return html.html_table(["claim", "verdict", "what was measured", "table"], rows, "audit",
                            "The paper's claims, each with the rule of its verdict")

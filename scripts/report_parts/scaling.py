@@ -1,5 +1,5 @@
 """Several devices: what the table of `scaling` says of them, beside what a simulation expected."""
-from .html import html_table, paragraph, verdict_cell
+from .html import html_table, paragraph, value_cell, verdict_cell
 from .tables import in_groups, interval, number
 from .words import listed, plain, show, with_interval
 
@@ -57,8 +57,7 @@ def several_devices(device):
     lines = []
     for row in rows:
         wall, lost = number(row["wall_ms_median"]), number(row["outside_ms"])
-        cells = [f'<td class="n" data-v="{value.middle!r}">{with_interval(value)}</td>'
-                 for value in (interval(row, "wall_ms"), interval(row, "efficiency"))]
+        cells = [value_cell(interval(row, name)) for name in ("wall_ms", "efficiency")]
         lines.append([f"{plain(number(row['x']))} {row['series']}", *cells, row["predicted"],
                       verdict_of(row), f"{100 * lost / wall:.1f} %"])
     scene = listed(dict.fromkeys(f"{row['scene']}, {row['width']}x{row['height']}, {row['spp']} "

@@ -3,7 +3,7 @@ much, and what --mode auto loses there."""
 from html import escape
 from math import log2
 
-from .html import html_table, paragraph
+from .html import Cell, html_table, paragraph
 from .tables import number
 from .words import show
 
@@ -30,7 +30,7 @@ def cells_of(table):
 def map_cell(rows):
     times = [number(rows.get(mode, {}).get("kernel_ms_median")) for mode in MODES]
     if None in times:
-        return "<td></td>"
+        return Cell("<td></td>")
     ratio = times[0] / times[1]
     title = ", ".join(f"{mode} {show(time)} ms" for mode, time in zip(MODES, times))
     auto = rows.get("auto")
@@ -38,8 +38,8 @@ def map_cell(rows):
         title += (f"; auto takes {auto.get('used_mode') or 'one of them'}, "
                   f"loses {max(number(auto['loss']), 0):.1%}")
     mode, share = tint(ratio)
-    return (f'<td class="n {mode}" data-v="{ratio!r}" title="{escape(title)}" style="{share}">'
-            f"{show(ratio)}</td>")
+    return Cell(f'<td class="n {mode}" data-v="{ratio!r}" title="{escape(title)}" style="{share}">'
+                f"{show(ratio)}</td>")
 
 
 def size_map(device):

@@ -2,6 +2,7 @@
 that tables of all schema versions can be read; what is not there is empty."""
 import csv
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -125,21 +126,43 @@ def renamed(column):
     return column.replace("sort_hits_", "route_hits_", 1) if column.startswith("sort_hits_") else column
 
 
+# No XML has them, or they turn the direction of what follows.
+UNPRINTABLE = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069"
+                         "\ud800-\udfff\ufffe\uffff]")
+
+
+def printable(value):
+    """Of JSON: the same without characters that no page can show."""
+    if isinstance(value, str):
+        return UNPRINTABLE.sub("?", value)
+    if isinstance(value, list):
+        return [printable(one) for one in value]
+    if isinstance(value, dict):
+        return {printable(key): printable(one) for key, one in value.items()}
+    return value
+
+
 def read_table(path):
     path = Path(path)
-    with open(path, newline="", encoding="utf-8") as file:
-        reader = csv.DictReader(file)
-        rows = [{renamed(key): value or "" for key, value in row.items() if key}
-                for row in reader]
-        columns = [renamed(column) for column in reader.fieldnames or []]
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file)
+            rows = printable([{renamed(key): value or "" for key, value in row.items() if key}
+                              for row in reader])
+            columns = printable([renamed(column) for column in reader.fieldnames or []])
+    except (ValueError, csv.Error) as error:
+        raise ValueError(f"{path}: not a table of CSV in UTF-8: {error}") from error
     facts = {}
     description = path.with_suffix(".json")
     if description.is_file():
         try:
-            facts = json.loads(description.read_text(encoding="utf-8"))
+            facts = printable(json.loads(description.read_text(encoding="utf-8")))
         except ValueError as error:
             raise ValueError(f"{description}: not JSON: {error}") from error
-    table = Table(OLD_NAMES.get(path.stem, path.stem), columns, rows, facts)
+        if not isinstance(facts, dict):
+            raise ValueError(f"{description}: expected an object")
+    name = printable(path.stem)
+    table = Table(OLD_NAMES.get(name, name), columns, rows, facts)
     if facts and not table.plot and {"ray_file", "time_ms", "accel"} <= set(columns):
         give_ray_sets_a_plot(table)
     return table
@@ -167,4 +190,4 @@ def read_device(folder):
         raise ValueError(f"{folder}: no tables; *.csv of the experiments were expected")
     names = [table.facts["device"]["name"] for table in tables.values()
              if table.facts.get("device")]
-    return Device(folder, names[0] if names else folder.name, tables)
+    return Device(folder, names[0] if names else printable(folder.name), tables)

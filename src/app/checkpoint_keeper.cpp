@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "app/progress.h"
-#include "common/error/error.h"
+#include "common/error/host_memory.h"
 
 namespace pt {
 
@@ -23,16 +23,25 @@ void CheckpointKeeper::film_grew(const ImageFilm& film) {
   if (Progress::steady_seconds() - saved_s_ < interval_s_ || is_saving_) return;
   wait();
   is_saving_ = true;
-  const auto copy = std::make_shared<const ImageFilm>(film);
-  thread_ = std::thread([this, copy] {
-    try {
-      save_(*copy);
-    } catch (const std::exception& error) {
-      warn_(error.what());
-    }
-    is_saving_ = false;
-  });
+  try {
+    const auto copy = std::make_shared<const ImageFilm>(film);
+    thread_ = std::thread([this, copy] { try_to_save(*copy); });
+  } catch (const std::exception&) {  // no memory for a copy, or no thread: the render waits
+    try_to_save(film);
+  }
   saved_s_ = Progress::steady_seconds();
+}
+
+void CheckpointKeeper::try_to_save(const ImageFilm& film) {
+  std::string problem;
+  try {
+    save_(film);
+  } catch (const std::exception& error) {
+    problem = message_of(error);
+  }
+  if (!problem.empty() && problem != problem_) warn_(problem);
+  problem_ = problem;
+  is_saving_ = false;
 }
 
 void CheckpointKeeper::finish(const ImageFilm& film) {

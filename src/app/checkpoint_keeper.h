@@ -22,18 +22,22 @@ class CheckpointKeeper {
   CheckpointKeeper& operator=(const CheckpointKeeper&) = delete;
 
   /// Saves a copy of the film if the last one is older than the interval. What fails is a warning:
-  /// the render goes on, and the next film is tried again after the interval.
+  /// the render goes on, and the next film is tried again after the interval. It is said once,
+  /// until a film is saved or something else fails.
   void film_grew(const ImageFilm& film);
   /// Saves this film. Throws what saving throws.
   void finish(const ImageFilm& film);
+  /// Until a film that is being saved is.
+  void wait();
 
  private:
-  void wait();
+  void try_to_save(const ImageFilm& film);
 
   const double interval_s_;
   const Save save_;
   const Warn warn_;
   double saved_s_;
+  std::string problem_;  ///< of the last film; whoever saves has it alone
   std::atomic<bool> is_saving_{false};
   std::thread thread_;
 };

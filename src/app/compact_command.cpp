@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "app/options/option_values.h"
+#include "app/render_outputs.h"
 #include "app/report/csv_file.h"
 #include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"
+#include "common/error/terminal.h"
 
 namespace pt {
 namespace {
@@ -115,17 +117,17 @@ std::unique_ptr<CompactionDevice> make_device(const DeviceChoice& choice) {
 }
 
 void print_heading(const DeviceInfo& info) {
-  fmt::print("device     {}: {}\n", to_string(info.choice), info.name);
-  fmt::print("{:8} {:>6} {:>13} {:>8} {:>12} {:>25} {:>8} {:>8} {:>6}\n", "strategy", "queues",
-             "items", "density", "us a pass", "from ... to", "GB/s", "copy", "share");
+  print("device     {}: {}\n", to_string(info.choice), info.name);
+  print("{:8} {:>6} {:>13} {:>8} {:>12} {:>25} {:>8} {:>8} {:>6}\n", "strategy", "queues", "items",
+        "density", "us a pass", "from ... to", "GB/s", "copy", "share");
 }
 
 void print_row(const CompactMeasurement& m) {
   const Spread& t = m.time_ms;
-  fmt::print("{:8} {:>6} {:>13} {:>8.4g} {:>12.2f} {:>12.2f}{:>13.2f} {:>8.1f} {:>8.1f} {:>6.3f}\n",
-             to_string(m.strategy), m.slots.queues, grouped(m.slots.items), m.slots.density,
-             1e3 * t.median, 1e3 * t.min, 1e3 * t.max, m.gb_per_s(t.median),
-             m.gb_per_s(m.copy.best_ms()), m.copy_share());
+  print("{:8} {:>6} {:>13} {:>8.4g} {:>12.2f} {:>12.2f}{:>13.2f} {:>8.1f} {:>8.1f} {:>6.3f}\n",
+        to_string(m.strategy), m.slots.queues, grouped(m.slots.items), m.slots.density,
+        1e3 * t.median, 1e3 * t.min, 1e3 * t.max, m.gb_per_s(t.median),
+        m.gb_per_s(m.copy.best_ms()), m.copy_share());
 }
 
 }  // namespace
@@ -134,6 +136,8 @@ int compact_command(const CompactCommand& command) {
   const DeviceInfo info = choose_device(command.device);
   const auto device = make_device(info.choice);
   CompactRun run(command, info, *device);
+  Attempts attempts;
+  bool has_csv = !command.csv.empty();
   if (!command.csv.empty()) check_csv(command.csv, run.csv_row({}));
   if (!command.quiet) print_heading(info);
   for (const int queues : command.queues) {
@@ -144,11 +148,13 @@ int compact_command(const CompactCommand& command) {
         for (const Compaction strategy : command.strategies) {
           const CompactMeasurement m = run.measure(slots, tags, strategy);
           if (!command.quiet) print_row(m);
-          if (!command.csv.empty()) append_csv_row(command.csv, run.csv_row(m));
+          if (has_csv)
+            has_csv = attempts.make([&] { append_csv_row(command.csv, run.csv_row(m)); });
         }
       }
     }
   }
+  attempts.check();
   return 0;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/error/terminal.h"
+
 namespace pt {
 namespace {
 
@@ -65,7 +67,7 @@ std::string doctor_json(const Machine& machine, const std::vector<Check>& checks
 int doctor_command(const DoctorCommand& command) {
   const Machine machine = read_machine();
   const std::vector<Check> checks = check_machine(machine);
-  fmt::print("{}", command.as_json ? doctor_json(machine, checks) : doctor_text(checks));
+  print("{}", command.as_json ? doctor_json(machine, checks) : doctor_text(checks));
   return exit_code(checks);
 }
 

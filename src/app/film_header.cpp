@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "app/options/option_values.h"
 #include "common/error/error.h"
 #include "common/platform/build_info.h"
 
@@ -64,11 +65,7 @@ Options options_in_header(const ImageMetadata& header, const std::string& file) 
       entry->set(options, value);
       continue;
     }
-    for (std::size_t at = 0; at < value.size();) {  // "a=1 b=2"
-      const std::size_t end = std::min(value.find(' ', at), value.size());
-      entry->set(options, value.substr(at, end - at));
-      at = end + 1;
-    }
+    for (const std::string& one : split_definitions(value)) entry->set(options, one);
   }
   return options;
 }

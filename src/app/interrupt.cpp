@@ -34,6 +34,7 @@ void end_now(int signal) {
 void note_signal(int signal) {
   int none = 0;
   signalled.compare_exchange_strong(none, signal);
+  hurry_pipe_writers();
 }
 
 void handle(void (*handler)(int), std::initializer_list<int> signals) {
@@ -59,6 +60,7 @@ void end_on_signal(const char* what_is_lost) {
 void note_signals(bool usr1) {
   handle(note_signal, {SIGINT, SIGTERM});
   if (usr1) handle(note_signal, {SIGUSR1});
+  end_text = ": SIGUSR1 keeps samples where there is a --checkpoint; no image written";
 }
 
 void ignore_signals() {

@@ -10,8 +10,8 @@ namespace pt {
 void end_on_signal(const char* what_is_lost = "");
 
 /// From now on SIGINT and SIGTERM only make interrupted() true, however often they come: what there
-/// is will be saved, and nothing must stop that. `usr1`: SIGUSR1, too, which Slurm sends before a
-/// time limit.
+/// is will be saved, and nothing must stop that but the reader of a pipe who does not come. `usr1`:
+/// SIGUSR1, too, which Slurm sends before a time limit; else it still ends the program at once.
 void note_signals(bool usr1 = false);
 
 /// From now on they do nothing: another process of the job, which gets them, too, says what

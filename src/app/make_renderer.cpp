@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/warning_limit.h"
 #include "common/error/error.h"
 #include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
@@ -43,9 +44,13 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
                      const Warn& warn) {
   if (is_scene_file(options.scene)) {
     const SceneFiles files;
-    SceneData scene = load_scene_file(
-        options.scene,
-        {options.definitions, options.strict, warn, {}, options.default_lighting, options.camera});
+    WarningLimit limit(warn);
+    SceneData scene = load_scene_file(options.scene, {options.definitions,
+                                                      options.strict,
+                                                      limit.function(),
+                                                      {},
+                                                      options.default_lighting,
+                                                      options.camera});
     scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
     for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
     return scene;

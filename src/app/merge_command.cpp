@@ -10,6 +10,7 @@
 
 #include "app/film_header.h"
 #include "common/error/error.h"
+#include "common/error/terminal.h"
 #include "common/film/checkpoint.h"
 #include "common/film/develop.h"
 #include "common/image/atomic_file.h"
@@ -154,13 +155,14 @@ void check_whole(const Joiner& joiner, int spp, bool allow_missing) {
                     "image without them",
                     which, percent));
   }
-  fmt::print(stderr, "ptexp: warning: {}: {:.3g} % of the samples are missing\n", which, percent);
+  print_warning(fmt::format("{}: {:.3g} % of the samples are missing", which, percent));
 }
 
 }  // namespace
 
 int merge_command(const MergeCommand& command) {
   check_image_path(command.output);
+  for (const std::string& input : command.inputs) check_not_read("merge", command.output, input);
   Joiner joiner;
   for (const std::string& file : command.inputs) joiner.add(file);
   ImageMetadata header = joiner.header();
@@ -182,8 +184,8 @@ int merge_command(const MergeCommand& command) {
     header["ptexp.samples_done"] = std::to_string(joiner.film().least_samples());
     write_image(command.output, image, header, {stops});
   }
-  fmt::print("wrote {}, of {} file{}\n", command.output, command.inputs.size(),
-             command.inputs.size() == 1 ? "" : "s");
+  print("wrote {}, of {} file{}\n", command.output, command.inputs.size(),
+        command.inputs.size() == 1 ? "" : "s");
   return 0;
 }
 

@@ -5,6 +5,7 @@
 #include "app/trace_scene.h"
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
+#include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/prepare/prepare_camera.h"
@@ -26,10 +27,11 @@ CameraParameters default_camera(const Bounds& bounds) {
 void check_size(const RaysCommand& command) {
   const std::uint64_t size_bytes = ray_bytes_max(command.kind, command.size);
   check_writable(command.output);
+  check_not_read("--output", command.output, command.scene);
   check_room(command.output, size_bytes);
   check_host_memory(2 * size_bytes, fmt::format("--size {}: the rays", command.size));
-  fmt::print(stderr, "ptexp: rays: up to {} MB will be written to {}\n",
-             grouped((size_bytes + 999'999) / 1'000'000), command.output);
+  print_notice(fmt::format("rays: up to {} MB will be written to {}",
+                           grouped((size_bytes + 999'999) / 1'000'000), command.output));
 }
 
 }  // namespace
@@ -43,7 +45,7 @@ int rays_command(const RaysCommand& command) {
   prepare_scene(scene, {});
   const RaySet rays = generate_rays(command.kind, scene, command.size, command.bounces);
   write_rays(command.output, rays);
-  fmt::print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
+  print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
   return 0;
 }
 

@@ -1,10 +1,13 @@
 #include "app/render_outputs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "app/film_header.h"
 #include "app/report/csv_file.h"
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
 #include "common/image/measure_exposure.h"
 
@@ -45,7 +48,7 @@ HardwareCounters count_hardware(Renderer& renderer,
                                 const std::function<void(const std::string&)>& warn) {
   try {
     return renderer.count_hardware();
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     if (warn) warn(std::string("--counters: ") + error.what());
     HardwareCounters none;
     none.problem = error.what();
@@ -53,11 +56,38 @@ HardwareCounters count_hardware(Renderer& renderer,
   }
 }
 
-void write_statistics(const Options& options, const RenderReport& report) {
-  if (!options.stats_file.empty())
-    write_file_atomically(options.stats_file, report_json(options, report));
-  if (!options.csv_file.empty() && is_complete(options, report))
-    append_csv_row(options.csv_file, report_csv_row(options, report));
+bool Attempts::make(const std::function<void()>& action, const std::string& advice) {
+  try {
+    action();
+    return true;
+  } catch (const std::exception& error) {
+    problems_.push_back(message_of(error) + advice);
+    return false;
+  }
+}
+
+void Attempts::check() const {
+  if (!problems_.empty()) throw Error(fmt::format("{}", fmt::join(problems_, "; ")));
+}
+
+void write_statistics(const Options& options, const RenderReport& report, Attempts& attempts) {
+  attempts.make([&] {
+    if (!options.stats_file.empty())
+      write_file_atomically(options.stats_file, report_json(options, report));
+  });
+  attempts.make([&] {
+    if (!options.csv_file.empty() && is_complete(options, report))
+      append_csv_row(options.csv_file, report_csv_row(options, report));
+  });
+}
+
+void check_not_of_scene(const Options& options, const std::vector<std::string>& source_files) {
+  for (const std::string& file : source_files) {
+    if (options.part.count == 1) check_not_read("--output", options.output, file);
+    check_not_read("--stats", options.stats_file, file);
+    check_not_read("--csv", options.csv_file, file);
+    check_not_read("--checkpoint", options.checkpoint.file, file);
+  }
 }
 
 }  // namespace pt

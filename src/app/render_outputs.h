@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/report/report.h"
 #include "common/image/codecs/image_io.h"
@@ -36,7 +37,22 @@ ImageMetadata image_header(const Options& options, const RenderReport& report,
 HardwareCounters count_hardware(Renderer& renderer,
                                 const std::function<void(const std::string&)>& warn);
 
+/// Several things that should all be done: what one fails at keeps no other from being tried.
+class Attempts {
+ public:
+  /// False where `action` has thrown. `advice` follows the message of what it has thrown.
+  bool make(const std::function<void()>& action, const std::string& advice = "");
+  /// Throws one Error for all that has failed.
+  void check() const;
+
+ private:
+  std::vector<std::string> problems_;
+};
+
 /// The files of statistics that the options name. CSV rows are for comparing: complete runs only.
-void write_statistics(const Options& options, const RenderReport& report);
+void write_statistics(const Options& options, const RenderReport& report, Attempts& attempts);
+
+/// Throws Error where an output would replace a file that the scene was read from.
+void check_not_of_scene(const Options& options, const std::vector<std::string>& source_files);
 
 }  // namespace pt

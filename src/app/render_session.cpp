@@ -141,6 +141,8 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   report.primitives = ready.scene.primitive_count() + ready.scene.triangle_count();
   report.scene = ready.facts;
   const Measurement measurement = ready.rendering->measure(hooks);
+  const std::string& problem = ready.rendering->checkpoint_problem();
+  if (warn && !problem.empty()) warn("--checkpoint: " + problem);
   result.interrupted = measurement.interrupted;
   result.has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   ready.samples = result.has_image ? measurement.runs.back().samples_done : 0;

@@ -8,6 +8,7 @@
 #include "app/film_header.h"
 #include "app/make_renderer.h"
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 #include "common/mpi/serve_units.h"
 #include "common/options/option_names.h"
 
@@ -73,7 +74,10 @@ Measurement Rendering::measure(const MeasureHooks& hooks) {
   } catch (const std::exception& error) {
     if (options_.checkpoint.file.empty()) throw;
     keep();
-    throw Error(fmt::format("{}; ptexp resume {} goes on", error.what(), options_.checkpoint.file));
+    throw Error(message_of(error) + "; " +
+                (checkpoint_problem_.empty()
+                     ? fmt::format("ptexp resume {} goes on", options_.checkpoint.file)
+                     : checkpoint_problem_));
   }
 }
 
@@ -89,7 +93,12 @@ Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
 }
 
 void Rendering::keep() {
-  if (keeper_) keeper_->finish(group_->film());
+  checkpoint_problem_.clear();
+  try {
+    if (keeper_) keeper_->finish(group_->film());
+  } catch (const std::exception& error) {
+    checkpoint_problem_ = message_of(error);
+  }
 }
 
 void Rendering::save(const ImageFilm& film) const {

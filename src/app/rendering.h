@@ -37,8 +37,11 @@ class Rendering {
   Renderer& renderer() { return group_ ? *group_ : *single_; }
 
   /// Renders as often as the options say. What was rendered is in the checkpoint then, whatever
-  /// ended the render. Throws Error.
+  /// ended the render, unless there is a checkpoint_problem(). Throws Error.
   Measurement measure(const MeasureHooks& hooks);
+
+  /// Why the last checkpoint could not be written, which is no reason to lose the image; or empty.
+  const std::string& checkpoint_problem() const { return checkpoint_problem_; }
 
  private:
   void make_group(const SceneData& scene, const std::vector<DeviceInfo>& devices,
@@ -56,6 +59,7 @@ class Rendering {
   std::shared_ptr<ResultBell> bell_;
   std::unique_ptr<CheckpointKeeper> keeper_;
   std::unique_ptr<GroupRenderer> group_;
+  std::string checkpoint_problem_;
 };
 
 /// Their names, for Ranks::announce.

@@ -4,6 +4,7 @@
 
 #include "app/film_header.h"
 #include "common/error/error.h"
+#include "common/image/atomic_file.h"
 #include "common/options/option_names.h"
 
 namespace pt {
@@ -39,6 +40,8 @@ int resume_command(const ResumeCommand& command, Ranks& ranks) {
   apply_settings(command.settings, command.file, render.options);
   for (const Setting& setting : command.settings) render.given.insert(setting.entry->name);
   check_consistent(render.options, render.given);
+  if (render.options.part.count == 1)
+    check_not_read("--output", render.options.output, command.file);
   check_samples(resumption.checkpoint.film, before, render.options, command.file);
   // The file's own defaults were applied when the render was begun.
   for (const char* name : {"width", "height", "spp", "max-depth", "rr"}) render.given.insert(name);

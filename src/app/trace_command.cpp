@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/options/option_values.h"
+#include "app/render_outputs.h"
 #include "app/report/csv_file.h"
 #include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
@@ -12,6 +13,7 @@
 #include "common/accel/build/check_builder.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"
+#include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
 #include "common/rays/compare_hits.h"
 
@@ -81,24 +83,23 @@ CsvRow csv_row(const TraceCommand& command, const TraceReport& report) {
 
 void print_report(const TraceCommand& command, const TraceReport& report) {
   const Spread& t = report.time_ms;
-  fmt::print("device     {}: {}\n", to_string(report.device.choice), report.device.name);
-  fmt::print("tree       {} by {}: {} triangles, {} nodes, {:.1f} bytes per triangle\n",
-             to_string(command.accel), builder_name(command, report), grouped(report.triangles),
-             grouped(report.tree.quality.nodes), report.bytes_per_triangle());
-  fmt::print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.tree.build_ms,
-             sah_cost(command, report));
-  fmt::print("rays       {}, {} hit, {}\n", grouped(report.rays),
-             report.type == RayType::any ? "any" : "closest", variant_name(report.variant));
-  fmt::print("time       {:.4f} ms, {:.4f} to {:.4f} in {} runs\n", t.median, t.min, t.max,
-             command.runs.repeat);
-  fmt::print("rate       {:.1f} Mrays/s\n", report.mrays_per_s());
+  print("device     {}: {}\n", to_string(report.device.choice), report.device.name);
+  print("tree       {} by {}: {} triangles, {} nodes, {:.1f} bytes per triangle\n",
+        to_string(command.accel), builder_name(command, report), grouped(report.triangles),
+        grouped(report.tree.quality.nodes), report.bytes_per_triangle());
+  print("built in   {:.1f} ms, SAH cost {:.2f}\n", report.tree.build_ms, sah_cost(command, report));
+  print("rays       {}, {} hit, {}\n", grouped(report.rays),
+        report.type == RayType::any ? "any" : "closest", variant_name(report.variant));
+  print("time       {:.4f} ms, {:.4f} to {:.4f} in {} runs\n", t.median, t.min, t.max,
+        command.runs.repeat);
+  print("rate       {:.1f} Mrays/s\n", report.mrays_per_s());
 }
 
 int print_comparison(const TraceCommand& command, const HitComparison& c) {
   if (!command.quiet) {
-    fmt::print("agreement  {} the same, {} ties, {} at another distance, {} missed, {} invented\n",
-               c.same, c.ties, c.other, c.missed, c.invented);
-    if (!c.first.empty()) fmt::print("first      {}\n", c.first);
+    print("agreement  {} the same, {} ties, {} at another distance, {} missed, {} invented\n",
+          c.same, c.ties, c.other, c.missed, c.invented);
+    if (!c.first.empty()) print("first      {}\n", c.first);
   }
   return c.agrees() ? 0 : 1;
 }
@@ -112,6 +113,11 @@ TreeOptions tree_options_of(const TraceCommand& command) {
 
 void check_command(const TraceCommand& command, const DeviceInfo& device) {
   if (!command.output.empty()) check_writable(command.output);
+  for (const std::string& read : {command.mesh, command.rays, command.hits}) {
+    check_not_read("--output", command.output, read);
+    check_not_read("--csv", command.csv, read);
+  }
+  check_not_read("--csv", command.csv, command.output);
   if (!command.csv.empty()) check_csv(command.csv, csv_row(command, {}));
   check_tracing(tree_options_of(command), command.runs, device);
 }
@@ -146,11 +152,17 @@ int trace_command(const TraceCommand& given) {
   report.time_ms = spread(result.times_ms);
   report.variant = result.variant;
   if (!command.quiet) print_report(command, report);
-  if (!command.output.empty()) write_hits(command.output, {rays.type, result.hits});
-  if (!command.csv.empty()) append_csv_row(command.csv, csv_row(command, report));
-  if (command.hits.empty()) return 0;
-  return print_comparison(
-      command, compare_hits(result.hits, reference.hits, position_resolution(rays.rays)));
+  Attempts attempts;
+  if (!command.output.empty())
+    attempts.make([&, &hits = result.hits] { write_hits(command.output, {rays.type, hits}); });
+  if (!command.csv.empty())
+    attempts.make([&] { append_csv_row(command.csv, csv_row(command, report)); });
+  int code = 0;
+  if (!command.hits.empty())
+    code = print_comparison(
+        command, compare_hits(result.hits, reference.hits, position_resolution(rays.rays)));
+  attempts.check();
+  return code;
 }
 
 }  // namespace pt

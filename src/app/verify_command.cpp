@@ -10,6 +10,7 @@
 #include "app/film_header.h"
 #include "app/make_renderer.h"
 #include "common/error/error.h"
+#include "common/error/terminal.h"
 #include "common/film/develop.h"
 #include "common/options/option_names.h"
 #include "common/render/batches.h"
@@ -109,13 +110,13 @@ int verify_command(const VerifyCommand& command) {
   }
   const double percent =
       100.0 * static_cast<double>(pixels) / static_cast<double>(whole.pixel_count());
-  fmt::print("{}: {} pixels ({:.3g} %) of {} samples rendered again on {}: ", file, pixels, percent,
-             samples, device.name);
+  print("{}: {} pixels ({:.3g} %) of {} samples rendered again on {}: ", file, pixels, percent,
+        samples, device.name);
   if (difference.count == 0) {
-    fmt::print("all bits are equal\n");
+    print("all bits are equal\n");
     return 0;
   }
-  fmt::print("{} differ, the first at {},{}\n", difference.count, difference.x, difference.y);
+  print("{} differ, the first at {},{}\n", difference.count, difference.x, difference.y);
   return 1;
 }
 

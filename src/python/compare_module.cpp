@@ -3,6 +3,7 @@
 #include "common/image/compare/flip.h"
 #include "python/arrays.h"
 #include "python/module.h"
+#include "python/unlocked.h"
 
 namespace pt::python {
 namespace {
@@ -21,7 +22,7 @@ nb::dict compare(const PixelsIn& a, const PixelsIn& b, double tolerance, bool is
   ImageDifference difference;
   double flip = 0;
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     const Image test = image_of(a), reference = image_of(b);
     difference = compare_images(test, reference, tolerance);
     flip = mean_of(flip_of(test, reference, is_hdr, difference));

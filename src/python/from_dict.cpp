@@ -7,6 +7,7 @@
 
 #include <optional>
 
+#include "app/warning_limit.h"
 #include "common/rays/ray_file.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
@@ -14,6 +15,7 @@
 #include "python/arrays.h"
 #include "python/module.h"
 #include "python/scene_object.h"
+#include "python/unlocked.h"
 
 namespace pt::python {
 namespace {
@@ -56,7 +58,8 @@ std::unique_ptr<SceneObject> from_elements(const nb::tuple& root, const nb::list
   Warnings warnings;
   LoadOptions options;
   options.strict = strict;
-  options.warn = warnings.collector();
+  WarningLimit limit(warnings.collector());
+  options.warn = limit.function();
   for (const nb::handle entry : meshes) {
     const auto parts = nb::cast<nb::tuple>(entry);
     const auto key = nb::cast<std::string>(parts[0]);
@@ -67,7 +70,7 @@ std::unique_ptr<SceneObject> from_elements(const nb::tuple& root, const nb::list
   const Element scene = element_of(root, 0);
   std::unique_ptr<SceneObject> made;
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     made = std::make_unique<SceneObject>(load_mitsuba_scene(scene, name, options));
   }
   warnings.give();

@@ -1,5 +1,4 @@
 // Image in Python.
-#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -8,6 +7,7 @@
 #include "common/error/error.h"
 #include "python/image_object.h"
 #include "python/module.h"
+#include "python/unlocked.h"
 
 namespace pt::python {
 namespace {
@@ -63,7 +63,7 @@ std::vector<std::string> layer_names(const ImageObject& self) {
 ImageObject* read(const std::string& path) {
   ImageMetadata header;
   Image image = [&] {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     return read_image(path, &header);
   }();
   return new ImageObject(std::move(image), std::move(header));
@@ -81,15 +81,20 @@ void add_image(nb::module_& m) {
       .def("layer", layer)
       .def("layer_names", layer_names)
       .def("statistics", &ImageObject::statistics)
-      .def("table", &ImageObject::table)
-      .def("header", [](const ImageObject& self) { return self.result().header; })
+      .def("table", [](ImageObject& self) { return text(self.table()); })
+      .def("header",
+           [](const ImageObject& self) {
+             nb::dict header;
+             for (const auto& [name, value] : self.result().header)
+               header[text(name)] = text(value);
+             return header;
+           })
       .def_prop_ro("has_image", [](const ImageObject& self) { return self.result().has_image; })
       .def_prop_ro("has_report",
                    [](const ImageObject& self) { return !self.result().report.runs.empty(); })
-      .def("write_statistics", &ImageObject::write_statistics,
-           nb::call_guard<nb::gil_scoped_release>())
+      .def("write_statistics", &ImageObject::write_statistics, nb::call_guard<Unlocked>())
       .def("save", &ImageObject::save, nb::arg("path"), nb::arg("exposure"),
-           nb::call_guard<nb::gil_scoped_release>());
+           nb::call_guard<Unlocked>());
   m.def("read_image", read, nb::arg("path"));
 }
 

@@ -15,12 +15,19 @@ Image& ImageObject::image() {
   return result_.image;
 }
 
-std::string ImageObject::statistics() const {
-  return result_.report.runs.empty() ? "" : report_json(result_.options, result_.report);
+RenderReport ImageObject::report() {
+  const std::lock_guard lock(mutex_);
+  return result_.report;
 }
 
-std::string ImageObject::table() const {
-  return result_.report.runs.empty() ? "" : report_table(result_.options, result_.report);
+std::string ImageObject::statistics() {
+  const RenderReport now = report();
+  return now.runs.empty() ? "" : report_json(result_.options, now);
+}
+
+std::string ImageObject::table() {
+  const RenderReport now = report();
+  return now.runs.empty() ? "" : report_table(result_.options, now);
 }
 
 void ImageObject::save(const std::string& path, const std::string& exposure) {
@@ -28,12 +35,17 @@ void ImageObject::save(const std::string& path, const std::string& exposure) {
   const ExposureChoice choice =
       exposure.empty() ? result_.options.exposure : parse_exposure("exposure", exposure);
   const auto chosen = exposure_for(path, choice, image(), result_.measures_exposure);
-  if (chosen) result_.report.exposure = chosen->stops;
+  if (chosen) {
+    const std::lock_guard lock(mutex_);
+    result_.report.exposure = chosen->stops;
+  }
   write_image(path, image(), result_.header, {chosen ? chosen->stops : 0.0f});
 }
 
-void ImageObject::write_statistics() const {
-  pt::write_statistics(result_.options, result_.report);
+void ImageObject::write_statistics() {
+  Attempts attempts;
+  pt::write_statistics(result_.options, report(), attempts);
+  attempts.check();
 }
 
 }  // namespace pt::python

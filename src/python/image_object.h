@@ -35,15 +35,17 @@ class ImageObject {
   /// Null: the host's memory is the only one.
   const DeviceImage* device_image() const { return result_.device_image.get(); }
 
-  std::string statistics() const;  ///< JSON; empty: of an image that was read
-  std::string table() const;
+  std::string statistics();  ///< JSON; empty: of an image that was read
+  std::string table();
   /// Writes an image with what is known of it. `exposure`: as the option; empty: the render's.
   void save(const std::string& path, const std::string& exposure);
   /// The files that the options name, of statistics.
-  void write_statistics() const;
+  void write_statistics();
 
  private:
-  std::mutex mutex_;  ///< of the host's copy
+  RenderReport report();  ///< a copy
+
+  std::mutex mutex_;  ///< of the host's copy of the pixels, and of the report
   RenderResult result_;
 };
 

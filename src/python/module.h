@@ -3,7 +3,12 @@
 
 #include <nanobind/nanobind.h>
 
+#include <string>
+
 namespace pt::python {
+
+/// Text for Python of bytes that need not be UTF-8: \xNN stands for what is none.
+nanobind::str text(const std::string& bytes);
 
 void add_errors(nanobind::module_& m);
 void add_tables(nanobind::module_& m);

@@ -29,9 +29,8 @@ class Watcher {
       state_.stop = true;
     }
   }
-  void throw_error() {
-    if (error_) throw nb::python_error(std::move(*error_));
-  }
+  /// What was raised, with its traceback; or None.
+  nb::object raised() const { return error_ ? nb::borrow(error_->value()) : nb::none(); }
 
  private:
   void tell() {
@@ -47,9 +46,20 @@ class Watcher {
   std::optional<nb::python_error> error_;
 };
 
+/// Joins a thread whatever ends its owner.
+struct Joined {
+  std::thread& thread;
+  WorkState& state;
+
+  ~Joined() {
+    state.stop = true;
+    if (thread.joinable()) thread.join();
+  }
+};
+
 }  // namespace
 
-void run_interruptible(const std::function<void(WorkState&)>& work, nb::object progress) {
+nb::object run_interruptible(const std::function<void(WorkState&)>& work, nb::object progress) {
   WorkState state;
   Watcher watcher(state, std::move(progress));
   std::mutex mutex;
@@ -66,19 +76,20 @@ void run_interruptible(const std::function<void(WorkState&)>& work, nb::object p
     has_ended = true;
     ended.notify_all();
   });
+  const Joined joined{thread, state};
   const auto wait = [&] {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     std::unique_lock lock(mutex);
     return ended.wait_for(lock, interval, [&] { return has_ended; });
   };
   while (!wait()) watcher.look();
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     thread.join();
   }
   watcher.look();
-  watcher.throw_error();
-  if (problem) std::rethrow_exception(problem);
+  if (problem && watcher.raised().is_none()) std::rethrow_exception(problem);
+  return watcher.raised();
 }
 
 }  // namespace pt::python

@@ -3,21 +3,17 @@
 
 #include <nanobind/nanobind.h>
 
-#include <atomic>
-#include <cstdint>
 #include <functional>
+
+#include "python/unlocked.h"
 
 namespace pt::python {
 
-/// What the work and the thread that waits for it tell each other.
-struct WorkState {
-  std::atomic<bool> stop{false};
-  std::atomic<std::uint64_t> done{0}, total{0};
-};
-
 /// Runs `work` in a thread of its own and waits, without the interpreter's lock. Some times a
 /// second it looks for signals and calls `progress(done, total)`, unless that is None; what they
-/// raise makes `stop` true, and is thrown when the work has ended. Throws what the work throws.
-void run_interruptible(const std::function<void(WorkState&)>& work, nanobind::object progress);
+/// raise makes `stop` true, and is returned when the work has ended: what it has made is not lost.
+/// Returns None where nothing was raised. Throws what the work throws.
+nanobind::object run_interruptible(const std::function<void(WorkState&)>& work,
+                                   nanobind::object progress);
 
 }  // namespace pt::python

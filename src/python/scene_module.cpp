@@ -20,7 +20,7 @@ nb::list parameters(const SceneObject& self) {
   for (const SceneParameter& p : self.parameters()) {
     nb::list shape;
     for (const std::size_t n : p.shape) shape.append(n);
-    list.append(nb::make_tuple(p.name, nb::tuple(shape)));
+    list.append(nb::make_tuple(text(p.name), nb::tuple(shape)));
   }
   return list;
 }
@@ -29,9 +29,9 @@ nb::list plan(SceneObject& self, const Words& words) {
   nb::list list;
   for (const Decision& d : self.plan(words)) {
     nb::dict decision;
-    decision["option"] = d.option;
-    decision["value"] = d.value;
-    decision["reason"] = d.reason;
+    decision["option"] = text(d.option);
+    decision["value"] = text(d.value);
+    decision["reason"] = text(d.reason);
     list.append(decision);
   }
   return list;
@@ -50,7 +50,7 @@ void add_scene(nb::module_& m) {
       .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none(),
            nb::arg("on_device"))
       .def("plan", plan)
-      .def_prop_ro("name", &SceneObject::name)
+      .def_prop_ro("name", [](const SceneObject& self) { return text(self.name()); })
       .def("defaults", defaults)
       .def("parameters", parameters)
       .def("get", &SceneObject::get)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/error/error.h"
 #include "python/run_interruptible.h"
@@ -13,12 +14,13 @@ namespace pt::python {
 
 namespace nb = nanobind;
 
+std::vector<std::string> Warnings::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
 void Warnings::give() {
-  std::vector<std::string> messages;
-  {
-    const std::lock_guard lock(mutex_);
-    messages.swap(messages_);
-  }
+  const std::vector<std::string> messages = take();
   if (messages.empty()) return;
   const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
   for (const std::string& message : messages) warn(message);
@@ -39,7 +41,7 @@ std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
   Warnings warnings;
   std::unique_ptr<SceneObject> scene(new SceneObject);
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     scene->session_ = std::make_unique<RenderSession>(command_of(words), warnings.collector());
     scene->list_parameters();
   }
@@ -47,12 +49,11 @@ std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
   return scene;
 }
 
-std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object progress,
-                                                 bool on_device) {
+SceneObject::Rendered SceneObject::render(const Words& words, nb::object progress, bool on_device) {
   const RenderCommand command = command_of(words);
   Warnings warnings;
   RenderResult result;
-  run_interruptible(
+  nb::object raised = run_interruptible(
       [&](WorkState& state) {
         const std::lock_guard turn(mutex_);
         MeasureHooks hooks;
@@ -63,18 +64,17 @@ std::unique_ptr<ImageObject> SceneObject::render(const Words& words, nb::object 
         result = session_->render(command, hooks, warnings.collector(), on_device);
       },
       std::move(progress));
-  warnings.give();
-  return std::make_unique<ImageObject>(std::move(result));
+  return {std::make_unique<ImageObject>(std::move(result)), std::move(raised), warnings.take()};
 }
 
 std::unique_lock<std::mutex> SceneObject::lock() {
-  const nb::gil_scoped_release release;  // a render may hold it for long
+  const Unlocked unlocked;  // a render may hold it for long
   return std::unique_lock(mutex_);
 }
 
 std::vector<Decision> SceneObject::plan(const Words& words) {
   const RenderCommand command = command_of(words);
-  const nb::gil_scoped_release release;
+  const Unlocked unlocked;
   const std::lock_guard turn(mutex_);
   return session_->plan(command);
 }

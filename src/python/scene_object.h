@@ -6,10 +6,12 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "app/render_session.h"
+#include "common/error/terminal.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "python/image_object.h"
 
@@ -30,9 +32,12 @@ class SceneObject {
     list_parameters();
   }
 
+  /// The image, what was raised meanwhile (or None), and warnings. Whoever calls has the image,
+  /// and then raises and warns: neither loses it.
+  using Rendered =
+      std::tuple<std::unique_ptr<ImageObject>, nanobind::object, std::vector<std::string>>;
   /// As RenderSession::render, interruptible.
-  std::unique_ptr<ImageObject> render(const Words& words, nanobind::object progress,
-                                      bool on_device);
+  Rendered render(const Words& words, nanobind::object progress, bool on_device);
   std::vector<Decision> plan(const Words& words);
 
   std::string name() const { return session_->scene().name; }
@@ -57,9 +62,10 @@ class Warnings {
   RenderSession::Warn collector() {
     return [this](const std::string& message) {
       const std::lock_guard lock(mutex_);
-      messages_.push_back(message);
+      messages_.push_back(message_line(message));
     };
   }
+  std::vector<std::string> take();
   /// Throws python_error where a filter makes them errors.
   void give();
 

@@ -16,6 +16,7 @@
 #include "common/scene/data/material_description.h"
 #include "python/arrays.h"
 #include "python/module.h"
+#include "python/unlocked.h"
 
 namespace pt::python {
 namespace {
@@ -28,7 +29,7 @@ class TracedMesh {
   TracedMesh(const FloatsIn& vertices, const IndicesIn& triangles, const std::string& device,
              const std::string& accel, const std::string& builder)
       : device_(choose_device(parse_device("device", device))) {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     scene_.meshes.push_back(mesh_of(vertices, triangles));
     scene_.add_material(MaterialDescription());
     check_trace_mesh(scene_.meshes[0], "mesh");
@@ -97,7 +98,7 @@ nb::tuple trace(const TracedMesh& mesh, const FloatsIn& given, bool any) {
   std::vector<std::uint32_t> primitive;
   double time_ms = 0;
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     const RaySet rays = ray_set(given, any);
     const TraceResult result = mesh.trace(rays);
     time_ms = result.times_ms.front();

@@ -5,6 +5,7 @@
 #include "app/interrupt.h"
 #include "app/progress.h"
 #include "app/standard_output.h"
+#include "common/error/terminal.h"
 #include "view/http_server.h"
 #include "view/live_render.h"
 #include "view/view_site.h"
@@ -14,16 +15,14 @@ namespace pt {
 int view_command(const ViewCommand& command) {
   HttpServer server(command.port);  // before the scene, which may take long
   const std::string token = random_token();
-  LiveRender live(command.settings, [](const std::string& message) {
-    fmt::print(stderr, "ptexp: warning: {}\n", message);
-  });
+  LiveRender live(command.settings, print_warning);
   ViewSite site(live, token, server.port(), Progress::steady_seconds);
   const std::string address = fmt::format("http://127.0.0.1:{}/{}/", server.port(), token);
   if (!command.is_quiet) {
-    fmt::print("{} on {}: open this address in a browser of this machine; Ctrl-C ends\n",
-               live.scene(), live.device());
+    print("{} on {}: open this address in a browser of this machine; Ctrl-C ends\n", live.scene(),
+          live.device());
   }
-  fmt::print("{}\n", address);
+  print("{}\n", address);
   flush_output();
 
   note_signals();
@@ -34,7 +33,7 @@ int view_command(const ViewCommand& command) {
     live.end();       // who waits is answered
     return false;
   });
-  fmt::print(stderr, "ptexp: interrupted\n");
+  print_notice("interrupted");
   return exit_code_of_signal();
 }
 

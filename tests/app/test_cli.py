@@ -515,6 +515,216 @@ class StandardOutput(CommandLine):
         self.assertLessEqual((self.folder / "r").stat().st_size, 17_000_000)
 
 
+class Streams(CommandLine):
+    """Full, closed and hostile streams: messages are lost, images are not."""
+
+    ODD = ('<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/>'
+           "<shape type='hair\x9b\u202ex'/></scene>")
+
+    def run_streams(self, *arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **popen):
+        return subprocess.run([PTEXP, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL,
+                              stdout=stdout, stderr=stderr, check=False, timeout=TIMEOUT_S,
+                              **popen).returncode
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "odd.xml").write_text(self.ODD, encoding="utf-8")
+        self.scene = ["--scene", "odd.xml", "--device", "cpu", "--width", "24", "--height", "12",
+                      "--spp", "2", "-o", "a.exr"]
+        self.assertEqual(self.run_streams(*self.scene), 0)
+        (self.folder / "a.exr").rename(self.folder / "right.exr")
+
+    def assert_image(self, name="a.exr"):
+        self.assertRegex(self.run_ok("compare", name, "right.exr").stdout, "differing pixels +0\n")
+        (self.folder / name).unlink()
+        self.assertEqual(self.files(), ["odd.xml", "right.exr"])
+
+    def test_a_full_stderr(self):
+        if not Path("/dev/full").exists():
+            self.skipTest("the machine has no /dev/full")
+        with open("/dev/full", "wb") as full:
+            self.assertEqual(self.run_streams(*self.scene, stderr=full), 0)
+            self.assert_image()
+            for wrong in (["--scene", "none.xml"], ["--spp", "x"], ["merge", "a.exr", "none.exr"]):
+                self.assertEqual(self.run_streams(*wrong, stderr=full), 2)
+
+    def test_closed_streams_are_no_files(self):
+        """A file that took the place of stderr would get the warnings."""
+        for closed in ((2,), (0, 2), (0, 1, 2)):
+            def close(streams=closed):
+                for stream in streams:
+                    os.close(stream)
+
+            quiet = ["-q"] if 1 in closed else []
+            with self.subTest(closed=closed):
+                self.assertEqual(self.run_streams(*self.scene, *quiet, preexec_fn=close), 0)
+                self.assert_image()
+        self.assertEqual(self.run_streams(*self.scene, preexec_fn=lambda: os.close(1)), 2)
+        self.assertEqual(self.run_streams("--scene", "none.xml", preexec_fn=lambda: os.close(2)), 2)
+        os.symlink("/dev/stdout", self.folder / "out.ppm")
+        self.assertEqual(self.run_streams(*self.scene, "-q", "-o", "out.ppm",
+                                          preexec_fn=lambda: os.close(1)), 2)
+
+    def test_readers_that_have_gone(self):
+        for stream in ("stdout", "stderr"):
+            reader, writer = os.pipe()
+            os.close(reader)
+            quiet = ["-q"] if stream == "stdout" else []
+            code = self.run_streams(*self.scene, *quiet, **{stream: writer})
+            os.close(writer)
+            self.assertEqual(code, 0)
+            self.assert_image()
+        # Of what is printed it is the end, as of other programs.
+        reader, writer = os.pipe()
+        os.close(reader)
+        self.assertEqual(self.run_streams("--help", stdout=writer), -signal.SIGPIPE)
+        os.close(writer)
+
+    def test_a_reader_that_goes_early(self):
+        """As `ptexp ... | head -1`: the image is there all the same."""
+        process = subprocess.Popen([PTEXP, *self.scene, "--spp", "2", "--repeat", "100",
+                                    "--warmup", "1"], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.DEVNULL)
+        process.stdout.readline()
+        process.stdout.close()
+        self.assertEqual(process.wait(TIMEOUT_S), -signal.SIGPIPE)
+        self.assert_image()
+
+    def test_a_limit_of_sizes_kills_nothing(self):
+        for name in ("a.exr", "a.png", "a.ppm"):
+            run = self.run_ptexp("--scene", "cornell", "--device", "cpu", "--width", "64", "--height", "64",
+                                 "--spp", "1", "-q", "-o", name, preexec_fn=lambda: resource.setrlimit(
+                                     resource.RLIMIT_FSIZE, (4096, 4096)))
+            self.assert_refused(run, f"cannot write {name}: File too large")
+            self.assertEqual(self.files(), ["odd.xml", "right.exr"])
+        (self.folder / "r.csv").write_text("a,b\n" + "1,2\n" * 1000)
+        for option, name in (("--stats", "s.json"), ("--csv", "n.csv")):
+            run = self.run_ptexp(*self.scene, "-q", option, name, preexec_fn=lambda: resource.setrlimit(
+                resource.RLIMIT_FSIZE, (4000 if option == "--stats" else 1000,) * 2))
+            self.assertEqual(run.returncode, 2)
+            self.assertIn("File too large", run.stderr)
+            self.assertEqual((self.folder / name).stat().st_size if (self.folder / name).exists() else 0, 0)
+
+    def test_one_output_does_not_lose_the_others(self):
+        for missing in ("image", "json", "csv"):
+            folders = {name: self.folder / name for name in ("image", "json", "csv")}
+            for folder in folders.values():
+                folder.mkdir(exist_ok=True)
+            process = subprocess.Popen(
+                [PTEXP, "--scene", "cornell", "--device", "cpu", "--width", "32", "--height", "32", "--time-limit",
+                 "1.5", "-q", "-o", "image/a.exr", "--stats", "json/s.json", "--csv", "csv/r.csv"],
+                cwd=self.folder, stderr=subprocess.PIPE, text=True)
+            time.sleep(0.7)
+            folders[missing].rmdir()
+            errors = process.communicate()[1]
+            with self.subTest(missing=missing):
+                self.assertEqual(process.returncode, 2)
+                self.assertRegex(errors, rf"^ptexp: error: [^\n]*{missing}/[^\n]*\n$")
+                for name, file in (("image", "a.exr"), ("json", "s.json"), ("csv", "r.csv")):
+                    self.assertEqual((folders[name] / file).exists(), name != missing, name)
+                    (folders[name] / file).unlink(missing_ok=True)
+
+    def test_pipes(self):
+        pipe = self.folder / "p.exr"
+        os.mkfifo(pipe)
+        process = subprocess.Popen([PTEXP, *self.scene, "-q", "-o", pipe], stderr=subprocess.PIPE,
+                                   text=True, cwd=self.folder)
+        time.sleep(0.5)
+        (self.folder / "a.exr").write_bytes(pipe.read_bytes())
+        self.assertEqual((process.communicate()[1], process.returncode), ("", 0))
+        pipe.unlink()
+        self.assert_image()
+        os.mkfifo(pipe)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            process = subprocess.Popen([PTEXP, *self.scene, "-q", "-o", pipe], stderr=subprocess.PIPE,
+                                       text=True, cwd=self.folder)
+            time.sleep(1.5)
+            self.assertIsNone(process.poll(), "it waits for a reader")
+            process.send_signal(number)
+            self.assertIn("nobody reads this pipe", process.communicate(timeout=20)[1])
+            self.assertEqual(process.returncode, 2)
+
+    def test_names_move_no_cursor(self):
+        (self.folder / "e.obj").write_bytes(
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\033]52;c;cm0gLXJm\007\xe2\x80\xaeb\xff\xc3\xa9\nf 1 2 3\n")
+        bad = "x\x1b[31m\u202e\u00e9"
+        runs = [self.run_ptexp("--scene", "e.obj", "--device", "cpu", "--width", "8", "--height", "8", "--spp", "1",
+                               "-o", "e.exr", "--stats", bad, encoding="utf-8"),
+                self.run_ptexp("--scene", bad + ".xml"), self.run_ptexp("--spp", bad),
+                self.run_ptexp(bad), self.run_ptexp("--" + bad), self.run_ptexp("compare", bad, bad),
+                self.run_ptexp("resume", bad), self.run_ptexp("merge", bad + ".exr", bad),
+                self.run_ptexp("trace", "--mesh", bad, "--rays", bad),
+                self.run_ptexp("--scene", "e.obj", "-o", bad + ".exr", "--device", "cpu", "--spp", "1")]
+        for run in runs:
+            shown = run.stdout + run.stderr
+            self.assertNotRegex(shown, "[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", run.args)
+            self.assertTrue(shown)
+        self.assertIn("a?]52;c;cm0gLXJm??b?\u00e9", runs[0].stderr)
+        self.assertIn("x?[31m?\u00e9.exr", runs[-1].stdout)
+
+    def test_quiet_leaves_out_what_is_said_of_the_scene(self):
+        self.assertRegex(self.run_ok(*self.scene).stderr, "^ptexp: warning: [^\n]*hair")
+        run = self.run_ok(*self.scene, "-q")
+        self.assertEqual(run.stdout + run.stderr, "")
+
+    def test_many_warnings_and_long_ones(self):
+        shapes = "".join(f'<shape type="hair{i}"/>' for i in range(3000))
+        (self.folder / "many.xml").write_text(f'<scene version="3.0.0"><shape type="sphere"/>{shapes}</scene>')
+        lines = self.run_ok(*self.scene, "--scene", "many.xml").stderr.splitlines()
+        self.assertLess(len(lines), 30)
+        self.assertRegex(lines[-1], r"warning: 29\d\d warnings more, of kinds that were shown")
+        (self.folder / "long.xml").write_text(f'<scene version="3.0.0"><shape type="{"y" * 5_000_000}"/></scene>')
+        run = self.run_ptexp(*self.scene, "--scene", "long.xml", "--strict")
+        self.assert_refused(run, "bytes in all")
+        self.assertLess(len(run.stderr), 5000)
+
+    def test_the_table_has_the_numbers_of_the_statistics(self):
+        """By their values: what is printed of a run, and what its file has of it."""
+        out = self.run_ok("--scene", "statue:2K", "--device", "cpu", "--width", "48", "--height", "32",
+                          "--mode", "wavefront", "--repeat", "3", "--target-error", "0.3", "-o", "t.exr",
+                          "--stats", "t.json").stdout
+        known = json.loads((self.folder / "t.json").read_text())
+
+        def numbers(name):
+            return [float(text.replace(",", "")) for text in re.findall(
+                r"[\d,.]+", re.search(rf"^ *{name} .*$", out, re.M)[0].replace(name, "", 1))]
+
+        for stage in known["stages"]:
+            time_ms = stage["time_ms"]
+            share = 100 * time_ms["median"] / known["time_ms"]["kernel"]["median"]
+            for shown, right, step in zip(numbers(stage["stage"]), (
+                    time_ms["median"], time_ms["min"], time_ms["max"], share, stage["launches"]),
+                    (1e-3, 1e-3, 1e-3, 0.1, 0)):
+                self.assertAlmostEqual(shown, right, delta=0.51 * step, msg=stage["stage"])
+        kernel = known["time_ms"]["kernel"]
+        for shown, right, step in zip(numbers("kernel time"), (kernel["median"], kernel["min"], kernel["max"],
+                                                               known["launches"]), (1e-3,) * 3 + (0,)):
+            self.assertAlmostEqual(shown, right, delta=0.51 * step)
+        counts, rates = known["counts"], known["rates"]
+        self.assertEqual(counts["paths"], 48 * 32 * known["samples_done"])
+        rays = counts["rays"] + counts["shadow_rays"]
+        for name, count, rate in (("paths", counts["paths"], rates["mpaths_per_s"]),
+                                  ("rays", rays, rates["mrays_per_s"])):
+            self.assertEqual(numbers(name)[0], count)
+            self.assertAlmostEqual(numbers(name)[1], rate, delta=0.0051)
+            self.assertAlmostEqual(rate, count / kernel["median"] / 1e3, delta=1e-6 * rate)
+        self.assertEqual(numbers("of them shadow"), [counts["shadow_rays"]])
+        self.assertEqual(numbers("waves"), [known["waves"]])
+        self.assertAlmostEqual(numbers("standard error")[0], known["relative_error"], delta=5.1e-7)
+        last = re.search(r"scene ([\d.]+) ms, set-up ([\d.]+) ms, transfer ([\d.]+) ms, writing the image "
+                         r"([\d.]+) ms", out)
+        for shown, name in zip(last.groups(), ("scene", "setup", "transfer", "image_write")):
+            self.assertAlmostEqual(float(shown), known["time_ms"][name], delta=0.051)
+        scene = known["scene"]
+        self.assertIn(f"scene: {scene['triangles']} triangles, ", out)
+        self.assertRegex(out, rf"tree: \S+, {scene['tree_nodes']} nodes, depth {scene['tree_depth']}, SAH cost "
+                              rf"{scene['sah_cost']:.1f}, {scene['bytes_per_triangle']:.1f} bytes per triangle, ")
+        header = (self.folder / "t.exr").read_bytes()
+        self.assertIn(b"ptexp.relative_error\0string\0", header)
+        text = re.search(rb"ptexp.relative_error\0string\0....([\d.e-]+)", header, re.S)[1].decode()
+        self.assertAlmostEqual(float(text), known["relative_error"], delta=1e-5 * known["relative_error"])
+
+
 class Interruption(CommandLine):
     def start(self, *arguments):
         """A render at work; it is gone when the test ends."""
@@ -556,6 +766,25 @@ class Interruption(CommandLine):
                     self.assertGreater(len(set(values)), 20, "the samples are in the image")
                     self.assertIn(name, self.files())
                     self.assertEqual([n for n in self.files() if not n.endswith(".ppm")], [])
+
+    def test_what_was_rendered_is_told(self):
+        process = self.start("--scene", "cornell", "--width", "32", "--height", "32", "--spp", "3000000", "--repeat",
+                             "2", "--output", "a.exr", "--stats", "s.json", "--csv", "r.csv")
+        err = self.end(process, signal.SIGINT)
+        known = json.loads((self.folder / "s.json").read_text())
+        self.assertFalse(known["complete"])
+        self.assertRegex(err, rf"interrupted: image has {known['samples_done']} of 3000000 samples per pixel; no "
+                              r"row appended to r\.csv\n$")
+        self.assertGreater(known["samples_done"], 0)
+        self.assertEqual(self.files(), ["a.exr", "s.json"], "rows are for comparing")
+
+    def test_sigusr1_says_why_nothing_is_kept(self):
+        process = self.start("--width", "200", "--height", "100", "--spp", "1000000", "--output",
+                             "a.ppm")
+        err = self.end(process, signal.SIGUSR1)
+        self.assertIn("interrupted: SIGUSR1 keeps samples where there is a --checkpoint; no image "
+                      "written", err)
+        self.assertEqual(self.files(), [])
 
     def test_more_signals_do_not_lose_the_image(self):
         process = self.start("--width", "200", "--height", "100", "--spp", "1000000",

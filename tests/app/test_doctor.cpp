@@ -170,6 +170,24 @@ TEST_F(DriverFiles, SayWhoMayReadCounters) {
   EXPECT_FALSE(read().counters_restricted);
 }
 
+// CapEff of capabilities(7): bit 21 is CAP_SYS_ADMIN; its neighbours are SYS_PACCT and SYS_BOOT.
+TEST(DoctorMachine, IsAnAdministratorsByOneBit) {
+  const TempFolder folder;
+  const auto is_admin = [&](const std::string& mask) {
+    const std::string path = folder.file("proc/self/status");
+    std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+    write_text(path, "Name:\tptexp\nCapPrm:\tffffffffffffffff\nCapEff:\t" + mask + "\nCapBnd:\t" +
+                         "000001ffffffffff\n");
+    return read_machine(folder.file("")).is_admin;
+  };
+  EXPECT_TRUE(is_admin("0000000000200000"));
+  EXPECT_TRUE(is_admin("000001ffffffffff"));
+  EXPECT_FALSE(is_admin("0000000000100000"));
+  EXPECT_FALSE(is_admin("0000000000400000"));
+  EXPECT_FALSE(is_admin("000001ffffdfffff"));
+  EXPECT_FALSE(is_admin("0000000000000000"));
+}
+
 TEST(DoctorFolders, AreTriedByWriting) {
   const TempFolder folder;
   EXPECT_EQ(try_folder(folder.file("")).problem, "");

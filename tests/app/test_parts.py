@@ -108,6 +108,11 @@ class Devices(Parts):
                 (["--integrator", "mlt", "--checkpoint", "c.exr"], "the whole image"),
                 (["--checkpoint", "c.png"], "an .exr file"),
                 (["--checkpoint", "c.exr,-3"], "seconds above 0"),
+                (["--checkpoint", "c.exr,0"], "seconds above 0"),
+                (["--checkpoint", "c.exr,-0.0"], "seconds above 0"),
+                (["--checkpoint", "c.exr,1e-60"], "seconds above 0"),
+                (["--part", "1/2", "--checkpoint", "c.exr", "--target-error", "0.1"],
+                 "same samples"),
                 (["--checkpoint", "image.exr"], "is the file of --output too"),
                 (["--checkpoint", "c.exr", "--repeat", "2"], "one render"),
                 (["--checkpoint", "/no/such/folder/c.exr"], "/no/such/folder"),
@@ -212,6 +217,61 @@ class Checkpoints(Parts):
         self.assertEqual((self.folder / "c.exr").read_bytes(), before)
         self.assertEqual(self.files(), ["a.exr", "c.exr"])
         self.render("resume", "c.exr", "--spp", 3)
+
+    def test_the_last_one_loses_no_image(self):
+        scene = [*SMALL, "--scene", "cornell", "--spp", 1500, "--threads", 1]
+        self.render(*scene, "-o", "right.exr")
+        for part in ([], ["--part", "1/2"]):
+            (self.folder / "cp").mkdir()
+            process = subprocess.Popen(
+                [PTEXP, *map(str, scene), "--checkpoint", "cp/c.exr,60",
+                 *(part or ["-o", "a.exr"])], cwd=self.folder, stderr=subprocess.PIPE, text=True)
+            time.sleep(0.3)
+            (self.folder / "cp").rmdir()
+            errors = process.communicate()[1]
+            if part:  # which is the file
+                self.assertRegex(errors, "^ptexp: error: cannot write cp/c.exr: [^\n]*\n$")
+                self.assertEqual(process.returncode, 2)
+            else:
+                self.assertRegex(errors, "^ptexp: warning: --checkpoint: cannot write [^\n]*\n$")
+                self.assertEqual(process.returncode, 0)
+                self.assert_same_image("a.exr", "right.exr")
+
+    def test_definitions_of_any_text(self):
+        (self.folder / "s.xml").write_text("""<scene version="3.0.0"><default name="c" value="0 1 0"/>
+            <default name="n" value="x"/><sensor type="perspective"/><shape type="sphere" id="$n">
+            <bsdf type="diffuse"><rgb name="reflectance" value="$c"/></bsdf></shape></scene>""")
+        name = "a \"quoted\" 'name' = 50% %20\n\tand more \u00e9"
+        scene = [*SMALL, "--scene", "s.xml", "-D", "c=0.5 0.25 0.125", "-D", f"n={name}"]
+        self.render(*scene, "--spp", 5, "-o", "right.exr")
+        self.render(*scene, "--spp", 2, "-o", "a.exr", "--checkpoint", "c.exr")
+        self.render("resume", "c.exr", "--spp", 5)
+        self.assert_same_image("a.exr", "right.exr")
+        self.assertIn("all bits are equal", self.render("verify", "a.exr", "--share", 1).stdout)
+        for part in (1, 2):
+            self.render(*scene, "--spp", 5, "--part", f"{part}/2", "--checkpoint", f"p{part}.exr")
+        self.render("merge", "m.exr", "p1.exr", "p2.exr")
+        self.assert_same_image("m.exr", "right.exr")
+
+    def test_no_input_is_replaced(self):
+        for part in (1, 2):
+            self.render(*SMALL, "--spp", 1, "--part", f"{part}/2", "--checkpoint", f"p{part}.exr")
+        before = (self.folder / "p1.exr").read_bytes()
+        os.link(self.folder / "p1.exr", self.folder / "hard.exr")
+        os.symlink("p1.exr", self.folder / "soft.exr")
+        for out in ("p1.exr", "./p1.exr", "hard.exr", "soft.exr"):
+            for command in (["merge", out, "p1.exr", "p2.exr"], ["merge", "--keep-sums", out, "p2.exr", "p1.exr"],
+                            ["compare", "p1.exr", "p2.exr", "--difference", out],
+                            ["resume", "p1.exr", "--checkpoint", "n.exr", "--part", "1/1", "-o", out]):
+                self.assertRegex(self.refused(*command), "is the file|was begun|same file")
+        self.assertEqual((self.folder / "p1.exr").read_bytes(), before)
+        self.render(*SMALL, "--spp", 1, "--checkpoint", "c.exr", "-o", "a.exr")
+        os.symlink("c.exr", self.folder / "link.exr")
+        self.assertIn("is the file", self.refused("resume", "c.exr", "-o", "link.exr"))
+        self.assertIn("is the file", self.refused("resume", "c.exr", "-o", "c.exr", "--checkpoint", "n.exr"))
+        (self.folder / "s.xml").write_text('<scene version="3.0.0"><shape type="sphere"/></scene>')
+        self.assertIn("which is read", self.refused(*SMALL, "--scene", "s.xml", "--stats", "s.xml"))
+        self.assertTrue((self.folder / "s.xml").read_text().startswith("<scene"))
 
     def killed_at(self, seconds, arguments):
         """Whether the process had not ended before."""

@@ -139,6 +139,25 @@ TEST(Measure, WarmUpsAreNotCounted) {
   EXPECT_EQ(measurement.runs.back().kernel_ms, 5);
 }
 
+TEST(Measure, EachRenderIsNamed) {
+  const auto names = [](int warmup, int repeat) {
+    FakeRenderer renderer(1);
+    Options options;
+    options.spp = 1, options.warmup = warmup, options.repeat = repeat;
+    std::vector<std::string> labels;
+    MeasureHooks hooks;
+    hooks.begin = [&](const std::string& label) { labels.push_back(label); };
+    hooks.progress = [](std::uint64_t, std::uint64_t) {};
+    hooks.stop = [] { return false; };
+    measure(renderer, options, hooks);
+    return labels;
+  };
+  using Labels = std::vector<std::string>;
+  EXPECT_EQ(names(2, 3), (Labels{"warm-up 1 of 2", "warm-up 2 of 2", "render 1 of 3",
+                                 "render 2 of 3", "render 3 of 3"}));
+  EXPECT_EQ(names(1, 1), (Labels{"warm-up 1 of 1", "rendering"}));
+}
+
 TEST(Measure, StoppedBeforeTheFirstRender) {
   FakeRenderer renderer(4);
   const Measurement measurement = measure_until(1, renderer);

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "app/render_session.h"
+#include "common/film/checkpoint.h"
 #include "common/image/compare/compare.h"
+#include "temp_folder.h"
 
 namespace {
 
@@ -58,6 +60,31 @@ TEST(RenderSession, OptionsOfOneRenderDoNotStayInTheNext) {
 
 // Whatever changes between two passes, the second one's image is that of a session that never
 // rendered anything else.
+// What ends a render, and whether its samples are in the checkpoint, is one message.
+TEST(RenderSession, AnErrorLeavesTheCheckpointAndSaysSo) {
+  const TempFolder folder;
+  const std::string file = folder.file("c/c.exr");
+  for (const bool has_folder : {true, false}) {
+    std::filesystem::create_directory(folder.file("c"));
+    const RenderCommand command =
+        command_of("cornell", {{"checkpoint", file}, {"spp", "64"}, {"threads", "1"}});
+    RenderSession session(command, {});
+    MeasureHooks hooks;
+    hooks.stop = [] { return false; };
+    hooks.progress = [&](std::uint64_t done, std::uint64_t) {
+      if (done == 0) return;
+      if (!has_folder) std::filesystem::remove_all(folder.file("c"));
+      throw Error("broken");
+    };
+    expect_error(
+        [&] { session.render(command, hooks, {}); },
+        has_folder ? "broken; ptexp resume " + file + " goes on" : "broken; cannot write " + file);
+    if (has_folder) {
+      EXPECT_GT(read_checkpoint(file).film.samples(), 0u);
+    }
+  }
+}
+
 TEST(RenderSession, PassesAddSamplesUntilSomethingChanges) {
   for (const std::string device : {"cpu", "cpu:2"}) {
     SCOPED_TRACE(device);

@@ -8,6 +8,8 @@
 #include "app/options/option_list.h"
 #include "app/report/counter_fields.h"
 #include "app/report/report.h"
+#include "common/platform/build_info.h"
+#include "common/scene/data/scene_facts.h"
 
 namespace pt {
 namespace {
@@ -244,6 +246,80 @@ TEST(ReportFields, OfTheCsv) {
   for (const OptionEntry& entry : option_list()) EXPECT_EQ(found.erase(option_key(entry)), 1u);
   for (const auto& [name, value] : expected) EXPECT_EQ(found[name], value) << name;
   EXPECT_EQ(found.size(), expected.size());
+}
+
+// The header of an image: options apart, whose texts are those of the command line.
+TEST(ReportFields, OfTheHeader) {
+  std::map<std::string, std::string> header = report_metadata(two_repeats(), unequal_report());
+  std::erase_if(header, [](const auto& entry) { return entry.first.starts_with("ptexp.option."); });
+  const BuildInfo& build = build_info();
+  EXPECT_EQ(header.at("ptexp.build").substr(0, build.build_type.size() + 2),
+            build.build_type + ", ");
+  header.erase("ptexp.build");
+  const std::map<std::string, std::string> expected{
+      {"ptexp.version", build.version}, {"ptexp.commit", build.commit},
+      {"ptexp.device", "Device"},       {"ptexp.samples_done", "37"},
+      {"ptexp.ended_by", "time_limit"}, {"ptexp.relative_error", "0.15625"},
+      {"ptexp.paths", "11000000"},      {"ptexp.rays", "22000000"},
+      {"ptexp.exposure", "2.25"},       {"ptexp.kernel_ms", "5.500000"},
+      {"ptexp.scene_ms", "401.500000"}, {"ptexp.setup_ms", "402.500000"},
+      {"ptexp.load_ms", "403.500000"},  {"ptexp.transfer_ms", "404.500000"}};
+  EXPECT_EQ(header, expected);
+  RenderReport plain = unequal_report();
+  plain.exposure.reset(), plain.runs.back().relative_error.reset();
+  header = report_metadata(two_repeats(), plain);
+  EXPECT_FALSE(header.contains("ptexp.relative_error") || header.contains("ptexp.exposure"));
+}
+
+// Medians are of both repeats; rates are by the median of the kernel times, 5.5 ms.
+TEST(ReportFields, OfTheTable) {
+  RenderReport report = unequal_report();
+  report.runs.back().devices.push_back({"cuda:0", 5, 22'000, 2.0, 4.25});
+  report.memory.clear();
+  EXPECT_EQ(report_table(two_repeats(), report),
+            R"(serial of 'spheres', 600x300, 37 samples per pixel, on Device, 2 repeats
+
+stage              median ms      min ms      max ms    share   launches
+generate               0.500       0.250       0.750    9.1 %          7
+intersect              2.125       1.500       2.750   38.6 %         46
+denoise                0.625       0.375       0.875   11.4 %         11
+kernel time            5.500       3.000       8.000                  64
+
+device             kernel ms     wall ms    units           samples
+cuda:1                 3.000       4.500        3             1,500
+cuda:0                 2.000       4.250        5            22,000
+
+paths                   11,000,000     2000.00 Mpaths/s
+rays                    27,500,000     5000.00 Mrays/s
+  of them shadow         5,500,000
+waves                           23
+NaN, Inf samples                13  left out of the image
+mutations                3,100,000        4.75 Mmutations/s
+chains                       5,100  after 3,200 bootstrap paths (13.8 ms)
+brightness b                   0.6  +- 0.14 mean luminance
+large steps                32.00 %
+  accepted                 11.00 %
+small accepted             84.00 %
+ended by                time_limit
+standard error            0.156250  of the image's mean luminance
+
+not in the kernel time: scene 401.5 ms, set-up 402.5 ms, loading kernels 403.5 ms, transfer 404.5 ms, writing the image 405.5 ms
+)");
+}
+
+TEST(ReportFields, OfTheSceneThatIsPrinted) {
+  EXPECT_EQ(scene_text(unequal_report().scene),
+            "scene: 101 triangles, 103 instances, 104 spheres, 106 materials, 108 lights, "
+            "107 textures\nmemory: meshes 0.2 KB, textures 0.2 KB\n"
+            "tree: sbvh, 301 nodes, depth 303, SAH cost 304.5, 305.5 bytes per triangle, built in "
+            "306 ms\n");
+  SceneFacts one;
+  one.triangles = one.lights = 1;
+  one.tree = {"sah", 2, 3, 4, 5.25, 6.75, 9.94};
+  EXPECT_EQ(scene_text(one),
+            "scene: 1 triangle, 1 light\ntree: sah, 2 nodes, depth 4, SAH cost 5.2, 6.8 bytes per "
+            "triangle, built in 9.9 ms\n");
+  EXPECT_EQ(scene_text({}), "") << "of spheres alone nothing is said";
 }
 
 }  // namespace

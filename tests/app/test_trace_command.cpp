@@ -1,8 +1,16 @@
 // `ptexp trace` and `ptexp rays` as a user runs them, on the CPU.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <sstream>
+
 #include "app/options/command_line.h"
+#include "app/options/option_values.h"
 #include "app/trace_command.h"
+#include "common/error/terminal.h"
 #include "common/options/option_names.h"
 #include "common/scene/builtin/generated/generate_terrain.h"
 #include "temp_folder.h"
@@ -101,6 +109,66 @@ TEST_F(TraceFiles, AppendsRows) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
   EXPECT_NE(text.find(",fast_math,command,device,device_kind,threads,driver,"), std::string::npos);
   EXPECT_NE(text.find(",\"trace --mesh m,n\",CPU,cpu,"), std::string::npos) << text;
+}
+
+TEST_F(TraceFiles, ReplaceNothingThatIsRead) {
+  command_.hits = folder_.file("h");
+  TraceCommand first = command_;
+  std::swap(first.output, first.hits);
+  EXPECT_EQ(trace_command(first), 0);
+  for (const std::string& read : {command_.mesh, command_.rays, command_.hits}) {
+    const std::string before = read_text(read), link = folder_.file("link");
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(read, link);
+    for (const std::string& name : {read, link}) {
+      TraceCommand to_output = command_, to_csv = command_;
+      to_output.output = name, to_csv.csv = name;
+      expect_error([&] { trace_command(to_output); }, "--output " + name + ": is the file " + read);
+      expect_error([&] { trace_command(to_csv); }, name + ": ");
+    }
+    EXPECT_EQ(read_text(read), before);
+  }
+  RaysCommand rays;
+  rays.scene = rays.output = command_.mesh;
+  expect_error([&] { rays_command(rays); }, "--output " + command_.mesh + ": is the file");
+}
+
+// By their values: what is printed, and what the row has of it.
+TEST_F(TraceFiles, PrintTheNumbersOfTheRow) {
+  command_.csv = folder_.file("c");
+  command_.runs.repeat = 4;
+  command_.quiet = false;
+  flush_printed();
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(trace_command(command_), 0);
+  flush_printed();
+  const std::string text = testing::internal::GetCapturedStdout();
+  std::istringstream file(read_text(command_.csv));
+  std::map<std::string, std::string> row;
+  std::string names, values;
+  std::getline(file, names), std::getline(file, values);
+  std::istringstream all_names(names), all_values(values);
+  for (std::string name, value; std::getline(all_names, name, ',');)
+    std::getline(all_values, value, ','), row[name] = value;
+  const auto number = [&](const char* name) { return std::stod(row.at(name)); };
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(
+      text, found,
+      std::regex("time +([0-9.]+) ms, ([0-9.]+) to ([0-9.]+) in 4 runs\nrate +([0-9.]+) Mrays/s")))
+      << text;
+  const char* const columns[] = {"time_ms", "time_min_ms", "time_max_ms", "mrays_per_s"};
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_NEAR(std::stod(found[i + 1]), number(columns[i]), i == 3 ? 0.051 : 6e-5) << columns[i];
+  EXPECT_LT(number("time_min_ms"), number("time_ms"));
+  EXPECT_LT(number("time_ms"), number("time_max_ms"));
+  EXPECT_NEAR(number("mrays_per_s"), number("rays") / number("time_ms") / 1e3,
+              1e-4 * number("mrays_per_s"));
+  EXPECT_NE(
+      text.find(fmt::format("{} nodes, {:.1f} bytes per triangle\n",
+                            grouped(std::stoull(row.at("nodes"))), number("bytes_per_triangle"))),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find(fmt::format("SAH cost {:.2f}\n", number("sah_cost"))), std::string::npos);
 }
 
 TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {

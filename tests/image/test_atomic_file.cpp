@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <thread>
 
 #include "common/image/atomic_file.h"
 #include "common/image/temporary_file.h"
@@ -224,6 +225,67 @@ TEST(AtomicFile, ALinkToNothingIsNotReplaced) {
   expect_error([&] { write_file_atomically(folder.file("link"), "x"); }, "link to nothing");
   EXPECT_EQ(fs::read_symlink(folder.file("link")), "nothing");
   EXPECT_EQ(folder.entries(), Names{"link"});
+}
+
+TEST(AtomicFile, APipesReaderMayComeLateAndReadSlowly) {
+  const TempFolder folder;
+  const std::string path = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const std::string sent(300'000, 'x');  // more than a pipe holds
+  std::string got;
+  std::thread reader([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    std::ifstream file(path, std::ios::binary);
+    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    got.assign(std::istreambuf_iterator<char>(file), {});
+  });
+  write_file_atomically(path, sent);
+  reader.join();
+  EXPECT_EQ(got, sent);
+}
+
+TEST(AtomicFile, APipeWithoutAReaderIsGivenUpAfterASignal) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const TempFolder folder;
+  const std::string path = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const auto write = [&] {
+    std::signal(SIGTERM, [](int) { hurry_pipe_writers(); });
+    std::thread([] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(300));
+      ::kill(::getpid(), SIGTERM);
+    }).detach();
+    try {
+      write_file_atomically(path, "x");
+    } catch (const Error& error) {
+      std::fputs(error.what(), stderr);
+      std::_Exit(3);
+    }
+  };
+  EXPECT_EXIT(write(), testing::ExitedWithCode(3), "pipe: nobody reads this pipe");
+}
+
+TEST(AtomicFile, OneFileHasManyNames) {
+  const TempFolder folder;
+  const std::string a = folder.file("a"), b = folder.file("b");
+  write_text(a, "x"), write_text(b, "x");
+  fs::create_symlink("a", folder.file("link"));
+  fs::create_hard_link(a, folder.file("hard"));
+  fs::create_symlink(".", folder.file("here"));
+  for (const char* name : {"a", "link", "hard", "here/a", "././a"})
+    EXPECT_TRUE(is_same_file(a, folder.file(name)) && is_same_file(folder.file(name), a)) << name;
+  EXPECT_FALSE(is_same_file(a, b));
+  ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  fs::create_symlink("pipe", folder.file("other"));
+  EXPECT_TRUE(is_same_file(folder.file("pipe"), folder.file("./pipe")));
+  EXPECT_FALSE(is_same_file(folder.file("pipe"), folder.file("other"))) << "nothing is replaced";
+  // Of files that do not exist yet.
+  EXPECT_TRUE(is_same_file(folder.file("new"), folder.file("here/new")));
+  EXPECT_FALSE(is_same_file(folder.file("new"), folder.file("newer")));
+  EXPECT_FALSE(is_same_file(folder.file("new"), a));
+  EXPECT_FALSE(is_same_file("", "") || is_same_file(a, "") || is_same_file("", a));
+  expect_error([&] { check_not_read("--stats", folder.file("hard"), a); },
+               "--stats " + folder.file("hard") + ": is the file " + a);
 }
 
 TEST(AtomicFile, AFullDeviceIsAnError) {

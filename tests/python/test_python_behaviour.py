@@ -2,6 +2,7 @@
 import gc
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -165,6 +166,211 @@ class Work(TestCase):
         self.assertEqual(process.communicate(timeout=60)[0], "(8, 8, 3)\n")
         self.assertEqual(process.returncode, 0)
         self.assertLess(time.monotonic() - begin, 30)
+
+
+def run_python(program, *, timeout=60, **popen):
+    """A Python of its own, with the package; what it prints."""
+    head = f"import sys; sys.path[:0] = {[p for p in [os.environ.get('PTEXP_PYTHON_PATH')] if p]!r}; import ptexp\n"
+    return subprocess.run([sys.executable, "-c", head + textwrap.dedent(program)], capture_output=True,
+                          text=True, timeout=timeout, check=False, **popen)
+
+
+class NothingIsLost(TestCase):
+    """Whatever is raised after a sample was finished has the image."""
+
+    def test_by_progress(self):
+        class Slotted(Exception):
+            __slots__ = ()
+
+        def refuse(done, total):
+            if done:
+                raise ZeroDivisionError("enough")
+
+        path = self.folder / "part.exr"
+        with self.assertRaisesRegex(ZeroDivisionError, "enough") as raised:
+            ptexp.render("cornell", width=96, height=96, spp=100000, progress=refuse, output=path,
+                         stats=self.folder / "s.json")
+        image = raised.exception.image
+        self.assertLess(image.stats["samples_done"], 100000)
+        self.assertFalse(image.stats["complete"])
+        self.assert_same_bits(image.array, ptexp.read_image(path).array)
+        samples = image.stats["samples_done"]
+        self.assert_same_bits(image.array, ptexp.render("cornell", width=96, height=96, spp=samples).array)
+        self.assertTrue((self.folder / "s.json").exists())
+
+    def test_by_a_warning(self):
+        # A checkpoint that cannot be written at the end is one.
+        folder, size = self.folder / "gone", {"width": 96, "height": 96, "spp": 300}
+        folder.mkdir()
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            with self.assertRaisesRegex(ptexp.SceneWarning, "--checkpoint: cannot write") as raised:
+                ptexp.render("cornell", **size, checkpoint=folder / "c.exr",
+                             progress=lambda done, total: shutil.rmtree(folder, ignore_errors=True))
+        self.assert_same_bits(raised.exception.image.array, ptexp.render("cornell", **size).array)
+
+    def test_by_files_that_cannot_be_written(self):
+        # The folders vanish while it renders: each file is tried, and each is named.
+        a, b = self.folder / "a", self.folder / "b"
+        a.mkdir(), b.mkdir()
+
+        def remove(done, total):
+            for folder in (a, b):
+                if folder.exists():
+                    folder.rmdir()
+
+        with self.assertRaises(ptexp.Error) as raised:
+            ptexp.render("cornell", **SMALL, output=a / "i.exr", stats=b / "s.json", csv=self.folder / "r.csv",
+                         progress=remove)
+        self.assertIn(str(a / "i.exr"), str(raised.exception))
+        self.assertIn(str(b / "s.json"), str(raised.exception))
+        self.assertEqual(len((self.folder / "r.csv").read_text().splitlines()), 2)
+        raised.exception.image.save(self.folder / "late.exr")
+
+    def test_by_ctrl_c(self):
+        done = run_python("""
+            import os, signal
+            def interrupt(done, total):
+                if done:
+                    os.kill(os.getpid(), signal.SIGINT)
+            try:
+                ptexp.render("cornell", width=96, height=96, spp=100000, progress=interrupt, output="a.exr")
+            except KeyboardInterrupt as error:
+                print(0 < error.image.stats["samples_done"] < 100000, error.image.array.shape)
+            # At its very end the image is complete.
+            def late(done, total):
+                if done == total:
+                    os.kill(os.getpid(), signal.SIGINT)
+            try:
+                ptexp.render("cornell", width=32, height=32, spp=2, progress=late)
+            except KeyboardInterrupt as error:
+                print(error.image.stats["complete"])
+        """, cwd=self.folder)
+        self.assertEqual(done.stdout, "True (96, 96, 3)\nTrue\n", done.stderr)
+        self.assertTrue((self.folder / "a.exr").exists())
+
+
+class Ends(TestCase):
+    def test_an_interpreter_ends_beside_work(self):
+        """Daemon threads that render, load or save are no reason to abort."""
+        for work in ("ptexp.render('cornell', width=256, height=256, spp=100000)",
+                     "while True: ptexp.load('cornell')",
+                     "image = ptexp.render('cornell', width=8, height=8, spp=1)\nwhile True: image.save('x.exr')",
+                     "while True: ptexp.render('cornell', width=8, height=8, spp=1).stats"):
+            with self.subTest(work):
+                begin = time.monotonic()
+                done = run_python(f"""
+                    import threading, time
+                    def work():
+                        exec({work!r}, dict(ptexp=ptexp))
+                    for _ in range(2):
+                        threading.Thread(target=work, daemon=True).start()
+                    time.sleep(0.7)
+                    print("end", flush=True)
+                """, cwd=self.folder)
+                self.assertEqual((done.returncode, done.stdout), (0, "end\n"), done.stderr)
+                self.assertNotIn("terminate", done.stderr)
+                self.assertLess(time.monotonic() - begin, 30)
+
+    def test_a_saver_beside_a_reader(self):
+        image = ptexp.render("cornell", **SMALL)
+        ends = threading.Event()
+        problems = []
+
+        def read():
+            while not ends.is_set():
+                image._stats = None
+                exposure = image.stats["used"]["exposure"]
+                if exposure not in (None, 1.5, -2.0):
+                    problems.append(exposure)
+
+        thread = threading.Thread(target=read)
+        thread.start()
+        for exposure in (1.5, -2.0) * 50:
+            image.save(self.folder / "a.ppm", exposure=exposure)
+        ends.set()
+        thread.join()
+        self.assertEqual(problems, [])
+
+    def test_two_scenes_are_loaded_at_once(self):
+        """Each has the hash of its own files."""
+        paths = [self.write(f"{name}.xml", room(red=red)) for name, red in (("a", 0.25), ("b", 0.5))]
+        hashes = [ptexp.render(path, **SMALL).metadata["ptexp.scene_hash"] for path in paths]
+        self.assertNotEqual(*hashes)
+        found = [set(), set()]
+
+        def load(which):
+            for _ in range(20):
+                found[which].add(ptexp.render(paths[which], width=2, height=2, spp=1).metadata["ptexp.scene_hash"])
+
+        threads = [threading.Thread(target=load, args=(which,)) for which in (0, 1)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found, [{hashes[0]}, {hashes[1]}])
+
+
+class Texts(TestCase):
+    def test_that_are_no_utf8(self):
+        folder = os.fsencode(self.folder)
+        with open(folder + b"/a.obj", "wb") as file:
+            file.write(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\x1b[31m\nf 1 2 3\n")
+        with self.assertWarnsRegex(ptexp.SceneWarning, r"caf\?\?\[31m is not defined"):
+            ptexp.load(self.folder / "a.obj")
+        with open(folder + b"/b.obj", "wb") as file:
+            file.write(b"mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\nf 1 2 3\n")
+        with open(folder + b"/b.mtl", "wb") as file:
+            file.write(b"newmtl caf\xe9\nKd 0.5 0.5 0.5\n")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            scene = ptexp.load(self.folder / "b.obj")
+        self.assertTrue(any("caf" in name for name in scene.params), list(scene.params))
+        str(scene.params)
+        with open(folder + b"/c.xml", "wb") as file:
+            file.write(b'<scene version="3.0.0"><shape type="caf\xe9"><bsdf type="none\xff"/></shape><bad\xfe/></scene>')
+        with self.assertRaises(ptexp.Error), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            try:
+                ptexp.load(self.folder / "c.xml", strict=True)
+            except ptexp.SceneWarning as warning:
+                raise ptexp.Error(str(warning))
+
+    def test_names_of_files(self):
+        image = ptexp.render("cornell", **SMALL)
+        for name in ("a\0.exr", os.fsdecode(b"caf\xe9.exr")):
+            for use in (lambda: image.save(self.folder / name), lambda: ptexp.read_image(name),
+                        lambda: ptexp.load(name), lambda: ptexp.render("cornell", **SMALL, output=name),
+                        lambda: ptexp.render("cornell", **SMALL, stats=name)):
+                with self.subTest(name), self.assertRaisesRegex(ptexp.Error, "expected text without"):
+                    use()
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_long_messages(self):
+        with self.assertRaises(ptexp.Error) as raised:
+            ptexp.load("x" * 5_000_000 + ".xml")
+        self.assertLess(len(str(raised.exception)), 5000)
+
+
+class Indices(TestCase):
+    def test_what_is_none(self):
+        vertices = np.eye(3, dtype=np.float32)
+        for wrong in (2**32 + 2, -1, 2**40, float("nan"), float("inf"), 1e20, 0.5, -0.25, 2**70, -(2**70)):
+            for made in (lambda x: [[0, 1, x]], lambda x: np.array([[0, 1, x]])):
+                with self.subTest(wrong), self.assertRaisesRegex(ValueError, "expected whole numbers from 0 to"):
+                    ptexp.Mesh(vertices, made(wrong), device="cpu")
+                with self.subTest(wrong), self.assertRaisesRegex(ValueError, "expected whole numbers from 0 to"):
+                    ptexp.Scene.from_dict({"type": "scene", "m": {"type": "mesh", "vertices": vertices,
+                                                                  "triangles": made(wrong)}})
+        for wrong in (np.array([[0, 1, 2j]]), np.array([["0", "1", "2"]])):
+            with self.assertRaisesRegex(ValueError, "expected numbers"):
+                ptexp.Mesh(vertices, wrong, device="cpu")
+        for kind in (np.int8, np.uint8, np.int64, np.uint64, np.float32, np.float64, object):
+            mesh = ptexp.Mesh(vertices, np.array([[0, 1, 2]], dtype=kind), device="cpu")
+            hits = ptexp.trace(mesh, [[1, 1, 1, -1, -1, -1]])
+            self.assertAlmostEqual(float(hits.t[0]), 2 / 3, places=6)
+        with self.assertRaisesRegex(ptexp.Error, "has vertex 4294967295"):
+            ptexp.Mesh(vertices, [[0, 1, 2**32 - 1]], device="cpu")
 
 
 class Rays(TestCase):

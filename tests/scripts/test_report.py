@@ -139,12 +139,15 @@ class Page(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.open, self.wrong, self.references, self.ids, self.exact = [], [], [], [], []
+        self.tags, self.attributes = set(), set()
         self.feed(text)
         self.close()
         self.wrong += self.open
 
     def handle_starttag(self, tag, attrs):
         values = dict(attrs)
+        self.tags.add(tag)
+        self.attributes |= set(values)
         if tag not in VOID:
             self.open.append(tag)
         self.references += [values[name] for name in ("src", "href", "xlink:href", "srcset",
@@ -476,6 +479,57 @@ class Report(unittest.TestCase):
         self.assertTrue({"answers", "audit", "toggles", "image-size", "plain"} <=
                         {name.replace("_", "-") for name in page.ids})
 
+    def test_names_are_text_wherever_they_stand(self):
+        """Markup of a stranger in every field, column, name and fact: no element of the page is his."""
+        evil = "<td><img src=x onerror=alert(1)>\"'</title></svg></script><script>alert(2)</script>\x1b]0;\u202e&"
+        def fields(row):
+            return {key: evil + str(value) if isinstance(value, str) and
+                    key not in ("status", "repeat", "experiment", "commit") else value
+                    for key, value in row.items()}
+        plots = {"toggles": TOGGLES, "image_size": SIZES, "block_size": {**SIZES, "y": "kernel_ms"}}
+        for name, rows in (("toggles", toggles()), ("image_size", sizes()), ("block_size", blocks((4, 3, 2, 1)))):
+            more = facts(name, {**plots[name], "title": evil, "x_label": evil, "y_label": evil})
+            more.update(question=evil + ": " + evil, command=evil, program=[evil], conclusions=[evil],
+                        gpus=["name, " + evil, "G, " + evil], host={"cpu": evil, "cores": 4, "system": evil},
+                        device={"choice": "cuda:0", "name": evil, "detail": evil})
+            # What is a number or chooses a way of executing stays so that all tables are drawn.
+            kept = ("mode", "device_kind", "panel") if name != "toggles" else ("mode",)
+            write(self.folder, name, [{**fields(row), **{key: row[key] for key in kept if key in row}}
+                                      for row in rows], more)
+        # A scene of that name is in sentences, too.
+        write(self.folder, "defaults", [
+            {**toggle("", "x", 1, time, 4), "experiment": "defaults", "scene": evil, "panel": evil, "mode": mode}
+            for mode, time in (("megakernel", 2.0), ("wavefront", 3.0))], facts("defaults", TOGGLES))
+        script = "javascript:alert(3)"
+        write(self.folder, script, [{evil: evil, "b": 1, "c": evil + "2"}], None)
+        (self.folder / "a<b>.png").write_bytes(PIXEL)
+        (self.folder / "a<b>.reference.png").write_bytes(PIXEL)
+        svgs = self.folder.parent / "svgs"
+        self.run_report(self.folder, "--plots", svgs)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        other = self.folder.parent / evil.replace("/", "")
+        shutil.copytree(self.folder, other)
+        both = self.folder.parent / "both.html"
+        self.run_report(self.folder, other, "-o", both)
+        page = Page(both.read_text(encoding="utf-8"))
+        self.assertEqual((page.wrong, {name for name in page.attributes if name.startswith("on")}), ([], set()))
+        self.assertNotIn("<img src=x", both.read_text(encoding="utf-8"))
+        clean = self.make(toggles=toggles(), image_size=sizes(), block_size=blocks((4, 3, 2, 1)))
+        page, expected = Page(text), Page(clean)
+        self.assertEqual(page.wrong, [])
+        self.assertEqual(len(re.findall("<script", text)), len(re.findall("<script", clean)))
+        self.assertNotRegex(text, "<img src=x|[\x00-\x08\x0b-\x1f\u202e]")
+        self.assertGreater(text.count("&lt;td&gt;&lt;img src=x"), 40)
+        for reference in page.references:
+            self.assertRegex(reference, r"^(#|data:image/png;base64,|[\w%-]+\.csv$)")
+        self.assertIn("javascript%3Aalert%283%29.csv", page.references)
+        self.assertFalse({name for name in page.attributes if name.startswith("on")})
+        self.assertEqual(text.count("<img "), 2, "the pair of pictures")
+        self.assertLessEqual(page.tags, expected.tags | {"img", "b", "label", "input", "output", "ul", "li"})
+        self.assertTrue(plots_in(text))
+        for path in svgs.glob("*.svg"):
+            ElementTree.parse(path)
+
     def test_columns_of_tables_of_their_own_and_long_tables(self):
         rows = [{"experiment": "counters", "name": f"row {n}", "status": "measured", "message": "",
                  "commit": f"abc{n}", "kernel": "intersect", "issue": n / 8,
@@ -522,6 +576,10 @@ class Report(unittest.TestCase):
         self.run_report(self.folder, other, "-o", page)
         self.assertIn("takes 4.00 times the time of Device A (geometric mean; from 2.00 to 16.0)",
                       page.read_text(encoding="utf-8"))  # 16, 2, 2; arithmetically 6.67
+        # The row of a name: A's time, B's, and B / A with the interval of the extremes.
+        row = re.search(r'<th scope="row">megakernel: default</th>(.*?)</tr>', text, re.S)[1]
+        self.assertEqual(re.findall('data-v="([^"]*)"', row), ["1.0", "2.0", "2.0"])
+        self.assertIn("2.00 [1.92, 2.08]", row)
         first, second = plots_in(text)
         self.assertEqual(self.places(first, "x"), self.places(second, "x"))
         shutil.copy(self.folder / "toggles.json", other / "toggles.json")

@@ -34,6 +34,7 @@ inline ImageFilm random_film(const Window& window, const FilmPlan& plan, std::ui
     }
     for (PixelMoments& m : part.moments) m = {number(), random(), random() >> 40};
     for (double& feature : part.features) feature = number();
+    part.tally.shadow_rays = random() >> 8, part.tally.nonfinite = random() >> 8;
     part.tally.rays = random() >> 8, part.tally.lengths[y % path_length_bins] = random() >> 8;
     film.put(part);
   }

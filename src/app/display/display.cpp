@@ -24,7 +24,7 @@ Display::Display(const DisplayAddress& address, std::string name, Warn warn)
   try {
     connection_ = std::make_unique<Connection>(address, connect_s);
     thread_ = std::thread([this] { run(); });
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // of the network, or no thread
     connection_.reset();
     if (warn_)
       warn_("--display " + address_text_ + ": " + error.what() + "; the render is not shown");
@@ -99,7 +99,7 @@ void Display::run() {
     std::string problem;
     try {
       send(image);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {  // of the network, or no memory
       problem = error.what();
     }
     lock.lock();

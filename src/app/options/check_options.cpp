@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <span>
 
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
 #include "common/error/error.h"
+#include "common/image/atomic_file.h"
 #include "common/image/codecs/image_io.h"
 #include "common/options/option_names.h"
 
@@ -43,12 +43,6 @@ void check_rule(const OptionRule& rule, const std::string& name, const std::stri
                             value, to_string(*device), joined(rule.devices)));
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  namespace fs = std::filesystem;
-  return !a.empty() && !b.empty() &&
-         fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
-}
-
 void check_files(const Options& o, const GivenOptions& given) {
   const std::pair<const char*, std::string> files[] = {{"output", o.output},
                                                        {"stats", o.stats_file},
@@ -56,7 +50,7 @@ void check_files(const Options& o, const GivenOptions& given) {
                                                        {"checkpoint", o.checkpoint.file}};
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j)
-      if (same_file(files[i].second, files[j].second))
+      if (is_same_file(files[i].second, files[j].second))
         throw Error(fmt::format("--{} {}: is the file of --{} too", files[i].first, files[i].second,
                                 files[j].first));
   if (given.contains("exposure") && o.output.ends_with(".exr"))

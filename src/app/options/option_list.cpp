@@ -458,7 +458,7 @@ void add_measurement(std::vector<OptionEntry>& list) {
           custom(
               "quiet", OptionForm::flag, "", [](Options& o, const std::string&) { o.quiet = true; },
               [](const Options& o) { return o.quiet ? "on" : "off"; }),
-          "No progress and no table, only errors", "-q");
+          "No progress, no table and no warnings of the scene's file", "-q");
 }
 
 }  // namespace

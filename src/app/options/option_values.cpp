@@ -317,9 +317,31 @@ void parse_definition(const std::string& name, const std::string& text,
 std::string definitions_text(const std::map<std::string, std::string>& definitions) {
   std::string text;
   for (const auto& [name, value] : definitions) {
-    text += (text.empty() ? "" : " ") + name + '=' + value;
+    if (!text.empty()) text += ' ';
+    for (const char c : name + '=' + value) {
+      const auto byte = static_cast<unsigned char>(c);
+      text += byte <= ' ' || byte == 0x7f || c == '%' ? fmt::format("%{:02X}", byte)
+                                                      : std::string(1, c);
+    }
   }
   return text;
+}
+
+std::vector<std::string> split_definitions(const std::string& text) {
+  std::vector<std::string> definitions;
+  for (const std::string& part : split(text, ' ')) {
+    if (part.empty()) continue;
+    std::string& definition = definitions.emplace_back();
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      unsigned byte = 0;
+      const char* const digits = part.data() + i + 1;
+      const bool is_code = part[i] == '%' && i + 2 < part.size() &&
+                           std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2;
+      definition += is_code ? static_cast<char>(byte) : part[i];
+      if (is_code) i += 2;
+    }
+  }
+  return definitions;
 }
 
 }  // namespace pt

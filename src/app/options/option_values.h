@@ -96,5 +96,7 @@ void parse_definition(const std::string& name, const std::string& text,
                       std::map<std::string, std::string>& definitions);
 /// "a=1 b=2".
 std::string definitions_text(const std::map<std::string, std::string>& definitions);
+/// The NAME=VALUE of a text that definitions_text has made.
+std::vector<std::string> split_definitions(const std::string& text);
 
 }  // namespace pt

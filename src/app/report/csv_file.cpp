@@ -52,10 +52,16 @@ class File {
 
   void append(const std::string& bytes) const {
     const std::size_t old_size = size();
-    const ssize_t written = write(fd_, bytes.data(), bytes.size());
-    if (written == static_cast<ssize_t>(bytes.size())) return;
-    const std::string reason = written < 0 ? std::strerror(errno) : "no space left";
-    const bool undone = written <= 0 || ftruncate(fd_, static_cast<off_t>(old_size)) == 0;
+    std::size_t done = 0;
+    int problem = 0;
+    while (done < bytes.size() && problem == 0) {  // the second write of a row says why
+      const ssize_t written = write(fd_, bytes.data() + done, bytes.size() - done);
+      if (written < 0 && errno != EINTR) problem = errno;
+      if (written > 0) done += static_cast<std::size_t>(written);
+    }
+    if (problem == 0) return;
+    const std::string reason = std::strerror(problem);
+    const bool undone = done == 0 || ftruncate(fd_, static_cast<off_t>(old_size)) == 0;
     fail(path_, fmt::format("cannot be appended to: {}{}", reason,
                             undone ? "" : "; the last row is incomplete"));
   }

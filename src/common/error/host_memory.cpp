@@ -8,6 +8,7 @@
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include "common/error/memory_error.h"
 
@@ -87,6 +88,13 @@ std::uint64_t free_host_memory(const fs::path& root) {
 }
 
 std::string message_of(const std::exception& error) {
+  const auto* const system = dynamic_cast<const std::system_error*>(&error);
+  const bool is_thread =
+      (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+      std::string_view(error.what()).starts_with("pthread_create has failed");  // oneTBB's
+  if (is_thread)
+    return "a thread cannot be started: expected higher limits of memory (ulimit -v) or processes "
+           "(ulimit -u), or fewer --threads";
   const bool is_memory = dynamic_cast<const std::bad_alloc*>(&error) != nullptr ||
                          dynamic_cast<const std::length_error*>(&error) != nullptr;  // of a vector
   return is_memory ? "not enough host memory for this scene and image size" : error.what();

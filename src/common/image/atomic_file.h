@@ -19,9 +19,20 @@ void check_room(const std::string& path, std::uint64_t size_bytes);
 /// Replaces `path` by `bytes`: they go to a temporary file in the same folder, which is synced and
 /// then renamed. After any failure `path` is as it was and the temporary is gone. A new file gets
 /// the permissions of the umask, a replaced one keeps its own; a link stays, its target is
-/// replaced. A device or pipe (/dev/stdout) has nothing to protect and is written directly.
-/// Throws Error naming `path`.
+/// replaced. A device or pipe (/dev/stdout) has nothing to protect and is written directly: whoever
+/// reads a pipe is waited for. Throws Error naming `path`.
 void write_file_atomically(const std::string& path, std::string_view bytes);
+
+/// Whether both are one file, by whatever names and links; of files that do not exist yet, whether
+/// they will be.
+bool is_same_file(const std::string& a, const std::string& b);
+
+/// Throws Error, naming `option`, where the file that is to be written is one that was read.
+void check_not_read(const std::string& option, const std::string& written, const std::string& read);
+
+/// For handlers of signals that do not end the program: whoever waits for the reader of a pipe,
+/// now or later, gives up after a second.
+void hurry_pipe_writers();
 
 /// Removes the temporary file of a write that will not go on. May be called by signal handlers.
 void remove_unfinished_file();

@@ -2,9 +2,9 @@
 #include <sys/prctl.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "common/error/terminal.h"
 #include "common/mpi/channel_mpi.h"
 
 namespace pt {
@@ -24,7 +24,7 @@ bool is_last_message(MessageKind kind) {
 }  // namespace
 
 void MpiChannel::end_all(MpiTraffic& traffic, int code, const std::string& message) {
-  if (!message.empty()) fmt::print(stderr, "ptexp: error: {}\n", message);
+  if (!message.empty()) print_error(message);
   if (settings_.before_abort) settings_.before_abort();
   traffic.abort(code);
 }

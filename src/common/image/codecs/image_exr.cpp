@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <thread>
 #include <vector>
 
@@ -83,6 +84,17 @@ int compression_threads() {
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 8);
 }
 
+/// Other threads change the time alone, not the bytes: where none can be started this one does all.
+int start_compression_threads() {
+  const int threads = compression_threads();
+  try {
+    if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+  } catch (const std::exception&) {
+    Imf::setGlobalThreadCount(0);
+  }
+  return Imf::globalThreadCount();
+}
+
 std::string encode_exr(const Image& image, const ImageMetadata& metadata, const ToneMapping&) {
   Imf::Header header = header_of(image);
   header.compression() = image.is_compressed ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
@@ -100,9 +112,7 @@ std::string encode_exr(const Image& image, const ImageMetadata& metadata, const 
     stream.bytes.reserve(pixels * bytes_per_pixel(header.channels()) + 65536);
   }
   {
-    // Other threads change the time alone, not the bytes.
-    const int threads = compression_threads();
-    if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);
+    const int threads = start_compression_threads();
     Imf::OutputFile file(stream, header, threads);
     file.setFrameBuffer(buffer);
     file.writePixels(image.height);

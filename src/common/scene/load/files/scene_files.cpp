@@ -5,7 +5,6 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-#include <atomic>
 #include <cstring>
 #include <fstream>
 
@@ -17,8 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::atomic<SceneFiles*> current{nullptr};
-std::mutex one_at_a_time;
+thread_local SceneFiles* current = nullptr;
 
 fs::path normal(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
@@ -59,21 +57,14 @@ class Unpacker {
 
 }  // namespace
 
-SceneFiles::SceneFiles() : turn_(one_at_a_time) { current = this; }
-SceneFiles::~SceneFiles() { current = nullptr; }
+SceneFiles::SceneFiles() : outer_(current) { current = this; }
+SceneFiles::~SceneFiles() { current = outer_; }
 
 void SceneFiles::note(const fs::path& path, std::string_view bytes) {
-  if (SceneFiles* const files = current) files->add(path, bytes);
-}
-
-void SceneFiles::add(const fs::path& path, std::string_view bytes) {
-  const std::string hash = hash_of(bytes);
-  const std::lock_guard lock(mutex_);
-  hashes_[normal(path)] = hash;
+  if (current != nullptr) current->hashes_[normal(path)] = hash_of(bytes);
 }
 
 std::string SceneFiles::hash(const fs::path& folder) const {
-  const std::lock_guard lock(mutex_);
   const fs::path base = normal(folder.empty() ? fs::path(".") : folder / "");
   std::map<std::string, std::string> relative;
   for (const auto& [path, hash] : hashes_) {
@@ -85,7 +76,6 @@ std::string SceneFiles::hash(const fs::path& folder) const {
 }
 
 std::vector<fs::path> SceneFiles::paths() const {
-  const std::lock_guard lock(mutex_);
   std::vector<fs::path> paths;
   for (const auto& entry : hashes_) paths.push_back(entry.first);
   return paths;

@@ -5,15 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace pt {
 
-/// Notes every file that loaders read while it exists. One at a time: another thread waits to make
-/// its own. Loaders of several threads may read at once.
+/// Notes every file that loaders read in its thread while it exists, so that several threads may
+/// load a scene each.
 class SceneFiles {
  public:
   SceneFiles();
@@ -31,10 +30,7 @@ class SceneFiles {
   std::vector<std::filesystem::path> paths() const;
 
  private:
-  void add(const std::filesystem::path& path, std::string_view bytes);
-
-  std::unique_lock<std::mutex> turn_;
-  mutable std::mutex mutex_;
+  SceneFiles* const outer_;                              ///< of this thread, before
   std::map<std::filesystem::path, std::string> hashes_;  ///< by absolute path
 };
 

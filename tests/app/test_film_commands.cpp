@@ -1,0 +1,184 @@
+// verify, compare and merge, by what they print of images whose differences are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <regex>
+
+#include "app/compare_command.h"
+#include "app/merge_command.h"
+#include "app/render_outputs.h"
+#include "app/render_session.h"
+#include "app/verify_command.h"
+#include "common/error/terminal.h"
+#include "common/film/checkpoint.h"
+#include "common/image/atomic_file.h"
+#include "temp_folder.h"
+
+namespace pt {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What `command` prints.
+template <class Action>
+std::string printed(Action command) {
+  flush_printed();
+  testing::internal::CaptureStdout();
+  command();
+  flush_printed();
+  return testing::internal::GetCapturedStdout();
+}
+
+RenderResult render(const std::vector<std::string>& arguments) {
+  const auto command = std::get<RenderCommand>(parse_command_line(arguments));
+  RenderSession session(command, {});
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  return session.render(command, hooks, {});
+}
+
+// A window of 59x37 pixels at 5,3: neither its rims nor its corner are multiples of anything.
+TEST(Verify, FindsAPixelAtEachRimAndNamesIt) {
+  const TempFolder folder;
+  const RenderResult result =
+      render({"--scene", "boxes", "--device", "cpu", "--width", "64", "--height", "48", "--spp",
+              "2", "--max-depth", "3", "--crop", "5,3,64,40"});
+  ASSERT_EQ(result.image.width, 59);
+  ASSERT_EQ(result.image.height, 37);
+  const std::string path = folder.file("a.exr");
+  const VerifyCommand command{path, 1.0, {}};
+  const auto verify = [&](const Image& image, int code) {
+    write_image(path, image, result.header);
+    return printed([&] { EXPECT_EQ(verify_command(command), code); });
+  };
+  const std::string all = path + ": 2183 pixels (100 %) of 2 samples rendered again on ";
+  const std::string clean = verify(result.image, 0);
+  EXPECT_TRUE(clean.starts_with(all) && clean.ends_with(": all bits are equal\n")) << clean;
+  const int places[][2] = {{0, 0}, {58, 0}, {0, 36}, {58, 36}, {58, 17}, {31, 36}, {16, 16}};
+  for (const auto& [x, y] : places) {
+    Image changed = result.image;
+    float& value = changed.rgb[3 * (static_cast<std::size_t>(y) * 59 + x) + 2];
+    value = std::nextafter(value, 2.0f);
+    const std::string text = verify(changed, 1);
+    const std::string end = fmt::format(": 1 differ, the first at {},{}\n", 5 + x, 3 + y);
+    EXPECT_TRUE(text.starts_with(all) && text.ends_with(end)) << text << end;
+  }
+}
+
+Image grey(float value) { return {4, 1, std::vector<float>(12, value)}; }
+
+// One of twelve values is 0.5 + 0.25; by hand: sqrt(0.0625 / 12), 0.0625 / 0.26 / 12.
+TEST(Compare, PrintsTheNumbersOfTwoImages) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr");
+  Image image = grey(0.5f);
+  write_image(b, image, {});
+  image.rgb[7] = 0.75f;
+  write_image(a, image, {});
+  const auto compare = [&](double tolerance, int code) {
+    return printed([&] { EXPECT_EQ(compare_command(a, b, tolerance), code); });
+  };
+  const std::string text = compare(0.2, 1);
+  const std::regex expected(
+      "size                   4x1\n"
+      "RMSE                   0\\.0721687836487\\d*\n"
+      "relMSE                 0\\.02003205\\d*\n"
+      "HDR-FLIP               0\\.\\d{6}\n"
+      "largest difference     0\\.25\n"
+      "differing pixels       1\n"
+      "pixels past tolerance  1\n");
+  EXPECT_TRUE(std::regex_match(text, expected)) << text;
+  EXPECT_NE(compare(0.25, 0).find("pixels past tolerance  0\n"), std::string::npos);
+  write_image(a, grey(0.5f), {});
+  EXPECT_EQ(compare(0, 0),
+            "size                   4x1\nRMSE                   0\nrelMSE                 0\n"
+            "HDR-FLIP               0.000000\nlargest difference     0\n"
+            "differing pixels       0\npixels past tolerance  0\n");
+}
+
+TEST(FilmCommands, ReplaceNoFileThatTheyRead) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr"), link = folder.file("l.exr"),
+                    hard = folder.file("h.exr");
+  write_image(a, grey(0.5f), {});
+  write_image(b, grey(0.25f), {});
+  fs::create_symlink("a.exr", link);
+  fs::create_hard_link(a, hard);
+  const std::string before = read_text(a);
+  const std::string around =
+      folder.file("../" + fs::path(folder.file("")).parent_path().filename().string() + "/a.exr");
+  for (const std::string& name : {a, link, hard, around}) {
+    expect_error([&] { merge_command({name, {b, a}}); }, "merge " + name + ": is the file " + a);
+    expect_error([&] { compare_command(a, b, 0, name); }, "--difference " + name + ": is the file");
+    expect_error([&] { compare_command(b, a, 0, name); }, "--difference " + name + ": is the file");
+    Options options;
+    options.output = folder.file("new.exr");
+    check_not_of_scene(options, {b, a});
+    options.stats_file = name;
+    expect_error([&] { check_not_of_scene(options, {b, a}); }, "--stats " + name);
+    options.stats_file = "", options.csv_file = name;
+    expect_error([&] { check_not_of_scene(options, {b, a}); }, "--csv " + name);
+    options.csv_file = "", options.checkpoint.file = name;
+    expect_error([&] { check_not_of_scene(options, {b, a}); }, "--checkpoint " + name);
+    options.checkpoint.file = "", options.output = name;
+    expect_error([&] { check_not_of_scene(options, {b, a}); }, "--output " + name);
+    options.part = {1, 2};  // which has no image
+    check_not_of_scene(options, {b, a});
+  }
+  EXPECT_EQ(read_text(a), before);
+}
+
+// Places are those of the whole image, not of its crop window.
+TEST(Merge, NamesThePlacesOfACropWindow) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr"), out = folder.file("o.exr");
+  render({"--scene", "boxes", "--device", "cpu", "--width", "40", "--height", "30", "--spp", "2",
+          "--max-depth", "3", "--crop", "7,5,30,24", "--checkpoint", a});
+  Checkpoint checkpoint = read_checkpoint(a);
+  const ImagePlace whole{0, 0, 40, 30};
+  const int places[][2] = {{7, 5}, {29, 5}, {7, 23}, {29, 23}, {18, 11}};
+  for (const auto& [x, y] : places) {
+    const std::size_t pixel = static_cast<std::size_t>(y - 5) * 23 + (x - 7);
+    double& sum = checkpoint.film.pixels[pixel].sum[1];
+    const double before = sum;
+    sum += 1;
+    write_checkpoint(b, checkpoint, {}, whole);
+    sum = before;
+    expect_error(
+        [&] {
+          merge_command({out, {a, b}});
+        },
+        fmt::format("pixel {},{}: differs between {} and {}, both of 2 samples", x, y, a, b));
+  }
+  checkpoint.film.pixels[24].samples = 3;  // the second of the second row
+  expect_error([&] { write_checkpoint(b, checkpoint, {}, whole); },
+               "pixel 8,6 has 3 samples: expected 2");
+  checkpoint.film.clear();
+  write_checkpoint(b, checkpoint, {}, whole);
+  expect_error(
+      [&] {
+        merge_command({out, {b}});
+      },
+      "23x19 pixels at 7,5 have 0 of 2 samples: 100 % of the samples are missing");
+  EXPECT_EQ(printed([&] {
+              merge_command({out, {a}, false, true});
+            }),
+            "wrote " + out + ", of 1 file\n");
+  EXPECT_EQ(read_checkpoint(out).film.samples(), 2u * 23 * 19);
+}
+
+TEST(Attempts, AreAllMade) {
+  Attempts attempts;
+  int made = 0;
+  EXPECT_TRUE(attempts.make([&] { ++made; }));
+  attempts.check();
+  EXPECT_FALSE(attempts.make([&] { throw Error("the first"); }, "; advice"));
+  EXPECT_FALSE(attempts.make([&] { throw std::bad_alloc(); }));
+  EXPECT_TRUE(attempts.make([&] { ++made; }));
+  EXPECT_EQ(made, 2);
+  expect_error([&] { attempts.check(); }, "the first; advice; not enough host memory");
+}
+
+}  // namespace
+}  // namespace pt
