@@ -99,15 +99,15 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
     set_emission(source, place, result);
   }
   both_sides = source.doubleSided && !is_black(result.emission.radiance) &&
-               shine_on_both_sides(place, passes, result);
+               shine_on_both_sides(source, place, passes, result);
   return result;
 }
 
 /// A surface shines on the side of its normal, so that there will be two, one behind the other.
 /// Where they are veils, both together must let through what one would, and show as much of what
 /// they emit.
-bool Materials::shine_on_both_sides(const std::string& place, bool passes,
-                                    MaterialDescription& result) {
+bool Materials::shine_on_both_sides(const tinygltf::Material& source, const std::string& place,
+                                    bool passes, MaterialDescription& result) {
   if (passes) {
     file_.report(place, "doubleSided, emissive and transmissive: light from the front side only");
     return false;
@@ -118,9 +118,23 @@ bool Materials::shine_on_both_sides(const std::string& place, bool passes,
     opacity.offset = 1.0f - std::sqrt(1.0f - both);
     result.emission.radiance *= both / opacity.offset;
   } else if (!opacity.is_constant() && opacity.cutoff == 0.0f) {
-    file_.report(place,
-                 "doubleSided, emissive and BLEND with a texture: two surfaces are used, so that "
-                 "what is half transparent lets a quarter through");
+    const TextureUse base = texture_use(source.pbrMetallicRoughness.baseColorTexture);
+    const std::string at = place + ".pbrMetallicRoughness.baseColorTexture";
+    std::uint32_t& emission = result.emission.texture;
+    const bool coloured = emission != no_texture;
+    std::optional<Textures::Veil> veil;
+    if (!coloured || emission == textures_.add_color(base, at)) {
+      veil = textures_.add_veil(base, at, opacity.scale, coloured);
+    }
+    if (veil) {
+      opacity = textured_opacity(1.0f, veil->opacity);
+      emission = veil->emission;
+    } else {
+      file_.report(
+          place,
+          "doubleSided, emissive and BLEND with different textures: two surfaces are used, "
+          "so that what is half transparent lets a quarter through");
+    }
   }
   return true;
 }

@@ -50,7 +50,8 @@ class Materials {
   /// Metalness as the weight of a metal over what the dielectric base is made of.
   MaterialDescription with_metal(const MaterialDescription& principled,
                                  const MaterialDescription& base);
-  bool shine_on_both_sides(const std::string& place, bool passes, MaterialDescription& result);
+  bool shine_on_both_sides(const tinygltf::Material& source, const std::string& place, bool passes,
+                           MaterialDescription& result);
   void set_volume(const tinygltf::Material& source, const std::string& place,
                   MaterialDescription& result);
   /// The index of refraction of a dielectric base, and, where that is so large that it says how a

@@ -1,6 +1,11 @@
 #include "common/scene/load/gltf/textures.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
 #include "common/scene/load/gltf/document/values.h"
+#include "common/texture/sample_texture.h"
 
 namespace pt::gltf {
 
@@ -125,17 +130,48 @@ TextureImage Textures::integers(const TextureUse& use, const std::string& place)
   return image;
 }
 
-std::uint32_t Textures::decode(const TextureUse& use, const std::string& place,
-                               TextureFormat format, const std::optional<Color>& weights) {
-  const Encoded image = encoded_image(use, place);
+Texture Textures::look_of(const TextureUse& use, TextureFormat format) {
+  const std::string place = fmt::format("textures[{}]", use.texture);
   Texture look;
   look.format = format;
-  apply_sampler(file_, texture(use, place), fmt::format("textures[{}]", use.texture), look);
+  apply_sampler(file_, texture(use, place), place, look);
   if (use.transform.IsObject()) apply_transform(use.transform, look);
   if (const auto map = uv_maps_.find(use.tex_coord); map != uv_maps_.end()) {
     apply_uv_map(map->second, look);
   }
-  return store_.add_memory(image.bytes, image.name, look, weights);
+  return look;
+}
+
+std::uint32_t Textures::decode(const TextureUse& use, const std::string& place,
+                               TextureFormat format, const std::optional<Color>& weights) {
+  const Encoded image = encoded_image(use, place);
+  return store_.add_memory(image.bytes, image.name, look_of(use, format), weights);
+}
+
+std::optional<Textures::Veil> Textures::add_veil(const TextureUse& use, const std::string& place,
+                                                 float factor, bool coloured) {
+  const Encoded encoded = encoded_image(use, place);
+  TextureImage image = decode_texture_image(encoded.bytes, encoded.name, TextureFormat::srgb8);
+  if (image.format != TextureFormat::srgb8) return std::nullopt;
+  TextureImage emission{TextureFormat::rgb32f, image.width, image.height, {}};
+  emission.texels.resize(3 * image.texels.size());
+  Texture size = look_of(use, TextureFormat::srgb8);
+  size.width = image.width, size.height = image.height;
+  for (std::size_t i = 0; i < image.texels.size() / 4; ++i) {
+    const auto x = static_cast<std::uint32_t>(i % image.width);
+    const auto y = static_cast<std::uint32_t>(i / image.width);
+    std::byte* texel = &image.texels[4 * i];
+    const float alpha = factor * static_cast<float>(std::to_integer<int>(texel[3])) / 255.0f;
+    const float through = std::sqrt(1.0f - std::min(alpha, 1.0f));
+    const Color color = coloured ? load_texel(size, image.texels.data(), x, y) : Color(1.0f);
+    const Color shown = (1.0f + through) * color;
+    std::memcpy(&emission.texels[12 * i], &shown, sizeof shown);
+    const auto opacity = static_cast<std::byte>(std::lround(255.0f * (1.0f - through)));
+    texel[0] = texel[1] = texel[2] = opacity;
+  }
+  image.format = TextureFormat::linear8;
+  return Veil{store_.add_image(image, look_of(use, TextureFormat::linear8)),
+              store_.add_image(emission, look_of(use, TextureFormat::rgb32f))};
 }
 
 std::uint32_t Textures::add(const TextureUse& use, const std::string& place, TextureFormat format,

@@ -67,6 +67,15 @@ class Textures {
     return color == no_texture ? no_texture : store_.add_alpha_of(color);
   }
 
+  /// For one of two surfaces, one behind the other, that are to look like one with the opacity
+  /// a = `factor` times the picture's alpha: their opacity, 1 - sqrt(1 - a), and what their
+  /// emission is to be multiplied by, 1 + sqrt(1 - a), `coloured`: times the picture's colour.
+  struct Veil {
+    std::uint32_t opacity, emission;
+  };
+  std::optional<Veil> add_veil(const TextureUse& use, const std::string& place, float factor,
+                               bool coloured);
+
   /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
   /// image cannot be decoded: a factor is then used alone.
   Color mean(const TextureUse& use, const std::string& place);
@@ -80,6 +89,7 @@ class Textures {
   std::uint32_t add(const TextureUse& use, const std::string& place, TextureFormat format,
                     const std::optional<Color>& weights = {},
                     const char* instead = "the factor alone is used");
+  Texture look_of(const TextureUse& use, TextureFormat format);
   std::uint32_t decode(const TextureUse& use, const std::string& place, TextureFormat format,
                        const std::optional<Color>& weights);
   const tinygltf::Texture& texture(const TextureUse& use, const std::string& place) const;
