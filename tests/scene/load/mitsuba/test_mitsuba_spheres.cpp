@@ -82,6 +82,33 @@ TEST(MitsubaSphere, CoordinatesAndDerivativesAreMitsubas) {
                {-0.3f, -0.6f, 0.74162f}});
 }
 
+// Golden. It is the sphere mirrored in its centre, inside out.
+TEST(MitsubaSphere, ANegativeRadiusTurnsAllAround) {
+  const std::string negative = "<float name='radius' value='-1'/>";
+  expect_seen(seen_at(sphere("", bumpy + negative), 0.5f, 0.1f), {{0.531417f, 0.829682f},
+                                                                  {-0.628319f, 3.14159f, 0},
+                                                                  {-2.65002f, -0.530004f, 1.6019f},
+                                                                  {-0.5f, -0.1f, -0.860233f}});
+  expect_seen(seen_at(sphere("<rotate x='1' angle='30'/>", bumpy + negative + flip), 0.5f, 0.1f),
+              {{0.627617f, 0.744588f},
+               {-3.24664f, 2.7207f, 1.5708f},
+               {-1.51827f, -2.48827f, 1.17173f},
+               {0.5f, 0.1f, 0.860233f}});
+  expect_seen(seen_at(sphere("<scale x='-1'/>", bumpy + negative), 0.5f, 0.1f),
+              {{0.968583f, 0.829682f},
+               {0.628319f, -3.14159f, 0},
+               {-2.65002f, -0.530004f, 1.6019f},
+               {0.5f, 0.1f, 0.860233f}});
+  // As triangles.
+  for (const bool flipped : {false, true}) {
+    const SceneData masked = load_xml(sphere("", "<bsdf type='mask'><bsdf type='diffuse'/></bsdf>" +
+                                                     negative + (flipped ? flip : "")))
+                                 .scene;
+    const Mesh& mesh = masked.meshes.at(0);
+    EXPECT_EQ(glm::dot(mesh.normals.at(700), mesh.positions.at(700)) > 0, flipped);
+  }
+}
+
 // Else a scene for the paper's kernels, which know no frames.
 TEST(MitsubaSphere, BubblesAreInsideOut) {
   const Seen bubble = seen_at(sphere("", "<bsdf type='dielectric'/>" + flip), 0.5f, 0.1f);

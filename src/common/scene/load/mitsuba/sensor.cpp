@@ -88,11 +88,16 @@ void read_clips(const Object& sensor, CameraParameters& camera) {
   camera.far_clip = camera.near_clip + (far - near);
 }
 
-void read_lens(const Object& sensor, CameraParameters& camera) {
-  camera.focus_distance = sensor.number("focus_distance", camera.focus_distance);
-  camera.aperture = 2.0f * sensor.number("aperture_radius", 0.0f);
-  if (!(camera.focus_distance > 0.0f) || !(camera.aperture >= 0.0f)) {
-    fail(sensor.element(), "expected a focus_distance above 0 and an aperture_radius not below 0");
+void read_lens(Context& context, const Object& sensor, CameraParameters& camera) {
+  camera.aperture = 2.0f * std::abs(sensor.number("aperture_radius", 0.0f));
+  const float focus = sensor.number("focus_distance", camera.focus_distance);
+  if (focus > 0.0f) {
+    camera.focus_distance = focus;
+  } else if (camera.aperture > 0.0f) {
+    camera.aperture = 0.0f;
+    context.warn_once(
+        "focus", sensor.element(),
+        fmt::format("focus_distance {}; expected one above 0: a pinhole is used", focus));
   }
 }
 
@@ -142,7 +147,7 @@ void read_sensor(Context& context, const Object& sensor) {
     context.scene.camera_medium = read_medium(context, *medium).value_or(no_medium);
   }
   if (type == "thinlens") {
-    read_lens(sensor, camera);
+    read_lens(context, sensor, camera);
   } else {
     sensor.ignore({"focus_distance"});
   }

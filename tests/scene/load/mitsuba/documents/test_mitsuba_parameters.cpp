@@ -346,6 +346,12 @@ TEST(MitsubaParameters, OfSensorsAndFilms) {
       {sensor(number("aperture_radius", 0.1) + number("focus_distance", 3), "thinlens"),
        camera(&CameraParameters::focus_distance), 3},
       {sensor("", "thinlens"), camera(&CameraParameters::aperture), 0},
+      {sensor(number("aperture_radius", -0.1), "thinlens"), camera(&CameraParameters::aperture),
+       0.2},
+      {sensor(number("focus_distance", 0), "thinlens"), camera(&CameraParameters::focus_distance),
+       1},
+      {sensor(number("focus_distance", -3) + number("aperture_radius", 0.1), "thinlens"),
+       camera(&CameraParameters::aperture), 0, "focus_distance -3"},
       {sensor("", "orthographic"), camera(&CameraParameters::orthographic), 1},
       {sensor("", "fisheye"), camera(&CameraParameters::orthographic), 0, "sensor 'fisheye'"},
       {"<camera type='perspective'>" + number("fov", 30) + "</camera>", fov, 30, "", "0.5.0"},
@@ -397,8 +403,6 @@ TEST(MitsubaParameters, OfSensorsAndFilms) {
   fails(sensor(text("focal_length", "0mm")), "focal_length '0mm'");
   fails(sensor(number("near_clip", 0)), "near_clip 0");
   fails(sensor(number("near_clip", 2) + number("far_clip", 2)), "near_clip 2, far_clip 2");
-  fails(sensor(number("focus_distance", 0), "thinlens"), "focus_distance above 0");
-  fails(sensor(number("aperture_radius", -1), "thinlens"), "aperture_radius not below 0");
   fails(film(integer("width", 65536)), "width of the film is 65536");
   fails(film(integer("crop_width", 769)), "a crop of 769x576");
   fails(film(integer("crop_offset_x", -1)), "a crop of");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "common/error/error.h"
@@ -19,6 +20,17 @@ bool same(const Texture& a, const Texture& b) {
          a.offset == b.offset && std::equal(a.u_row, a.u_row + 3, b.u_row) &&
          std::equal(a.v_row, a.v_row + 3, b.v_row) && a.color0 == b.color0 &&
          a.color1 == b.color1 && std::equal(a.nested, a.nested + 2, b.nested);
+}
+
+/// Equal for textures that are the same; of most others it differs.
+std::size_t hash_of(const Texture& texture) {
+  std::size_t hash = texture.offset;
+  const auto add = [&](float value) { hash = 31 * hash + std::hash<float>()(value); };
+  for (int i = 0; i < 3; ++i) {
+    add(texture.u_row[i]), add(texture.v_row[i]);
+    add(texture.color0[i]), add(texture.color1[i]);
+  }
+  return 31 * hash + texture.nested[0] + 17 * std::size_t{texture.nested[1]};
 }
 
 /// The same file as linear8 and as srgb8, or grey, is two images.
@@ -80,13 +92,15 @@ std::uint32_t TextureStore::add_image(const TextureImage& image, const Texture& 
 }
 
 std::uint32_t TextureStore::add_plain(const Texture& texture) {
-  const auto equal =
-      std::ranges::find_if(textures_, [&](const Texture& t) { return same(t, texture); });
-  if (equal == textures_.end()) {
-    textures_.push_back(texture);
-    return static_cast<std::uint32_t>(textures_.size() - 1);
-  }
-  return static_cast<std::uint32_t>(equal - textures_.begin());
+  const std::size_t hash = hash_of(texture);
+  const auto [first, last] = by_hash_.equal_range(hash);
+  const auto equal = std::find_if(
+      first, last, [&](const auto& entry) { return same(textures_[entry.second], texture); });
+  if (equal != last) return equal->second;
+  textures_.push_back(texture);
+  const auto number = static_cast<std::uint32_t>(textures_.size() - 1);
+  by_hash_.emplace(hash, number);
+  return number;
 }
 
 std::uint32_t TextureStore::add_alpha_of(std::uint32_t texture_index) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "common/scene/load/files/images/image_files.h"
@@ -65,7 +66,8 @@ class TextureStore {
 
   std::vector<Texture>& textures_;
   std::vector<std::byte>& texels_;
-  std::map<std::string, Stored> stored_;  ///< by encoding and name
+  std::map<std::string, Stored> stored_;                         ///< by encoding and name
+  std::unordered_multimap<std::size_t, std::uint32_t> by_hash_;  ///< what add_plain() has added
 };
 
 }  // namespace pt

@@ -74,6 +74,8 @@ void ObjectGraph::add_child(Object& object, const Element& child, const LoadOpti
   } else if (is_object(child)) {
     const Object* nested = add(child, options);
     object.nested().push_back({name ? snake_case(*name) : "", "", &child, nested});
+  } else if (child.tag == "null") {
+    return;  // 0.6: nothing under a name
   } else if (child.tag == "alias") {
     aliases_.push_back(&child);
   } else if (child.tag == "path") {
