@@ -130,7 +130,7 @@ TEST(MtlMaps, BrokenPicturesAreReadOnceAndWarnedOf) {
 /// A TGA of one texel.
 std::string tga(char r, char g, char b, char a) {
   const char header[] = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 32, 8};
-  return std::string(header, sizeof(header)) + b + g + r + a;
+  return std::string(header, sizeof(header)) + std::string{b, g, r, a};
 }
 
 // Alpha where there is one, unless the file names a channel; bytes are linear.

@@ -113,7 +113,8 @@ TEST(Mtl, Glass) {
       {"illum 7\nPr 0.5", "rough dielectric 1 1 1.5 0.25 0.25 0"},
       {"illum 7\nd 0.3", "dielectric 1 1.5", "glass lets light pass by itself: d and Tr"},
       {"illum 4\nNi 1.5\nd 0.3", "dielectric 1 1.5", "glass lets light pass by itself: d and Tr"},
-      {"illum 7\nmap_Kd t.ppm", "dielectric 1 1.5", "glass: map_Kd and map_Ks are ignored"},
+      {"illum 7\nNi 1.5\nmap_Kd t.ppm", "dielectric 1 1.5", "glass: map_Kd and map_Ks are ignored"},
+      {"illum 7\nmap_Kd t.ppm", "diffuse 1*"},
       // Blender's alpha.
       {"illum 9\nNi 1.45\nd 0.3\nKd 0.1 0.2 0.3", "diffuse 0.1,0.2,0.3 opacity 0.3"},
       // Maya writes illum 4, Tf and Ni for everything; glass is what has an index.

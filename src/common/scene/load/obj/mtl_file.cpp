@@ -129,8 +129,10 @@ class MtlLines {
 
   void read_comment(std::string_view comment) {
     const std::string text = lower_case(comment.substr(0, 200));
-    is_blenders_ |= text.find("blender") != text.npos;
-    is_meshlabs_ |= text.find("meshlab") != text.npos;
+    const auto names = [&](const char* name) { return text.find(name) != text.npos; };
+    if (names("blender")) exporter_ = Exporter::blender;
+    if (names("cinema 4d")) exporter_ = Exporter::cinema4d;
+    if (names("meshlab")) exporter_ = Exporter::meshlab;
   }
 
   void begin(std::string_view name) {
@@ -156,11 +158,13 @@ class MtlLines {
       }
       if (std::isnan(value)) throw Error("nan");
       const float nearest = value < least ? least : most;
-      warn("range of " + key_, fmt::format("{} {}: expected {}, {} is used", key_,
-                                           clipped(word, 40), range(least, most), nearest));
+      warn("range of " + lower_case(key_),
+           fmt::format("{} {}: expected {}, {} is used", key_, clipped(word, 40),
+                       range(least, most), nearest));
       return nearest;
     } catch (const Error& error) {
-      warn("value of " + key_, fmt::format("{}: {}: the statement is ignored", key_, error.what()));
+      warn("value of " + lower_case(key_),
+           fmt::format("{}: {}: the statement is ignored", key_, error.what()));
       return {};
     }
   }
@@ -178,7 +182,7 @@ class MtlLines {
     value = read;
   }
   void warn_of_second() {
-    warn("second " + key_, fmt::format("a second {}: the last one is used", key_));
+    warn("second " + lower_case(key_), fmt::format("a second {}: the last one is used", key_));
   }
 
   /// One number is grey.
@@ -198,9 +202,10 @@ class MtlLines {
     }
     if (count == 1) color = Color(color.x);
     if (count != 1 && count != 3) {
-      return warn("value of " + key_, fmt::format("{}: expected 1 or 3 numbers, found {}: the "
-                                                  "statement is ignored",
-                                                  key_, count));
+      return warn("value of " + lower_case(key_),
+                  fmt::format("{}: expected 1 or 3 numbers, found {}: the "
+                              "statement is ignored",
+                              key_, count));
     }
     if (is_xyz) color = glm::clamp(of_xyz(color), 0.0f, statement.most);
     set(materials.back().*statement.value, std::optional<Color>(color));
@@ -222,7 +227,8 @@ class MtlLines {
   }
 
   void apply(Unused unused, std::string_view) {
-    if (unused == Unused::warned) warn(key_, key_ + " has no counterpart: it is ignored");
+    if (unused == Unused::warned)
+      warn(lower_case(key_), key_ + " has no counterpart: it is ignored");
   }
 
   void read_illum(std::string_view line) {
@@ -235,8 +241,8 @@ class MtlLines {
   /// What comments say of all. MeshLab wrote Tr 1 for what is opaque, until 2023.
   void finish() {
     for (MtlMaterial& material : materials) {
-      material.is_blenders = is_blenders_;
-      if (!is_meshlabs_ || material.d || material.Tr != 1.0f) continue;
+      material.exporter = exporter_;
+      if (exporter_ != Exporter::meshlab || material.d || material.Tr != 1.0f) continue;
       material.Tr.reset();
       warnings_.add("meshlab", material.place + ": Tr 1 of MeshLab: opaque is used");
     }
@@ -247,7 +253,7 @@ class MtlLines {
   CountedWarnings& warnings_;
   std::size_t line_number_ = 0;
   std::string key_;  ///< of the statement being read
-  bool is_blenders_ = false, is_meshlabs_ = false;
+  Exporter exporter_ = Exporter::unknown;
 };
 
 }  // namespace

@@ -24,11 +24,14 @@ struct MtlMap {
   explicit operator bool() const { return !name.empty(); }
 };
 
+/// Who wrote a file, where its comments say so and it matters.
+enum class Exporter { unknown, blender, cinema4d, meshlab };
+
 /// The members have the names of their statements. Colours and numbers are finite and in range.
 struct MtlMaterial {
   std::string name;
   std::string place;  ///< file, line and name, for messages
-  bool is_blenders = false;
+  Exporter exporter = Exporter::unknown;
   std::optional<Color> Ka, Kd, Ks, Ke, Tf;
   std::optional<float> d, Tr, Ns, Ni, Pr, Pm, Ps, Pc, Pcr, aniso;
   std::optional<int> illum;

@@ -37,6 +37,8 @@ float opacity_of(const MtlMaterial& m) {
 
 bool is_glass(const MtlMaterial& m) {
   if (m.map_d || m.map_Tr) return false;
+  // Cinema 4D and others write illum 7 for whatever they have.
+  if ((m.map_Kd || m.exporter == Exporter::cinema4d) && !m.Ni && !m.Tf) return false;
   if (is_one_of(m.illum, {6, 7})) return true;
   const bool bends = m.Ni && *m.Ni > 1.0f;
   if (m.illum == 4) return bends || !m.Ni;
@@ -121,7 +123,8 @@ class Conversion {
     const bool reflects = is_one_of(m_.illum, {3, 5, 8}), physical = is_physical(m_);
     if (reflects && !physical && max_abs(ks) > max_abs(kd.value)) return metal(ks, kd);
     // Blender writes illum 3 for metals, and in Ka how metallic they are.
-    const bool is_metallic = reflects && m_.is_blenders && m_.Ka && !is_black(*m_.Ka);
+    const bool is_metallic =
+        reflects && m_.exporter == Exporter::blender && m_.Ka && !is_black(*m_.Ka);
     if (physical || is_metallic) return principled(kd, is_metallic ? mean(*m_.Ka) : 0.0f);
     const bool shines = m_.illum && *m_.illum >= 2 && *m_.illum < 10;
     if (!shines || is_black(ks)) {
@@ -132,8 +135,9 @@ class Conversion {
     }
     // A highlight in grey is that of a dielectric; one in colour, or brighter than the rest where
     // no index is given, is what it says.
-    const bool by_index = is_grey(ks) && (m_.Ni || max_abs(ks) <= max_abs(kd.value));
-    return by_index ? principled(kd, 0.0f) : phong(kd, ks);
+    const bool is_bright =
+        !m_.Ni && m_.exporter != Exporter::cinema4d && max_abs(ks) > max_abs(kd.value);
+    return is_grey(ks) && !is_bright ? principled(kd, 0.0f) : phong(kd, ks);
   }
 
   MaterialDescription metal(const Color& ks, const Parameter& kd) {
