@@ -159,8 +159,9 @@ TEST(PbrtShapes, CurvesOfAllBasesArePbrts) {
   expect_near(c, {3, 0, 0}, 1e-3f), expect_near(d, {6, 3, 0}, 1e-3f);
   const auto [e, f] = ends("\"string basis\" \"bspline\" " + points);
   expect_near(e, {5, 1, 0}, 1e-3f), expect_near(f, {6, 5, 1}, 1e-3f);
-  EXPECT_NE(pbrt_error(pbrt_world("Shape \"curve\" " + points)).find("5 points in 'P'; expected"),
-            std::string::npos);
+  EXPECT_NE(
+      pbrt_complaint(pbrt_world("Shape \"curve\" " + points)).find("5 points in 'P'; expected"),
+      std::string::npos);
 }
 
 TEST(PbrtShapes, RibbonsLieAcrossTheirNormals) {
@@ -323,6 +324,21 @@ TEST(LoopSubdivision, NormalsAreThoseOfTheFineTriangles) {
         glm::normalize(glm::cross(fine.positions[t.v[1]] - p, fine.positions[t.v[2]] - p));
     // As pbrt's, they point to where the triangles look clockwise from.
     for (const std::uint32_t v : t.v) ASSERT_GT(-dot(n, fine.normals[v]), 0.97f);
+  }
+}
+
+/// The border's normals against the surface itself, made of finer and finer triangles.
+TEST(LoopSubdivision, NormalsAtABorderAreThoseOfTheLimit) {
+  const Mesh start = bent_sheet();
+  const Mesh coarse = subdivide_loop(start, 0), fine = subdivide_loop(start, 8);
+  for (std::uint32_t v = 0; v < start.positions.size(); ++v) {
+    Vec3 sum(0.0f);
+    for (const TriangleIndices& t : fine.triangles) {
+      if (t.v[0] != v && t.v[1] != v && t.v[2] != v) continue;
+      const Vec3& p = fine.positions[t.v[0]];
+      sum -= glm::normalize(glm::cross(fine.positions[t.v[1]] - p, fine.positions[t.v[2]] - p));
+    }
+    expect_near(coarse.normals[v], glm::normalize(sum), 0.02f);
   }
 }
 

@@ -62,20 +62,22 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
   fail(given->place, fmt::format("encoding '{}'; expected sRGB, linear or 'gamma 2.2'", name));
 }
 
-ColorTexture add_file(Context& context, const Parameter& filename, const Texture& look,
-                      const TextureUse& use) {
-  const auto path = context.resolve(filename.place, filename.strings.at(0));
-  try {
+ColorTexture add_file(Context& context, const Parameter& filename, const std::string& name,
+                      const Texture& look, const TextureUse& use) {
+  ColorTexture result{use.stand_in};
+  attempt_file(context, filename, "its parameter's default", [&] {
+    const auto path = context.resolve(filename.place, name);
     // A number is the alpha of a picture that has one, else the mean of its colours.
     if (use.is_number && context.has_alpha(path)) {
-      return {Color(1.0f), context.textures.add_alpha_of(context.textures.add_file(path, look))};
+      result.texture = context.textures.add_alpha_of(context.textures.add_file(path, look));
+    } else {
+      std::optional<Color> weights;
+      if (use.is_number) weights = Color(1.0f / 3.0f);
+      result.texture = context.textures.add_file(path, look, weights);
     }
-    std::optional<Color> weights;
-    if (use.is_number) weights = Color(1.0f / 3.0f);
-    return {Color(1.0f), context.textures.add_file(path, look, weights)};
-  } catch (const Error& error) {
-    fail(filename.place, error.what());
-  }
+    result.color = Color(1.0f);
+  });
+  return result;
 }
 
 }  // namespace
@@ -93,7 +95,8 @@ ColorTexture read_image_map(Context& context, const Entity& entity, const Textur
   const float scale = parameters.number("scale", 1.0f);
   const bool invert = parameters.boolean("invert", false);
   if (!(scale >= 0.0f)) fail(parameters.place(), "imagemap: expected a scale that is not negative");
-  ColorTexture result = add_file(context, *filename, look, use);
+  ColorTexture result = add_file(context, *filename, parameters.text("filename", ""), look, use);
+  if (result.is_constant()) return result;
   if (encoding.gamma != 1.0f) {
     result = bake(context, {result},
                   [&](const auto& v) { return glm::pow(v[0], Color(encoding.gamma)); });

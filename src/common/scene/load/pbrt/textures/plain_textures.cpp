@@ -43,10 +43,10 @@ void read_mapping(Context& context, const Entity& entity, Texture& texture) {
                                            name));
   }
   if (kind != kinds.end() && kind->second != MappingKind::uv) {
-    context.mappings.push_back(mapping_by_points(entity, kind->second));
+    context.add_mapping(mapping_by_points(entity, kind->second));
     return;
   }
-  context.mappings.emplace_back();
+  context.add_mapping({});
   texture.u_row[0] = parameters.number("uscale", 1.0f);
   texture.v_row[1] = parameters.number("vscale", 1.0f);
   texture.u_row[2] = parameters.number("udelta", 0.0f);

@@ -1,4 +1,4 @@
-#include "common/scene/load/pbrt/media/glowing_gas.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -14,7 +14,6 @@ namespace {
 constexpr float coldest = 100.0f;    // kelvins
 constexpr float hottest_max = 1e6f;  // hotter light has the same colour
 constexpr int steps = 1024;
-constexpr double y_integral = 106.856895;  // of y-bar over nm: CIE 1931
 
 /// Planck's law at the wavelength of its maximum, by that law and Wien's, W / (m^2 sr nm).
 double peak_radiance(double kelvins) {

@@ -15,6 +15,8 @@ class GlowingGas {
  public:
   explicit GlowingGas(float hottest_kelvins);
 
+  static constexpr double y_integral = 106.856895;  ///< of y-bar over nm: CIE 1931
+
   /// Black up to 100 K; `kelvins` at most the hottest.
   Color radiance(float kelvins) const;
 
