@@ -197,6 +197,59 @@ TEST(PbrtEarlier, PicturesOfTheSkyAreByLongitude) {
   expect_near(loaded.scene.environment.pixels.at(100), {3, 6, 12}, 1e-4f);
 }
 
+TEST(PbrtEarlier, TexturesAreRead) {
+  const TempFolder folder;
+  write_text(folder.file("a.png"), std::string("P6 1 1 255\n\x80\x40\x20"));
+  const auto at = [&](const std::string& textures, const char* use) {
+    write_text(folder.file("scene.pbrt"),
+               pbrt_world(lit + textures + " Material \"matte\" " + use + " Shape \"disk\""));
+    const LoadedScene loaded = load_pbrt_file(folder.file("scene.pbrt"));
+    EXPECT_EQ(loaded.warnings.size(), 1u);
+    return loaded.scene;
+  };
+  const auto kd = [&](const std::string& textures) {
+    const SceneData scene = at(textures, "\"texture Kd\" \"t\"");
+    const Parameter& p = scene.materials.back().parameters[0];
+    if (p.texture == no_texture) return p.value;
+    return p.value *
+           sample_texture(scene.textures.data(), p.texture, scene.texels.data(), {0.5f, 0.5f});
+  };
+  const std::string t = "Texture \"t\" \"color\" ";
+  const std::string map =
+      t + "\"imagemap\" \"string filename\" \"a.png\" \"bool trilinear\" \"true\" ";
+  const auto srgb = [](double v) {
+    return static_cast<float>(std::pow((v / 255 + 0.055) / 1.055, 2.4));
+  };
+  expect_near(kd(map), {srgb(128), srgb(64), srgb(32)}, 1e-4f);
+  expect_near(kd(map + "\"bool gamma\" \"false\""), Color(128, 64, 32) / 255.0f, 1e-4f);
+  EXPECT_NEAR(kd(map + "\"float gamma\" 2.2").x, std::pow(128 / 255.0, 2.2), 1e-4);
+  expect_near(kd(t + "\"scale\" \"color tex1\" [.5 .6 .7] \"color tex2\" [.2 .4 1]"),
+              {0.1f, 0.24f, 0.7f});
+  expect_near(kd(t + "\"checkerboard\" \"string aamode\" \"none\" \"color tex1\" [.1 .2 .3]"),
+              {0.1f, 0.2f, 0.3f});
+  // A number is the luminance of a picture, and what is not 0 is opaque.
+  const SceneData masked = at("Texture \"a\" \"float\" \"imagemap\" \"string filename\" \"a.png\" ",
+                              "Attribute \"shape\" \"texture alpha\" \"a\"");
+  const Opacity& opacity = masked.materials[masked.meshes.at(0).material].opacity;
+  EXPECT_GT(opacity.cutoff, 0.0f);
+  EXPECT_LT(opacity.cutoff, 1e-3f);
+  EXPECT_NEAR(
+      sample_texture(masked.textures.data(), opacity.texture, masked.texels.data(), {0.5f, 0.5f}).x,
+      0.212671f * srgb(128) + 0.71516f * srgb(64) + 0.072169f * srgb(32), 5e-3f);
+}
+
+TEST(PbrtEarlier, MediaHaveTheirDefaults) {
+  for (const char* type : {"homogeneous", "heterogeneous"}) {
+    const SceneData scene =
+        load_pbrt_text(fmt::format("Film \"image\" WorldBegin {} MakeNamedMedium \"m\" \"string "
+                                   "type\" \"{}\" \"float density\" [1] MediumInterface \"m\" "
+                                   "\"\" Material \"\" Shape \"sphere\"",
+                                   lit, type))
+            .scene;
+    expect_near(scene.media.at(0).extinction, {2.5511f, 3.2124f, 3.784f});
+  }
+}
+
 TEST(PbrtEarlier, ViewsAreRead) {
   const auto scene = [](const std::string& options) {
     return load_pbrt_text(options +

@@ -15,7 +15,7 @@ const std::map<std::string_view, MediumReader>& medium_readers() {
   static const std::map<std::string_view, MediumReader> table = {
       {"homogeneous", read_homogeneous}, {"uniformgrid", read_uniform_grid},
       {"rgbgrid", read_rgb_grid},        {"cloud", read_cloud},
-      {"nanovdb", read_nanovdb_grids},
+      {"nanovdb", read_nanovdb_grids},   {"heterogeneous", read_uniform_grid},
   };
   return table;
 }

@@ -156,11 +156,13 @@ ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
   context_.mappings = surface.mappings;
   set_media(shape, result);
   const ColorTexture alpha = read_number_texture(context_, shape.shape.parameters, "alpha", 1.0f);
+  // In pbrt-v3 what is not quite clear is opaque.
+  const float cutoff = context_.description.is_earlier ? 1e-4f : 0.0f;
   const bool has_alpha = !alpha.is_constant() || alpha.color.x < 1.0f;
   if (!result.invisible && (has_alpha || !surface.keeps_opacity)) {
     result.material.opacity = alpha.is_constant()
                                   ? constant_opacity(glm::clamp(alpha.color.x, 0.0f, 1.0f))
-                                  : textured_opacity(alpha.color.x, alpha.texture);
+                                  : textured_opacity(alpha.color.x, alpha.texture, cutoff);
     result.invisible = alpha.is_constant() && alpha.color.x <= 0.0f;
   }
   if (shape.area_light && !result.material.passes) add_light(shape, result);

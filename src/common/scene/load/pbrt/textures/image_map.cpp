@@ -33,7 +33,7 @@ void read_filter(Context& context, const Parameters& parameters, Texture& look) 
                                            "point, bilinear, trilinear or EWA",
                                            filter));
   }
-  parameters.ignore({"maxanisotropy"});
+  parameters.ignore({"maxanisotropy", "trilinear"});
 }
 
 /// The curve of a picture's integers: sRGB, or what linear numbers are to be raised to. pbrt asks
@@ -44,6 +44,11 @@ struct Encoding {
 };
 
 Encoding read_encoding(const Parameters& parameters, const std::filesystem::path& path) {
+  // pbrt-v3 says so of all pictures: a curve, or whether there is that of sRGB.
+  if (const Parameter* gamma = parameters.find("gamma", {"bool", "float", "integer"})) {
+    if (gamma->type == "bool") return {parameters.boolean("gamma", true), 1.0f};
+    return {false, parameters.number("gamma", 1.0f)};
+  }
   const Parameter* given = parameters.find("encoding", {"string"});
   std::string ending = path.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -67,12 +72,16 @@ ColorTexture add_file(Context& context, const Parameter& filename, const std::st
   ColorTexture result{use.stand_in};
   attempt_file(context, filename, "its parameter's default", [&] {
     const auto path = context.resolve(filename.place, name);
-    // A number is the alpha of a picture that has one, else the mean of its colours.
-    if (use.is_number && context.has_alpha(path)) {
+    // A number is the alpha of a picture that has one, else the mean of its colours; in pbrt-v3
+    // their luminance.
+    const bool is_earlier = context.description.is_earlier;
+    if (use.is_number && !is_earlier && context.has_alpha(path)) {
       result.texture = context.textures.add_alpha_of(context.textures.add_file(path, look));
     } else {
       std::optional<Color> weights;
-      if (use.is_number) weights = Color(1.0f / 3.0f);
+      if (use.is_number) {
+        weights = is_earlier ? Color(0.212671f, 0.71516f, 0.072169f) : Color(1.0f / 3.0f);
+      }
       result.texture = context.textures.add_file(path, look, weights);
     }
     result.color = Color(1.0f);
