@@ -67,7 +67,7 @@ const Convention conventions[] = {
      "1]\nWorldEnd\n",
      {0.2f, 0.4f, 0.6f},
      {0.2f, 0.4f, 0.6f},
-     2},
+     1},
     // obj2pbrt: uber, areas, attributes around each group.
     {"obj2pbrt",
      "LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" [60]\nFilm \"image\" "
@@ -81,7 +81,7 @@ const Convention conventions[] = {
      "0 2 3 ]\nAttributeEnd\nWorldEnd\n",
      {0.3f, 0.5f, 0.7f},
      {0.3f, 0.5f, 0.7f},
-     2},
+     1},
     // pbrt's own tools write meshes as PLY beside the scene.
     {"plytool",
      "LookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" 60\nFilm \"rgb\" \"integer "
@@ -125,7 +125,7 @@ const Convention conventions[] = {
      // Between texels at u = 1/4 and 3/4, at u = 1/2 - 5 tan(30 degrees) / 16.
      {1, 1, 0},
      {2 * 0.861f, 2 * 0.139f, 0},
-     2},
+     1},
     // pbrt-v4's scenes: attributes, colour spaces, objects.
     {"pbrt-v4-scenes",
      "ColorSpace \"srgb\"\nLookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\" \"float fov\" "
@@ -159,7 +159,7 @@ const Convention conventions[] = {
      "\"geometry/part.pbrt\"\nWorldEnd\n",
      {2, 3, 4},
      {2, 3, 4},
-     2},
+     1},
     // Mitsuba's scenes converted: mirrored world, a coloured lamp as a mesh, two-sided.
     {"mitsuba-converter",
      "Scale -1 1 1\nLookAt 0 0 5 0 0 0 0 1 0\nCamera \"perspective\" \"float fov\" [60]\nFilm "

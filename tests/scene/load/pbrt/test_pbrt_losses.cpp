@@ -281,6 +281,27 @@ TEST(PbrtLimits, CompressedFilesUnpackToALimit) {
   EXPECT_THROW(load_pbrt_file(folder.file("scene.pbrt")), Error);
 }
 
+TEST(PbrtLimits, PicturesOfLightsAreFew) {
+  const TempFolder folder;
+  write_text(folder.file("a.pfm"),
+             "PF\n1 1\n-1\n" + std::string("\0\0\x80\x3f\0\0\x80\x3f\0\0\x80\x3f", 12));
+  const auto loaded = [&](const char* light, int count, const char* before) {
+    std::string world = fmt::format("Shape \"sphere\" {}\n", before);
+    for (int i = 0; i < count; ++i) world += fmt::format("LightSource {}\n", light);
+    write_text(folder.file("scene.pbrt"), pbrt_world(world));
+    return load_pbrt_file(folder.file("scene.pbrt"));
+  };
+  const char* sky = "\"infinite\" \"string filename\" \"a.pfm\"";
+  EXPECT_TRUE(loaded(sky, 16, "").warnings.empty());
+  const LoadedScene skies = loaded(sky, 17, "");
+  EXPECT_EQ(skies.count("more than 16 infinite lights with pictures"), 1);
+  expect_near(skies.scene.environment.pixels.at(99), Color(16.0f), 1e-4f);
+  EXPECT_TRUE(loaded("\"spot\"", 100, "Scale 1 2 1").warnings.empty());
+  EXPECT_EQ(loaded("\"spot\"", 101, "Scale 1 2 1").count("its cone is round"), 1);
+  EXPECT_EQ(loaded("\"spot\" \"float coneangle\" 79", 1, "Scale 1 2 1").count("its cone is round"),
+            1);
+}
+
 TEST(PbrtLosses, PathsOfWindowsAreFound) {
   const TempFolder folder;
   std::filesystem::create_directories(folder.file("textures"));

@@ -24,14 +24,18 @@ double peak_radiance(double kelvins) {
 
 }  // namespace
 
+Color radiance_of_gas(double kelvins) {
+  return static_cast<float>(GlowingGas::y_integral / peak_radiance(kelvins)) *
+         mitsuba::blackbody_to_rgb(kelvins);
+}
+
 GlowingGas::GlowingGas(float hottest_kelvins) {
   const float hottest = std::clamp(hottest_kelvins, 1.01f * coldest, hottest_max);
   step_ = std::log(hottest / coldest) / steps;
   table_.reserve(steps + 1);
   for (int i = 0; i <= steps; ++i) {
     const double kelvins = double{coldest} * std::exp(double{step_} * i);
-    table_.push_back(static_cast<float>(y_integral / peak_radiance(kelvins)) *
-                     mitsuba::blackbody_to_rgb(kelvins));
+    table_.push_back(radiance_of_gas(kelvins));
   }
 }
 

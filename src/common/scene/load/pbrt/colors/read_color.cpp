@@ -22,12 +22,6 @@ Color of_earlier_version(const Color& color) {
   return color / luminance_of(constant);
 }
 
-/// A blackbody of pbrt-v3: its spectrum over its largest value, times a scale.
-Color blackbody_of_earlier_version(double kelvins, double scale) {
-  return static_cast<float>(scale / GlowingGas::y_integral) *
-         GlowingGas(static_cast<float>(kelvins)).radiance(static_cast<float>(kelvins));
-}
-
 Color of_luminance_one(const Parameter& parameter, const Color& color) {
   const float y = luminance_of(color);
   if (y > 0.0f && std::isfinite(y)) return color / y;
@@ -105,7 +99,9 @@ Color blackbody(const Context& context, const Parameter& p) {
     fail(p.place, fmt::format("blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]));
   }
   if (context.description.is_earlier) {
-    return blackbody_of_earlier_version(p.numbers[0], p.numbers.size() > 1 ? p.numbers[1] : 1.0);
+    // Its spectrum over its largest value, times a scale.
+    const double scale = p.numbers.size() > 1 ? p.numbers[1] : 1.0;
+    return static_cast<float>(scale / GlowingGas::y_integral) * radiance_of_gas(p.numbers[0]);
   }
   return of_luminance_one(p, mitsuba::blackbody_to_rgb(p.numbers[0]));
 }

@@ -129,6 +129,7 @@ void Interpreter::pop(const Directive& directive) {
 /// pbrt's camera is where the world's origin has been brought.
 void Interpreter::world_begin(const Directive& directive) {
   if (directive.name == "WorldEnd") {
+    if (description_.is_earlier) return;
     return reporter_.note(directive.place, "WorldEnd is of pbrt's earlier versions: ignored");
   }
   in_world_ = true;

@@ -1,6 +1,7 @@
 // Light from infinitely far: a constant, or a picture of all directions that is resampled to our
 // map.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,8 @@ namespace pt::pbrt {
 namespace {
 
 constexpr int most_columns = 4096;
-constexpr int samples = 4;  // of a pixel of our map, along each side
+constexpr std::size_t most_pictures = 16;  // each is looked up for all of our map
+constexpr int samples = 4;                 // of a pixel of our map, along each side
 
 /// A square is pbrt-v4's map; 'mapname' is pbrt-v3's.
 SkyPicture read_picture(Context& context, const std::filesystem::path& path,
@@ -108,6 +110,10 @@ void SkyLights::add(Context& context, const Entity& entity) {
         read_color(context, parameters, "L", filename ? Color(1.0f) : white, Quantity::illuminant);
   }
   if (filename) {
+    if (pictures_.size() == most_pictures) {
+      fail(filename->place,
+           fmt::format("more than {} infinite lights with pictures", most_pictures));
+    }
     if (!is_invertible(entity.to_world)) {
       fail(parameters.place(), "an infinite light whose transformation has no inverse");
     }
@@ -132,17 +138,15 @@ void SkyLights::store(SceneData& scene) const {
   map.width = 0;
   for (const SkyPicture& picture : pictures_) map.width = std::max(map.width, columns_for(picture));
   map.height = map.width / 2 + 1;
-  map.pixels.clear();
-  map.pixels.reserve(static_cast<std::size_t>(map.width) * map.height);
-  for (int y = 0; y < map.height; ++y) {
+  map.pixels.assign(static_cast<std::size_t>(map.width) * map.height, Color(0.0f));
+  tbb::parallel_for(0, map.height, [&](int y) {
     for (int x = 0; x < map.width; ++x) {
-      Color sum(0.0f);
+      Color& sum = map.pixels[static_cast<std::size_t>(y) * map.width + x];
       for (const SkyPicture& picture : pictures_) {
         sum += picture.scale * mean_around(picture, map, x, y);
       }
-      map.pixels.push_back(sum);
     }
-  }
+  });
   map.to_world = {};
 }
 

@@ -1,4 +1,6 @@
 // Spots in a space that is scaled differently along its axes.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -14,6 +16,7 @@ namespace pt::pbrt {
 namespace {
 
 constexpr std::uint32_t picture_side = 512;
+constexpr std::size_t most_spots = 100;     // 3 MB each
 constexpr float widest = 80.0f * pi / 180.0f;  // beyond, a picture on a plane has too few texels
 
 /// The angle in the world, about the light's direction, within which all of its light is.
@@ -58,11 +61,15 @@ TextureImage picture_of(const Affine& to_light, const Vec3& axis, const DeltaLig
 void stretch_spot(Context& context, const Entity& entity, const Vec3& axis, DeltaLight& light) {
   const float angle =
       light.cos_outer > 0.0f ? outer_angle(entity.to_world, axis, light) : 0.5f * pi;
-  if (!(angle < widest)) {
+  const auto& spots = context.scene.delta_lights;
+  const auto pictures = static_cast<std::size_t>(
+      std::ranges::count_if(spots, [](const DeltaLight& l) { return l.texture != no_texture; }));
+  if (!(angle < widest) || pictures >= most_spots) {
     return context.reporter.warn_once(
         "wide spot", entity.parameters.place(),
-        "a spot wider than 80 degrees in a space that is not scaled alike along all axes: its cone "
-        "is one of the world");
+        fmt::format("a spot wider than 80 degrees, or one of more than {}, in a space that is not "
+                    "scaled alike along all axes: its cone is round",
+                    most_spots));
   }
   const Affine to_light = inverse(entity.to_world);
   light.right = make_frame(light.direction).tangent;

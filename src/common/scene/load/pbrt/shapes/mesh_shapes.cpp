@@ -1,6 +1,7 @@
 // Shapes of triangles and of bilinear patches.
 #include <fmt/format.h>
 
+#include "common/error/host_memory.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/pbrt/shapes/loop_subdivision.h"
 #include "common/scene/load/pbrt/shapes/mesh_reading.h"
@@ -71,6 +72,9 @@ Mesh read_loop_mesh(Context& context, const Entity& entity, const ShapeMaterial&
                                          levels, cage.triangles.size(), most));
   }
   try {
+    // Of each triangle in the end: its vertices, and where its edges are found.
+    constexpr std::uint64_t bytes = 256;
+    check_host_memory((cage.triangles.size() << (2 * levels)) * bytes, "loopsubdiv");
     return subdivide_loop(cage, levels);
   } catch (const Error& error) {
     fail(parameters.place(), error.what());

@@ -14,12 +14,13 @@ namespace {
 template <class Test>
 bool any_part(const SceneData& scene, const MaterialDescription& material, const Test& test) {
   std::vector<const MaterialDescription*> open{&material};
-  std::vector<bool> seen(scene.materials.size());
+  std::vector<bool> seen;
   while (!open.empty()) {
     const MaterialDescription& part = *open.back();
     open.pop_back();
     if (test(part)) return true;
     if (part.node == MaterialNode::none) continue;
+    seen.resize(scene.materials.size());
     for (const std::uint32_t child : part.children) {
       if (seen[child]) continue;
       seen[child] = true;
