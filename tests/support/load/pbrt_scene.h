@@ -55,4 +55,18 @@ inline std::string pbrt_error(const std::string& text, const LoadOptions& option
   return {};
 }
 
+/// What is said of a scene that has something wrong: the Error, or else the first warning, without
+/// the folder.
+inline std::string pbrt_complaint(const std::string& text) {
+  std::string message;
+  try {
+    const LoadedScene loaded = load_pbrt_text(text);
+    if (!loaded.warnings.empty()) message = loaded.warnings.front();
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  const std::size_t name = message.find("scene.pbrt");
+  return name == message.npos ? message : message.substr(name);
+}
+
 }  // namespace pt

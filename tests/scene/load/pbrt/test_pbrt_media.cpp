@@ -175,7 +175,7 @@ TEST(PbrtMedia, OthersAreReportedAndLeftOut) {
 TEST(PbrtMedia, ErrorsNameThePlace) {
   const auto expect = [](const std::string& world, const std::string& place,
                          const std::string& part) {
-    const std::string message = pbrt_error(pbrt_world(lit + world));
+    const std::string message = pbrt_complaint(pbrt_world(lit + world));
     EXPECT_EQ(message.substr(0, message.find(": ")), place) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };
@@ -186,7 +186,7 @@ TEST(PbrtMedia, ErrorsNameThePlace) {
   const auto wrong = [&](const std::string& parameters, const std::string& part,
                          const std::string& type = "homogeneous") {
     const std::string message =
-        pbrt_error(pbrt_world(lit + named_medium(parameters, type) + passing_ball));
+        pbrt_complaint(pbrt_world(lit + named_medium(parameters, type) + passing_ball));
     EXPECT_EQ(message.substr(0, 13), "scene.pbrt:7:") << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };

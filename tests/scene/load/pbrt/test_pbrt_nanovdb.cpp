@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/pbrt/media/glowing_gas.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 #include "load/expect_near.h"
 #include "load/nanovdb_bytes.h"
 #include "load/pbrt_scene.h"
@@ -103,7 +103,7 @@ TEST_F(PbrtNanovdb, FilesAreBesideTheScene) {
 
 TEST_F(PbrtNanovdb, ErrorsNameThePlace) {
   const auto expect = [](const std::string& medium, const std::string& part) {
-    const std::string message = pbrt_error(pbrt_world(world_of_gas(medium)));
+    const std::string message = pbrt_complaint(pbrt_world(world_of_gas(medium)));
     EXPECT_EQ(message.substr(0, 13), "scene.pbrt:7:") << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
   };

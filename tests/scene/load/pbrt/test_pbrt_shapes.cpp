@@ -159,8 +159,9 @@ TEST(PbrtShapes, CurvesOfAllBasesArePbrts) {
   expect_near(c, {3, 0, 0}, 1e-3f), expect_near(d, {6, 3, 0}, 1e-3f);
   const auto [e, f] = ends("\"string basis\" \"bspline\" " + points);
   expect_near(e, {5, 1, 0}, 1e-3f), expect_near(f, {6, 5, 1}, 1e-3f);
-  EXPECT_NE(pbrt_error(pbrt_world("Shape \"curve\" " + points)).find("5 points in 'P'; expected"),
-            std::string::npos);
+  EXPECT_NE(
+      pbrt_complaint(pbrt_world("Shape \"curve\" " + points)).find("5 points in 'P'; expected"),
+      std::string::npos);
 }
 
 TEST(PbrtShapes, RibbonsLieAcrossTheirNormals) {
@@ -303,6 +304,18 @@ Mesh bent_sheet() {
                {{4, 8, 7}}});
 }
 
+/// Half a disk around a vertex of its border that has six neighbours.
+Mesh bent_fan() {
+  return cage({{0, 0, 0},
+               {2, 0, 0.2f},
+               {1.6f, 1.2f, 0.5f},
+               {0.6f, 1.9f, -0.3f},
+               {-0.6f, 1.9f, 0.6f},
+               {-1.6f, 1.2f, 0},
+               {-2, 0, 0.7f}},
+              {{{0, 1, 2}}, {{0, 2, 3}}, {{0, 3, 4}}, {{0, 4, 5}}, {{0, 5, 6}}});
+}
+
 TEST(LoopSubdivision, TheLimitSurfaceIsThatOfAllLevels) {
   for (const Mesh& start : {octahedron(), bent_sheet()}) {
     const Mesh coarse = subdivide_loop(start, 0), fine = subdivide_loop(start, 4);
@@ -324,6 +337,40 @@ TEST(LoopSubdivision, NormalsAreThoseOfTheFineTriangles) {
     // As pbrt's, they point to where the triangles look clockwise from.
     for (const std::uint32_t v : t.v) ASSERT_GT(-dot(n, fine.normals[v]), 0.97f);
   }
+}
+
+/// The border's normals against the surface itself, made of finer and finer triangles. Where a
+/// vertex of the border has more than four neighbours pbrt's formula is near after two levels.
+TEST(LoopSubdivision, NormalsAtABorderAreThoseOfTheLimit) {
+  const auto expect = [](const Mesh& start, int levels, float tolerance) {
+    const Mesh coarse = subdivide_loop(start, levels), fine = subdivide_loop(start, 8);
+    for (std::uint32_t v = 0; v < start.positions.size(); ++v) {
+      Vec3 sum(0.0f);
+      for (const TriangleIndices& t : fine.triangles) {
+        if (t.v[0] != v && t.v[1] != v && t.v[2] != v) continue;
+        const Vec3& p = fine.positions[t.v[0]];
+        sum -= glm::normalize(glm::cross(fine.positions[t.v[1]] - p, fine.positions[t.v[2]] - p));
+      }
+      expect_near(coarse.normals[v], glm::normalize(sum), tolerance);
+    }
+  };
+  expect(bent_sheet(), 0, 0.02f);
+  expect(bent_fan(), 2, 0.04f);
+}
+
+/// pbrt-v4's LoopSubdivide at a vertex with six neighbours: T = sum of weights of the ring.
+TEST(LoopSubdivision, ManyNeighboursAtABorderWeighAsInPbrt) {
+  const Mesh fan = bent_fan();
+  const double theta = double{pi} / 5;
+  Vec3 t = static_cast<float>(std::sin(theta)) * (fan.positions[1] + fan.positions[6]);
+  for (int k = 1; k <= 4; ++k) {
+    t += static_cast<float>((2 * std::cos(theta) - 2) * std::sin(k * theta)) *
+         fan.positions[static_cast<std::size_t>(k) + 1];
+  }
+  const Vec3 normal = glm::normalize(glm::cross(fan.positions[6] - fan.positions[1], -t));
+  const Vec3 own = subdivide_loop(fan, 0).normals[0];
+  EXPECT_NEAR(std::abs(dot(own, normal)), 1.0f, 1e-5f);
+  EXPECT_LT(own.z, 0.0f);
 }
 
 TEST(LoopSubdivision, APlaneStaysAPlaneAndABorderStraight) {

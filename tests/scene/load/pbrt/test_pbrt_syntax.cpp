@@ -25,6 +25,15 @@ TEST(PbrtSyntax, ErrorsNameLineAndColumn) {
     const std::string message = pbrt_error(head + text);
     EXPECT_EQ(message.substr(0, error.size()), error) << text;
   };
+  // What is one thing's fault loses that thing.
+  const auto expect_warning = [&](const std::string& text, const std::string& warning) {
+    EXPECT_EQ(pbrt_error(head + text), "") << text;
+    const std::string message = pbrt_complaint(head + text);
+    EXPECT_EQ(message.substr(0, warning.size()), warning) << text;
+    LoadOptions strict;
+    strict.strict = true;
+    EXPECT_NE(pbrt_error(head + text, strict), "") << text;
+  };
   expect_error("  Shpe \"sphere\"", "scene.pbrt:2:3: 'Shpe'; expected a directive");
   expect_error("Shape sphere", "scene.pbrt:2:7: 'sphere'; expected a \"name\" after Shape");
   expect_error("Translate 1 x 3", "scene.pbrt:2:13: 'x'; expected a finite number");
@@ -32,29 +41,30 @@ TEST(PbrtSyntax, ErrorsNameLineAndColumn) {
   expect_error("Translate 1 nan 3", "scene.pbrt:2:13: 'nan'; expected a finite number");
   expect_error("Translate 1 2", "scene.pbrt:2:14: the file ends here; expected a number");
   expect_error("Shape \"sphere", "scene.pbrt:2:7: a string without an end");
-  expect_error("Shape \"sphere\" \"float radius\" [ 1 2 ]",
-               "scene.pbrt:2:16: 'float radius' has 2 values; expected 1");
+  expect_warning("Shape \"sphere\" \"float radius\" [ 1 2 ]",
+                 "scene.pbrt:2:16: 'float radius' has 2 values; expected 1");
   expect_error("Shape \"sphere\" \"float radius\" \"1\"",
                "scene.pbrt:2:31: '1' as a value of 'float radius'; expected a number");
-  expect_error("Shape \"sphere\" \"string radius\" \"1\"",
-               "scene.pbrt:2:16: parameter 'radius' of Shape 'sphere' is of type 'string'; "
-               "expected float or integer");
+  expect_warning("Shape \"sphere\" \"string radius\" \"1\"",
+                 "scene.pbrt:2:16: parameter 'radius' of Shape 'sphere' is of type 'string'; "
+                 "expected float or integer");
   expect_error("Shape \"sphere\" \"flaot radius\" 1",
                "scene.pbrt:2:16: parameter 'radius' has the unknown type 'flaot'");
-  expect_error("Shape \"sphere\" \"radius\" 1", "scene.pbrt:2:16: \"radius\"; expected a param");
+  expect_error("Shape \"sphere\" \"radius\" 1", "scene.pbrt:2:16: 'radius'; expected a param");
   expect_error("Shape \"sphere\" \"float radius\" [ 1", "scene.pbrt:2:16: the file ends here");
   expect_error("AttributeEnd", "scene.pbrt:2:1: AttributeEnd without its Begin");
   expect_error("AttributeBegin", "scene.pbrt:1:1: a block without its end");
   expect_error("ObjectBegin \"a\" AttributeEnd", "scene.pbrt:2:17: AttributeEnd without");
-  expect_error("ObjectInstance \"a\"", "scene.pbrt:2:1: there is no object 'a'");
+  expect_warning("ObjectInstance \"a\"", "scene.pbrt:2:1: there is no object 'a'");
   expect_error("Film \"rgb\"", "scene.pbrt:2:1: Film after WorldBegin");
-  expect_error("NamedMaterial \"a\" Shape \"sphere\"", "scene.pbrt:2:19: there is no material 'a'");
-  expect_error("Rotate 10 0 0 0", "scene.pbrt:2:1: Rotate about an axis of length zero");
-  expect_error("LookAt 0 0 0  0 1 0  0 1 0", "scene.pbrt:2:1: LookAt: expected two different");
-  expect_error("Material \"diffuse\" \"rgb reflectance\" [1 -1 0] Shape \"sphere\"",
-               "scene.pbrt:2:20: 'rgb reflectance' with a negative number");
-  expect_error("Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"",
-               "scene.pbrt:2:20: there is no spectrum texture 't'");
+  expect_warning("NamedMaterial \"a\" Shape \"sphere\"",
+                 "scene.pbrt:2:19: there is no material 'a'");
+  expect_warning("Rotate 10 0 0 0", "scene.pbrt:2:1: Rotate: expected an axis");
+  expect_warning("LookAt 0 0 0  0 1 0  0 1 0", "scene.pbrt:2:1: LookAt: expected two different");
+  expect_warning("Material \"diffuse\" \"rgb reflectance\" [1 -1 0] Shape \"sphere\"",
+                 "scene.pbrt:2:20: 'rgb reflectance' with a negative number");
+  expect_warning("Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"sphere\"",
+                 "scene.pbrt:2:20: there is no spectrum texture 't'");
   EXPECT_NE(pbrt_error(head + "Include \"scene.pbrt\"").find("scene.pbrt includes itself"),
             std::string::npos);
   EXPECT_EQ(pbrt_error("Shape \"sphere\"").substr(0, 36), "scene.pbrt:1:1: Shape before WorldBe");
@@ -82,7 +92,7 @@ TEST(PbrtSyntax, UnknownThingsAreWarnedOfOnceWithWhatIsExpected) {
 TEST(PbrtSyntax, AMissingFileIsNamedWhereItIsNamed) {
   for (const char* name : {"none.ply", "none.ply.gz"}) {
     const std::string message =
-        pbrt_error(pbrt_world(lit + "Shape \"plymesh\" \"string filename\" \"" + name + "\""));
+        pbrt_complaint(pbrt_world(lit + "Shape \"plymesh\" \"string filename\" \"" + name + "\""));
     EXPECT_EQ(message.substr(0, 17), "scene.pbrt:7:17: ") << message;
     EXPECT_NE(message.find(name), std::string::npos) << message;
   }
@@ -93,7 +103,7 @@ TEST(PbrtSyntax, MessagesAreOneLineWhateverNamesContain) {
        {"Shape \"sphere\" \"no\\nparameter at all\" 1", "NamedMaterial \"a\\nb\" Shape \"sphere\"",
         "Material \"mix\" \"string materials\" [\"a\\n\" \"b\"] Shape \"sphere\"",
         "Include \"a\\nb\"", "ObjectInstance \"a\\nb\""}) {
-    const std::string message = pbrt_error(pbrt_world(lit + text));
+    const std::string message = pbrt_complaint(pbrt_world(lit + text));
     EXPECT_EQ(message.substr(0, 13), "scene.pbrt:7:") << message;
     EXPECT_EQ(message.find('\n'), message.npos) << message;
   }
@@ -104,7 +114,7 @@ TEST(PbrtSyntax, MessagesAreOneLineWhateverNamesContain) {
 
 TEST(PbrtSyntax, AMediumInterfaceHasOneNameOrTwo) {
   const auto error = [](const std::string& names) {
-    return pbrt_error(pbrt_world(lit + "MediumInterface " + names + " Shape \"sphere\""));
+    return pbrt_complaint(pbrt_world(lit + "MediumInterface " + names + " Shape \"sphere\""));
   };
   EXPECT_EQ(error("\"\" \"\""), "");
   EXPECT_EQ(error("\"\""), "");

@@ -29,6 +29,11 @@ std::uint32_t Context::add_material(const MaterialDescription& material) {
   return entry->second;
 }
 
+void Context::add_mapping(const TextureMapping& mapping) {
+  const bool is_known = !mappings.empty() && mappings.front() == mapping;
+  if (!is_known && mappings.size() < 2) mappings.push_back(mapping);
+}
+
 bool Context::has_alpha(const std::filesystem::path& path) {
   const auto [entry, is_new] = alphas_.try_emplace(path, false);
   if (!is_new) return entry->second;
@@ -40,11 +45,30 @@ bool Context::has_alpha(const std::filesystem::path& path) {
   return false;
 }
 
+namespace {
+
+/// A path of Windows whose backslashes were taken for escapes: "textures\\tree.png".
+std::string with_slashes(const std::string& name) {
+  static const std::map<char, std::string> letters = {{'\b', "/b"}, {'\f', "/f"}, {'\n', "/n"},
+                                                      {'\r', "/r"}, {'\t', "/t"}, {'\\', "/"}};
+  std::string path;
+  for (const char c : name) {
+    const auto letter = letters.find(c);
+    path += letter == letters.end() ? std::string(1, c) : letter->second;
+  }
+  return path;
+}
+
+}  // namespace
+
 std::filesystem::path Context::resolve(const Place& place, const std::string& name) {
   const auto warn = [&](const std::string& line) {
     reporter.warn_once("case " + name, place, line);
   };
-  const std::filesystem::path found = find_file(description.folder, name, warn);
+  std::filesystem::path found = find_file(description.folder, name, warn);
+  if (const std::string other = with_slashes(name); found.empty() && other != name) {
+    found = find_file(description.folder, other, warn);
+  }
   return found.empty() ? description.folder / name : found;
 }
 

@@ -1,9 +1,13 @@
 // What the making of one scene shares.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/images/texture_store.h"
@@ -11,6 +15,13 @@
 #include "common/scene/load/pbrt/description/texture_mapping.h"
 
 namespace pt::pbrt {
+
+struct Surface;
+struct ReadTexture;
+
+/// A texture, and what it is read for: as a number or not, which quantity, and what stands in for
+/// a picture that cannot be read.
+using TextureKey = std::tuple<const Entity*, bool, int, float, float, float>;
 
 class Context {
  public:
@@ -40,10 +51,17 @@ class Context {
   /// By texture, while its value is being made: what refers to itself is an error.
   std::set<const Entity*> open_entities;
 
+  /// What was read of materials and textures: each is read once, however many name it.
+  std::map<const Entity*, std::shared_ptr<const Surface>> surfaces;
+  std::map<TextureKey, std::shared_ptr<const ReadTexture>> read_textures;
+  std::uint64_t baked_bytes = 0;  ///< of textures computed from others
+
   /// Whether a picture has an alpha that is not 1 everywhere.
   bool has_alpha(const std::filesystem::path& path);
 
-  std::vector<TextureMapping> mappings;  ///< of the textures read since this was cleared
+  /// Of the textures read since this was cleared. Two different ones tell as much as all.
+  std::vector<TextureMapping> mappings;
+  void add_mapping(const TextureMapping& mapping);
 
   bool lit = false;  ///< a light of the file is in the scene
 
@@ -52,12 +70,32 @@ class Context {
   std::map<std::filesystem::path, bool> alphas_;
 };
 
+/// Reads what a file holds that a parameter names. Where that fails, `instead` is used, which a
+/// warning says.
+template <class Action>
+bool attempt_file(Context& context, const Parameter& filename, const std::string& instead,
+                  const Action& action) {
+  return context.reporter.attempt(instead, "is used", [&] {
+    try {
+      action();
+    } catch (const Error& error) {
+      fail(filename.place, error.what());
+    }
+  });
+}
+
 /// Marks an entity as open; throws Error where it is that already.
 class OpenEntity {
  public:
   OpenEntity(Context& context, const Entity& entity) : context_(context), entity_(entity) {
+    const Parameters& parameters = entity.parameters;
+    if (context.open_entities.size() == most_open) {
+      fail(parameters.place(), fmt::format("{} is nested too deeply; expected at most {} in each "
+                                           "other",
+                                           parameters.what(), most_open));
+    }
     if (!context.open_entities.insert(&entity).second) {
-      fail(entity.parameters.place(), entity.parameters.what() + " refers to itself");
+      fail(parameters.place(), parameters.what() + " refers to itself");
     }
   }
   OpenEntity(const OpenEntity&) = delete;
@@ -65,6 +103,8 @@ class OpenEntity {
   ~OpenEntity() { context_.open_entities.erase(&entity_); }
 
  private:
+  static constexpr std::size_t most_open = 256;
+
   Context& context_;
   const Entity& entity_;
 };

@@ -6,6 +6,7 @@
 
 #include "common/scene/load/files/meshes/text_number.h"
 #include "common/scene/load/mitsuba/spectra/spectra.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 #include "common/scene/load/pbrt/colors/named_spectra.h"
 #include "common/scene/load/pbrt/syntax/source.h"
 
@@ -14,6 +15,13 @@ namespace {
 
 float luminance_of(const Color& c) { return dot(c, Color(0.2126f, 0.7152f, 0.0722f)); }
 
+/// Of light. pbrt-v3 takes spectra as they are: a constant one of 1 has luminance 1.
+Color of_earlier_version(const Color& color) {
+  static const Color constant =
+      mitsuba::spectrum_to_rgb({{360.0, 1.0}, {830.0, 1.0}}, mitsuba::Quantity::emission);
+  return color / luminance_of(constant);
+}
+
 Color of_luminance_one(const Parameter& parameter, const Color& color) {
   const float y = luminance_of(color);
   if (y > 0.0f && std::isfinite(y)) return color / y;
@@ -21,7 +29,8 @@ Color of_luminance_one(const Parameter& parameter, const Color& color) {
        fmt::format("'{} {}' has no light that can be seen", parameter.type, parameter.name));
 }
 
-Color sampled(const Parameter& parameter, const std::vector<double>& numbers, Quantity quantity) {
+Color sampled(const Context& context, const Parameter& parameter,
+              const std::vector<double>& numbers, Quantity quantity) {
   if (numbers.size() % 2 != 0 || numbers.empty()) {
     fail(parameter.place, fmt::format("'spectrum {}' has {} numbers; expected pairs of wavelength "
                                       "(nm) and value",
@@ -37,7 +46,9 @@ Color sampled(const Parameter& parameter, const std::vector<double>& numbers, Qu
   const bool emits = quantity == Quantity::illuminant;
   const Color color = mitsuba::spectrum_to_rgb(
       samples, emits ? mitsuba::Quantity::emission : mitsuba::Quantity::reflectance);
-  return emits ? of_luminance_one(parameter, color) : color;
+  if (!emits) return color;
+  return context.description.is_earlier ? of_earlier_version(color)
+                                        : of_luminance_one(parameter, color);
 }
 
 /// Of a file of lines "wavelength value"; # begins a comment.
@@ -67,13 +78,32 @@ Color named(Context& context, const Parameter& parameter, Quantity quantity) {
   if (const auto illuminant = named_illuminant(name)) return *illuminant;
   if (const auto metal = named_metal(name)) return *metal;
   if (const auto glass = named_glass(name)) return Color(*glass);
-  return sampled(parameter, read_samples(context, parameter), quantity);
+  const std::string stem = std::filesystem::path(name).stem().string();
+  // "spds/Cu.eta.spd" comes with pbrt-v3, not with scenes.
+  const std::size_t dot = stem.find('.');
+  if (dot != stem.npos && !exists(context.resolve(parameter.place, name))) {
+    const auto metal = named_metal("metal-" + stem.substr(0, dot) + '-' + stem.substr(dot + 1));
+    if (metal) return *metal;
+  }
+  return sampled(context, parameter, read_samples(context, parameter), quantity);
 }
 
 Color spectrum_of(Context& context, const Parameter& parameter, Quantity quantity) {
   if (parameter.strings.size() > 1) fail(parameter.place, "a spectrum of more than one name");
   if (!parameter.strings.empty()) return named(context, parameter, quantity);
-  return sampled(parameter, parameter.numbers, quantity);
+  return sampled(context, parameter, parameter.numbers, quantity);
+}
+
+Color blackbody(const Context& context, const Parameter& p) {
+  if (!(p.numbers[0] >= 100 && p.numbers[0] <= 1e6)) {
+    fail(p.place, fmt::format("blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]));
+  }
+  if (context.description.is_earlier) {
+    // Its spectrum over its largest value, times a scale.
+    const double scale = p.numbers.size() > 1 ? p.numbers[1] : 1.0;
+    return static_cast<float>(scale / GlowingGas::y_integral) * radiance_of_gas(p.numbers[0]);
+  }
+  return of_luminance_one(p, mitsuba::blackbody_to_rgb(p.numbers[0]));
 }
 
 Color color_of(Context& context, const Parameter& p, Quantity quantity) {
@@ -84,11 +114,14 @@ Color color_of(Context& context, const Parameter& p, Quantity quantity) {
   };
   if (p.type == "spectrum") return spectrum_of(context, p, quantity);
   if (p.type == "blackbody") {
-    check_count(1);
-    if (!(p.numbers[0] >= 100 && p.numbers[0] <= 1e6)) {
-      fail(p.place, fmt::format("blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]));
-    }
-    return of_luminance_one(p, mitsuba::blackbody_to_rgb(p.numbers[0]));
+    // With a scale in pbrt-v3.
+    check_count(p.numbers.size() == 2 && context.description.is_earlier ? 2 : 1);
+    return blackbody(context, p);
+  }
+  if (p.type == "xyz") {
+    check_count(3);
+    const glm::dvec3 xyz(p.numbers[0], p.numbers[1], p.numbers[2]);
+    return glm::max(Color(glm::inverse(xyz_from_srgb()) * xyz), Color(0.0f));
   }
   if (p.type == "rgb" || p.type == "color") {
     check_count(3);
@@ -135,15 +168,22 @@ Color read_color(Context& context, const Parameter& parameter, Quantity quantity
 Color read_color(Context& context, const Parameters& parameters, std::string_view name,
                  const Color& fallback, Quantity quantity) {
   const Parameter* parameter = parameters.find(name);
-  return parameter ? read_color(context, *parameter, quantity) : fallback;
+  Color color = fallback;
+  if (!parameter) return color;
+  context.reporter.attempt(fmt::format("'{}' of {}", name, parameters.what()),
+                           "is as if it was not given",
+                           [&] { color = read_color(context, *parameter, quantity); });
+  return color;
 }
 
 float read_index(Context& context, const Parameters& parameters, std::string_view name,
                  float fallback) {
   const Parameter* p = parameters.find(name, {"float", "integer", "spectrum"});
   if (!p) return fallback;
-  const float index = p->type == "spectrum" ? mean(read_color(context, *p, Quantity::unbounded))
-                                            : parameters.number(name, fallback);
+  const float index =
+      p->type == "spectrum"
+          ? mean(read_color(context, parameters, name, Color(fallback), Quantity::unbounded))
+          : parameters.number(name, fallback);
   if (p->type == "spectrum") {
     context.reporter.warn_once("dispersion", p->place,
                                fmt::format("'spectrum {}': the index of refraction {} is used for "

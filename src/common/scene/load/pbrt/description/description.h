@@ -21,6 +21,9 @@ struct Entity {
 };
 using EntityPointer = std::shared_ptr<const Entity>;
 
+/// Ends a name that was defined again; what follows it tells which definition is meant.
+inline constexpr char newest_mark = '\x1f';
+
 /// One of its own, or by name; a null pointer is pbrt's default, diffuse.
 using MaterialReference = std::variant<EntityPointer, std::string>;
 
@@ -42,11 +45,13 @@ struct InstanceEntity {
   std::string name;
   Place place;
   Affine to_world;
+  std::uint32_t group = 0;  ///< 0: it may be defined later
 };
 
 struct Description {
   std::filesystem::path folder;  ///< of the scene's own file
   Place place;                   ///< its beginning
+  bool is_earlier = false;       ///< of pbrt-v3 or before, as what it uses shows
   // Null: the file has none.
   EntityPointer camera, film, sampler, integrator, filter;
   std::string camera_medium;  ///< by name; empty: a vacuum

@@ -13,7 +13,8 @@ struct GraphicsState {
   MaterialReference material;
   EntityPointer area_light;
   MediumNames media;
-  std::map<std::string, std::vector<Parameter>, std::less<>> attributes;  ///< by target
+  /// By target; what follows shares them.
+  std::map<std::string, std::shared_ptr<const SharedParameters>, std::less<>> attributes;
 };
 
 }  // namespace pt::pbrt

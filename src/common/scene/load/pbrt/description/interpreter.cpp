@@ -9,6 +9,8 @@
 namespace pt::pbrt {
 namespace {
 
+constexpr int most_inclusions = 20'000;  // of files that include others twice there are soon many
+
 using Method = void (Interpreter::*)(const Interpreter::Directive&);
 
 /// Where a directive may stand.
@@ -44,6 +46,10 @@ const std::map<std::string_view, Entry>& directives() {
       {"Sampler", {&I::option, Block::options}},
       {"Integrator", {&I::option, Block::options}},
       {"PixelFilter", {&I::option, Block::options}},
+      {"SurfaceIntegrator", {&I::option, Block::options}},
+      {"VolumeIntegrator", {&I::earlier, Block::options}},
+      {"Renderer", {&I::earlier, Block::options}},
+      {"Volume", {&I::earlier, Block::world}},
       {"Accelerator", {&I::option, Block::options}},
       {"WorldBegin", {&I::world_begin, Block::options}},
       {"Include", {&I::include}},
@@ -74,8 +80,8 @@ void Interpreter::run(TokenStream& tokens) {
   while (std::optional<Token> token = tokens.next()) {
     const auto found = directives().find(token->text);
     if (token->kind != TokenKind::word || found == directives().end()) {
-      fail(token->place, fmt::format("'{}'; expected a directive, such as Shape or AttributeEnd",
-                                     token->text.substr(0, 40)));
+      fail(token->place,
+           fmt::format("'{}'; expected a directive, such as Shape or AttributeEnd", token->text));
     }
     const auto& [method, block] = found->second;
     if (block != Block::anywhere && (block == Block::world) != in_world_) {
@@ -91,6 +97,10 @@ void Interpreter::run(TokenStream& tokens) {
   }
 }
 
+void Interpreter::report_bad(const Directive& directive, const std::string& message) {
+  reporter_.attempt(directive.name, "is ignored", [&] { fail(directive.place, message); });
+}
+
 std::string Interpreter::name_after(const Directive& directive) const {
   return directive.tokens
       .expect(TokenKind::string, fmt::format("a \"name\" after {}", directive.name))
@@ -100,15 +110,19 @@ std::string Interpreter::name_after(const Directive& directive) const {
 Entity Interpreter::read_entity(const Directive& directive, std::string_view target) {
   const std::string type = name_after(directive);
   std::vector<Parameter> own = read_parameters(directive.tokens, state_.space, reporter_);
-  static const std::vector<Parameter> none;
+  note_earlier_parameters(own);
+  refer_to_newest(own);
   const auto inherited = state_.attributes.find(target);
   return {type,
           Parameters(directive.place, fmt::format("{} '{}'", directive.name, type), std::move(own),
-                     inherited == state_.attributes.end() ? none : inherited->second),
+                     inherited == state_.attributes.end() ? nullptr : inherited->second),
           state_.to_world, state_.space};
 }
 
 std::filesystem::path Interpreter::find(const std::string& name, const Directive& directive) {
+  if (++inclusions_ > most_inclusions) {
+    fail(directive.place, fmt::format("more than {} files are included", most_inclusions));
+  }
   std::error_code ignored;
   const std::filesystem::path folders[] = {description_.folder, directive.tokens.folder()};
   for (const std::filesystem::path& folder : folders) {
@@ -118,18 +132,23 @@ std::filesystem::path Interpreter::find(const std::string& name, const Directive
     reporter_.warn_once("case " + name, directive.place, line);
   };
   const std::filesystem::path found = find_file(description_.folder, name, warn);
-  return found.empty() ? description_.folder / name : found;
+  if (!found.empty()) return found;
+  if (reporter_.options().strict) fail(directive.place, fmt::format("there is no file '{}'", name));
+  reporter_.warn_once("include " + name, directive.place,
+                      fmt::format("there is no file '{}': {} is left out", name, directive.name));
+  return {};
 }
 
 void Interpreter::include(const Directive& directive) {
-  const std::string name = name_after(directive);
-  directive.tokens.include(find(name, directive), directive.place);
+  const std::filesystem::path path = find(name_after(directive), directive);
+  if (!path.empty()) directive.tokens.include(path, directive.place);
 }
 
 /// The state of an imported file is its own.
 void Interpreter::import(const Directive& directive) {
-  const std::string name = name_after(directive);
-  TokenStream tokens(find(name, directive), directive.place, directive.tokens);
+  const std::filesystem::path path = find(name_after(directive), directive);
+  if (path.empty()) return;
+  TokenStream tokens(path, directive.place, directive.tokens);
   const GraphicsState before = state_;
   run(tokens);
   state_ = before;

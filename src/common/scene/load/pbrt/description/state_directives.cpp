@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include "common/scene/load/pbrt/description/interpreter.h"
 #include "common/scene/load/pbrt/description/transforms.h"
@@ -14,13 +16,26 @@ namespace {
 constexpr std::array<std::string_view, 5> attribute_targets = {"shape", "light", "material",
                                                                "medium", "texture"};
 
-Affine read_map(const Interpreter::Directive& directive) {
-  const auto& [tokens, place, name] = directive;
+constexpr std::size_t most_attributes = 100;  // each block may have its own list
+
+std::optional<Affine> read_map(const Interpreter::Directive& directive) {
+  TokenStream& tokens = directive.tokens;
+  const std::string& name = directive.name;
   if (name == "Translate") return read_translate(tokens);
   if (name == "Scale") return read_scale(tokens);
-  if (name == "Rotate") return read_rotate(tokens, place);
-  if (name == "LookAt") return read_look_at(tokens, place);
-  return name == "Identity" ? Affine() : read_matrix(tokens, place);
+  if (name == "Rotate") return read_rotate(tokens);
+  if (name == "LookAt") return read_look_at(tokens);
+  return name == "Identity" ? Affine() : read_matrix(tokens);
+}
+
+/// Throws Error for what is no map.
+void check_map(const std::optional<Affine>& map, const Interpreter::Directive& directive) {
+  if (map) return;
+  const std::string_view expected =
+      directive.name == "Rotate"   ? "an axis that is longer than 0"
+      : directive.name == "LookAt" ? "two different points and an up direction across their line"
+                                   : "0 0 0 1 in the last row of the matrix";
+  fail(directive.place, fmt::format("{}: expected {}", directive.name, expected));
 }
 
 void check_finite(const Affine& map, const Place& place) {
@@ -34,11 +49,15 @@ void check_finite(const Affine& map, const Place& place) {
 }  // namespace
 
 void Interpreter::transform(const Directive& directive) {
-  const Affine map = read_map(directive);
+  const std::optional<Affine> map = read_map(directive);
   if (!state_.moves_start) return;
   const bool replaces = directive.name == "Identity" || directive.name == "Transform";
-  state_.to_world = replaces ? map : state_.to_world * map;
-  check_finite(state_.to_world, directive.place);
+  reporter_.attempt(directive.name, "is ignored", [&] {
+    check_map(map, directive);
+    const Affine moved = replaces ? *map : state_.to_world * *map;
+    check_finite(moved, directive.place);
+    state_.to_world = moved;
+  });
 }
 
 void Interpreter::coordinate_system(const Directive& directive) {
@@ -60,13 +79,25 @@ void Interpreter::coordinate_system(const Directive& directive) {
 void Interpreter::attribute(const Directive& directive) {
   const std::string target = name_after(directive);
   if (std::ranges::find(attribute_targets, target) == attribute_targets.end()) {
-    fail(directive.place, fmt::format("Attribute '{}'; expected shape, light, material, medium or "
+    report_bad(directive, fmt::format("Attribute '{}'; expected shape, light, material, medium or "
                                       "texture",
                                       target));
+    read_parameters(directive.tokens, state_.space, reporter_);
+    return;
   }
-  std::vector<Parameter> list = read_parameters(directive.tokens, state_.space, reporter_);
-  std::vector<Parameter>& all = state_.attributes[target];
-  all.insert(all.end(), list.begin(), list.end());
+  auto all = std::make_shared<SharedParameters>();
+  std::shared_ptr<const SharedParameters>& before = state_.attributes[target];
+  if (before) *all = *before;
+  for (Parameter& own : read_parameters(directive.tokens, state_.space, reporter_)) {
+    // The last of a name holds.
+    std::erase_if(*all, [&](const auto& other) { return other->name == own.name; });
+    if (all->size() == most_attributes) {
+      fail(own.place,
+           fmt::format("more than {} parameters by Attribute '{}'", most_attributes, target));
+    }
+    all->push_back(std::make_shared<const Parameter>(std::move(own)));
+  }
+  before = std::move(all);
 }
 
 void Interpreter::push(const Directive& directive) {
@@ -74,10 +105,13 @@ void Interpreter::push(const Directive& directive) {
   if (object) {
     const std::string name = name_after(directive);
     if (group_ != 0) fail(directive.place, "ObjectBegin inside of another object");
-    const auto next = static_cast<std::uint32_t>(description_.groups.size() + 1);
-    const auto [entry, is_new] = description_.groups.emplace(name, next);
-    if (!is_new) fail(directive.place, fmt::format("an object '{}' was defined before", name));
-    group_ = next;
+    group_ = ++groups_;
+    if (!description_.groups.insert_or_assign(name, group_).second) {
+      reporter_.warn_once("object " + name, directive.place,
+                          fmt::format("an object '{}' was defined before: instances that follow "
+                                      "are of the new one",
+                                      name));
+    }
   }
   stack_.emplace_back(state_, object);
 }
@@ -95,6 +129,7 @@ void Interpreter::pop(const Directive& directive) {
 /// pbrt's camera is where the world's origin has been brought.
 void Interpreter::world_begin(const Directive& directive) {
   if (directive.name == "WorldEnd") {
+    if (description_.is_earlier) return;
     return reporter_.note(directive.place, "WorldEnd is of pbrt's earlier versions: ignored");
   }
   in_world_ = true;
@@ -107,7 +142,8 @@ void Interpreter::color_space(const Directive& directive) {
   const std::string name = name_after(directive);
   const std::optional<ColorSpace> space = color_space_named(name);
   if (!space) {
-    fail(directive.place, fmt::format("ColorSpace '{}'; expected {}", name, color_space_names));
+    return report_bad(directive,
+                      fmt::format("ColorSpace '{}'; expected {}", name, color_space_names));
   }
   state_.space = *space;
 }
@@ -122,8 +158,8 @@ void Interpreter::animation(const Directive& directive) {
   const std::string which =
       directive.tokens.expect(TokenKind::word, "All, StartTime or EndTime").text;
   if (which != "All" && which != "StartTime" && which != "EndTime") {
-    fail(directive.place, fmt::format("ActiveTransform {}; expected All, StartTime or EndTime",
-                                      which.substr(0, 40)));
+    fail(directive.place,
+         fmt::format("ActiveTransform {}; expected All, StartTime or EndTime", which));
   }
   state_.moves_start = which != "EndTime";
   if (which != "All") {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 
 #include "common/scene/load/pbrt/description/interpreter.h"
 #include "common/scene/load/pbrt/description/transforms.h"
@@ -20,24 +21,79 @@ const std::set<std::string_view> idle_options = {"disablepixeljitter",
                                                  "seed",
                                                  "wavefront"};
 
+bool is_earlier_material(std::string_view type) {
+  static const std::set<std::string_view> types = {
+      "disney", "fourier", "glass",     "kdsubsurface", "matte", "metal",
+      "mirror", "plastic", "substrate", "translucent",  "uber"};
+  return types.contains(type);
+}
+
+/// Parameters that pbrt-v4 does not know.
+bool is_of_earlier_version(const Parameter& p) {
+  static const std::set<std::string_view> names = {
+      "mapname", "xwidth", "ywidth", "bumpmap", "namedmaterial1", "nlevels", "trilinear"};
+  return names.contains(p.name) || p.type == "color" || p.type == "xyz" ||
+         (p.type == "blackbody" && p.numbers.size() == 2);
+}
+
 EntityPointer shared(Entity entity) { return std::make_shared<const Entity>(std::move(entity)); }
 
 }  // namespace
+
+void Interpreter::note_earlier(const Place& place, const std::string& what) {
+  if (std::exchange(description_.is_earlier, true)) return;
+  reporter_.note(place, fmt::format("{} is of pbrt-v3 or before: the file is read as one of that "
+                                    "version; `pbrt --upgrade` writes it for pbrt-v4",
+                                    what));
+}
+
+void Interpreter::note_earlier_parameters(const std::vector<Parameter>& parameters) {
+  for (const Parameter& p : parameters) {
+    if (is_of_earlier_version(p)) note_earlier(p.place, fmt::format("'{} {}'", p.type, p.name));
+  }
+}
+
+template <class Table>
+std::string Interpreter::name_for(const Directive& directive, const char* what,
+                                  const std::string& name, const Table& table) {
+  if (!table.contains(name)) return name;
+  const std::string key = fmt::format("{} {}", what, name);
+  reporter_.warn_once(
+      key, directive.place,
+      fmt::format("a {} '{}' was defined before: from here on the new one is used", what, name));
+  return newest_[key] = fmt::format("{}{}{}", name, newest_mark, table.size());
+}
+
+void Interpreter::refer_to_newest(std::vector<Parameter>& parameters) const {
+  if (newest_.empty()) return;
+  for (Parameter& p : parameters) {
+    const bool is_texture = p.type == "texture";
+    const bool is_material =
+        p.type == "string" && (p.name == "materials" || p.name.starts_with("namedmaterial"));
+    if (!is_texture && !is_material) continue;
+    for (std::string& name : p.strings) {
+      const auto newest = newest_.find((is_texture ? "texture " : "material ") + name);
+      if (newest != newest_.end()) name = newest->second;
+    }
+  }
+}
 
 void Interpreter::option(const Directive& directive) {
   EntityPointer entity = shared(read_entity(directive));
   if (directive.name == "Camera") {
     if (!is_invertible(state_.to_world)) {
-      fail(directive.place, "Camera: the transformation has no inverse");
+      return report_bad(directive, "Camera: the transformation has no inverse");
     }
     coordinate_systems_["camera"] = inverse(state_.to_world);
     description_.camera = entity;
     description_.camera_medium = state_.media.outside;
   } else if (directive.name == "Film") {
+    if (entity->type == "image") note_earlier(directive.place, "Film 'image'");
     description_.film = entity;
   } else if (directive.name == "Sampler") {
     description_.sampler = entity;
-  } else if (directive.name == "Integrator") {
+  } else if (directive.name == "Integrator" || directive.name == "SurfaceIntegrator") {
+    if (directive.name != "Integrator") note_earlier(directive.place, directive.name);
     description_.integrator = entity;
   } else if (directive.name == "PixelFilter") {
     description_.filter = entity;
@@ -46,45 +102,62 @@ void Interpreter::option(const Directive& directive) {
 
 void Interpreter::object(const Directive& directive) {
   const std::string name = name_after(directive);
-  if (group_ != 0) fail(directive.place, "ObjectInstance inside of an object");
-  description_.instances.push_back({name, directive.place, state_.to_world});
+  if (group_ != 0) return report_bad(directive, "ObjectInstance inside of an object");
+  const auto group = description_.groups.find(name);
+  description_.instances.push_back({name, directive.place, state_.to_world,
+                                    group == description_.groups.end() ? 0 : group->second});
 }
 
 void Interpreter::material(const Directive& directive) {
   if (directive.name == "NamedMaterial") {
-    state_.material = name_after(directive);
-  } else if (directive.name == "Material") {
-    state_.material = shared(read_entity(directive, "material"));
-  } else {
-    // The "type" stands among the parameters.
-    EntityPointer entity = shared(read_entity(directive, "material"));
-    const std::string name = entity->type;
-    if (!description_.materials.try_emplace(name, entity).second) {
-      reporter_.warn_once("material " + name, directive.place,
-                          fmt::format("a material '{}' was defined before: that holds", name));
-    }
+    const std::string name = name_after(directive);
+    const auto newest = newest_.find("material " + name);
+    state_.material = newest == newest_.end() ? name : newest->second;
+    return;
   }
+  EntityPointer entity = shared(read_entity(directive, "material"));
+  const bool is_named = directive.name == "MakeNamedMaterial";  // the "type" is a parameter
+  const Parameter* named = is_named ? entity->parameters.find("type") : nullptr;
+  const std::string type = !is_named                          ? entity->type
+                           : named && !named->strings.empty() ? named->strings.front()
+                                                              : std::string();
+  if (is_earlier_material(type)) {
+    note_earlier(directive.place, fmt::format("material '{}'", type));
+  }
+  if (!is_named) {
+    state_.material = entity;
+    return;
+  }
+  const std::string name = name_for(directive, "material", entity->type, description_.materials);
+  description_.materials.emplace(name, entity);
 }
 
 /// Texture "name" "float" "type" ...
 void Interpreter::texture(const Directive& directive) {
   const std::string name = name_after(directive);
   const std::string of = name_after(directive);
-  if (of != "float" && of != "spectrum") {
-    fail(directive.place,
-         fmt::format("Texture '{}' of '{}'; expected float or spectrum", name, of));
-  }
-  auto& textures = of == "float" ? description_.float_textures : description_.spectrum_textures;
   EntityPointer entity = shared(read_entity(directive, "texture"));
-  if (!textures.try_emplace(name, entity).second) {
-    reporter_.warn_once("texture " + name, directive.place,
-                        fmt::format("a texture '{}' was defined before: that holds", name));
+  if (of == "color") note_earlier(directive.place, "Texture of 'color'");
+  if (of != "float" && of != "spectrum" && of != "color") {
+    return report_bad(directive,
+                      fmt::format("Texture '{}' of '{}'; expected float or spectrum", name, of));
   }
+  const bool is_number = of == "float";
+  auto& textures = is_number ? description_.float_textures : description_.spectrum_textures;
+  textures.emplace(name_for(directive, "texture", name, textures), entity);
 }
 
 void Interpreter::shape(const Directive& directive) {
   description_.shapes.push_back({read_entity(directive, "shape"), state_.material,
                                  state_.area_light, state_.reverse, state_.media, group_});
+}
+
+void Interpreter::earlier(const Directive& directive) {
+  const Entity entity = read_entity(directive);
+  note_earlier(directive.place, directive.name);
+  reporter_.warn_once(
+      "earlier " + directive.name, directive.place,
+      fmt::format("{} '{}' is of pbrt-v2 and ignored", directive.name, entity.type));
 }
 
 void Interpreter::light(const Directive& directive) {
@@ -93,6 +166,7 @@ void Interpreter::light(const Directive& directive) {
 
 void Interpreter::area_light(const Directive& directive) {
   state_.area_light = shared(read_entity(directive, "light"));
+  if (state_.area_light->type == "area") note_earlier(directive.place, "AreaLightSource 'area'");
 }
 
 void Interpreter::medium(const Directive& directive) {

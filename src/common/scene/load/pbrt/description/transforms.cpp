@@ -20,43 +20,51 @@ bool is_invertible(const Affine& map) {
   return std::isfinite(determinant) && determinant != 0.0f;
 }
 
+std::optional<float> uniform_scale(const Affine& map) {
+  const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
+  const float scale = glm::length(columns[0]);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& next = columns[(i + 1) % 3];
+    if (std::abs(glm::dot(columns[i], next)) > 1e-4f * scale * scale) return std::nullopt;
+    if (std::abs(glm::length(next) - scale) > 1e-4f * scale) return std::nullopt;
+  }
+  return scale > 0.0f ? std::optional(scale) : std::nullopt;
+}
+
 Affine read_translate(TokenStream& tokens) { return translate(Vec3(read_vector(tokens))); }
 Affine read_scale(TokenStream& tokens) { return scale(Vec3(read_vector(tokens))); }
 
-Affine read_rotate(TokenStream& tokens, const Place& place) {
+std::optional<Affine> read_rotate(TokenStream& tokens) {
   const auto degrees = static_cast<float>(tokens.expect_number("an angle in degrees"));
   const DVec3 axis = read_vector(tokens);
   const double length = glm::length(axis);
-  if (!(length > 0)) fail(place, "Rotate about an axis of length zero");
+  if (!(length > 0)) return std::nullopt;
   return rotate(Vec3(axis / length), degrees);
 }
 
-Affine read_look_at(TokenStream& tokens, const Place& place) {
+std::optional<Affine> read_look_at(TokenStream& tokens) {
   const DVec3 eye = read_vector(tokens), target = read_vector(tokens), up = read_vector(tokens);
   const DVec3 z = glm::normalize(target - eye);
   const DVec3 side = glm::cross(glm::normalize(up), z);
-  if (!(glm::length(side) > 1e-9)) {
-    fail(place, "LookAt: expected two different points and an up direction across their line");
-  }
+  if (!(glm::length(side) > 1e-9)) return std::nullopt;
   const DVec3 x = glm::normalize(side), y = glm::cross(z, x);
   const auto row = [&](const DVec3& axis) { return Vec4(Vec3(axis), -glm::dot(axis, eye)); };
-  return {{row(x), row(y), row(z)}};
+  return Affine{{row(x), row(y), row(z)}};
 }
 
-Affine read_matrix(TokenStream& tokens, const Place& place) {
+std::optional<Affine> read_matrix(TokenStream& tokens) {
   tokens.expect(TokenKind::open, "[ and 16 numbers");
   Affine map;
+  bool is_affine = true;
   for (int column = 0; column < 4; ++column) {
     for (int row = 0; row < 4; ++row) {
       const double value = tokens.expect_number("a number of a matrix of 16");
       if (row < 3) map.row[row][column] = static_cast<float>(value);
-      if (row == 3 && std::abs(value - (column == 3 ? 1 : 0)) > 1e-5) {
-        fail(place, "a matrix with perspective; expected 0 0 0 1 in its last row");
-      }
+      if (row == 3) is_affine = is_affine && std::abs(value - (column == 3 ? 1 : 0)) <= 1e-5;
     }
   }
   tokens.expect(TokenKind::close, "] after 16 numbers");
-  return map;
+  return is_affine ? std::optional(map) : std::nullopt;
 }
 
 }  // namespace pt::pbrt

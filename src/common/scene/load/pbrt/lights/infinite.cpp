@@ -1,9 +1,11 @@
 // Light from infinitely far: a constant, or a picture of all directions that is resampled to our
 // map.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/pbrt/description/transforms.h"
@@ -14,50 +16,28 @@ namespace pt::pbrt {
 namespace {
 
 constexpr int most_columns = 4096;
-constexpr int samples = 4;  // of a pixel of our map, along each side
+constexpr std::size_t most_pictures = 16;  // each is looked up for all of our map
+constexpr int samples = 4;                 // of a pixel of our map, along each side
 
-struct Picture {
-  Image image;
-  bool is_equal_area = true;  ///< else by longitude and latitude, as earlier versions have it
-
-  Color at(const Vec3& d) const {
-    Vec2 uv = equal_area_square(d);
-    if (!is_equal_area) {
-      const float phi = std::atan2(d.y, d.x);
-      uv = {phi * 0.5f * inverse_pi + (phi < 0.0f ? 1.0f : 0.0f),
-            std::acos(glm::clamp(d.z, -1.0f, 1.0f)) * inverse_pi};
-    }
-    const auto cell = [](float t, int n) {
-      return std::clamp(static_cast<int>(t * static_cast<float>(n)), 0, n - 1);
-    };
-    const float* p = image.pixel(cell(uv.x, image.width), cell(uv.y, image.height));
-    const auto light = [](float v) { return std::isfinite(v) && v > 0.0f ? v : 0.0f; };
-    return {light(p[0]), light(p[1]), light(p[2])};
-  }
-};
-
-Picture read_picture(const std::filesystem::path& path, const Place& place) {
-  Picture picture;
-  try {
-    picture.image = read_radiance_image(path);
-  } catch (const Error& error) {
-    fail(place, error.what());
-  }
-  const auto& [image, equal_area] = picture;
-  if (image.width != image.height) {
-    if (image.width != 2 * image.height) {
-      fail(place, fmt::format("{}: {}x{} pixels; expected a square, in pbrt's equal-area map, or "
-                              "twice as wide as high",
-                              path.string(), image.width, image.height));
-    }
-    picture.is_equal_area = false;
+/// A square is pbrt-v4's map; 'mapname' is pbrt-v3's.
+SkyPicture read_picture(Context& context, const std::filesystem::path& path,
+                        const Parameter& filename) {
+  SkyPicture picture;
+  picture.image = read_radiance_image(path);
+  const Image& image = picture.image;
+  picture.is_equal_area = image.width == image.height && filename.name == "filename";
+  if (!picture.is_equal_area && image.width != 2 * image.height) {
+    context.reporter.warn_once("sky shape", filename.place,
+                               fmt::format("{}: {}x{} pixels are taken for longitude and latitude; "
+                                           "expected a square, in pbrt's equal-area map, or twice "
+                                           "as wide as high",
+                                           path.string(), image.width, image.height));
   }
   return picture;
 }
 
 /// Of the picture around a pixel of our map, which lies in the world as it is.
-Color mean_around(const Picture& picture, const Affine& to_light, const EnvironmentData& map, int x,
-                  int y) {
+Color mean_around(const SkyPicture& picture, const EnvironmentData& map, int x, int y) {
   Color sum(0.0f);
   for (int j = 0; j < samples; ++j) {
     const double row = y + (j + 0.5) / samples - 0.5;
@@ -66,7 +46,7 @@ Color mean_around(const Picture& picture, const Affine& to_light, const Environm
       const double phi = 2 * double{pi} * ((x + (i + 0.5) / samples) / map.width - 0.5);
       const Vec3 d(std::sin(theta) * std::sin(phi), std::cos(theta),
                    -std::sin(theta) * std::cos(phi));
-      sum += picture.at(glm::normalize(to_light.vector(d)));
+      sum += picture.at(glm::normalize(picture.to_light.vector(d)));
     }
   }
   return sum / static_cast<float>(samples * samples);
@@ -74,7 +54,7 @@ Color mean_around(const Picture& picture, const Affine& to_light, const Environm
 
 /// As pbrt computes it of an equal-area map, with a solid angle of 2 pi over the number of its
 /// pixels for each: half of the light that falls on a surface that faces +z.
-double illuminance_of(const Picture& picture) {
+double illuminance_of(const SkyPicture& picture) {
   constexpr int rows = 512, columns = 1024;
   double sum = 0;
   for (int j = 0; j < rows; ++j) {
@@ -88,60 +68,86 @@ double illuminance_of(const Picture& picture) {
   return double{pi} * sum / (double{rows} * columns);
 }
 
-void add_picture(Context& context, const Entity& entity, const Picture& picture, float scale) {
-  const Affine to_light = inverse(entity.to_world);
-  EnvironmentData& map = context.scene.environment;
-  const int side = picture.is_equal_area ? 2 * picture.image.width : picture.image.width;
-  map.width = std::clamp(side, 64, most_columns);
-  map.height = map.width / 2 + 1;
-  map.pixels.clear();
-  map.pixels.reserve(static_cast<std::size_t>(map.width) * map.height);
-  for (int y = 0; y < map.height; ++y) {
-    for (int x = 0; x < map.width; ++x) {
-      map.pixels.push_back(scale * mean_around(picture, to_light, map, x, y));
-    }
-  }
-  map.to_world = {};
+int columns_for(const SkyPicture& picture) {
+  const int width = picture.image.width;
+  return std::clamp(picture.is_equal_area ? 2 * width : width, 64, most_columns);
 }
 
 }  // namespace
 
-void add_infinite(Context& context, const Entity& entity) {
+Color SkyPicture::at(const Vec3& d) const {
+  Vec2 uv = equal_area_square(d);
+  if (!is_equal_area) {
+    const float phi = std::atan2(d.y, d.x);
+    uv = {phi * 0.5f * inverse_pi + (phi < 0.0f ? 1.0f : 0.0f),
+          std::acos(glm::clamp(d.z, -1.0f, 1.0f)) * inverse_pi};
+  }
+  const auto cell = [](float t, int n) {
+    return std::clamp(static_cast<int>(t * static_cast<float>(n)), 0, n - 1);
+  };
+  const float* p = image.pixel(cell(uv.x, image.width), cell(uv.y, image.height));
+  const auto light = [](float v) { return std::isfinite(v) && v > 0.0f ? v : 0.0f; };
+  return {light(p[0]), light(p[1]), light(p[2])};
+}
+
+void SkyLights::add(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   if (const Parameter* portal = parameters.find("portal")) {
     context.reporter.warn_once("portal", portal->place,
                                "'portal' of an infinite light is not supported: its light comes "
                                "from all around");
   }
-  const float scale = read_light_scale(context, parameters);
+  Color scale = read_light_scale(context, parameters);
   const float illuminance = parameters.number("illuminance", 0.0f);
-  const Parameter* filename = parameters.find("filename", {"string"});
-  const bool has_color = parameters.find("L") != nullptr;
-  if (!filename) {
-    const Color white = to_srgb(Color(1.0f), entity.space);
-    const Color radiance = scale * (illuminance > 0.0f ? illuminance / pi : 1.0f) *
-                           read_color(context, parameters, "L", white, Quantity::illuminant);
-    context.scene.sky.nadir += radiance;
-    context.scene.sky.zenith += radiance;
-    return;
+  const Parameter* filename = find_picture(parameters);
+  const bool is_earlier = filename && filename->name == "mapname";
+  const Color white = to_srgb(Color(1.0f), entity.space);
+  if (filename && !is_earlier && parameters.find("L")) {
+    context.reporter.warn_once("L of a picture", filename->place,
+                               "an infinite light of both 'L' and 'filename': 'L' is ignored");
+  } else {
+    scale *=
+        read_color(context, parameters, "L", filename ? Color(1.0f) : white, Quantity::illuminant);
   }
-  if (has_color) fail(filename->place, "an infinite light of both 'L' and 'filename'");
-  if (context.scene.environment.width > 0) {
-    return context.reporter.warn_once("environments", parameters.place(),
-                                      "more than one infinite light with a picture: the first is "
-                                      "used");
+  if (filename) {
+    if (pictures_.size() == most_pictures) {
+      fail(filename->place,
+           fmt::format("more than {} infinite lights with pictures", most_pictures));
+    }
+    if (!is_invertible(entity.to_world)) {
+      fail(parameters.place(), "an infinite light whose transformation has no inverse");
+    }
+    const bool has_picture = attempt_file(context, *filename, "a constant sky", [&] {
+      const std::string name = parameters.text(filename->name, "");
+      SkyPicture picture = read_picture(context, context.resolve(filename->place, name), *filename);
+      const double own = illuminance > 0.0f ? illuminance_of(picture) : 0.0;
+      picture.scale = scale * (own > 0 ? static_cast<float>(illuminance / own) : 1.0f);
+      picture.to_light = inverse(entity.to_world);
+      pictures_.push_back(std::move(picture));
+    });
+    if (has_picture) return;
   }
-  if (!is_invertible(entity.to_world)) {
-    fail(parameters.place(), "an infinite light whose transformation has no inverse");
-  }
-  const Picture picture = read_picture(
-      context.resolve(filename->place, parameters.text("filename", "")), filename->place);
-  double factor = 1;
-  if (illuminance > 0.0f) {
-    const double own = illuminance_of(picture);
-    if (own > 0) factor = illuminance / own;
-  }
-  add_picture(context, entity, picture, scale * static_cast<float>(factor));
+  const Color radiance = scale * (illuminance > 0.0f ? illuminance / pi : 1.0f);
+  context.scene.sky.nadir += radiance;
+  context.scene.sky.zenith += radiance;
+}
+
+void SkyLights::store(SceneData& scene) const {
+  if (pictures_.empty()) return;
+  EnvironmentData& map = scene.environment;
+  map.width = 0;
+  for (const SkyPicture& picture : pictures_) map.width = std::max(map.width, columns_for(picture));
+  map.height = map.width / 2 + 1;
+  map.pixels.assign(static_cast<std::size_t>(map.width) * map.height, Color(0.0f));
+  tbb::parallel_for(0, map.height, [&](int y) {
+    for (int x = 0; x < map.width; ++x) {
+      Color& sum = map.pixels[static_cast<std::size_t>(y) * map.width + x];
+      for (const SkyPicture& picture : pictures_) {
+        sum += picture.scale * mean_around(picture, map, x, y);
+      }
+    }
+  });
+  map.to_world = {};
 }
 
 }  // namespace pt::pbrt

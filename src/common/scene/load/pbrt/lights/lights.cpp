@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/scene/load/pbrt/description/transforms.h"
+
 namespace pt::pbrt {
 namespace {
 
@@ -41,15 +43,22 @@ void add_spot(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   const float cone = parameters.number("coneangle", 30.0f);
   const float delta = parameters.number("conedeltaangle", 5.0f);
-  if (!(cone > 0.0f && cone <= 180.0f && delta >= 0.0f && delta <= cone)) {
+  if (!(cone > 0.0f && cone <= 180.0f && delta >= 0.0f)) {
     fail(parameters.place(), fmt::format("spot: coneangle {} and conedeltaangle {}; expected "
-                                         "degrees with 0 <= conedeltaangle <= coneangle <= 180",
+                                         "degrees with 0 < coneangle <= 180 and 0 <= "
+                                         "conedeltaangle",
                                          cone, delta));
+  }
+  if (delta > 2.0f * cone) {
+    context.reporter.warn_once("narrow spot", parameters.place(),
+                               "a conedeltaangle of more than twice the coneangle: the spot falls "
+                               "off from its axis on");
   }
   DeltaLight light;
   light.kind = LightKind::spot;
   light.falloff = SpotFalloff::smooth;
-  light.cos_inner = cosine(cone - delta);
+  // As pbrt, the cosine of what is left, which the default of 5 makes negative in narrow cones.
+  light.cos_inner = cosine(delta > 2.0f * cone ? 0.0f : cone - delta);
   light.cos_outer = cosine(cone);
   const float sphere =
       2.0f * pi * ((1.0f - light.cos_inner) + 0.5f * (light.cos_inner - light.cos_outer));
@@ -57,6 +66,10 @@ void add_spot(Context& context, const Entity& entity) {
   const Vec3 from = parameters.point("from", Vec3(0.0f));
   light.position = entity.to_world.point(from);
   light.direction = read_direction(entity, from);
+  if (!uniform_scale(entity.to_world)) {
+    const Vec3 to = parameters.point("to", Vec3(0, 0, 1));
+    stretch_spot(context, entity, glm::normalize(to - from), light);
+  }
   context.scene.delta_lights.push_back(light);
 }
 
@@ -71,36 +84,57 @@ void add_distant(Context& context, const Entity& entity) {
 using Adder = void (*)(Context&, const Entity&);
 
 const std::map<std::string_view, Adder>& adders() {
-  static const std::map<std::string_view, Adder> table = {{"point", add_point},
-                                                          {"spot", add_spot},
-                                                          {"distant", add_distant},
-                                                          {"infinite", add_infinite}};
+  static const std::map<std::string_view, Adder> table = {
+      {"point", add_point}, {"spot", add_spot}, {"distant", add_distant}};
   return table;
 }
 
 }  // namespace
 
-float read_light_scale(const Context& context, const Parameters& parameters) {
-  const float scale = context.imaging_ratio * parameters.number("scale", 1.0f);
-  if (scale >= 0.0f && std::isfinite(scale)) return scale;
-  fail(parameters.place(), fmt::format("{}: a scale below 0", parameters.what()));
+const Parameter* find_picture(const Parameters& parameters) {
+  const Parameter* filename = parameters.find("filename", {"string"});
+  return filename ? filename : parameters.find("mapname", {"string"});
+}
+
+Color read_light_scale(Context& context, const Parameters& parameters) {
+  const Parameter* given = parameters.find("scale");
+  const bool is_color = given && given->type != "float" && given->type != "integer";
+  const Color scale =
+      context.imaging_ratio *
+      (is_color ? read_color(context, parameters, "scale", Color(1.0f), Quantity::unbounded)
+                : Color(parameters.number("scale", 1.0f)));
+  for (int i = 0; i < 3; ++i) {
+    if (scale[i] >= 0.0f && std::isfinite(scale[i])) continue;
+    fail(parameters.place(), fmt::format("{}: a scale below 0", parameters.what()));
+  }
+  return scale;
 }
 
 void add_lights(Context& context) {
+  SkyLights sky;
   for (const EntityPointer& entity : context.description.lights) {
     const Parameters& parameters = entity->parameters;
     const auto adder = adders().find(entity->type);
-    if (adder == adders().end()) {
+    const bool is_infinite = entity->type == "infinite";
+    if (adder == adders().end() && !is_infinite) {
       context.reporter.warn_once("light " + entity->type, parameters.place(),
                                  fmt::format("light '{}' is not supported: it is left out; "
                                              "expected point, spot, distant or infinite",
                                              entity->type));
       continue;
     }
-    adder->second(context, *entity);
-    parameters.report_unused(context.reporter);
-    context.lit = true;
+    context.reporter.attempt(parameters.what(), "is left out", [&] {
+      if (is_infinite) {
+        sky.add(context, *entity);
+      } else {
+        adder->second(context, *entity);
+      }
+      parameters.ignore({"samples", "nsamples"});  // of pbrt-v3
+      parameters.report_unused(context.reporter);
+      context.lit = true;
+    });
   }
+  sky.store(context.scene);
 }
 
 }  // namespace pt::pbrt

@@ -45,10 +45,13 @@ void read_phase(const Parameters& parameters, Medium& medium) {
 }
 
 Medium read_coefficients(Context& context, const Parameters& parameters, float scale) {
-  const auto read = [&](std::string_view name) {
-    return read_color(context, parameters, name, Color(1.0f), Quantity::unbounded);
+  const bool is_earlier = context.description.is_earlier;
+  const auto read = [&](std::string_view name, const Color& earlier) {
+    return read_color(context, parameters, name, is_earlier ? earlier : Color(1.0f),
+                      Quantity::unbounded);
   };
-  Medium medium = medium_of(read("sigma_a"), read("sigma_s"), scale);
+  Medium medium = medium_of(read("sigma_a", {0.0011f, 0.0024f, 0.014f}),
+                            read("sigma_s", {2.55f, 3.21f, 3.77f}), scale);
   read_phase(parameters, medium);
   return medium;
 }

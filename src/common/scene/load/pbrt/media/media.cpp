@@ -15,7 +15,7 @@ const std::map<std::string_view, MediumReader>& medium_readers() {
   static const std::map<std::string_view, MediumReader> table = {
       {"homogeneous", read_homogeneous}, {"uniformgrid", read_uniform_grid},
       {"rgbgrid", read_rgb_grid},        {"cloud", read_cloud},
-      {"nanovdb", read_nanovdb_grids},
+      {"nanovdb", read_nanovdb_grids},   {"heterogeneous", read_uniform_grid},
   };
   return table;
 }
@@ -46,18 +46,25 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
   return static_cast<std::uint16_t>(media.size() - 1);
 }
 
-}  // namespace
-
-std::uint16_t medium_named(Context& context, const std::string& name, const Place& place) {
-  if (name.empty()) return no_medium;
+std::uint16_t read_medium(Context& context, const std::string& name, const Place& place) {
   const auto found = context.description.media.find(name);
   if (found == context.description.media.end()) {
     fail(place,
          fmt::format("there is no medium '{}'; expected one that MakeNamedMedium defines", name));
   }
+  return add_medium(context, name, *found->second);
+}
+
+}  // namespace
+
+std::uint16_t medium_named(Context& context, const std::string& name, const Place& place) {
+  if (name.empty()) return no_medium;
   const auto known = context.media.find(name);
   if (known != context.media.end()) return known->second;
-  return context.media[name] = add_medium(context, name, *found->second);
+  std::uint16_t& number = context.media[name] = no_medium;
+  context.reporter.attempt(fmt::format("medium '{}'", name), "is left out",
+                           [&] { number = read_medium(context, name, place); });
+  return number;
 }
 
 MediumBoundary media_of(Context& context, const ShapeEntity& shape) {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/pbrt/media/glowing_gas.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 #include "common/scene/load/pbrt/media/medium_kinds.h"
 #include "common/scene/load/pbrt/media/sample_box.h"
 

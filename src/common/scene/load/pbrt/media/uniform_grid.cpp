@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/load/pbrt/media/glowing_gas.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 #include "common/scene/load/pbrt/media/medium_kinds.h"
 #include "common/scene/load/pbrt/media/sample_box.h"
 

@@ -57,7 +57,7 @@ Mesh read_vertices(Context& context, const Parameters& parameters) {
   mesh.normals = of_each_vertex(context, parameters, "N", parameters.points("N"), count);
   const char* uv = parameters.find("uv") || !parameters.find("st") ? "uv" : "st";
   mesh.uvs = of_each_vertex(context, parameters, uv, parameters.points2(uv), count);
-  parameters.ignore({"S", "faceIndices"});
+  parameters.ignore({"S", "faceIndices", "shadowalpha", "discarddegenerateUVs"});
   return mesh;
 }
 

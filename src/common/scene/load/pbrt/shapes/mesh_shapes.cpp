@@ -1,6 +1,7 @@
 // Shapes of triangles and of bilinear patches.
 #include <fmt/format.h>
 
+#include "common/error/host_memory.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/pbrt/shapes/loop_subdivision.h"
 #include "common/scene/load/pbrt/shapes/mesh_reading.h"
@@ -35,7 +36,7 @@ Mesh read_ply_mesh(Context& context, const Entity& entity, const ShapeMaterial&)
     context.reporter.warn_once("displacement of plymesh", parameters.place(),
                                "'displacement' of plymesh is not supported and ignored");
   }
-  parameters.ignore({"edgelength"});
+  parameters.ignore({"edgelength", "shadowalpha", "discarddegenerateUVs"});  // the latter of v3
   const auto path = context.resolve(filename->place, parameters.text("filename", ""));
   std::vector<std::string> warnings;
   MeshFileOptions options;
@@ -63,14 +64,17 @@ Mesh read_loop_mesh(Context& context, const Entity& entity, const ShapeMaterial&
   set_triangles(cage, read_indices(context, parameters, 3, cage.positions.size()));
   finish(entity, cage);
   parameters.ignore({"scheme"});
-  const int levels = parameters.integer("levels", 3);
-  constexpr std::uint64_t most = 1u << 26;  // triangles
+  const int levels = parameters.integer("levels", parameters.integer("nlevels", 3));  // of v3
+  constexpr std::uint64_t most = 1u << 26;                                            // triangles
   if (levels < 0 || levels > 12 || (cage.triangles.size() << (2 * levels)) > most) {
     fail(parameters.place(), fmt::format("loopsubdiv: {} levels of {} triangles; expected 0 to 12 "
                                          "and at most {} triangles in the end",
                                          levels, cage.triangles.size(), most));
   }
   try {
+    // Of each triangle in the end: its vertices, and where its edges are found.
+    constexpr std::uint64_t bytes = 256;
+    check_host_memory((cage.triangles.size() << (2 * levels)) * bytes, "loopsubdiv");
     return subdivide_loop(cage, levels);
   } catch (const Error& error) {
     fail(parameters.place(), error.what());

@@ -7,6 +7,7 @@
 
 #include "common/geometry/bounds.h"
 #include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/pbrt/description/transforms.h"
 #include "common/scene/load/pbrt/shapes/map_vertices.h"
 
 namespace pt::pbrt {
@@ -35,18 +36,6 @@ void set_power(Context& context, const ShapeEntity& entity, const ShapeMaterial&
                                "pbrt: all get the mean radiance");
   }
   material.emission.radiance *= static_cast<float>(shape.power * static_cast<double>(parts) / k);
-}
-
-/// The scale of a map that keeps angles, or none.
-std::optional<float> uniform_scale(const Affine& map) {
-  const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
-  const float scale = glm::length(columns[0]);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& next = columns[(i + 1) % 3];
-    if (std::abs(glm::dot(columns[i], next)) > 1e-4f * scale * scale) return std::nullopt;
-    if (std::abs(glm::length(next) - scale) > 1e-4f * scale) return std::nullopt;
-  }
-  return scale > 0.0f ? std::optional(scale) : std::nullopt;
 }
 
 /// Quadrics: a transformation that mirrors turns their surface inside out, but (in pbrt's light

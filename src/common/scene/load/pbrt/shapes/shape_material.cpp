@@ -3,25 +3,46 @@
 #include <fmt/format.h>
 
 #include "common/scene/load/files/images/image_files.h"
+#include "common/scene/load/pbrt/lights/lights.h"
 #include "common/scene/load/pbrt/media/media.h"
 
 namespace pt::pbrt {
 namespace {
 
-/// Whether shading asks where on the surface a point lies.
-bool is_textured(const SceneData& scene, const MaterialDescription& material) {
-  if (material.is_textured() || material.opacity.texture != no_texture) return true;
-  if (material.node == MaterialNode::none) return uses_tangent(material);
-  return is_textured(scene, scene.materials[material.children[0]]) ||
-         is_textured(scene, scene.materials[material.children[1]]);
+/// Whether `test` holds of a material or of one that it is made of. Each is asked once, though
+/// blends of blends may name one in many ways.
+template <class Test>
+bool any_part(const SceneData& scene, const MaterialDescription& material, const Test& test) {
+  std::vector<const MaterialDescription*> open{&material};
+  std::vector<bool> seen;
+  while (!open.empty()) {
+    const MaterialDescription& part = *open.back();
+    open.pop_back();
+    if (test(part)) return true;
+    if (part.node == MaterialNode::none) continue;
+    seen.resize(scene.materials.size());
+    for (const std::uint32_t child : part.children) {
+      if (seen[child]) continue;
+      seen[child] = true;
+      open.push_back(&scene.materials[child]);
+    }
+  }
+  return false;
 }
 
-/// Whether it asks in which directions texture coordinates grow.
+/// Whether shading asks in which directions texture coordinates grow.
 bool needs_tangents(const SceneData& scene, const MaterialDescription& material) {
-  if (material.node == MaterialNode::none) return uses_tangent(material);
-  return material.node >= MaterialNode::normal_map ||
-         needs_tangents(scene, scene.materials[material.children[0]]) ||
-         needs_tangents(scene, scene.materials[material.children[1]]);
+  return any_part(scene, material, [](const MaterialDescription& m) {
+    return m.node == MaterialNode::none ? uses_tangent(m) : m.node >= MaterialNode::normal_map;
+  });
+}
+
+/// Whether it asks where on the surface a point lies.
+bool is_textured(const SceneData& scene, const MaterialDescription& material) {
+  return any_part(scene, material, [](const MaterialDescription& m) {
+    return m.is_textured() || m.opacity.texture != no_texture ||
+           (m.node == MaterialNode::none && uses_tangent(m));
+  });
 }
 
 float mean_luminance(const Image& image) {
@@ -39,41 +60,54 @@ const Surface& ShapeMaterials::surface_of(const ShapeEntity& shape) {
   const auto found = surfaces_.find(reference);
   if (found != surfaces_.end()) return found->second;
   context_.mappings.clear();
-  Surface surface = read_surface(context_, reference, shape.shape.parameters.place());
-  surface.mappings = context_.mappings;
+  Surface surface;
+  surface.material = make_diffuse(Color(0.5f));
+  context_.reporter.attempt("diffuse grey", "is used", [&] {
+    surface = read_surface(context_, reference, shape.shape.parameters.place());
+  });
   return surfaces_.emplace(reference, std::move(surface)).first->second;
 }
 
-/// The picture of an area light is looked up like a texture.
 const ShapeMaterials::AreaLight& ShapeMaterials::light_of(const Entity& entity) {
   const auto [entry, is_new] = lights_.try_emplace(&entity);
   AreaLight& light = entry->second;
   if (!is_new) return light;
+  context_.reporter.attempt(entity.parameters.what(), "is dark",
+                            [&] { light = read_light(entity); });
+  return light;
+}
+
+/// Its picture is looked up like a texture, but not repeated.
+ShapeMaterials::AreaLight ShapeMaterials::read_light(const Entity& entity) {
+  AreaLight light;
   const Parameters& parameters = entity.parameters;
-  if (entity.type != "diffuse") {
+  if (entity.type != "diffuse" && entity.type != "area") {
     context_.reporter.warn_once(
         "area light " + entity.type, parameters.place(),
         fmt::format("area light '{}' is not known: diffuse is used", entity.type));
   }
   const Color white = to_srgb(Color(1.0f), entity.space);
-  light.emission.radiance = context_.imaging_ratio * parameters.number("scale", 1.0f) *
-                            read_color(context_, parameters, "L", white, Quantity::illuminant);
+  const Parameter* filename = parameters.find("filename", {"string"});
+  light.emission.radiance = read_light_scale(context_, parameters);
+  if (filename && parameters.find("L")) {
+    context_.reporter.warn_once("L of a picture", filename->place,
+                                "an area light of both 'L' and 'filename': 'L' is ignored");
+  } else {
+    light.emission.radiance *= read_color(context_, parameters, "L", white, Quantity::illuminant);
+  }
   light.two_sided = parameters.boolean("twosided", false);
   light.power = parameters.number("power", 0.0f);
-  if (const Parameter* filename = parameters.find("filename", {"string"})) {
-    if (parameters.find("L")) fail(filename->place, "an area light of both 'L' and 'filename'");
-    const auto path = context_.resolve(filename->place, parameters.text("filename", ""));
-    try {
-      light.emission.texture = context_.textures.add_file(path);
+  parameters.ignore({"nsamples", "samples"});  // of pbrt-v3
+  if (filename) {
+    attempt_file(context_, *filename, "a constant light", [&] {
+      const auto path = context_.resolve(filename->place, parameters.text("filename", ""));
+      Texture look;
+      look.wrap_u = look.wrap_v = TextureWrap::clamp;
+      light.emission.texture = context_.textures.add_file(path, look);
       if (light.power > 0.0f) light.mean = mean_luminance(read_radiance_image(path));
-    } catch (const Error& error) {
-      fail(filename->place, error.what());
-    }
+    });
   }
   parameters.report_unused(context_.reporter);
-  for (int i = 0; i < 3; ++i) {
-    if (!(light.emission.radiance[i] >= 0.0f)) fail(parameters.place(), "a light below 0");
-  }
   return light;
 }
 
@@ -123,14 +157,17 @@ ShapeMaterial ShapeMaterials::read(const ShapeEntity& shape) {
   context_.mappings = surface.mappings;
   set_media(shape, result);
   const ColorTexture alpha = read_number_texture(context_, shape.shape.parameters, "alpha", 1.0f);
-  if (!result.invisible) {
+  // In pbrt-v3 what is not quite clear is opaque.
+  const float cutoff = context_.description.is_earlier ? 1e-4f : 0.0f;
+  const bool has_alpha = !alpha.is_constant() || alpha.color.x < 1.0f;
+  if (!result.invisible && (has_alpha || !surface.keeps_opacity)) {
     result.material.opacity = alpha.is_constant()
                                   ? constant_opacity(glm::clamp(alpha.color.x, 0.0f, 1.0f))
-                                  : textured_opacity(alpha.color.x, alpha.texture);
+                                  : textured_opacity(alpha.color.x, alpha.texture, cutoff);
     result.invisible = alpha.is_constant() && alpha.color.x <= 0.0f;
   }
   if (shape.area_light && !result.material.passes) add_light(shape, result);
-  if (result.material.emission.texture != no_texture) context_.mappings.emplace_back();
+  if (result.material.emission.texture != no_texture) context_.add_mapping({});
   result.mapping =
       common_mapping(context_.mappings, shape.shape.parameters.place(), context_.reporter);
   result.textured = is_textured(context_.scene, result.material);

@@ -33,6 +33,7 @@ class ShapeMaterials {
   };
   const Surface& surface_of(const ShapeEntity& shape);
   const AreaLight& light_of(const Entity& entity);
+  AreaLight read_light(const Entity& entity);
   void set_media(const ShapeEntity& shape, ShapeMaterial& result);
   void add_light(const ShapeEntity& shape, ShapeMaterial& result);
 

@@ -73,9 +73,8 @@ void add_instance(Context& context, const InstanceEntity& instance,
   if (!is_invertible(instance.to_world)) {
     fail(instance.place, "ObjectInstance: its transformation has no inverse");
   }
-  if (groups.contains(group->second)) {
-    context.scene.instances.push_back({group->second, instance.to_world});
-  }
+  const std::uint32_t number = instance.group != 0 ? instance.group : group->second;
+  if (groups.contains(number)) context.scene.instances.push_back({number, instance.to_world});
 }
 
 }  // namespace
@@ -83,12 +82,14 @@ void add_instance(Context& context, const InstanceEntity& instance,
 void add_shapes(Context& context) {
   ShapeMaterials materials(context);
   for (const ShapeEntity& shape : context.description.shapes) {
-    add_shape(context, shape, materials);
+    context.reporter.attempt(shape.shape.parameters.what(), "is left out",
+                             [&] { add_shape(context, shape, materials); });
   }
   std::set<std::uint32_t> groups;
   for (const Mesh& mesh : context.scene.meshes) groups.insert(mesh.group);
   for (const InstanceEntity& instance : context.description.instances) {
-    add_instance(context, instance, groups);
+    context.reporter.attempt("the instance", "is left out",
+                             [&] { add_instance(context, instance, groups); });
   }
 }
 

@@ -35,14 +35,25 @@ Surface blend(Context& context, const ColorTexture& weight, const Surface& first
   return result;
 }
 
-/// 'amount' is the share of the second one.
+/// 'amount' is the share of the second one; that of the first in pbrt-v3, where it may be a colour.
 Surface read_mix_material(Context& context, const Parameters& parameters) {
-  const std::vector<std::string> names = parameters.texts("materials");
+  std::vector<std::string> names = parameters.texts("materials");
+  const bool is_earlier = names.empty() && parameters.find("namedmaterial1");
+  if (is_earlier) {
+    names = {parameters.text("namedmaterial2", ""), parameters.text("namedmaterial1", "")};
+  }
   if (names.size() != 2) {
     fail(parameters.place(),
          fmt::format("mix: {} names in 'string materials'; expected 2", names.size()));
   }
-  const ColorTexture amount = read_number_texture(context, parameters, "amount", 0.5f);
+  const Parameter* given = parameters.find("amount");
+  ColorTexture amount;
+  if (is_earlier && given && given->type != "float") {
+    amount = read_color_texture(context, parameters, "amount", Color(0.5f));
+    if (amount.is_constant()) amount.color = Color(mean(amount.color));
+  } else {
+    amount = read_number_texture(context, parameters, "amount", 0.5f);
+  }
   const Surface first = read_surface(context, names[0], parameters.place());
   const Surface second = read_surface(context, names[1], parameters.place());
   if (first.invisible || second.invisible) {

@@ -11,6 +11,21 @@
 namespace pt::pbrt {
 namespace {
 
+void report_anisotropy(Context& context, const Parameters& parameters, const Roughness& roughness) {
+  if (roughness.alpha_u.color == roughness.alpha_v.color &&
+      roughness.alpha_u.texture == roughness.alpha_v.texture) {
+    return;
+  }
+  context.reporter.warn_once("anisotropic coat", parameters.place(),
+                             "an anisotropic coat is not supported: uroughness is used for both");
+}
+
+float largest(const ColorTexture& value) {
+  return std::max({value.color.x, value.color.y, value.color.z, 0.0f});
+}
+
+}  // namespace
+
 /// A boundary of facets over a diffuse body that colours each internal reflection: pbrt's layers
 /// without anything in between, whose light it finds by random walks.
 Surface coated(const ColorTexture& body, float eta, const Roughness& roughness) {
@@ -27,26 +42,6 @@ Surface coated(const ColorTexture& body, float eta, const Roughness& roughness) 
   surface.material.parameters[color_parameter] = parameter_of(body);
   return surface;
 }
-
-void report_anisotropy(Context& context, const Parameters& parameters, const Roughness& roughness) {
-  if (roughness.alpha_u.color == roughness.alpha_v.color &&
-      roughness.alpha_u.texture == roughness.alpha_v.texture) {
-    return;
-  }
-  context.reporter.warn_once("anisotropic coat", parameters.place(),
-                             "an anisotropic coat is not supported: uroughness is used for both");
-}
-
-ColorTexture scaled(ColorTexture value, float by) {
-  value.color *= by;
-  return value;
-}
-
-float largest(const ColorTexture& value) {
-  return std::max({value.color.x, value.color.y, value.color.z, 0.0f});
-}
-
-}  // namespace
 
 Surface read_diffuse(Context& context, const Parameters& parameters) {
   Surface surface;
@@ -74,12 +69,8 @@ Surface read_coated_diffuse(Context& context, const Parameters& parameters) {
 }
 
 /// A blend of a surface that reflects and one that lets pass, each with its colour over its share.
-Surface read_diffuse_transmission(Context& context, const Parameters& parameters) {
-  const float scale = parameters.number("scale", 1.0f);
-  const ColorTexture reflected =
-      scaled(read_color_texture(context, parameters, "reflectance", Color(0.25f)), scale);
-  const ColorTexture passed =
-      scaled(read_color_texture(context, parameters, "transmittance", Color(0.25f)), scale);
+Surface diffuse_both_ways(Context& context, const ColorTexture& reflected,
+                          const ColorTexture& passed) {
   const float r = largest(reflected), t = largest(passed);
   const float share = t > 0.0f ? t / (r + t) : 0.0f;
   Surface front, through;
@@ -91,6 +82,13 @@ Surface read_diffuse_transmission(Context& context, const Parameters& parameters
       parameter_of(scaled(passed, share > 0.0f ? 1.0f / share : 0.0f));
   through.material.parameters[Index::diff_trans].value = Color(2.0f);
   return blend(context, {Color(share)}, front, through);
+}
+
+Surface read_diffuse_transmission(Context& context, const Parameters& parameters) {
+  const float scale = parameters.number("scale", 1.0f);
+  return diffuse_both_ways(
+      context, scaled(read_color_texture(context, parameters, "reflectance", Color(0.25f)), scale),
+      scaled(read_color_texture(context, parameters, "transmittance", Color(0.25f)), scale));
 }
 
 Surface read_subsurface(Context& context, const Parameters& parameters) {

@@ -11,12 +11,20 @@
 namespace pt::pbrt {
 namespace {
 
+float root(float roughness) { return std::sqrt(std::max(roughness, 0.0f)); }
+
+/// pbrt-v3's (TrowbridgeReitzDistribution::RoughnessToAlpha).
+float polynomial(float roughness) {
+  const float x = std::log(std::max(roughness, 1e-3f));
+  return 1.62142f + x * (0.819955f + x * (0.1734f + x * (0.0171201f + x * 0.000640711f)));
+}
+
 /// pbrt's remapping of roughness; a texture is remapped texel by texel.
-ColorTexture remapped(Context& context, const ColorTexture& roughness) {
-  const auto root = [](const std::vector<Color>& v) {
-    return glm::sqrt(glm::max(v[0], Color(0.0f)));
+ColorTexture remapped(Context& context, const ColorTexture& roughness, float (*map)(float)) {
+  const auto each = [map](const std::vector<Color>& v) {
+    return Color(map(v[0].x), map(v[0].y), map(v[0].z));
   };
-  return bake(context, {roughness}, root);
+  return bake(context, {roughness}, each);
 }
 
 /// eta and k over the index `outside`.
@@ -33,8 +41,8 @@ MetalIndex index_of_reflectance(Context& context, const ColorTexture& reflectanc
   return {{Color(1.0f / outside)}, bake(context, {reflectance}, absorption)};
 }
 
-MetalIndex read_metal(Context& context, const Parameters& parameters, const std::string& prefix,
-                      float outside) {
+MetalIndex read_metal_index(Context& context, const Parameters& parameters,
+                            const std::string& prefix, float outside) {
   const std::string eta_name = prefix + "eta", k_name = prefix + "k";
   if (parameters.find("reflectance")) {
     if (parameters.find(eta_name) || parameters.find(k_name)) {
@@ -53,17 +61,17 @@ MetalIndex read_metal(Context& context, const Parameters& parameters, const std:
   return metal;
 }
 
-Surface conductor_of(const MetalIndex& metal, const Roughness& roughness) {
+}  // namespace
+
+Surface conductor_of(const ColorTexture& eta, const ColorTexture& k, const Roughness& roughness) {
   Surface surface;
   surface.material = describe_all<Conductor>(1.0f);
   using Index = Conductor::Index;
-  surface.material.parameters[Index::eta] = parameter_of(metal.eta);
-  surface.material.parameters[Index::k] = parameter_of(metal.k);
+  surface.material.parameters[Index::eta] = parameter_of(eta);
+  surface.material.parameters[Index::k] = parameter_of(k);
   if (!roughness.is_smooth()) roughness.store(surface.material.parameters + Index::alpha_x);
   return surface;
 }
-
-}  // namespace
 
 void Roughness::store(pt::Parameter* parameters) const {
   parameters[0] = parameter_of(alpha_u);
@@ -76,7 +84,7 @@ void Roughness::store(pt::Parameter* parameters) const {
 }
 
 Roughness read_roughness(Context& context, const Parameters& parameters, const std::string& prefix,
-                         float fallback) {
+                         float fallback, bool is_earlier) {
   const bool remaps = parameters.boolean("remaproughness", true);
   const auto read = [&](const std::string& name) {
     const ColorTexture value = read_number_texture(context, parameters, name, fallback);
@@ -84,7 +92,7 @@ Roughness read_roughness(Context& context, const Parameters& parameters, const s
       fail(parameters.place(), fmt::format("{}: a '{}' of {}; expected one that is not negative",
                                            parameters.what(), name, value.color.x));
     }
-    return remaps ? remapped(context, value) : value;
+    return remaps ? remapped(context, value, is_earlier ? polynomial : root) : value;
   };
   const ColorTexture both = read(prefix + "roughness");
   const auto along = [&](const std::string& own) {
@@ -100,8 +108,8 @@ float read_thickness(Context& context, const Parameters& parameters) {
 }
 
 Surface read_conductor(Context& context, const Parameters& parameters) {
-  const MetalIndex metal = read_metal(context, parameters, "", 1.0f);
-  return conductor_of(metal, read_roughness(context, parameters));
+  const MetalIndex metal = read_metal_index(context, parameters, "", 1.0f);
+  return conductor_of(metal.eta, metal.k, read_roughness(context, parameters));
 }
 
 /// A blend of the coat's reflection and the metal's below it. Along the normal the sum is right,
@@ -112,15 +120,17 @@ Surface read_coated_conductor(Context& context, const Parameters& parameters) {
                   "used");
   parameters.ignore({"maxdepth", "nsamples", "g", "albedo"});
   const float eta = read_index(context, parameters, "interface.eta", 1.5f);
-  const MetalIndex metal = read_metal(context, parameters, "conductor.", eta);
+  const MetalIndex metal = read_metal_index(context, parameters, "conductor.", eta);
   const float F = fresnel_dielectric(1.0f, eta);
-  Surface below = conductor_of(metal, read_roughness(context, parameters, "conductor."));
+  Surface below =
+      conductor_of(metal.eta, metal.k, read_roughness(context, parameters, "conductor."));
   const float T = std::exp(-2.0f * read_thickness(context, parameters));
   const Color R = T * fresnel_conductor(1.0f, metal.eta.color, metal.k.color);
   below.material.parameters[Conductor::Index::tint].value =
       T * Color(1.0f - F) / (Color(1.0f) - F * R);
-  const MetalIndex mirror{{Color(0.0f)}, {Color(1.0f)}};  // reflects everything
-  const Surface coat = conductor_of(mirror, read_roughness(context, parameters, "interface."));
+  // eta 0 and k 1 reflect everything.
+  const Surface coat =
+      conductor_of({Color(0.0f)}, {Color(1.0f)}, read_roughness(context, parameters, "interface."));
   return blend(context, {Color(F)}, below, coat);
 }
 
@@ -128,7 +138,7 @@ Surface read_measured(Context& context, const Parameters& parameters) {
   report_replaced(context, parameters, "a rough metal that reflects one half is used");
   parameters.ignore_all();
   const MetalIndex grey = index_of_reflectance(context, {Color(0.5f)}, 1.0f);
-  return conductor_of(grey, {{Color(0.3f)}, {Color(0.3f)}});
+  return conductor_of(grey.eta, grey.k, {{Color(0.3f)}, {Color(0.3f)}});
 }
 
 }  // namespace pt::pbrt

@@ -20,6 +20,18 @@ Surface read_measured(Context& context, const Parameters& parameters);
 Surface read_mix_material(Context& context, const Parameters& parameters);
 Surface read_interface(Context& context, const Parameters& parameters);
 
+// Those of pbrt-v3.
+Surface read_matte(Context& context, const Parameters& parameters);
+Surface read_plastic(Context& context, const Parameters& parameters);
+Surface read_metal(Context& context, const Parameters& parameters);
+Surface read_mirror(Context& context, const Parameters& parameters);
+Surface read_glass(Context& context, const Parameters& parameters);
+Surface read_uber(Context& context, const Parameters& parameters);
+Surface read_substrate(Context& context, const Parameters& parameters);
+Surface read_translucent(Context& context, const Parameters& parameters);
+Surface read_disney(Context& context, const Parameters& parameters);
+Surface read_subsurface_of_color(Context& context, const Parameters& parameters);
+
 /// What is between two surfaces, of which the second has this share; opacities and what is
 /// invisible are kept where that is possible.
 Surface blend(Context& context, const ColorTexture& weight, const Surface& first,
@@ -39,9 +51,21 @@ struct Roughness {
   void store(pt::Parameter* parameters) const;
 };
 
-/// Of the parameters `prefix` + roughness, uroughness and vroughness, remapped or not.
+/// Of the parameters `prefix` + roughness, uroughness and vroughness, remapped or not; as pbrt-v3
+/// remaps them where that is asked for.
 Roughness read_roughness(Context& context, const Parameters& parameters,
-                         const std::string& prefix = {}, float fallback = 0.0f);
+                         const std::string& prefix = {}, float fallback = 0.0f,
+                         bool is_earlier = false);
+
+/// A surface that reflects `reflected` and lets `passed` through, both diffusely.
+Surface diffuse_both_ways(Context& context, const ColorTexture& reflected,
+                          const ColorTexture& passed);
+
+/// A boundary over a diffuse body (see read_coated_diffuse).
+Surface coated(const ColorTexture& body, float eta, const Roughness& roughness);
+
+/// A metal of eta and k, over the index of what is outside.
+Surface conductor_of(const ColorTexture& eta, const ColorTexture& k, const Roughness& roughness);
 
 /// Of a coat.
 float read_thickness(Context& context, const Parameters& parameters);

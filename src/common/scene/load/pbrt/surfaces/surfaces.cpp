@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/scene/load/pbrt/surfaces/surface_kinds.h"
 
 namespace pt::pbrt {
@@ -21,6 +23,16 @@ const std::map<std::string_view, Reader>& readers() {
       {"measured", read_measured},
       {"mix", read_mix_material},
       {"interface", read_interface},
+      {"matte", read_matte},
+      {"plastic", read_plastic},
+      {"metal", read_metal},
+      {"mirror", read_mirror},
+      {"glass", read_glass},
+      {"uber", read_uber},
+      {"substrate", read_substrate},
+      {"translucent", read_translucent},
+      {"disney", read_disney},
+      {"kdsubsurface", read_subsurface_of_color},
       {"none", read_interface},
       {"", read_interface},
   };
@@ -39,6 +51,7 @@ Surface mapped(Context& context, MaterialNode node, float scale, std::uint32_t m
   Surface result;
   result.material = make_mapped(node, {{scale, 1.0f, 1.0f}, map}, 0);
   std::swap(result.material.opacity, inside.material.opacity);
+  result.keeps_opacity = inside.keeps_opacity;
   result.material.children[0] = result.material.children[1] = context.add_material(inside.material);
   return result;
 }
@@ -46,8 +59,9 @@ Surface mapped(Context& context, MaterialNode node, float scale, std::uint32_t m
 /// Under the map of heights or of normals that a material names; pbrt prefers the former.
 Surface with_map(Context& context, const Parameters& parameters, const Surface& inside) {
   const Parameter* filename = parameters.find("normalmap", {"string"});
-  if (const Parameter* heights = parameters.find("displacement")) {
-    const ColorTexture value = read_number_texture(context, parameters, "displacement", 0.0f);
+  const char* name = parameters.find("displacement") ? "displacement" : "bumpmap";  // of pbrt-v3
+  if (const Parameter* heights = parameters.find(name)) {
+    const ColorTexture value = read_number_texture(context, parameters, name, 0.0f);
     if (inside.invisible || value.is_constant()) return inside;
     if (context.scene.textures[value.texture].kind == TextureKind::image) {
       return mapped(context, MaterialNode::bump_map, value.color.x, value.texture, inside);
@@ -60,16 +74,16 @@ Surface with_map(Context& context, const Parameters& parameters, const Surface& 
   if (!filename || inside.invisible) return inside;
   Texture look;
   look.format = TextureFormat::linear8;
-  try {
+  Surface result = inside;
+  attempt_file(context, *filename, "no map of normals", [&] {
     const auto path = context.resolve(filename->place, parameters.text("normalmap", ""));
-    return mapped(context, MaterialNode::normal_map, 1.0f, context.textures.add_file(path, look),
-                  inside);
-  } catch (const Error& error) {
-    fail(filename->place, error.what());
-  }
+    result = mapped(context, MaterialNode::normal_map, 1.0f, context.textures.add_file(path, look),
+                    inside);
+  });
+  return result;
 }
 
-Surface read_entity(Context& context, const Entity& entity, const std::string& type) {
+Surface make_surface(Context& context, const Entity& entity, const std::string& type) {
   const OpenEntity open(context, entity);
   const Parameters& parameters = entity.parameters;
   const auto reader = readers().find(type);
@@ -88,10 +102,25 @@ Surface read_entity(Context& context, const Entity& entity, const std::string& t
   return surface;
 }
 
+/// Once, however many shapes and mixes name it; with the mappings of its textures.
+Surface read_entity(Context& context, const Entity& entity, const std::string& type) {
+  const auto known = context.surfaces.find(&entity);
+  if (known != context.surfaces.end()) {
+    for (const TextureMapping& mapping : known->second->mappings) context.add_mapping(mapping);
+    return *known->second;
+  }
+  const std::vector<TextureMapping> before = std::exchange(context.mappings, {});
+  auto surface = std::make_shared<Surface>(make_surface(context, entity, type));
+  surface->mappings = std::exchange(context.mappings, before);
+  for (const TextureMapping& mapping : surface->mappings) context.add_mapping(mapping);
+  context.surfaces.emplace(&entity, surface);
+  return *surface;
+}
+
 }  // namespace
 
 void report_replaced(Context& context, const Parameters& parameters, std::string_view by) {
-  context.reporter.warn_once(parameters.what(), parameters.place(),
+  context.reporter.warn_once(fmt::format("replaced {}", by), parameters.place(),
                              fmt::format("{} is not supported: {}", parameters.what(), by));
 }
 

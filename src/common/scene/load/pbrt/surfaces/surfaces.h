@@ -8,7 +8,8 @@ namespace pt::pbrt {
 /// What a material becomes.
 struct Surface {
   MaterialDescription material;
-  bool invisible = false;                     ///< light passes as if nothing were there
+  bool invisible = false;      ///< light passes as if nothing were there
+  bool keeps_opacity = false;  ///< its material's opacity holds where a shape has no 'alpha'
   std::vector<TextureMapping> mappings = {};  ///< of its textures
 };
 

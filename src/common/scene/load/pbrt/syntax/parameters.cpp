@@ -29,6 +29,13 @@ void check_groups(const Parameter& parameter, std::size_t size) {
                    parameter.name, parameter.numbers.size(), size));
 }
 
+void check_finite(const Parameter& parameter) {
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (std::ranges::all_of(parameter.numbers, is_finite)) return;
+  fail(parameter.place,
+       fmt::format("'{} {}' has a number that is not finite", parameter.type, parameter.name));
+}
+
 int whole(const Parameter& parameter, double number) {
   constexpr double most = std::numeric_limits<int>::max();
   if (number == std::floor(number) && std::abs(number) <= most) return static_cast<int>(number);
@@ -39,20 +46,27 @@ int whole(const Parameter& parameter, double number) {
 }  // namespace
 
 Parameters::Parameters(const Place& place, std::string what, std::vector<Parameter> own,
-                       const std::vector<Parameter>& inherited)
-    : place_(place), what_(std::move(what)), list_(std::move(own)), own_(list_.size()) {
-  list_.insert(list_.end(), inherited.begin(), inherited.end());
-}
+                       std::shared_ptr<const SharedParameters> inherited)
+    : place_(place),
+      what_(std::move(what)),
+      own_(std::move(own)),
+      inherited_(std::move(inherited)) {}
 
 const Parameter* Parameters::find(std::string_view name) const {
   asked_.emplace(name);
-  const auto found = std::ranges::find(list_, name, &Parameter::name);
-  return found == list_.end() ? nullptr : &*found;
+  const auto found = std::ranges::find(own_, name, &Parameter::name);
+  if (found != own_.end()) return &*found;
+  if (!inherited_) return nullptr;
+  for (const auto& parameter : *inherited_) {
+    if (parameter->name == name) return parameter.get();
+  }
+  return nullptr;
 }
 
 const Parameter* Parameters::find(std::string_view name,
                                   std::initializer_list<std::string_view> types) const {
   const Parameter* parameter = find(name);
+  if (parameter) check_finite(*parameter);
   if (!parameter || std::ranges::find(types, parameter->type) != types.end()) return parameter;
   fail(parameter->place, fmt::format("parameter '{}' of {} is of type '{}'; expected {}", name,
                                      what_, parameter->type, fmt::join(types, " or ")));
@@ -139,12 +153,11 @@ void Parameters::ignore(std::initializer_list<std::string_view> names) const {
 }
 
 void Parameters::ignore_all() const {
-  for (const Parameter& parameter : list_) asked_.insert(parameter.name);
+  for (const Parameter& parameter : own_) asked_.insert(parameter.name);
 }
 
 void Parameters::report_unused(Reporter& reporter) const {
-  for (std::size_t i = 0; i < own_; ++i) {
-    const Parameter& p = list_[i];
+  for (const Parameter& p : own_) {
     if (asked_.contains(p.name)) continue;
     reporter.warn_once(fmt::format("unused {} {}", what_, p.name), p.place,
                        fmt::format("parameter '{} {}' of {} is not supported and ignored; expected "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <set>
 #include <vector>
@@ -20,13 +21,16 @@ struct Parameter {
   std::vector<std::string> strings;     ///< of those, and of a spectrum that has a name
 };
 
+/// Those that Attribute gives to all that follow. Shared: blocks and shapes may be many.
+using SharedParameters = std::vector<std::shared_ptr<const Parameter>>;
+
 /// Knows which of its parameters were asked for, so that the others can be reported.
 class Parameters {
  public:
   /// `what` names the directive in messages. Where both have a parameter, that of `own` holds;
   /// those of `inherited` may be of no use.
   Parameters(const Place& place, std::string what, std::vector<Parameter> own,
-             const std::vector<Parameter>& inherited = {});
+             std::shared_ptr<const SharedParameters> inherited = {});
 
   /// The parameter of one of these types, or null. Throws Error for one of another type.
   const Parameter* find(std::string_view name, std::initializer_list<std::string_view> types) const;
@@ -61,8 +65,8 @@ class Parameters {
  private:
   Place place_;
   std::string what_;
-  std::vector<Parameter> list_;
-  std::size_t own_ = 0;  ///< the first of the list
+  std::vector<Parameter> own_;
+  std::shared_ptr<const SharedParameters> inherited_;  ///< null: none
   mutable std::set<std::string, std::less<>> asked_;
 };
 

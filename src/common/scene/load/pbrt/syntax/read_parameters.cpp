@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <functional>
+#include <limits>
+#include <map>
 
 #include "common/scene/load/files/meshes/text_number.h"
 
@@ -25,8 +29,7 @@ Parameter declared(const Token& token, ColorSpace space) {
   parameter.space = space;
   if (parameter.type == "int") parameter.type = "integer";
   if (parameter.name.empty() || !next_word(text).empty()) {
-    fail(token.place,
-         fmt::format("\"{}\"; expected a parameter, \"type name\"", token.text.substr(0, 40)));
+    fail(token.place, fmt::format("'{}'; expected a parameter, \"type name\"", token.text));
   }
   if (std::ranges::find(known_types, parameter.type) == known_types.end()) {
     fail(token.place, fmt::format("parameter '{}' has the unknown type '{}'; expected integer, "
@@ -34,6 +37,16 @@ Parameter declared(const Token& token, ColorSpace space) {
                                   parameter.name, parameter.type));
   }
   return parameter;
+}
+
+/// What C writes for numbers that are none; the element that has such a value is left out.
+bool is_not_finite(const Token& token) {
+  std::string_view text = token.text;
+  if (token.kind != TokenKind::word) return false;
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  std::string first(text.substr(0, 3));
+  std::ranges::transform(first, first.begin(), [](unsigned char c) { return std::tolower(c); });
+  return first == "nan" || first == "inf";
 }
 
 bool is_of_words(const std::string& type) {
@@ -48,11 +61,12 @@ void add_value(Parameter& parameter, const Token& token) {
     return;
   }
   if (is_of_words(parameter.type) || is_string) {
-    fail(token.place, fmt::format("'{}' as a value of '{} {}'; expected {}",
-                                  token.text.substr(0, 40), parameter.type, parameter.name,
-                                  is_of_words(parameter.type) ? "a \"string\"" : "a number"));
+    fail(token.place,
+         fmt::format("'{}' as a value of '{} {}'; expected {}", token.text, parameter.type,
+                     parameter.name, is_of_words(parameter.type) ? "a \"string\"" : "a number"));
   }
-  parameter.numbers.push_back(number_of(token));
+  parameter.numbers.push_back(is_not_finite(token) ? std::numeric_limits<double>::quiet_NaN()
+                                                   : number_of(token));
 }
 
 void read_values(TokenStream& tokens, Parameter& parameter) {
@@ -71,17 +85,20 @@ void read_values(TokenStream& tokens, Parameter& parameter) {
 
 std::vector<Parameter> read_parameters(TokenStream& tokens, ColorSpace space, Reporter& reporter) {
   std::vector<Parameter> list;
+  std::map<std::string, std::size_t, std::less<>> places;
   while (const Token* token = tokens.peek()) {
     if (token->kind != TokenKind::string) break;
     Parameter parameter = declared(*tokens.next(), space);
     read_values(tokens, parameter);
-    if (std::ranges::find(list, parameter.name, &Parameter::name) != list.end()) {
-      reporter.warn_once(
-          "twice " + parameter.name, parameter.place,
-          fmt::format("parameter '{}' is given twice: the first holds", parameter.name));
+    const auto [entry, is_new] = places.try_emplace(parameter.name, list.size());
+    if (is_new) {
+      list.push_back(std::move(parameter));
       continue;
     }
-    list.push_back(std::move(parameter));
+    reporter.warn_once(
+        "twice " + parameter.name, parameter.place,
+        fmt::format("parameter '{}' is given twice: the last holds", parameter.name));
+    list[entry->second] = std::move(parameter);
   }
   return list;
 }

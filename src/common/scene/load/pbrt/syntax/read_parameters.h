@@ -6,8 +6,8 @@
 
 namespace pt::pbrt {
 
-/// As many as follow; colours are those of `space`. Throws Error for bad syntax. A second value of
-/// the same name is reported and dropped.
+/// As many as follow; colours are those of `space`. Throws Error for bad syntax. Of two of the
+/// same name the last holds, which is reported.
 std::vector<Parameter> read_parameters(TokenStream& tokens, ColorSpace space, Reporter& reporter);
 
 }  // namespace pt::pbrt

@@ -10,6 +10,12 @@
 namespace pt::pbrt {
 namespace {
 
+std::filesystem::path canonical_of(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::path found = std::filesystem::canonical(path, ignored);
+  return ignored ? path : found;
+}
+
 constexpr std::size_t most_files = 64;  // in each other
 
 }  // namespace
@@ -17,7 +23,7 @@ constexpr std::size_t most_files = 64;  // in each other
 TokenStream::TokenStream(const std::filesystem::path& path) { open(path); }
 
 void TokenStream::open(const std::filesystem::path& path) {
-  files_.push_back({path, Tokenizer(read_source(path), path.string())});
+  files_.push_back({path, canonical_of(path), Tokenizer(read_source(path), path.string())});
   last_ = files_.back().tokens.place();
 }
 
@@ -28,17 +34,20 @@ TokenStream::TokenStream(const std::filesystem::path& path, const Place& place,
 }
 
 void TokenStream::check_new(const std::filesystem::path& path, const Place& place) const {
+  const std::filesystem::path own = canonical_of(path);
   std::size_t count = 0;
   for (const TokenStream* stream = this; stream; stream = stream->parent_) {
     for (const File& file : stream->files_) {
-      std::error_code ignored;
-      if (std::filesystem::equivalent(file.path, path, ignored)) {
-        fail(place, fmt::format("{} includes itself", path.string()));
-      }
+      if (file.canonical != own) continue;
+      fail(place, fmt::format("{} includes itself", path.string()));
     }
     count += stream->files_.size();
   }
-  if (count >= most_files) fail(place, "files include each other too deeply");
+  if (count >= most_files) {
+    fail(place, fmt::format("files include each other too deeply; expected at most {} in each "
+                            "other",
+                            most_files));
+  }
 }
 
 void TokenStream::include(const std::filesystem::path& path, const Place& place) {
@@ -77,7 +86,7 @@ Token TokenStream::expect(TokenKind kind, std::string_view what) {
   std::optional<Token> token = next();
   if (!token) fail(last_, fmt::format("the file ends here; expected {}", what));
   if (token->kind != kind) {
-    fail(token->place, fmt::format("'{}'; expected {}", token->text.substr(0, 40), what));
+    fail(token->place, fmt::format("'{}'; expected {}", token->text, what));
   }
   return std::move(*token);
 }

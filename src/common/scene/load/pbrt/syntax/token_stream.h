@@ -32,7 +32,7 @@ class TokenStream {
 
  private:
   struct File {
-    std::filesystem::path path;
+    std::filesystem::path path, canonical;
     Tokenizer tokens;
   };
   void open(const std::filesystem::path& path);

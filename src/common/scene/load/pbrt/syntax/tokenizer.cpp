@@ -73,10 +73,9 @@ Token Tokenizer::read_string() {
     }
     if (c == '\n') break;
     if (c == '\\') {
-      ++position_;
-      c = position_ < content_.size() ? escaped(content_[position_]) : '\0';
-      if (c == 0)
-        fail(place(), "an unknown escape in a string; expected one of \\b\\f\\n\\r\\t\\\\\\'\\\"");
+      // What is no escape is a path of Windows.
+      const char next = position_ + 1 < content_.size() ? content_[position_ + 1] : '\0';
+      if (escaped(next) != 0) c = escaped(next), ++position_;
     }
     token.text += c;
   }
@@ -102,7 +101,7 @@ std::optional<Token> Tokenizer::next() {
 
 double number_of(const Token& token) {
   const auto wrong = [&] {
-    fail(token.place, fmt::format("'{}'; expected a finite number", token.text.substr(0, 40)));
+    fail(token.place, fmt::format("'{}'; expected a finite number", token.text));
   };
   double value = 0;
   if (token.kind != TokenKind::word) wrong();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/error/host_memory.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt::pbrt {
@@ -48,6 +49,19 @@ Plan plan_for(const std::vector<const Texture*>& textures) {
   return plan;
 }
 
+/// What others are computed to is bounded by what they are made of: a few lines can ask for more
+/// than any memory holds.
+void check_size(Context& context, const Plan& plan) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 30, factor = 16;
+  const std::uint64_t bytes = std::uint64_t{12} * plan.width * plan.height;
+  const std::uint64_t pictures = context.scene.texels.size() - context.baked_bytes;
+  context.baked_bytes += bytes;
+  if (context.baked_bytes > most + factor * pictures) {
+    throw Error("textures computed from others take more than 1 GiB and 16 times their pictures");
+  }
+  check_host_memory(bytes, "a texture computed from others");
+}
+
 /// The value of a part at a point of the result's own space.
 Color value_at(const Context& context, const ColorTexture& part, const Plan& plan, const Vec2& uv) {
   if (part.is_constant()) return part.color;
@@ -72,6 +86,7 @@ ColorTexture bake(Context& context, const std::vector<ColorTexture>& parts,
   }
   if (textures.empty()) return {function(values)};
   const Plan plan = plan_for(textures);
+  check_size(context, plan);
   TextureImage image{TextureFormat::rgb32f, plan.width, plan.height, {}};
   image.texels.resize(std::size_t{12} * plan.width * plan.height);
   std::byte* next = image.texels.data();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/scene/load/pbrt/textures/texture_kinds.h"
 
 namespace pt::pbrt {
@@ -33,24 +35,51 @@ ColorTexture read_entity(Context& context, const Entity& entity, const TextureUs
   return {Color(0.5f)};
 }
 
+/// Once for each use; with the mappings of all that it is made of.
+ColorTexture read_once(Context& context, const Entity& entity, const TextureUse& use) {
+  const Color& s = use.stand_in;
+  const TextureKey key{&entity, use.is_number, static_cast<int>(use.quantity), s.x, s.y, s.z};
+  std::shared_ptr<const ReadTexture>& known = context.read_textures[key];
+  if (!known) {
+    const std::vector<TextureMapping> before = std::exchange(context.mappings, {});
+    const ColorTexture value = read_entity(context, entity, use);
+    known = std::make_shared<const ReadTexture>(ReadTexture{value, context.mappings});
+    context.mappings = before;
+  }
+  for (const TextureMapping& mapping : known->mappings) context.add_mapping(mapping);
+  return known->value;
+}
+
 ColorTexture named_texture(Context& context, const Parameter& parameter, const TextureUse& use) {
   if (parameter.strings.size() != 1) fail(parameter.place, "expected the name of one texture");
   const std::string& name = parameter.strings[0];
   const Description& description = context.description;
   const auto& textures = use.is_number ? description.float_textures : description.spectrum_textures;
-  const auto found = textures.find(name);
-  if (found != textures.end()) return read_entity(context, *found->second, use);
+  auto found = textures.find(name);
+  // Of the other type there may be a newer one of that name.
+  if (found == textures.end()) found = textures.find(name.substr(0, name.find(newest_mark)));
+  if (found != textures.end()) return read_once(context, *found->second, use);
   fail(parameter.place,
-       fmt::format("there is no {} texture '{}'", use.is_number ? "float" : "spectrum", name));
+       fmt::format("there is no {} texture '{}'", use.is_number ? "float" : "spectrum",
+                   name.substr(0, name.find(newest_mark))));
 }
 
 ColorTexture read(Context& context, const Parameters& parameters, std::string_view name,
                   const Color& fallback, const TextureUse& use) {
-  if (parameters.has(name, "texture")) {
-    return named_texture(context, *parameters.find(name), use);
-  }
-  if (use.is_number) return {Color(parameters.number(name, fallback.x))};
-  return {read_color(context, parameters, name, fallback, use.quantity)};
+  ColorTexture value{fallback};
+  TextureUse own = use;
+  own.stand_in = fallback;
+  context.reporter.attempt(
+      fmt::format("'{}' of {}", name, parameters.what()), "is as if it was not given", [&] {
+        if (parameters.has(name, "texture")) {
+          value = named_texture(context, *parameters.find(name), own);
+        } else if (use.is_number) {
+          value.color = Color(parameters.number(name, fallback.x));
+        } else {
+          value.color = read_color(context, parameters, name, fallback, use.quantity);
+        }
+      });
+  return value;
 }
 
 }  // namespace

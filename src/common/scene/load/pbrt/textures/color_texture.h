@@ -13,6 +13,18 @@ struct ColorTexture {
   bool is_constant() const { return texture == no_texture; }
 };
 
+inline ColorTexture scaled(ColorTexture value, const Color& by) {
+  value.color *= by;
+  return value;
+}
+inline ColorTexture scaled(const ColorTexture& value, float by) { return scaled(value, Color(by)); }
+
+/// A texture and the mappings of what it is made of.
+struct ReadTexture {
+  ColorTexture value;
+  std::vector<TextureMapping> mappings;
+};
+
 /// The parameter `name`, a colour or a texture by name, or `fallback` where there is none.
 ColorTexture read_color_texture(Context& context, const Parameters& parameters,
                                 std::string_view name, const Color& fallback,

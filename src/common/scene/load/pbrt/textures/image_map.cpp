@@ -33,7 +33,7 @@ void read_filter(Context& context, const Parameters& parameters, Texture& look) 
                                            "point, bilinear, trilinear or EWA",
                                            filter));
   }
-  parameters.ignore({"maxanisotropy"});
+  parameters.ignore({"maxanisotropy", "trilinear"});
 }
 
 /// The curve of a picture's integers: sRGB, or what linear numbers are to be raised to. pbrt asks
@@ -44,6 +44,11 @@ struct Encoding {
 };
 
 Encoding read_encoding(const Parameters& parameters, const std::filesystem::path& path) {
+  // pbrt-v3 says so of all pictures: a curve, or whether there is that of sRGB.
+  if (const Parameter* gamma = parameters.find("gamma", {"bool", "float", "integer"})) {
+    if (gamma->type == "bool") return {parameters.boolean("gamma", true), 1.0f};
+    return {false, parameters.number("gamma", 1.0f)};
+  }
   const Parameter* given = parameters.find("encoding", {"string"});
   std::string ending = path.extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -62,20 +67,26 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
   fail(given->place, fmt::format("encoding '{}'; expected sRGB, linear or 'gamma 2.2'", name));
 }
 
-ColorTexture add_file(Context& context, const Parameter& filename, const Texture& look,
-                      const TextureUse& use) {
-  const auto path = context.resolve(filename.place, filename.strings.at(0));
-  try {
-    // A number is the alpha of a picture that has one, else the mean of its colours.
-    if (use.is_number && context.has_alpha(path)) {
-      return {Color(1.0f), context.textures.add_alpha_of(context.textures.add_file(path, look))};
+ColorTexture add_file(Context& context, const Parameter& filename, const std::string& name,
+                      const Texture& look, const TextureUse& use) {
+  ColorTexture result{use.stand_in};
+  attempt_file(context, filename, "its parameter's default", [&] {
+    const auto path = context.resolve(filename.place, name);
+    // A number is the alpha of a picture that has one, else the mean of its colours; in pbrt-v3
+    // their luminance.
+    const bool is_earlier = context.description.is_earlier;
+    if (use.is_number && !is_earlier && context.has_alpha(path)) {
+      result.texture = context.textures.add_alpha_of(context.textures.add_file(path, look));
+    } else {
+      std::optional<Color> weights;
+      if (use.is_number) {
+        weights = is_earlier ? Color(0.212671f, 0.71516f, 0.072169f) : Color(1.0f / 3.0f);
+      }
+      result.texture = context.textures.add_file(path, look, weights);
     }
-    std::optional<Color> weights;
-    if (use.is_number) weights = Color(1.0f / 3.0f);
-    return {Color(1.0f), context.textures.add_file(path, look, weights)};
-  } catch (const Error& error) {
-    fail(filename.place, error.what());
-  }
+    result.color = Color(1.0f);
+  });
+  return result;
 }
 
 }  // namespace
@@ -93,7 +104,8 @@ ColorTexture read_image_map(Context& context, const Entity& entity, const Textur
   const float scale = parameters.number("scale", 1.0f);
   const bool invert = parameters.boolean("invert", false);
   if (!(scale >= 0.0f)) fail(parameters.place(), "imagemap: expected a scale that is not negative");
-  ColorTexture result = add_file(context, *filename, look, use);
+  ColorTexture result = add_file(context, *filename, parameters.text("filename", ""), look, use);
+  if (result.is_constant()) return result;
   if (encoding.gamma != 1.0f) {
     result = bake(context, {result},
                   [&](const auto& v) { return glm::pow(v[0], Color(encoding.gamma)); });

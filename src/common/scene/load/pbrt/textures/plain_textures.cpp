@@ -43,10 +43,10 @@ void read_mapping(Context& context, const Entity& entity, Texture& texture) {
                                            name));
   }
   if (kind != kinds.end() && kind->second != MappingKind::uv) {
-    context.mappings.push_back(mapping_by_points(entity, kind->second));
+    context.add_mapping(mapping_by_points(entity, kind->second));
     return;
   }
-  context.mappings.emplace_back();
+  context.add_mapping({});
   texture.u_row[0] = parameters.number("uscale", 1.0f);
   texture.v_row[1] = parameters.number("vscale", 1.0f);
   texture.u_row[2] = parameters.number("udelta", 0.0f);
@@ -57,9 +57,13 @@ ColorTexture read_constant(Context& context, const Entity& entity, const Texture
   return read_part(context, entity.parameters, "value", 1.0f, use);
 }
 
+/// pbrt-v3 multiplies two of the same kind.
 ColorTexture read_scale(Context& context, const Entity& entity, const TextureUse& use) {
-  const ColorTexture value = read_part(context, entity.parameters, "tex", 1.0f, use);
-  const ColorTexture by = read_number_texture(context, entity.parameters, "scale", 1.0f);
+  const Parameters& parameters = entity.parameters;
+  const bool is_earlier = parameters.find("tex1") || parameters.find("tex2");
+  const ColorTexture value = read_part(context, parameters, is_earlier ? "tex1" : "tex", 1.0f, use);
+  const ColorTexture by = is_earlier ? read_part(context, parameters, "tex2", 1.0f, use)
+                                     : read_number_texture(context, parameters, "scale", 1.0f);
   if (by.is_constant()) return {value.color * by.color, value.texture};
   if (value.is_constant()) return {value.color * by.color, by.texture};
   return bake(context, {value, by}, [](const auto& v) { return v[0] * v[1]; });
@@ -94,6 +98,7 @@ ColorTexture read_checkerboard(Context& context, const Entity& entity, const Tex
   }
   const ColorTexture first = read_part(context, parameters, "tex1", 1.0f, use);
   const ColorTexture second = read_part(context, parameters, "tex2", 0.0f, use);
+  parameters.ignore({"aamode"});  // of pbrt-v3
   Texture texture;
   read_mapping(context, entity, texture);
   for (int i = 0; i < 3; ++i) texture.u_row[i] *= 0.5f, texture.v_row[i] *= 0.5f;

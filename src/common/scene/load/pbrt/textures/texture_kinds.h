@@ -7,8 +7,9 @@ namespace pt::pbrt {
 
 /// What a texture is read for.
 struct TextureUse {
-  bool is_number;     ///< a float texture
-  Quantity quantity;  ///< of a spectrum texture
+  bool is_number;                ///< a float texture
+  Quantity quantity;             ///< of a spectrum texture
+  Color stand_in = Color(0.5f);  ///< of a picture that cannot be read
 };
 
 ColorTexture read_image_map(Context& context, const Entity& entity, const TextureUse& use);

@@ -119,7 +119,7 @@ void read_camera(Context& context, const Entity& entity) {
   const float exposure =
       parameters.number("shutterclose", 1.0f) - parameters.number("shutteropen", 0.0f);
   if (!(exposure > 0.0f)) fail(parameters.place(), "expected shutterclose after shutteropen");
-  context.imaging_ratio *= exposure;
+  if (!context.description.is_earlier) context.imaging_ratio *= exposure;
   parameters.report_unused(context.reporter);
 }
 

@@ -11,11 +11,6 @@ namespace {
 
 constexpr int most_pixels = 65535;  // a side
 
-/// pbrt's where the file has none.
-const Entity& or_default(const EntityPointer& entity, const Entity& fallback) {
-  return entity ? *entity : fallback;
-}
-
 int read_side(const Parameters& parameters, const char* name, int fallback) {
   const int side = parameters.integer(name, fallback);
   if (side >= 1 && side <= most_pixels) return side;
@@ -42,6 +37,7 @@ void read_crop(const Parameters& parameters, SceneDefaults& defaults) {
     crop = {std::max(0, pixels[0]), std::max(0, pixels[2]), std::min(width, pixels[1]),
             std::min(height, pixels[3])};
   }
+  defaults.crop.reset();
   if (crop.x0 >= crop.x1 || crop.y0 >= crop.y1) {
     fail(parameters.place(), "cropwindow or pixelbounds leave nothing of the image");
   }
@@ -67,7 +63,7 @@ void read_white(Context& context, const Parameters& parameters, float fallback) 
 void read_film(Context& context, const Entity& film) {
   const Parameters& parameters = film.parameters;
   SceneDefaults& defaults = context.scene.defaults;
-  if (film.type != "rgb") {
+  if (film.type != "rgb" && film.type != "image") {
     parameters.ignore({"nbuckets", "lambdamin", "lambdamax", "coordinatesystem"});
     context.reporter.warn_once("film " + film.type, parameters.place(),
                                fmt::format("film '{}' is not supported: rgb is used", film.type));
@@ -75,7 +71,12 @@ void read_film(Context& context, const Entity& film) {
   defaults.width = read_side(parameters, "xresolution", 1280);
   defaults.height = read_side(parameters, "yresolution", 720);
   read_crop(parameters, defaults);
-  context.imaging_ratio *= parameters.number("iso", 100.0f) / 100.0f;
+  // 'scale' is that of pbrt-v3.
+  context.imaging_ratio *=
+      parameters.number("iso", 100.0f * parameters.number("scale", 1.0f)) / 100.0f;
+  if (!(context.imaging_ratio > 0.0f) || !std::isfinite(context.imaging_ratio)) {
+    fail(parameters.place(), "Film: expected an iso above 0");
+  }
   const std::string sensor = parameters.text("sensor", "cie1931");
   if (sensor != "cie1931") {
     context.reporter.warn_once("sensor", parameters.find("sensor")->place,
@@ -85,7 +86,8 @@ void read_film(Context& context, const Entity& film) {
   }
   read_white(context, parameters, sensor == "cie1931" ? 0.0f : 6500.0f);
   // About the file that pbrt would write, and what it does about fireflies.
-  parameters.ignore({"filename", "savefp16", "diagonal", "maxcomponentvalue"});
+  parameters.ignore(
+      {"filename", "savefp16", "diagonal", "maxcomponentvalue", "maxsampleluminance"});
   parameters.report_unused(context.reporter);
 }
 
@@ -93,14 +95,22 @@ void read_film(Context& context, const Entity& film) {
 
 void read_view(Context& context) {
   const Description& d = context.description;
-  const auto named = [&](const char* what, const char* type) {
-    return Entity{type, Parameters(d.place, what, {}), {}, ColorSpace::srgb};
+  const auto read = [&](const char* what, const char* type, const EntityPointer& entity,
+                        void (*reader)(Context&, const Entity&)) {
+    const Entity plain{entity ? entity->type : type, Parameters(d.place, what, {}),
+                       entity ? entity->to_world : Affine(), ColorSpace::srgb};
+    const float ratio = context.imaging_ratio;
+    const bool is_read = context.reporter.attempt(
+        what, "is as if it had no parameters", [&] { reader(context, entity ? *entity : plain); });
+    if (is_read) return;
+    context.imaging_ratio = ratio;
+    reader(context, plain);
   };
-  read_film(context, or_default(d.film, named("Film", "rgb")));
-  read_filter(context, or_default(d.filter, named("PixelFilter", "gaussian")));
-  read_sampler(context, or_default(d.sampler, named("Sampler", "zsobol")));
-  read_integrator(context, or_default(d.integrator, named("Integrator", "volpath")));
-  if (d.camera) read_camera(context, *d.camera);
+  read("Film", "rgb", d.film, read_film);
+  read("PixelFilter", d.is_earlier ? "box" : "gaussian", d.filter, read_filter);
+  read("Sampler", "zsobol", d.sampler, read_sampler);
+  read("Integrator", "volpath", d.integrator, read_integrator);
+  if (d.camera) read("Camera", "perspective", d.camera, read_camera);
 }
 
 }  // namespace pt::pbrt

@@ -9,11 +9,15 @@
 namespace pt::pbrt {
 
 /// A blackbody's spectrum over its largest value, in linear sRGB; its luminance is the integral
-/// with y-bar, as pbrt's film has it of what was not divided by that of a light. A table: spectra
-/// are slow, and grids have millions of voxels.
+/// with y-bar, as pbrt's film has it of what was not divided by that of a light.
+Color radiance_of_gas(double kelvins);
+
+/// The same by a table: spectra are slow, and grids have millions of voxels.
 class GlowingGas {
  public:
   explicit GlowingGas(float hottest_kelvins);
+
+  static constexpr double y_integral = 106.856895;  ///< of y-bar over nm: CIE 1931
 
   /// Black up to 100 K; `kelvins` at most the hottest.
   Color radiance(float kelvins) const;

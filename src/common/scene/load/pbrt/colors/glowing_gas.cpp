@@ -1,4 +1,4 @@
-#include "common/scene/load/pbrt/media/glowing_gas.h"
+#include "common/scene/load/pbrt/colors/glowing_gas.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -14,7 +14,6 @@ namespace {
 constexpr float coldest = 100.0f;    // kelvins
 constexpr float hottest_max = 1e6f;  // hotter light has the same colour
 constexpr int steps = 1024;
-constexpr double y_integral = 106.856895;  // of y-bar over nm: CIE 1931
 
 /// Planck's law at the wavelength of its maximum, by that law and Wien's, W / (m^2 sr nm).
 double peak_radiance(double kelvins) {
@@ -25,14 +24,18 @@ double peak_radiance(double kelvins) {
 
 }  // namespace
 
+Color radiance_of_gas(double kelvins) {
+  return static_cast<float>(GlowingGas::y_integral / peak_radiance(kelvins)) *
+         mitsuba::blackbody_to_rgb(kelvins);
+}
+
 GlowingGas::GlowingGas(float hottest_kelvins) {
   const float hottest = std::clamp(hottest_kelvins, 1.01f * coldest, hottest_max);
   step_ = std::log(hottest / coldest) / steps;
   table_.reserve(steps + 1);
   for (int i = 0; i <= steps; ++i) {
     const double kelvins = double{coldest} * std::exp(double{step_} * i);
-    table_.push_back(static_cast<float>(y_integral / peak_radiance(kelvins)) *
-                     mitsuba::blackbody_to_rgb(kelvins));
+    table_.push_back(radiance_of_gas(kelvins));
   }
 }
 
