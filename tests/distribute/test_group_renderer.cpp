@@ -1,5 +1,7 @@
 // Several devices make the image of one, bit by bit; a group goes on where workers fail, and ends
 // with whole samples where it is interrupted.
+#include <fmt/format.h>
+
 #include <ctime>
 #include <functional>
 #include <set>
@@ -244,6 +246,62 @@ TEST(GroupRenderer, OtherWorkersTakeTheUnitsOfOneThatFails) {
     EXPECT_GT(grown, 3);
     EXPECT_EQ(run.devices[2].units, 0u);
     EXPECT_EQ(run.devices[1].units, 2u);
+  }
+}
+
+/// With memory, kernels and a name of its own; breaks at once, or never.
+class DescribedWorker : public FakeWorker {
+ public:
+  DescribedWorker(std::string device, std::vector<BufferSize> memory, bool breaks = false)
+      : FakeWorker(breaks ? 1 : 0), device_(std::move(device)), memory_(std::move(memory)) {}
+  void describe(RenderReport& report) override {
+    report.device_name = device_;
+    report.memory.insert(report.memory.end(), memory_.begin(), memory_.end());
+  }
+
+ private:
+  std::string device_;
+  std::vector<BufferSize> memory_;
+};
+
+/// As "name:bytes", in the order of the report.
+std::string text_of(const std::vector<BufferSize>& memory) {
+  std::string text;
+  for (const BufferSize& b : memory) text += fmt::format("{}:{} ", b.name, b.size_bytes);
+  return text;
+}
+
+// Of devices that still work, each once; names are those of devices in their order.
+TEST(GroupRenderer, DescribesAllDevicesTogether) {
+  struct Case {
+    std::vector<std::tuple<std::string, std::vector<BufferSize>, bool>> devices;
+    std::string name, memory;
+  };
+  const std::vector<BufferSize> pool{{"pool", 5}, {"scene", 1000}},
+      large{{"scene", 3}, {"pool", 70}};
+  const std::vector<Case> cases = {
+      {{{"A", pool, false}}, "A", "pool:5 scene:1000 "},
+      {{{"A", pool, false}, {"A", pool, false}}, "2 x A", "pool:10 scene:2000 "},
+      {{{"A", pool, false}, {"B", large, false}}, "A, B", "scene:1003 pool:75 "},
+      {{{"A", pool, false}, {"A", pool, false}, {"A", large, false}},
+       "3 x A",
+       "scene:2003 pool:80 "},
+      {{{"A", pool, false}, {"B", {{"film", 9}}, false}}, "A, B", "film:9 pool:5 scene:1000 "},
+      {{{"A", pool, false}, {"B", large, true}}, "A", "pool:5 scene:1000 "},
+      {{{"B", large, true}, {"A", pool, false}, {"C", {}, false}}, "A, C", "pool:5 scene:1000 "}};
+  const Options options = small({{"width", "60"}, {"height", "40"}, {"spp", "8"}});
+  for (const Case& c : cases) {
+    GroupRenderer::Workers workers;
+    for (const auto& [name, memory, breaks] : c.devices) {
+      workers.push_back(std::make_unique<DescribedWorker>(name, memory, breaks));
+    }
+    GroupRenderer group(options, {}, std::move(workers), nullptr,
+                        {[](const ImageFilm&) {}, [](const std::string&) {}});
+    group.render(RenderHooks{});
+    RenderReport report;
+    group.describe(report);
+    EXPECT_EQ(report.device_name, c.name);
+    EXPECT_EQ(text_of(report.memory), c.memory) << c.name;
   }
 }
 

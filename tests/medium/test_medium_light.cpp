@@ -8,11 +8,6 @@ namespace {
 
 const Settings long_render{{"spp", "1024"}}, once{{"spp", "512"}, {"max-depth", "2"}};
 
-/// exp(-depth) by channel.
-glm::dvec3 passes(const Color& extinction, double length) {
-  return glm::exp(-glm::dvec3(extinction) * length);
-}
-
 /// Seen along -z through the middle of its box.
 SceneData slab_of(const Medium& medium, CloudShape shape = CloudShape::quads) {
   SceneData scene = cloud_under_sky(medium, shape);
@@ -39,7 +34,7 @@ TEST(MediumTransmittance, IsBeersLaw) {
   const Color extinction(0.2f, 0.7f, 1.6f);
   for (const CloudShape shape : {CloudShape::quads, CloudShape::mesh_box, CloudShape::sphere}) {
     const SceneData scene = slab_of(make_medium(extinction, Color(0.0f)), shape);
-    expect_mean(render_medium(scene, long_render), passes(extinction, 2));
+    expect_mean(render_medium(scene, long_render), beer(extinction, 2));
   }
 }
 
@@ -48,14 +43,14 @@ TEST(MediumTransmittance, BeginsWhereTheCameraIs) {
   SceneData scene = slab_of(make_medium(extinction, Color(0.0f)));
   scene.camera.look_from = {0, 0, 0.5f};
   scene.camera_medium = 0;
-  expect_mean(render_medium(scene, long_render), passes(extinction, 1.5));
+  expect_mean(render_medium(scene, long_render), beer(extinction, 1.5));
 }
 
 TEST(MediumTransmittance, OfALinearDensityIsThatOfItsIntegral) {
   const Color extinction(0.2f, 0.7f, 1.6f);
   SceneData scene = slab_of(make_medium(extinction, Color(0.0f)));
   set_linear_density(scene, 0.2, 1.4);
-  expect_mean(render_medium(scene, long_render), passes(extinction, 1.6));
+  expect_mean(render_medium(scene, long_render), beer(extinction, 1.6));
 }
 
 TEST(MediumTransmittance, OfAnInstanceHasItsSize) {
@@ -63,7 +58,7 @@ TEST(MediumTransmittance, OfAnInstanceHasItsSize) {
   SceneData scene = slab_of(make_medium(extinction, Color(0.0f)), CloudShape::mesh_box);
   scene.meshes[0].group = 1;
   scene.instances.push_back({1, rotate({0, 1, 0}, 90.0f) * scale({1.25f, 1, 3})});
-  expect_mean(render_medium(scene, long_render), passes(extinction, 2.5));
+  expect_mean(render_medium(scene, long_render), beer(extinction, 2.5));
 }
 
 // L = Le (1 - T).
@@ -73,12 +68,12 @@ TEST(MediumEmission, IsThatOfASlab) {
   SceneData scene = slab_of(medium);
   darken_sky(scene);
   expect_mean(render_medium(scene, long_render),
-              glm::dvec3(medium.emission) * (1.0 - passes(medium.extinction, 2)));
+              glm::dvec3(medium.emission) * (1.0 - beer(medium.extinction, 2)));
   // What scatters does not shine; after one ray nothing else adds to it.
   scene.media[0].albedo = {0.3f, 0.0f, 0.8f};
   expect_mean(
       render_medium(scene, {{"spp", "1024"}, {"max-depth", "1"}}),
-      glm::dvec3(0.7, 1, 0.2) * glm::dvec3(medium.emission) * (1.0 - passes(medium.extinction, 2)));
+      glm::dvec3(0.7, 1, 0.2) * glm::dvec3(medium.emission) * (1.0 - beer(medium.extinction, 2)));
 }
 
 // The integral of T sigma_a Le, with an emission and an albedo that vary.
@@ -111,24 +106,15 @@ double henyey_greenstein(double g, double cosine) {
   return (1 - g * g) / std::pow(1 + g * g - 2 * g * cosine, 1.5) / (4 * pi_double);
 }
 
-DeltaLight make_sun(const Vec3& direction, const Color& irradiance) {
-  DeltaLight sun;
-  sun.kind = LightKind::directional;
-  sun.direction = direction;
-  sun.intensity = irradiance;
-  return sun;
-}
-
 // From the side: to each point of the ray light comes through as much of the box.
 TEST(MediumScattering, OnceIsQuadrature) {
   const Color extinction(0.6f, 1.5f, 0.2f), albedo(0.4f, 0.9f, 1.0f), irradiance(3.0f, 1.0f, 2.0f);
   for (const CloudShape shape : {CloudShape::quads, CloudShape::mesh_box}) {
     SceneData scene = slab_of(make_medium(extinction, albedo), shape);
     darken_sky(scene);
-    scene.delta_lights.push_back(make_sun({0, -1, 0}, irradiance));
-    const glm::dvec3 expected = glm::dvec3(irradiance) * passes(extinction, 1) *
-                                glm::dvec3(albedo) * (1.0 - passes(extinction, 2)) /
-                                (4 * pi_double);
+    scene.delta_lights.push_back(sun_along({0, -1, 0}, irradiance));
+    const glm::dvec3 expected = glm::dvec3(irradiance) * beer(extinction, 1) * glm::dvec3(albedo) *
+                                (1.0 - beer(extinction, 2)) / (4 * pi_double);
     expect_mean(render_medium(scene, once), expected);
   }
 }
@@ -140,7 +126,7 @@ TEST(MediumScattering, KnowsForwardsFromBackwards) {
     SceneData scene = slab_of(make_medium(Color(static_cast<float>(extinction)), Color(1.0f),
                                           phase_kind_of<HenyeyGreenstein>, g));
     darken_sky(scene);
-    scene.delta_lights.push_back(make_sun({0, -0.8f, -0.6f}, Color(1.0f)));
+    scene.delta_lights.push_back(sun_along({0, -0.8f, -0.6f}, Color(1.0f)));
     const double expected = integrate(-1, 1, [&](double z) {
       const double to_light = std::min(1 / 0.8, (1 - z) / 0.6);
       return extinction * std::exp(-extinction * (1 - z + to_light)) *
@@ -157,7 +143,7 @@ TEST(MediumScattering, OfALinearDensityIsQuadrature) {
   SceneData scene = slab_of(make_medium(extinction, Color(0.9f)));
   set_linear_density(scene, density.a, density.b);
   darken_sky(scene);
-  scene.delta_lights.push_back(make_sun({0, -0.8f, -0.6f}, Color(2.0f)));
+  scene.delta_lights.push_back(sun_along({0, -0.8f, -0.6f}, Color(2.0f)));
   glm::dvec3 expected;
   for (int c = 0; c < 3; ++c) {
     const double e = double{extinction[c]};
@@ -194,11 +180,11 @@ TEST(MediumScattering, ShadowRaysKnowWhatTheyCross) {
   const Color veil(0.9f, 0.3f, 0.1f);
   SceneData scene = slab_of(make_medium(Color(0.6f), Color(1.0f)));
   darken_sky(scene);
-  scene.delta_lights.push_back(make_sun({0, -1, 0}, Color(1.0f)));
+  scene.delta_lights.push_back(sun_along({0, -1, 0}, Color(1.0f)));
   scene.media.push_back(make_medium(veil, Color(0.5f)));
   add_cuboid(scene, {-3, 1.5f, -3}, {3, 2.25f, 3}, scene.add_material(make_boundary(no_medium, 1)));
   const glm::dvec3 expected =
-      std::exp(-0.6) * -std::expm1(-1.2) / (4 * pi_double) * passes(veil, 0.75);
+      std::exp(-0.6) * -std::expm1(-1.2) / (4 * pi_double) * beer(veil, 0.75);
   expect_mean(render_medium(scene, once), expected);
   // The same as a grid of the same density within a brighter one: null collisions.
   SceneData of_grid = scene;

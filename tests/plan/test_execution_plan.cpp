@@ -494,6 +494,15 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   expect_refused(shared, many, gpu(48),
                  "--scene-memory shared: the scene's 8000 spheres take 64000 bytes");
   EXPECT_EQ(plan_of(shared, many, gpu()).scene_memory, SceneMemory::shared);
+  // Of what a block may have, 2 KiB are the kernel's own.
+  const auto with_scan = [](std::size_t bytes) {
+    return changed(spheres(8000), [&](auto& s) { s.scan_bytes = bytes; });
+  };
+  constexpr std::size_t most = 96 * 1024 - 2048;
+  EXPECT_EQ(plan_of(shared, with_scan(most), gpu(96)).scene_memory, SceneMemory::shared);
+  expect_refused(shared, with_scan(most + 1), gpu(96),
+                 "--scene-memory shared: the scene's 8000 spheres take 96257 bytes; a block of "
+                 "this device has at most 98304");
 }
 
 TEST(ExecutionPlan, TogglesAreForScansOnCuda) {

@@ -31,11 +31,19 @@ struct ThinDielectric {
 
   PT_HD bool is_delta() const { return true; }
 
+  /// R + T R T + T R^3 T + ...
+  PT_HD float reflectance(float cosine) const {
+    const float once = fresnel_dielectric(fminf(fabsf(cosine), 1.0f), eta);
+    return divide(2.0f * once, 1.0f + once);
+  }
+  PT_HD Color transmittance(float cosine) const {
+    return multiply_rounded(passed, Color(1.0f - reflectance(cosine)));
+  }
+
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
-    const float once = fresnel_dielectric(fminf(fabsf(wo.z), 1.0f), eta);
-    // R + T R T + T R^3 T + ...
-    const float reflectance = divide(2.0f * once, 1.0f + once);
-    if (u.z < reflectance) return {mirrored(wo), reflected, 0.0f, Lobe::reflection | Lobe::delta};
+    if (u.z < reflectance(wo.z)) {
+      return {mirrored(wo), reflected, 0.0f, Lobe::reflection | Lobe::delta};
+    }
     return {-wo, passed, 0.0f, Lobe::transmission | Lobe::delta};
   }
 

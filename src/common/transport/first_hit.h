@@ -117,11 +117,11 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
                                  view.ray, view.hit.t, combine_hash(ray_key, 1)));
     }
     if (view.hit.is_miss()) return view;
-    const std::uint32_t material = material_index_at(scene, view.hit);
-    if (!lets_through(scene, scene.material(material), material, path.medium.around)) return view;
-    const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit).point;
-    const BoundaryCrossing crossing =
-        cross_boundary(scene, view.ray, material, point, path.medium.around);
+    const std::uint32_t index = material_index_at(scene, view.hit);
+    const Material material = scene.material(index);
+    if (!lets_through(scene, material, index, path.medium.around) || is_pane(material)) return view;
+    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit);
+    const BoundaryCrossing crossing = cross_boundary(scene, view.ray, surface, path.medium.around);
     path.medium.around = crossing.around;
     view.distance += crossing.length;
     view.ray = crossing.ray;

@@ -108,13 +108,20 @@ struct BoundaryCrossing {
   std::uint16_t around;  ///< where it begins (Media)
 };
 
+/// The media on both sides of a surface that a ray in `around` met.
+PT_HD MediumBoundary media_beside(const Scene& scene, const Surface& surface,
+                                  std::uint16_t around) {
+  return surface.material.is(Material::boundary) ? scene.media.boundaries[surface.material_index]
+                                                 : scene.media.same_on_both_sides(around);
+}
+
 /// `around`: what is around the ray's origin.
-PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, std::uint32_t material,
-                                      const SurfacePoint& point, std::uint16_t around) {
-  const Ray next = spawn_ray(point, ray.direction);
-  return {
-      next, dot(next.origin - ray.origin, ray.direction),
-      scene.media.behind(scene.media.boundaries[material], ray.direction, point.normal, around)};
+PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
+                                      std::uint16_t around) {
+  const Ray next = spawn_ray(surface.point, ray.direction);
+  return {next, dot(next.origin - ray.origin, ray.direction),
+          scene.media.behind(media_beside(scene, surface, around), ray.direction,
+                             surface.point.normal, around)};
 }
 
 /// Whether light goes on through a surface as if it were not there.
@@ -124,16 +131,26 @@ PT_HD bool lets_through(const Scene& scene, const Material& material, std::uint3
          (material.emission == no_emission && scene.media.hides(index, around));
 }
 
+/// Whether a surface that lets light through is thin glass, which reflects a part of it.
+PT_HD bool is_pane(const Material& material) {
+  return material.is(Material::passes) && material.kind == kind_of<ThinDielectric>;
+}
+
+/// The glass of a pane, with its textures in kernels of any kind.
+PT_HD ThinDielectric pane_at(const Scene& scene, const Surface& surface) {
+  using WithTextures = Traits<Accel::brute, Geometry::triangles, Lighting::full>;
+  return ThinDielectric::make(SurfaceParameters<WithTextures>(scene, surface));
+}
+
 /// A surface that lets light through.
 PT_HD_IN_KERNEL Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                          PathState& path) {
-  const BoundaryCrossing crossing =
-      cross_boundary(scene, ray, surface.material_index, surface.point, path.medium.around);
+  const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, path.medium.around);
   path.medium.around = crossing.around;
   path.medium.travelled = add_rounded(path.medium.travelled, crossing.length);
   ++path.medium.passed;
   Scattering result;
-  result.alive = true;
+  result.alive = !is_black(path.beta);
   result.ray = crossing.ray;
   set_lanes(result.ray, lanes_of(scene).at(path.rays));
   return result;
@@ -163,7 +180,14 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
   Surface surface = surface_at<Traits>(scene, ray, hit);
   if constexpr (Traits::has_media) {
     if (lets_through(scene, surface.material, surface.material_index, path.medium.around)) {
-      return pass_boundary(scene, ray, surface, path);
+      if (!is_pane(surface.material)) return pass_boundary(scene, ray, surface, path);
+      const ThinDielectric pane = pane_at(scene, surface);
+      // By the number that decides it in ThinDielectric::sample().
+      const float cosine = dot(ray.direction, surface.shading_normal);
+      if (!(steps.scatter().z < pane.reflectance(cosine))) {
+        path.beta = multiply_rounded(path.beta, pane.passed);
+        return pass_boundary(scene, ray, surface, path);
+      }
     }
   }
   Scattering result;
@@ -173,9 +197,7 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
   if (path.depth<Traits>() >= limits.max_depth) return result;
   MediumBoundary boundary;
   if constexpr (Traits::has_media) {
-    boundary = surface.material.is(Material::boundary)
-                   ? scene.media.boundaries[surface.material_index]
-                   : scene.media.same_on_both_sides(path.medium.around);
+    boundary = media_beside(scene, surface, path.medium.around);
   }
   float choice = 0.0f;
   const bool is_nested = full && surface.material.is(Material::nested);

@@ -138,7 +138,7 @@ PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t around, cons
 }
 
 /// What of a shadow ray's radiance arrives: black if a surface with a BSDF lies between its ends,
-/// else the transmittance of the media through which it goes.
+/// else the transmittance of the media and panes through which it goes.
 template <class Traits>
 PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
                                  std::uint32_t ray_key) {
@@ -159,8 +159,12 @@ PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
           passed, segment_transmittance(scene, around, ray, length, ray_key, segment));
     }
     if (arrives || is_black(passed)) return passed;
-    const SurfacePoint point = surface_at<ShadingTraits<Traits>>(scene, ray, hit).point;
-    const BoundaryCrossing crossing = cross_boundary(scene, ray, material, point, around);
+    const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit);
+    if (is_pane(surface.material)) {
+      const float cosine = dot(ray.direction, surface.shading_normal);
+      passed = multiply_rounded(passed, pane_at(scene, surface).transmittance(cosine));
+    }
+    const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, around);
     around = crossing.around;
     left -= crossing.length;
     ray.origin = crossing.ray.origin;

@@ -113,6 +113,20 @@ inline CameraParameters distant_camera() {
 
 inline void darken_sky(SceneData& scene) { scene.sky = {}; }
 
+/// exp(-depth) by channel.
+inline glm::dvec3 beer(const Color& extinction, double length) {
+  return glm::exp(-glm::dvec3(extinction) * length);
+}
+
+/// A directional light.
+inline DeltaLight sun_along(const Vec3& direction, const Color& irradiance) {
+  DeltaLight sun;
+  sun.kind = LightKind::directional;
+  sun.direction = normalize(direction);
+  sun.intensity = irradiance;
+  return sun;
+}
+
 /// A sky of ones that is a light: an environment map.
 inline void set_environment(SceneData& scene) {
   darken_sky(scene);

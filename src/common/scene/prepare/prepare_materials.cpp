@@ -53,12 +53,18 @@ void pack_bsdf(const MaterialDescription& source, bool multiple_scattering, Scen
   scene.parameters.insert(scene.parameters.end(), source.parameters + 1, end);
 }
 
-Material pack(const MaterialDescription& source, bool multiple_scattering, SceneData& scene) {
+bool is_pane(const MaterialDescription& material) {
+  return material.passes && material.kind == kind_of<ThinDielectric>;
+}
+
+Material pack(const MaterialDescription& source, bool multiple_scattering, bool panes_pass,
+              SceneData& scene) {
   Material material;
+  const bool passes = source.passes && (panes_pass || !is_pane(source));
   material.flags = static_cast<std::uint8_t>((source.one_sided ? Material::one_sided : 0) |
                                              (source.is_textured() ? Material::textured : 0) |
                                              (source.is_boundary ? Material::boundary : 0) |
-                                             (source.passes ? Material::passes : 0));
+                                             (passes ? Material::passes : 0));
   if (source.node == MaterialNode::none) {
     pack_bsdf(source, multiple_scattering, scene, material);
   } else {
@@ -74,7 +80,7 @@ Material pack(const MaterialDescription& source, bool multiple_scattering, Scene
 /// With a camera that does not see all, masks' kernels are those that ask which ray it is.
 void list_opacities(SceneData& scene) {
   scene.opacities.clear();
-  bool any = is_limited(scene.camera) || !scene.media.empty();
+  bool any = is_limited(scene.camera) || needs_media(scene);
   for (const MaterialDescription& m : scene.materials) any = any || !m.opacity.is_opaque();
   for (Mesh& mesh : scene.meshes) {
     mesh.masked = is_masked(scene, scene.materials[mesh.material]);
@@ -121,17 +127,23 @@ std::uint32_t kinds_of(const SceneData& scene) {
   return kinds;
 }
 
-void prepare_materials(SceneData& scene, bool multiple_scattering) {
+bool needs_media(const SceneData& scene) {
+  return !scene.media.empty() || std::ranges::any_of(scene.material_records, [](const Material& m) {
+    return m.is(Material::passes);
+  });
+}
+
+void prepare_materials(SceneData& scene, bool multiple_scattering, bool panes_pass) {
   for (std::size_t i = 0; i < scene.textures.size(); ++i) {
     scene.textures[i].index = static_cast<std::uint32_t>(i);
   }
   weigh_emission_textures(scene);
   scene.material_records.clear(), scene.parameters.clear(), scene.emissions.clear();
-  list_opacities(scene);
   for (const MaterialDescription& m : scene.materials) scene.parameters.push_back(m.parameters[0]);
   for (const MaterialDescription& m : scene.materials) {
-    scene.material_records.push_back(pack(m, multiple_scattering, scene));
+    scene.material_records.push_back(pack(m, multiple_scattering, panes_pass, scene));
   }
+  list_opacities(scene);
 }
 
 }  // namespace pt

@@ -19,7 +19,12 @@ std::uint32_t kinds_of(const SceneData& scene);
 
 /// Fills material_records, parameters and emissions from the materials: the first parameters by
 /// material and then the others, emissions only of emissive ones, textures' means measured. With
-/// `multiple_scattering` rough conductors become CompensatedConductors.
-void prepare_materials(SceneData& scene, bool multiple_scattering);
+/// `multiple_scattering` rough conductors become CompensatedConductors; without `panes_pass` thin
+/// glass ends shadow rays and costs depth, whatever the scene says.
+void prepare_materials(SceneData& scene, bool multiple_scattering, bool panes_pass = true);
+
+/// Whether it needs kernels with media: it has some, or thin glass that lets shadow rays through.
+/// After prepare_materials().
+bool needs_media(const SceneData& scene);
 
 }  // namespace pt

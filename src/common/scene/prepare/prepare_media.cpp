@@ -7,6 +7,7 @@
 
 #include "common/error/error.h"
 #include "common/scene/data/volume_data.h"
+#include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {
@@ -95,7 +96,7 @@ void prepare_media(SceneData& scene) {
     order_media(scene);
   }
   scene.boundaries.clear(), scene.majorants.clear(), scene.light_points.clear();
-  if (scene.media.empty()) return;
+  if (!needs_media(scene)) return;
   for (const MaterialDescription& m : scene.materials) scene.boundaries.push_back(m.media);
   for (const DeltaLight& light : scene.delta_lights) {
     if (light.kind != LightKind::directional) scene.light_points.emplace_back(light.position, 0);

@@ -43,7 +43,7 @@ void prepare_scene(SceneData& scene, const Options& options, const DevicePropert
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
   set_camera(scene, scene.camera, options);
-  prepare_materials(scene, options.multiple_scattering);
+  prepare_materials(scene, options.multiple_scattering, options.integrator != IntegratorKind::mlt);
   prepare_media(scene);
   prepare_filter(scene, filter_of(options, scene));
   scene.properties = properties_of(scene);

@@ -13,6 +13,7 @@
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_primitives.h"
+#include "common/scene/prepare/separate_boundaries.h"
 
 namespace pt {
 namespace {
@@ -53,6 +54,7 @@ TreeOptions tree_options(Accel accel, TreeBuilder builder) {
 
 void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
   convert_quads(scene);
+  if (!scene.media.empty()) separate_boundaries(scene);
   const Bounds bounds = scene_bounds(scene);
   prepare_primitives(scene, !scene.spheres.empty(), bounds);
   scene.lights.clear();  // they are in light_list
@@ -60,7 +62,7 @@ void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
   const bool mixed = masked || !scene.instances.empty() || !scene.spheres.empty() ||
                      accel == Accel::brute || accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked,
-                  !scene.media.empty()};
+                  needs_media(scene)};
   const TreeOptions tree = tree_options(accel, options.builder);
   if (is_device_builder(options.builder)) {
     check_geometry(scene.meshes, scene.instances);

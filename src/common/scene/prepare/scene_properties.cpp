@@ -34,7 +34,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
-  properties.has_media = !scene.media.empty();
+  properties.has_media = needs_media(scene);
   properties.has_open_boundaries =
       scene.media_overlap ||
       std::ranges::any_of(scene.materials, [](const auto& m) { return m.passes; });

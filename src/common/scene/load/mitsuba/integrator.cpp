@@ -37,6 +37,15 @@ void read_max_depth(Context& context, const Object& integrator, int depth) {
   context.scene.defaults.max_depth = depth == -1 ? unlimited_depth : depth;
 }
 
+/// In its integrators for media thin glass lets shadow rays through, and what passes it costs no
+/// depth.
+void let_panes_pass(SceneData& scene) {
+  for (MaterialDescription& m : scene.materials) {
+    const bool is_pane = m.node == MaterialNode::none && m.kind == kind_of<ThinDielectric>;
+    if (is_pane && is_black(m.emission.radiance)) m.passes = true;
+  }
+}
+
 void read_around(Context& context, const Object& integrator, const Object& nested) {
   if (!ways_to_run.contains(integrator.type())) {
     context.warn_once(
@@ -65,6 +74,7 @@ void read_integrator(Context& context, const Object& integrator) {
   read_max_depth(context, integrator, integrator.integer("max_depth").value_or(-1));
   if (direct) context.scene.defaults.max_depth = 2;
   context.scene.defaults.rr_depth = integrator.integer("rr_depth");
+  if (type.find("volpath") != std::string::npos) let_panes_pass(context.scene);
   // The rest is about the method.
   if (!direct && type != "path" && type != "volpath") return integrator.ignore_all();
   integrator.ignore({"strict_normals", "emitter_samples", "bsdf_samples", "shading_samples",
