@@ -58,9 +58,9 @@ class MeshesByMaterial : public ObjSink {
 
   void finish(const MeshFileOptions& options) {
     for (auto& [material, builder] : builders_) {
-      Mesh mesh = std::move(builder).finish();
+      Mesh mesh = std::move(builder).finish(&file_.warnings);
       mesh.material = material;
-      finish_mesh(mesh, options);
+      finish_mesh(mesh, options, &file_.warnings);
       file_.meshes.push_back(std::move(mesh));
     }
   }
@@ -90,8 +90,8 @@ class MeshesByMaterial : public ObjSink {
 Mesh decode(std::string_view bytes, const MeshFileOptions& options) {
   OneMesh sink;
   parse_obj(bytes, sink);
-  Mesh mesh = std::move(sink.builder).finish();
-  finish_mesh(mesh, options);
+  Mesh mesh = std::move(sink.builder).finish(options.warnings);
+  finish_mesh(mesh, options, options.warnings);
   return mesh;
 }
 
