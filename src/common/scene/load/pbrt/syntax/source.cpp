@@ -8,13 +8,14 @@
 #include <new>
 
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
+#include "common/scene/load/files/inflater.h"
 #include "common/scene/load/files/mapped_file.h"
 
 namespace pt::pbrt {
 namespace {
 
-constexpr std::size_t step = 1 << 20;               // bytes decompressed at once
-constexpr std::size_t most = std::size_t{1} << 34;  // a file that claims more is not one of text
+constexpr std::size_t step = 1 << 20;  // bytes decompressed at once
 
 struct End {
   void operator()(z_stream* stream) const { inflateEnd(stream); }
@@ -30,7 +31,8 @@ std::string decompress(std::string_view bytes) {
   std::string out;
   while (true) {
     const std::size_t before = out.size();
-    if (before > most) throw Error("more than 16 GiB when decompressed");
+    if (before > most_unpacked_bytes(bytes.size())) throw unpacks_to_more(bytes.size());
+    if (before + step > out.capacity()) check_host_memory(2 * before, "the unpacked file");
     out.resize(before + step);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
     stream.avail_out = static_cast<uInt>(step);
