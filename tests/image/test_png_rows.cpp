@@ -8,9 +8,9 @@
 #include <random>
 
 #include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/png_rows.h"
 #include "common/image/codecs/png_session.h"
-#include "common/image/codecs/rgba8.h"
 
 namespace pt {
 namespace {
@@ -86,7 +86,7 @@ TEST(PngRows, AreReadByLibpng) {
     }
     for (const std::string& bytes :
          {png_codec.encode(image, {{"key", "text"}}, {}), encode_png_fast(image, {})}) {
-      const Rgba8Image found = decode_png_rgba8(bytes);
+      const IntegerImage found = decode_png_integers(bytes);
       ASSERT_EQ(found.width, image.width);
       ASSERT_EQ(found.height, image.height);
       for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/error/error.h"
+#include "common/error/quoted.h"
 
 namespace pt {
 
@@ -22,10 +23,11 @@ auto explaining(const std::string& what, Action action) {
   } catch (const std::exception& error) {
     reason = error.what();
   }
-  // Libraries quote the file's content in their messages.
+  // Libraries quote the file's content in their messages, whatever its length.
   std::replace_if(
       reason.begin(), reason.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  throw Error(what + ": " + reason);
+  constexpr std::size_t most_bytes = 1000;
+  throw Error(what + ": " + clipped(reason, most_bytes));
 }
 
 }  // namespace pt

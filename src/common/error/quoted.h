@@ -28,8 +28,8 @@ inline std::string clipped(std::string_view text, std::size_t most_bytes = 80) {
   return size < text.size() ? result + "..." : result;
 }
 
-/// The same between single quotes.
-inline std::string quoted(std::string_view text, std::size_t most_bytes = 80) {
+/// The same between single quotes. (std::quoted would be found by its arguments.)
+inline std::string in_quotes(std::string_view text, std::size_t most_bytes = 80) {
   return "'" + clipped(text, most_bytes) + "'";
 }
 

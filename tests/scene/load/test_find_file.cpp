@@ -37,6 +37,23 @@ TEST(FindFile, ByCaseWhereNothingElseFits) {
   EXPECT_TRUE(Found(folder, "b.png").warnings.empty());
 }
 
+// 2^30 ways lead to the folder itself.
+TEST(FindFile, LinksThatLeadBackAreFollowedOnce) {
+  const TempFolder folder;
+  for (const char* name : {"a", "A"})
+    std::filesystem::create_directory_symlink(".", folder.file(name));
+  std::filesystem::create_directories(folder.file("b/C"));
+  write_text(folder.file("b/C/x.ply"), "x");
+  std::filesystem::create_directory_symlink("..", folder.file("b/a"));
+  std::string name;
+  for (int i = 0; i < 30; ++i) name += "a/";
+  EXPECT_EQ(Found(folder, name + "x.ply").name, "");
+  EXPECT_EQ(Found(folder, name + "B/a/B/c/X.ply").name, name + "b/a/b/C/x.ply");
+  std::filesystem::create_symlink("loop", folder.file("loop"));
+  EXPECT_EQ(Found(folder, "LOOP").name, "loop") << "it is there; reading it fails";
+  EXPECT_EQ(Found(folder, "loop/x").name, "");
+}
+
 TEST(FindFile, BuffersAndImagesOfGltf) {
   const TempFolder folder;
   GltfMaker maker = with_material(

@@ -3,9 +3,11 @@
 #include <ImfVersion.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "common/error/error.h"
+#include "common/error/quoted.h"
 
 namespace pt {
 namespace {
@@ -88,19 +90,58 @@ void check_kind(std::string_view bytes) {
   }
 }
 
+/// The rest of a box2i, or of the numbers with which a tiledesc begins.
+std::int64_t next_integer(Bytes& bytes) { return static_cast<std::int32_t>(bytes.number()); }
+
+/// Decompressed, of all channels.
+std::size_t bytes_per_pixel(std::string_view channels) {
+  std::size_t bytes = 0;
+  for (Bytes list(channels); !list.text().empty();) {
+    constexpr std::uint32_t half = 1;  // of the types 0, 1 and 2
+    bytes += Bytes(list.take(16)).number() == half ? 2 : 4;
+  }
+  return bytes;
+}
+
+/// OpenEXR allocates the table of offsets, and lines or tiles, before it reads them.
+void check_parts(const ExrSize& size, std::size_t file_bytes) {
+  const auto over = [](std::int64_t pixels, std::int64_t part) { return (pixels - 1) / part + 1; };
+  const std::int64_t parts = size.tile_width == 0 ? 1
+                                                  : over(size.width, size.tile_width) *
+                                                        over(size.height, size.tile_height);
+  if (parts * 8 > static_cast<std::int64_t>(file_bytes)) {
+    throw Error(fmt::format("{} bytes cannot hold the {} tiles that the header announces",
+                            file_bytes, parts));
+  }
+}
+
 }  // namespace
 
-void check_exr_header(std::string_view bytes) {
+ExrSize check_exr_header(std::string_view bytes) {
   check_kind(bytes);
+  ExrSize size;
   Bytes header(bytes.substr(8));
   for (std::string_view name; !(name = header.text()).empty();) {
     const std::string_view type = header.text();
     const std::string_view value = header.take(header.number());
     if (!has_its_size(type, value)) {
-      throw Error(fmt::format("corrupted in the header: attribute {} is no {}", name.substr(0, 40),
-                              type.substr(0, 40)));
+      throw Error(fmt::format("corrupted in the header: attribute {} is no {}", clipped(name, 40),
+                              clipped(type, 40)));
+    }
+    Bytes numbers(value);
+    if (name == "dataWindow" && type == "box2i") {
+      const std::int64_t left = next_integer(numbers), head = next_integer(numbers);
+      size.width = next_integer(numbers) - left + 1;
+      size.height = next_integer(numbers) - head + 1;
+    } else if (name == "tiles" && type == "tiledesc") {
+      size.tile_width = std::max<std::int64_t>(numbers.number(), 1);
+      size.tile_height = std::max<std::int64_t>(numbers.number(), 1);
+    } else if (name == "channels" && type == "chlist") {
+      size.bytes_per_pixel = bytes_per_pixel(value);
     }
   }
+  if (size.width >= 1 && size.height >= 1) check_parts(size, bytes.size());
+  return size;
 }
 
 }  // namespace pt

@@ -33,13 +33,19 @@ extern const ImageCodec ppm_codec;  ///< gamma 2, no metadata
 /// As png_codec, for who waits: a larger file, several times as fast. Throws Error.
 std::string encode_png_fast(const Image& image, const ToneMapping& tone_mapping);
 
-/// Throws Error unless a file of `file_bytes` can hold an image of this size: at most 65535 pixels
-/// a side, `decoded_bytes` of pixels as the file stores them, decompressed.
-void check_image_size(std::int64_t width, std::int64_t height, double decoded_bytes,
-                      std::size_t file_bytes);
+/// What a header announces of an image.
+struct AnnouncedSize {
+  std::int64_t width = 0, height = 0;
+  double stored_bytes = 0;    ///< of the pixels as the file stores them, decompressed
+  double decoding_bytes = 0;  ///< of memory that decoding them takes, the result included
+};
 
-/// A black image, allocated only after check_image_size has found its size believable.
-Image allocate_image(std::int64_t width, std::int64_t height, double decoded_bytes,
-                     std::size_t file_bytes);
+/// To be called before anything is allocated for an image. Throws Error unless it has at most 65535
+/// pixels a side, at most 2^28 pixels or 256 for each byte of the file, a file of `file_bytes` can
+/// hold it, and the memory for it is free.
+void check_image_size(const AnnouncedSize& size, std::size_t file_bytes);
+
+/// A black image, allocated only after check_image_size; `decoding_bytes` without the image's own.
+Image allocate_image(AnnouncedSize size, std::size_t file_bytes);
 
 }  // namespace pt

@@ -170,7 +170,14 @@ std::vector<ImageLayer> number_layers(const Imf::ChannelList& channels, const st
 
 /// `prefix`: of the layers of whole numbers that are wanted, too; null: none.
 Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::string* prefix) {
-  check_exr_header(bytes);
+  const ExrSize announced = check_exr_header(bytes);
+  const double pixels =
+      static_cast<double>(announced.width) * static_cast<double>(announced.height);
+  const double stored = static_cast<double>(announced.bytes_per_pixel) * pixels;
+  AnnouncedSize size{announced.width, announced.height, stored};
+  // OpenEXR unpacks up to 256 lines, or a row of tiles, at once.
+  size.decoding_bytes = 2.0 * stored * std::min(1.0, 256.0 / static_cast<double>(size.height));
+  check_image_size(size, bytes.size());
   // For the whole process, hence the same value each time.
   Imf::Header::setMaxImageSize(max_image_size, max_image_size);
   Imf::Header::setMaxTileSize(max_tile_size, max_tile_size);
@@ -181,11 +188,7 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
   if (!file.isComplete()) throw Error("truncated: some of its pixels are missing");
 
   const Imath::Box2i window = header.dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const double decoded_bytes =
-      static_cast<double>(bytes_per_pixel(header.channels())) * width * height;
-  Image image = allocate_image(width, height, decoded_bytes, bytes.size());
+  Image image = allocate_image(size, bytes.size());
   Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), window, names);
   if (prefix != nullptr) {
     image.layers = number_layers(header.channels(), *prefix, image.rgb.size() / 3);
@@ -194,7 +197,7 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
       for (std::size_t c = 0; c < layer.channels.size(); ++c) {
         buffer.insert(layer.name + '.' + layer.channels[c],
                       Imf::Slice::Make(Imf::UINT, layer.numbers.data() + c, window, stride,
-                                       stride * static_cast<std::size_t>(width)));
+                                       stride * static_cast<std::size_t>(image.width)));
       }
     }
   }

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "common/error/error_context.h"
+#include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_codec.h"
 
@@ -74,25 +75,36 @@ std::string read_file(const std::string& path) {
 
 }  // namespace
 
-void check_image_size(std::int64_t width, std::int64_t height, double decoded_bytes,
-                      std::size_t file_bytes) {
+void check_image_size(const AnnouncedSize& size, std::size_t file_bytes) {
+  const std::int64_t width = size.width, height = size.height;
   if (width < 1 || height < 1 || width > max_image_size || height > max_image_size) {
     throw Error(fmt::format("image of {}x{} pixels; expected sides of 1 to {}", width, height,
                             max_image_size));
   }
   // Deflate yields at most 1032 bytes for one; the constant is for lossy EXR, which yields more.
   const double believable_bytes = 1032.0 * static_cast<double>(file_bytes) + 0x1p28;
-  if (decoded_bytes > believable_bytes) {
+  if (size.stored_bytes > believable_bytes) {
     throw Error(fmt::format("{} bytes cannot hold the {}x{} pixels that the header announces",
                             file_bytes, width, height));
   }
+  constexpr std::int64_t most_pixels = 1 << 28, most_per_byte = 256;
+  const auto believable = static_cast<std::int64_t>(file_bytes) * most_per_byte;
+  if (width * height > std::max(most_pixels, believable)) {
+    throw Error(fmt::format(
+        "{}x{} pixels in {} bytes; expected at most 2^28 (16384x16384), or {} for each byte of the "
+        "file: a larger image of little content must be stored with less compression",
+        width, height, file_bytes, most_per_byte));
+  }
+  check_host_memory(static_cast<std::uint64_t>(size.decoding_bytes),
+                    fmt::format("an image of {}x{} pixels", width, height));
 }
 
-Image allocate_image(std::int64_t width, std::int64_t height, double decoded_bytes,
-                     std::size_t file_bytes) {
-  check_image_size(width, height, decoded_bytes, file_bytes);
-  Image image{static_cast<int>(width), static_cast<int>(height), {}};
-  image.rgb.resize(static_cast<std::size_t>(3 * width * height));
+Image allocate_image(AnnouncedSize size, std::size_t file_bytes) {
+  const double values = 3.0 * static_cast<double>(size.width) * static_cast<double>(size.height);
+  size.decoding_bytes += sizeof(float) * values;
+  check_image_size(size, file_bytes);
+  Image image{static_cast<int>(size.width), static_cast<int>(size.height), {}};
+  image.rgb.resize(static_cast<std::size_t>(3 * size.width * size.height));
   return image;
 }
 

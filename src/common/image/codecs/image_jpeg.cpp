@@ -10,7 +10,7 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/rgba8.h"
+#include "common/image/codecs/integer_image.h"
 
 namespace pt {
 namespace {
@@ -87,13 +87,14 @@ void put_rgb(const unsigned char* values, std::byte* rgb) {
 
 }  // namespace
 
-Rgba8Image decode_jpeg(std::string_view bytes) {
+IntegerImage decode_jpeg(std::string_view bytes) {
   JpegReader reader;
   reader.open(bytes);
   jpeg_decompress_struct& jpeg = reader.jpeg;
   // A block of 64 pixels takes a bit or more, of one component or several.
   const double pixels = static_cast<double>(jpeg.image_width) * jpeg.image_height;
-  check_image_size(jpeg.image_width, jpeg.image_height, 4 * pixels, bytes.size());
+  // A progressive one keeps 16 bits of each coefficient beside the result.
+  check_image_size({jpeg.image_width, jpeg.image_height, 4 * pixels, 12 * pixels}, bytes.size());
   if (pixels / 512 > static_cast<double>(bytes.size())) throw Error("truncated or corrupted");
   const bool inks = jpeg.jpeg_color_space == JCS_CMYK || jpeg.jpeg_color_space == JCS_YCCK;
   reader.attempt([&] {
@@ -102,7 +103,7 @@ Rgba8Image decode_jpeg(std::string_view bytes) {
   });
 
   const std::size_t width = jpeg.output_width, height = jpeg.output_height;
-  Rgba8Image image{static_cast<int>(width), static_cast<int>(height), {}};
+  IntegerImage image{static_cast<int>(width), static_cast<int>(height), {}};
   image.rgba.resize(4 * width * height, std::byte{255});
   const std::size_t channels = inks ? 4 : 3;
   std::vector<unsigned char> row(channels * width);

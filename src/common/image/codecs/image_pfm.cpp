@@ -6,8 +6,8 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/pnm_header.h"
-#include "common/image/codecs/rgba8.h"
 
 namespace pt {
 namespace {
@@ -44,7 +44,7 @@ Image decode_pfm(std::string_view bytes) {
   const std::size_t row_bytes = sizeof(float) * channels * static_cast<std::size_t>(width);
   const std::size_t size = row_bytes * static_cast<std::size_t>(height);
   const std::string_view samples = header.samples("the scale", width, height, size);
-  Image image = allocate_image(width, height, static_cast<double>(size), bytes.size());
+  Image image = allocate_image({width, height}, bytes.size());
   for (int y = 0; y < height; ++y) {
     // From the foot to the head.
     const char* row = samples.data() + static_cast<std::size_t>(height - 1 - y) * row_bytes;

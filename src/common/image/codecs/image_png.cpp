@@ -1,12 +1,13 @@
 // PNG through libpng.
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/png_rows.h"
 #include "common/image/codecs/png_session.h"
-#include "common/image/codecs/rgba8.h"
 #include "common/image/codecs/tone_mapping.h"
 
 namespace pt {
@@ -77,21 +78,21 @@ void check_chunks(std::string_view bytes) {
   }
 }
 
-struct PngHeader {
-  int width = 0, height = 0;
-  double decoded_bytes = 0;  ///< of the pixels, as the file stores them
-};
-
-PngHeader read_header(PngReader& reader) {
-  PngHeader header;
+AnnouncedSize read_header(PngReader& reader) {
+  AnnouncedSize size;
   attempt(reader, [&](png_structp png, png_infop info) {
-    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // allocate_image says it better
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_image_size says it better
     png_read_info(png, info);
-    header.width = static_cast<int>(png_get_image_width(png, info));
-    header.height = static_cast<int>(png_get_image_height(png, info));
-    header.decoded_bytes = static_cast<double>(png_get_rowbytes(png, info)) * header.height;
+    size.width = png_get_image_width(png, info);
+    size.height = png_get_image_height(png, info);
+    size.stored_bytes = static_cast<double>(png_get_rowbytes(png, info)) *
+                        static_cast<double>(png_get_image_height(png, info));
   });
-  return header;
+  return size;
+}
+
+double pixels_of(const AnnouncedSize& size) {
+  return static_cast<double>(size.width) * static_cast<double>(size.height);
 }
 
 /// Fills rows of `row_bytes`, set by libpng for the transformations that were asked for.
@@ -126,8 +127,9 @@ void read_pixels(PngReader& reader, Image& image) {
 Image decode_png(std::string_view bytes, ImageMetadata* metadata) {
   check_chunks(bytes);
   PngReader reader(bytes);
-  const PngHeader header = read_header(reader);
-  Image image = allocate_image(header.width, header.height, header.decoded_bytes, bytes.size());
+  AnnouncedSize size = read_header(reader);
+  size.decoding_bytes = 6.0 * pixels_of(size);  // samples of 16 bits
+  Image image = allocate_image(size, bytes.size());
   read_pixels(reader, image);
 
   png_textp texts = nullptr;
@@ -144,24 +146,40 @@ std::string encode_png_fast(const Image& image, const ToneMapping& tone_mapping)
   return encode(image, {}, tone_mapping, {.level = 1, .chooses_filters = false});
 }
 
-Rgba8Image decode_png_rgba8(std::string_view bytes) {
+IntegerImage decode_png_integers(std::string_view bytes) {
   check_chunks(bytes);
   PngReader reader(bytes);
-  const PngHeader header = read_header(reader);
-  check_image_size(header.width, header.height, header.decoded_bytes, bytes.size());
+  AnnouncedSize size = read_header(reader);
+  const bool is_wide = png_get_bit_depth(reader.png, reader.info) == 16;
+  size.decoding_bytes = (is_wide ? 8.0 : 4.0) * pixels_of(size);
+  check_image_size(size, bytes.size());
   int passes = 0;
   attempt(reader, [&](png_structp png, png_infop info) {
     png_set_expand(png);  // palettes, transparent colours and fewer than 8 bits
-    png_set_scale_16(png);
     png_set_gray_to_rgb(png);
-    png_set_add_alpha(png, 255, PNG_FILLER_AFTER);
+    png_set_add_alpha(png, 0xffff, PNG_FILLER_AFTER);
+    if (std::endian::native == std::endian::little) png_set_swap(png);
     passes = png_set_interlace_handling(png);
     png_read_update_info(png, info);
   });
-  Rgba8Image image{header.width, header.height, {}};
-  image.rgba.resize(std::size_t{4} * image.width * image.height);
-  read_rows(reader, passes, image.height, std::size_t{4} * image.width, image.rgba.data());
+  IntegerImage image{static_cast<int>(size.width), static_cast<int>(size.height), {}};
+  const std::size_t row = std::size_t{4} * image.width;
+  if (is_wide) {
+    image.rgba16.resize(row * image.height);
+    read_rows(reader, passes, image.height, 2 * row, image.rgba16.data());
+    image.narrow();
+  } else {
+    image.rgba.resize(row * image.height);
+    read_rows(reader, passes, image.height, row, image.rgba.data());
+  }
   return image;
+}
+
+void IntegerImage::narrow() {
+  if (!std::ranges::all_of(rgba16, [](std::uint16_t value) { return value % 257 == 0; })) return;
+  rgba.resize(rgba16.size());
+  std::ranges::transform(rgba16, rgba.begin(), [](std::uint16_t v) { return std::byte(v / 257); });
+  rgba16 = {};
 }
 
 const ImageCodec png_codec{".png", encode_png, decode_png};

@@ -1,10 +1,12 @@
 // PPM and PGM, binary (P6, P5): http://netpbm.sourceforge.net/doc/ppm.html
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
+#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/pnm_header.h"
-#include "common/image/codecs/rgba8.h"
 #include "common/image/codecs/tone_mapping.h"
 
 namespace pt {
@@ -31,31 +33,38 @@ std::string encode_ppm(const Image& image, const ImageMetadata&, const ToneMappi
 Image decode_ppm(std::string_view bytes, ImageMetadata*) {
   if (!bytes.starts_with("P6")) throw Error("not a binary PPM: it does not begin with P6");
   const PnmSamples file = read_samples(bytes, 3);
-  const double file_pixels = 3.0 * file.width * file.height * sample_bytes(file.max_value);
-  Image image = allocate_image(file.width, file.height, file_pixels, bytes.size());
+  Image image = allocate_image({file.width, file.height}, bytes.size());
   dequantize(file.samples, file.max_value, gamma2_curve, image);
   return image;
 }
 
 }  // namespace
 
-Rgba8Image decode_ppm_rgba8(std::string_view bytes) {
+IntegerImage decode_ppm_integers(std::string_view bytes) {
   const std::size_t channels = bytes.starts_with("P5") ? 1 : 3;
   const PnmSamples file = read_samples(bytes, static_cast<int>(channels));
   const auto* samples = reinterpret_cast<const unsigned char*>(file.samples.data());
-  const bool wide = sample_bytes(file.max_value) == 2;
+  const bool is_wide = sample_bytes(file.max_value) == 2;
+  const double pixels = 1.0 * file.width * file.height;
+  check_image_size({file.width, file.height, 0, (is_wide ? 8 : 4) * pixels}, bytes.size());
+  const double white = is_wide ? 65535.0 : 255.0;
   const auto value = [&](std::size_t i) {
-    const int sample = wide ? samples[2 * i] * 256 + samples[2 * i + 1] : samples[i];
+    const int sample = is_wide ? samples[2 * i] * 256 + samples[2 * i + 1] : samples[i];
     if (sample > file.max_value) {
       throw Error(fmt::format("sample {} exceeds the file's maximum {}", sample, file.max_value));
     }
-    return std::byte(static_cast<unsigned char>(255.0 * sample / file.max_value + 0.5));
+    return static_cast<int>(white * sample / file.max_value + 0.5);
   };
-  Rgba8Image image{file.width, file.height, {}};
-  image.rgba.resize(std::size_t{4} * file.width * file.height, std::byte{255});
-  for (std::size_t i = 0; i < image.rgba.size(); ++i) {
-    if (i % 4 < 3) image.rgba[i] = value(channels == 1 ? i / 4 : 3 * (i / 4) + i % 4);
-  }
+  const auto fill = [&](auto& rgba) {
+    using Value = std::remove_reference_t<decltype(rgba[0])>;
+    rgba.resize(std::size_t{4} * file.width * file.height, Value(white));
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+      if (i % 4 < 3) rgba[i] = Value(value(channels == 1 ? i / 4 : 3 * (i / 4) + i % 4));
+    }
+  };
+  IntegerImage image{file.width, file.height, {}};
+  is_wide ? fill(image.rgba16) : fill(image.rgba);
+  if (is_wide) image.narrow();
   return image;
 }
 

@@ -8,7 +8,7 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/rgba8.h"
+#include "common/image/codecs/integer_image.h"
 
 namespace pt {
 namespace {
@@ -113,8 +113,8 @@ const Value* load(std::string_view bytes, int& width, int& height, Load load_pix
       stbi_info_from_callbacks(&callbacks, &header, &width, &height, &channels) == 0) {
     throw Error("not a PNG, JPEG, BMP, TGA, PPM, PFM, Radiance or OpenEXR image, or corrupted");
   }
-  const double decoded_bytes = 4.0 * sizeof(Value) * width * height;
-  check_image_size(width, height, decoded_bytes, bytes.size());
+  const double decoded_bytes = 4.0 * sizeof(Value) * width * height;  // by stb_image, and a copy
+  check_image_size({width, height, decoded_bytes, 2 * decoded_bytes}, bytes.size());
   Source source(bytes);
   const Value* pixels = load_pixels(&callbacks, &source, &width, &height, &channels);
   if (!pixels) throw Error(fmt::format("corrupted: {}", stbi_failure_reason()));
@@ -123,9 +123,9 @@ const Value* load(std::string_view bytes, int& width, int& height, Load load_pix
 
 }  // namespace
 
-Rgba8Image decode_bmp_or_tga(std::string_view bytes) {
+IntegerImage decode_bmp_or_tga(std::string_view bytes) {
   StbMemory memory;
-  Rgba8Image image;
+  IntegerImage image;
   const auto* pixels = load<stbi_uc>(bytes, image.width, image.height, [](auto... arguments) {
     return stbi_load_from_callbacks(arguments..., 4);
   });

@@ -36,7 +36,11 @@ void complete(const std::filesystem::path& path, const LoadOptions& options, Sce
 
 SceneData load_ply(const std::filesystem::path& path, const LoadOptions& options) {
   SceneData scene;
-  Mesh mesh = read_ply(path);
+  std::vector<std::string> warnings;
+  MeshFileOptions reading;
+  reading.warnings = &warnings;
+  Mesh mesh = read_ply(path, reading);
+  for (const std::string& warning : warnings) options.report(path.string() + ": " + warning);
   VertexColors colors(scene, options);
   mesh.material = scene.add_material(make_diffuse(Color(mesh.colors.empty() ? 0.5f : 1.0f)));
   colors.tint(mesh, false, path.string());

@@ -61,6 +61,38 @@ TEST_F(NanovdbFile, HasValuesInTheirPlace) {
   }
 }
 
+// The map is world = matrix index + vector, the matrix row by row (nanovdb::Map::applyMap). This
+// one turns, scales, shears and mirrors, so that neither its transpose nor its inverse will do.
+TEST_F(NanovdbFile, LiesWhereItsMapTurnsIt) {
+  UnpackedNanovdb file("balls.nvdb");
+  const VolumeData plain = decode(file);
+  constexpr std::size_t vector_at = UnpackedNanovdb::matrix_at + 2 * 9 * sizeof(double);
+  Vec3 origin;
+  for (int i = 0; i < 3; ++i) {
+    origin[i] = static_cast<float>(file.at<double>(file.grid + vector_at + std::size_t{8} * i));
+  }
+  constexpr double matrix[3][3] = {{0.0, -0.25, 0.0}, {0.125, 0.0, 0.5}, {0.0625, 0.0, -1.0}};
+  constexpr double vector[3] = {10, -20, 30};
+  for (std::size_t i = 0; i < 3; ++i) {
+    file.put(file.grid + vector_at + 8 * i, vector[i]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      file.put(file.grid + UnpackedNanovdb::matrix_at + 8 * (3 * i + j), matrix[i][j]);
+    }
+  }
+  const VolumeData turned = decode(file.without_checksum());
+  EXPECT_EQ(turned.values, plain.values);
+  EXPECT_EQ(size_of(turned), size_of(plain));
+  for (const Vec3& corner : {Vec3(0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1)}) {
+    const Vec3 index = (plain.to_world.point(corner) - origin) / 0.125f;
+    Vec3 expected;
+    for (int i = 0; i < 3; ++i) {
+      expected[i] = static_cast<float>(matrix[i][0] * index.x + matrix[i][1] * index.y +
+                                       matrix[i][2] * index.z + vector[i]);
+    }
+    EXPECT_LT(glm::length(turned.to_world.point(corner) - expected), 1e-4f);
+  }
+}
+
 TEST_F(NanovdbFile, MayBeQuantized) {
   for (const auto& [name, tolerance] :
        {std::pair{"fp4", 0.5f / 15}, {"fp8", 0.5f / 255}, {"fp16", 0.5f / 65535}, {"fpn", 0.01f}}) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
 #include <vector>
 
 namespace pt {
@@ -29,21 +30,32 @@ std::set<fs::path> alike(const fs::path& folder, const fs::path& name) {
   return found;
 }
 
-using Parts = std::vector<fs::path>;
+/// Looks for a name below a folder, part by part. Links may lead to one folder in many ways: each
+/// is searched once for the same rest of the name.
+class Search {
+ public:
+  explicit Search(const fs::path& name) : parts_(name.begin(), name.end()) {}
 
-/// parts[at], parts[at + 1], ... below `folder`, or an empty path.
-fs::path search(const fs::path& folder, const Parts& parts, std::size_t at) {
-  if (at == parts.size()) return folder;
-  std::error_code ignored;
-  const fs::path same = folder / parts[at];
-  if (fs::exists(same, ignored)) {
-    if (const fs::path found = search(same, parts, at + 1); !found.empty()) return found;
+  /// parts[at], parts[at + 1], ... below `folder`, or an empty path.
+  fs::path below(const fs::path& folder, std::size_t at) {
+    if (at == parts_.size()) return folder;
+    std::error_code failure;
+    const fs::path place = fs::canonical(folder.empty() ? fs::path(".") : folder, failure);
+    if (failure || !tried_.emplace(place, at).second) return {};
+    const fs::path same = folder / parts_[at];
+    if (fs::exists(same, failure)) {
+      if (const fs::path found = below(same, at + 1); !found.empty()) return found;
+    }
+    for (const fs::path& other : alike(folder, parts_[at])) {
+      if (const fs::path found = below(folder / other, at + 1); !found.empty()) return found;
+    }
+    return {};
   }
-  for (const fs::path& other : alike(folder, parts[at])) {
-    if (const fs::path found = search(folder / other, parts, at + 1); !found.empty()) return found;
-  }
-  return {};
-}
+
+ private:
+  std::vector<fs::path> parts_;
+  std::set<std::pair<fs::path, std::size_t>> tried_;
+};
 
 }  // namespace
 
@@ -51,8 +63,7 @@ fs::path find_file(const fs::path& folder, const fs::path& name, const WarnOfNam
   std::error_code ignored;
   if (fs::exists(folder / name, ignored)) return folder / name;
   const fs::path relative = name.relative_path().lexically_normal();
-  const fs::path found =
-      search(name.is_absolute() ? name.root_path() : folder, {relative.begin(), relative.end()}, 0);
+  const fs::path found = Search(relative).below(name.is_absolute() ? name.root_path() : folder, 0);
   if (!found.empty() && warn) {
     warn(fmt::format("'{}' does not exist: {}, whose case differs, is used", name.string(),
                      found.string()));

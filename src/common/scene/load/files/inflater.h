@@ -8,7 +8,17 @@
 #include <string_view>
 #include <vector>
 
+#include "common/error/error.h"
+
 namespace pt {
+
+/// How much `packed_bytes` may become: little files that unpack to gigabytes are refused.
+inline std::uint64_t most_unpacked_bytes(std::size_t packed_bytes) {
+  constexpr std::uint64_t always = 256u << 20, per_byte = 100;
+  return std::max(always, per_byte * packed_bytes);
+}
+/// For one that becomes more.
+Error unpacks_to_more(std::size_t packed_bytes);
 
 /// Decompresses as much as is asked for, when it is asked for.
 class Inflater {
@@ -19,7 +29,8 @@ class Inflater {
   Inflater& operator=(const Inflater&) = delete;
   ~Inflater() { inflateEnd(&stream_); }
 
-  /// The next `size` bytes. Throws Error where the stream is corrupted or ends before.
+  /// The next `size` bytes. Throws Error where the stream is corrupted, ends before, or is too
+  /// long.
   void read(void* out, std::size_t size);
 
   template <class T>
@@ -37,6 +48,7 @@ class Inflater {
     std::vector<T> values;
     while (values.size() < count) {
       const std::uint64_t before = values.size();
+      check(count, before, sizeof(T));
       values.resize(before + std::min(count - before, std::max(before, step)));
       read(values.data() + before, (values.size() - before) * sizeof(T));
     }
@@ -44,7 +56,12 @@ class Inflater {
   }
 
  private:
+  /// Before an array of `size` values grows towards `count`. Throws Error.
+  void check(std::uint64_t count, std::uint64_t size, std::size_t value_bytes) const;
+
   z_stream stream_{};
+  std::uint64_t left_ = 0;  ///< bytes that may still come
+  std::size_t packed_bytes_ = 0;
 };
 
 }  // namespace pt

@@ -2,22 +2,22 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
 namespace pt {
 
-/// Maps a regular file for reading, for as long as it lives. Throws Error with the system's reason
-/// (without the file's name) where it cannot.
+/// The bytes of a regular file, read once: a file that is mapped and then becomes shorter, or whose
+/// disk fails, ends the program (SIGBUS). Throws Error with the system's reason (without the file's
+/// name) where it cannot be read, and where it needs more memory than there is.
 class MappedFile {
  public:
   explicit MappedFile(const std::filesystem::path& path);
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-  ~MappedFile();
 
   std::string_view bytes() const { return bytes_; }
 
  private:
+  std::unique_ptr<char[]> memory_;
   std::string_view bytes_;
 };
 

@@ -124,9 +124,6 @@ Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::stri
 TextureImage Textures::integers(const TextureUse& use, const std::string& place) const {
   const Encoded encoded = encoded_image(use, place);
   TextureImage image = decode_texture_image(encoded.bytes, encoded.name, TextureFormat::linear8);
-  if (image.format != TextureFormat::linear8) {
-    throw Error(encoded.name + ": an image of floats, expected one of integers");
-  }
   return image;
 }
 
@@ -192,11 +189,21 @@ Color Textures::mean(const TextureUse& use, const std::string& place) {
     file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
     return Color(1.0f);
   }
-  double sum[3] = {};
-  for (std::size_t i = 0; i < image.texels.size(); i += 4) {
-    for (std::size_t j = 0; j < 3; ++j) sum[j] += std::to_integer<int>(image.texels[i + j]);
+  double sum[3] = {}, white = 255.0;
+  if (image.format == TextureFormat::rgb32f) {  // of 16 bits
+    white = 1.0;
+    for (std::size_t i = 0; i < image.texels.size(); i += sizeof(Color)) {
+      Color texel;
+      std::memcpy(&texel, image.texels.data() + i, sizeof texel);
+      for (int j = 0; j < 3; ++j) sum[j] += texel[j];
+    }
+  } else {
+    for (std::size_t i = 0; i < image.texels.size(); i += 4) {
+      for (std::size_t j = 0; j < 3; ++j) sum[j] += std::to_integer<int>(image.texels[i + j]);
+    }
   }
-  const double scale = 4.0 / (255.0 * static_cast<double>(image.texels.size()));
+  const double texels = static_cast<double>(image.texels.size() / texel_bytes(image.format));
+  const double scale = 1.0 / (white * texels);
   return {static_cast<float>(scale * sum[0]), static_cast<float>(scale * sum[1]),
           static_cast<float>(scale * sum[2])};
 }

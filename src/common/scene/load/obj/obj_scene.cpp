@@ -168,12 +168,12 @@ class MeshesByMaterial : public ObjSink {
   }
   void read_library(std::string_view names) override { libraries_.read_line(names); }
 
-  std::vector<Mesh> finish() {
+  std::vector<Mesh> finish(std::vector<std::string>& warnings) {
     std::vector<Mesh> meshes;
     for (auto& [material, builder] : builders_) {
-      Mesh mesh = std::move(builder).finish();
+      Mesh mesh = std::move(builder).finish(&warnings);
       mesh.material = material;
-      finish_mesh(mesh, {});
+      finish_mesh(mesh, {}, &warnings);
       meshes.push_back(std::move(mesh));
     }
     return meshes;
@@ -210,10 +210,13 @@ SceneData load(const fs::path& path, CountedWarnings& warnings) {
   MeshesByMaterial sink(libraries, scene.add_material(make_diffuse(Color(0.5f))));
   CountedWarnings of_lines;
   parse_obj(text, sink, of_lines);
-  for (const std::string& line : of_lines.lines()) {
-    warnings.add(line, fmt::format("{}: {}", path.string(), line));
+  std::vector<std::string> of_meshes;
+  scene.meshes = sink.finish(of_meshes);
+  for (const auto& lines : {of_lines.lines(), of_meshes}) {
+    for (const std::string& line : lines) {
+      warnings.add(line, fmt::format("{}: {}", path.string(), line));
+    }
   }
-  scene.meshes = sink.finish();
   return scene;
 }
 

@@ -1,5 +1,6 @@
 // Images whose components are numbers of their own.
 #include <cstring>
+#include <utility>
 
 #include "common/scene/load/files/images/image_files.h"
 #include "common/texture/sample_texture.h"
@@ -48,6 +49,7 @@ TextureImage grey_image(TextureImage image, const Color& weights) {
   look.format = image.format, look.width = image.width, look.height = image.height;
   TextureImage result{TextureFormat::rgb32f, image.width, image.height, {}};
   result.texels.resize(std::size_t{12} * image.width * image.height);
+  result.alpha = std::move(image.alpha);
   for (std::uint32_t y = 0; y < image.height; ++y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const Color grey(dot(weights, load_texel(look, image.texels.data(), x, y)));

@@ -1,11 +1,12 @@
 #include "common/scene/load/files/images/image_files.h"
 
-#include <array>
+#include <algorithm>
 #include <cstring>
 
 #include "common/error/error_context.h"
+#include "common/error/host_memory.h"
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/rgba8.h"
+#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/tone_mapping.h"
 #include "common/scene/load/files/mapped_file.h"
 
@@ -28,42 +29,97 @@ Image decode_floats(std::string_view bytes) {
   return is_exr(bytes) ? exr_codec.decode(bytes, &metadata) : decode_hdr(bytes);
 }
 
-Rgba8Image decode_integers(std::string_view bytes) {
-  if (is_png(bytes)) return decode_png_rgba8(bytes);
-  if (is_ppm(bytes)) return decode_ppm_rgba8(bytes);
+IntegerImage decode_integers(std::string_view bytes) {
+  if (is_png(bytes)) return decode_png_integers(bytes);
+  if (is_ppm(bytes)) return decode_ppm_integers(bytes);
   return is_jpeg(bytes) ? decode_jpeg(bytes) : decode_bmp_or_tga(bytes);
 }
 
+/// Linear values of all integers from 0 to `white`.
+std::vector<float> linear_values(std::size_t white, TextureFormat format) {
+  std::vector<float> values(white + 1);
+  for (std::size_t i = 0; i <= white; ++i) {
+    const float share = static_cast<float>(i) / static_cast<float>(white);
+    values[i] = format == TextureFormat::srgb8 ? srgb_curve.decode(share) : share;
+  }
+  return values;
+}
+
+/// The linear values of an image of integers. `alpha` (or null) gets theirs, or none if opaque.
+template <class Value>
+std::vector<float> linear_rgb(const std::vector<Value>& rgba, TextureFormat format,
+                              std::vector<float>* alpha) {
+  constexpr std::size_t white = sizeof(Value) == 1 ? 255 : 65535;
+  const std::vector<float> linear = linear_values(white, format);
+  std::vector<float> rgb(rgba.size() / 4 * 3);
+  bool is_opaque = true;
+  for (std::size_t i = 0; i < rgb.size(); ++i) {
+    rgb[i] = linear[static_cast<std::size_t>(rgba[4 * (i / 3) + i % 3])];
+  }
+  if (alpha == nullptr) return rgb;
+  for (std::size_t i = 3; i < rgba.size(); i += 4) {
+    is_opaque = is_opaque && static_cast<std::size_t>(rgba[i]) == white;
+  }
+  if (is_opaque) return rgb;
+  alpha->resize(rgba.size() / 4);
+  for (std::size_t i = 0; i < alpha->size(); ++i) {
+    (*alpha)[i] = static_cast<float>(rgba[4 * i + 3]) / static_cast<float>(white);
+  }
+  return rgb;
+}
+
+TextureImage texture_of(int width, int height, const std::vector<float>& rgb) {
+  TextureImage texture{TextureFormat::rgb32f,
+                       static_cast<std::uint32_t>(width),
+                       static_cast<std::uint32_t>(height),
+                       {}};
+  const auto* first = reinterpret_cast<const std::byte*>(rgb.data());
+  texture.texels.assign(first, first + sizeof(float) * rgb.size());
+  return texture;
+}
+
+/// Floats take more memory than the values that they are decoded from.
+void check_floats(double pixels, double bytes_per_pixel) {
+  check_host_memory(static_cast<std::uint64_t>(pixels * bytes_per_pixel), "an image of 16 bits");
+}
+
 TextureImage decode_texture(std::string_view bytes, TextureFormat integers) {
-  if (!is_float(bytes)) {
-    Rgba8Image image = decode_integers(bytes);
+  if (is_float(bytes)) {
+    const Image image = decode_floats(bytes);
+    return texture_of(image.width, image.height, image.rgb);
+  }
+  IntegerImage image = decode_integers(bytes);
+  if (image.rgba16.empty()) {
     return {integers, static_cast<std::uint32_t>(image.width),
             static_cast<std::uint32_t>(image.height), std::move(image.rgba)};
   }
-  const Image image = decode_floats(bytes);
-  TextureImage texture{TextureFormat::rgb32f,
-                       static_cast<std::uint32_t>(image.width),
-                       static_cast<std::uint32_t>(image.height),
-                       {}};
-  texture.texels.resize(sizeof(float) * image.rgb.size());
-  std::memcpy(texture.texels.data(), image.rgb.data(), texture.texels.size());
+  check_floats(1.0 * image.width * image.height, 2 * sizeof(Color) + sizeof(float));
+  std::vector<float> alpha;
+  TextureImage texture =
+      texture_of(image.width, image.height, linear_rgb(image.rgba16, integers, &alpha));
+  texture.alpha = std::move(alpha);
   return texture;
 }
 
 Image decode_radiance(std::string_view bytes) {
   if (is_float(bytes)) return decode_floats(bytes);
-  const Rgba8Image encoded = decode_integers(bytes);
-  std::array<float, 256> linear;
-  for (int i = 0; i < 256; ++i) linear[i] = srgb_curve.decode(static_cast<float>(i) / 255.0f);
-  Image image{encoded.width, encoded.height, {}};
-  image.rgb.resize(std::size_t{3} * image.width * image.height);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
-    image.rgb[i] = linear[std::to_integer<std::size_t>(encoded.rgba[4 * (i / 3) + i % 3])];
-  }
-  return image;
+  const IntegerImage encoded = decode_integers(bytes);
+  check_floats(1.0 * encoded.width * encoded.height, sizeof(Color));
+  constexpr TextureFormat srgb = TextureFormat::srgb8;
+  return {encoded.width, encoded.height,
+          encoded.rgba16.empty() ? linear_rgb(encoded.rgba, srgb, nullptr)
+                                 : linear_rgb(encoded.rgba16, srgb, nullptr)};
 }
 
 }  // namespace
+
+bool TextureImage::has_alpha() const {
+  if (format == TextureFormat::rgb32f) return !alpha.empty();
+  for (std::size_t i = 3; i < texels.size(); i += 4) {
+    if (texels[i] != std::byte{255}) return true;
+  }
+  return false;
+}
 
 TextureImage read_texture_image(const std::filesystem::path& path, TextureFormat integers) {
   return explaining("cannot read " + path.string(),

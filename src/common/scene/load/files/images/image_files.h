@@ -21,11 +21,14 @@ struct TextureImage {
   TextureFormat format = TextureFormat::srgb8;
   std::uint32_t width = 0, height = 0;
   std::vector<std::byte> texels;  ///< row 0 is the image's head
+  std::vector<float> alpha = {};  ///< of an rgb32f: one value a texel, or empty: opaque
+
+  bool has_alpha() const;
 };
 
-/// Integers become `integers`, srgb8 or linear8, with 8 bits a value (16 bits in a file lose the
-/// lower half); floats (.hdr, .exr, .pfm) become rgb32f. Grey becomes RGB; alpha is kept with 8
-/// bits and opaque where the file has none.
+/// Integers become `integers`, srgb8 or linear8, whose alpha is opaque where the file has none. But
+/// those of 16 bits become rgb32f, decoded as `integers` says, unless 8 bits hold all of their
+/// values; floats (.hdr, .exr, .pfm) become rgb32f without alpha. Grey becomes RGB.
 TextureImage read_texture_image(const std::filesystem::path& path,
                                 TextureFormat integers = TextureFormat::srgb8);
 
@@ -34,7 +37,7 @@ TextureImage decode_texture_image(std::string_view bytes, const std::string& nam
                                   TextureFormat integers = TextureFormat::srgb8);
 
 /// The image with the weighted sum of its linear R, G and B in all of them; itself where that is
-/// the same. One component alone keeps its 8 bits.
+/// the same. One component alone keeps its 8 bits. Alpha stays.
 TextureImage grey_image(TextureImage image, const Color& weights);
 
 /// Linear RGB of any of the formats, integers decoded with the sRGB curve: for environment maps.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <utility>
 
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {
@@ -58,8 +60,8 @@ std::uint32_t TextureStore::add_file(const std::filesystem::path& path, const Te
   const std::string key = key_of(ignored ? path.string() : file.string(), look, weights);
   auto found = stored_.find(key);
   if (found == stored_.end()) {
-    const TextureImage image = in_grey(read_texture_image(path, integers_of(look)), weights);
-    found = stored_.emplace(key, store(image)).first;
+    TextureImage image = in_grey(read_texture_image(path, integers_of(look)), weights);
+    found = stored_.emplace(key, store(std::move(image))).first;
   }
   return add_stored(found->second, look);
 }
@@ -80,15 +82,14 @@ std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string
   const std::string key = key_of("memory " + name, look, weights);
   auto found = stored_.find(key);
   if (found == stored_.end()) {
-    const TextureImage image =
-        in_grey(decode_texture_image(bytes, name, integers_of(look)), weights);
-    found = stored_.emplace(key, store(image)).first;
+    TextureImage image = in_grey(decode_texture_image(bytes, name, integers_of(look)), weights);
+    found = stored_.emplace(key, store(std::move(image))).first;
   }
   return add_stored(found->second, look);
 }
 
-std::uint32_t TextureStore::add_image(const TextureImage& image, const Texture& look) {
-  return add_stored(store(image), look);
+std::uint32_t TextureStore::add_image(TextureImage image, const Texture& look) {
+  return add_stored(store(std::move(image)), look);
 }
 
 std::uint32_t TextureStore::add_plain(const Texture& texture) {
@@ -105,7 +106,14 @@ std::uint32_t TextureStore::add_plain(const Texture& texture) {
 
 std::uint32_t TextureStore::add_alpha_of(std::uint32_t texture_index) {
   Texture alpha = textures_[texture_index];
-  if (alpha.kind != TextureKind::image || alpha.format == TextureFormat::rgb32f) return no_texture;
+  if (alpha.kind != TextureKind::image) return no_texture;
+  alpha.color0 = Color(1.0f);
+  if (alpha.format == TextureFormat::rgb32f) {
+    const auto found = alphas_.find(alpha.offset);
+    if (found == alphas_.end()) return no_texture;
+    alpha.offset = found->second;
+    return add_plain(alpha);
+  }
   const std::size_t end = alpha.offset + std::size_t{4} * alpha.width * alpha.height;
   bool is_opaque = true;
   for (std::size_t i = alpha.offset + 3; i < end; i += 4) {
@@ -113,7 +121,6 @@ std::uint32_t TextureStore::add_alpha_of(std::uint32_t texture_index) {
   }
   if (is_opaque) return no_texture;
   alpha.format = TextureFormat::alpha8;
-  alpha.color0 = Color(1.0f);
   return add_plain(alpha);
 }
 
@@ -130,11 +137,33 @@ bool TextureStore::is_normal_map(std::uint32_t texture_index) const {
   return sum[2] > 1.3 * red_green;
 }
 
-TextureStore::Stored TextureStore::store(const TextureImage& image) {
+/// Returns where they begin. The first ones are not copied.
+std::size_t TextureStore::append(std::vector<std::byte> bytes) {
   const std::size_t offset = (texels_.size() + alignment - 1) / alignment * alignment;
+  if (texels_.empty()) {
+    texels_ = std::move(bytes);
+    return 0;
+  }
+  if (offset + bytes.size() > texels_.capacity()) {
+    const std::size_t most = std::max(offset + bytes.size(), texels_.size() + texels_.size() / 2);
+    check_host_memory(most, "the pictures of the scene");
+    texels_.reserve(most);
+  }
   texels_.resize(offset);
-  texels_.insert(texels_.end(), image.texels.begin(), image.texels.end());
-  return {image.format, image.width, image.height, offset};
+  texels_.insert(texels_.end(), bytes.begin(), bytes.end());
+  return offset;
+}
+
+TextureStore::Stored TextureStore::store(TextureImage image) {
+  const Stored stored{image.format, image.width, image.height, append(std::move(image.texels))};
+  if (image.alpha.empty()) return stored;
+  std::vector<std::byte> grey(sizeof(Color) * image.alpha.size());
+  for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+    const Color alpha(image.alpha[i]);
+    std::memcpy(grey.data() + sizeof alpha * i, &alpha, sizeof alpha);
+  }
+  alphas_[stored.offset] = append(std::move(grey));
+  return stored;
 }
 
 std::uint32_t TextureStore::add_stored(const Stored& stored, Texture look) {

@@ -40,10 +40,10 @@ class TextureStore {
                            const Texture& look = {}, const std::optional<Color>& weights = {});
 
   /// An image made by the caller.
-  std::uint32_t add_image(const TextureImage& image, const Texture& look = {});
+  std::uint32_t add_image(TextureImage image, const Texture& look = {});
 
-  /// The alpha of texture `number`, an image, as a texture that shares its texels; no_texture where
-  /// it has none or is 1 everywhere.
+  /// The alpha of texture `number`, an image, as a texture; no_texture where it has none or is 1
+  /// everywhere. That of 8 bits shares its texels.
   std::uint32_t add_alpha_of(std::uint32_t texture_index);
 
   /// Whether the image of texture `number`, as linear numbers, looks like normals and not like
@@ -61,13 +61,16 @@ class TextureStore {
     std::uint64_t offset;
   };
 
-  Stored store(const TextureImage& image);
+  Stored store(TextureImage image);
+  std::size_t append(std::vector<std::byte> bytes);
   std::uint32_t add_stored(const Stored& stored, Texture look);
 
   std::vector<Texture>& textures_;
   std::vector<std::byte>& texels_;
   std::map<std::string, Stored> stored_;                         ///< by encoding and name
   std::unordered_multimap<std::size_t, std::uint32_t> by_hash_;  ///< what add_plain() has added
+  std::map<std::string, Stored> stored_;           ///< by encoding and name
+  std::map<std::uint64_t, std::uint64_t> alphas_;  ///< offsets of floats' alpha, by the image's
 };
 
 }  // namespace pt

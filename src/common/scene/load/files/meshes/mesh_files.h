@@ -1,10 +1,12 @@
 // Triangle meshes in files: PLY, Wavefront OBJ, Mitsuba's .serialized.
 //
-// All readers triangulate polygons as fans, scale normals to unit length (one that has no
-// direction becomes that of a triangle at its vertex) and set no material and no group. They throw
-// Error, one line with the file and the line or element, for a file that is missing, truncated or
-// malformed: sizes that the file cannot hold, indices out of range, positions that are not finite.
-// A texture coordinate that is not finite becomes 0.
+// All readers cut faces of more than three corners into triangles (polygons.h), scale normals to
+// unit length (one that has no direction becomes that of a triangle at its vertex) and set no
+// material and no group. Faces with fewer than three vertices, with an index out of range or with a
+// position that is not finite are left out with a warning; where they are more than the others the
+// file is damaged. A texture coordinate that is not finite becomes 0. Readers throw Error, one line
+// with the file and the line or element, for a file that is missing, truncated or malformed, and
+// for sizes that the file cannot hold.
 #pragma once
 
 #include <filesystem>
@@ -26,10 +28,12 @@ struct MeshFileOptions {
 };
 
 /// PLY: ASCII or binary of either byte order, any properties in any order. Vertices give x y z,
-/// optional nx ny nz, optional texture coordinates (u v, s t, texture_u texture_v or
-/// texture_s texture_t) and colours (red green blue, r g b, or color_0 color_1 color_2 as Mitsuba
-/// writes them); faces give vertex_indices or vertex_index, and optional colours. Colours that are
-/// integers are in the sRGB curve, floats are linear. May return an empty mesh.
+/// optional nx ny nz (or normal_x ...), optional texture coordinates (u v, s t, texture_u texture_v
+/// or texture_s texture_t) and colours (red green blue, r g b, diffuse_red ..., or color_0 color_1
+/// color_2 as Mitsuba writes them); faces and tristrips give vertex_indices or vertex_index, and
+/// faces optional colours. Colours that are floats are linear. Those that are integers are in the
+/// sRGB curve: 255 is white where none is larger, else 65535, else the largest of their type. May
+/// return an empty mesh.
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options = {});
 
 /// All faces of an OBJ file as one mesh, ignoring its materials. A line that is wrong is left out,

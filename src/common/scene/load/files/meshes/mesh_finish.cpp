@@ -34,25 +34,56 @@ bool is_finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-void check_positions(const Mesh& mesh) {
-  const std::vector<Vec3>& positions = mesh.positions;
+/// Leaves out the triangles that are bad. `what`, with the first of them, is an Error where they
+/// are more than the others: then the file is damaged.
+template <class Predicate>
+void drop_triangles(Mesh& mesh, Predicate bad, const std::string& what,
+                    std::vector<std::string>* warnings) {
+  std::size_t kept = 0;
+  const std::size_t before = mesh.triangles.size();
+  for (std::size_t i = 0; i < before; ++i) {
+    if (bad(mesh.triangles[i])) continue;
+    if (!mesh.face_colors.empty()) mesh.face_colors[kept] = mesh.face_colors[i];
+    mesh.triangles[kept++] = mesh.triangles[i];
+  }
+  if (before - kept > kept) throw Error(what);
+  mesh.triangles.resize(kept);
+  if (!mesh.face_colors.empty()) mesh.face_colors.resize(kept);
+  if (kept < before && warnings) {
+    warnings->push_back(
+        fmt::format("{} bad triangles are left out, the first because of {}", before - kept, what));
+  }
+}
+
+void drop_bad_positions(Mesh& mesh, std::vector<std::string>* warnings) {
+  std::vector<Vec3>& positions = mesh.positions;
   const std::size_t bad =
       first_bad(positions.size(), [&](std::size_t i) { return !is_finite(positions[i]); });
   if (bad == positions.size()) return;
-  throw Error(fmt::format("vertex {}: position ({}, {}, {}), expected finite numbers", bad,
-                          positions[bad].x, positions[bad].y, positions[bad].z));
+  const auto is_bad = [&](const TriangleIndices& triangle) {
+    return std::ranges::any_of(triangle.v,
+                               [&](std::uint32_t v) { return !is_finite(positions[v]); });
+  };
+  drop_triangles(mesh, is_bad,
+                 fmt::format("vertex {}: position ({}, {}, {}), expected finite numbers", bad,
+                             positions[bad].x, positions[bad].y, positions[bad].z),
+                 warnings);
+  for (Vec3& p : positions) p = is_finite(p) ? p : Vec3(0.0f);  // nothing uses them
 }
 
-void check_indices(const Mesh& mesh) {
+void drop_bad_indices(Mesh& mesh, std::vector<std::string>* warnings) {
   const std::size_t count = mesh.positions.size();
-  const std::size_t bad = first_bad(mesh.triangles.size(), [&](std::size_t i) {
-    const auto& v = mesh.triangles[i].v;
-    return std::max({v[0], v[1], v[2]}) >= count;
-  });
+  const auto is_bad = [&](const TriangleIndices& triangle) {
+    return std::max({triangle.v[0], triangle.v[1], triangle.v[2]}) >= count;
+  };
+  const std::size_t bad =
+      first_bad(mesh.triangles.size(), [&](std::size_t i) { return is_bad(mesh.triangles[i]); });
   if (bad == mesh.triangles.size()) return;
   const auto& v = mesh.triangles[bad].v;
-  throw Error(fmt::format("triangle {}: indices {}, {} and {} into {} vertices", bad, v[0], v[1],
-                          v[2], count));
+  drop_triangles(mesh, is_bad,
+                 fmt::format("triangle {}: indices {}, {} and {} into {} vertices", bad, v[0], v[1],
+                             v[2], count),
+                 warnings);
 }
 
 /// v / |v| without overflow, or zero where v has no direction.
@@ -69,25 +100,37 @@ Vec3 triangle_normal(const Mesh& mesh, const TriangleIndices& triangle) {
       glm::cross(mesh.positions[triangle.v[1]] - p0, mesh.positions[triangle.v[2]] - p0));
 }
 
-/// Gives each vertex whose normal is zero that of a triangle, or +z where none has one.
-void replace_zero_normals(Mesh& mesh) {
+/// Gives each vertex whose normal is zero that of a triangle, or +z where none has one. Returns how
+/// many got that of a triangle.
+std::size_t replace_zero_normals(Mesh& mesh) {
   const Vec3 zero(0.0f);
   std::vector<Vec3>& normals = mesh.normals;
+  std::size_t replaced = 0;
   for (const TriangleIndices& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle.v) {
-      if (normals[v] == zero) normals[v] = triangle_normal(mesh, triangle);
+      if (normals[v] != zero) continue;
+      normals[v] = triangle_normal(mesh, triangle);
+      if (normals[v] != zero) ++replaced;
     }
   }
   std::replace(normals.begin(), normals.end(), zero, Vec3(0, 0, 1));
+  return replaced;
 }
 
-void finish_normals(Mesh& mesh) {
+void finish_normals(Mesh& mesh, std::vector<std::string>* warnings) {
   std::vector<Vec3>& normals = mesh.normals;
   tbb::parallel_for(Range(0, normals.size(), grain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) normals[i] = direction_of(normals[i]);
   });
   const auto is_zero = [&](std::size_t i) { return normals[i] == Vec3(0.0f); };
-  if (first_bad(normals.size(), is_zero) < normals.size()) replace_zero_normals(mesh);
+  if (first_bad(normals.size(), is_zero) == normals.size()) return;
+  const std::size_t replaced = replace_zero_normals(mesh);
+  if (replaced > 0 && warnings) {
+    warnings->push_back(
+        fmt::format("{} of {} vertices have no normal or one without a direction: that of a "
+                    "triangle is used",
+                    replaced, normals.size()));
+  }
 }
 
 void finish_uvs(Mesh& mesh, bool flip_v) {
@@ -110,11 +153,11 @@ float angle_between(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-void finish_mesh(Mesh& mesh, const MeshFileOptions& options) {
-  check_positions(mesh);
-  check_indices(mesh);
+void finish_mesh(Mesh& mesh, const MeshFileOptions& options, std::vector<std::string>* warnings) {
+  drop_bad_indices(mesh, warnings);
+  drop_bad_positions(mesh, warnings);
   if (options.face_normals) mesh.normals = {};
-  finish_normals(mesh);
+  finish_normals(mesh, warnings);
   finish_uvs(mesh, options.flip_v);
 }
 
@@ -129,7 +172,7 @@ void compute_vertex_normals(Mesh& mesh) {
       mesh.normals[triangle.v[i]] += angle_between(a, b) * normal;
     }
   }
-  finish_normals(mesh);
+  finish_normals(mesh, nullptr);
 }
 
 }  // namespace pt

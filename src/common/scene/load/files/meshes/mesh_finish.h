@@ -5,10 +5,12 @@
 
 namespace pt {
 
-/// Makes a mesh as mesh_files.h promises of what a file said: drops normals where the options say
+/// Makes a mesh as mesh_files.h promises of what a file said: leaves out the triangles with an
+/// index that is out of range or a position that is not finite; drops normals where the options say
 /// so, scales the others to unit length, flips v. Normals and uvs have the size of the positions or
-/// none. Throws Error naming the vertex whose position is not finite or the triangle (from 0)
-/// whose index is out of range.
-void finish_mesh(Mesh& mesh, const MeshFileOptions& options);
+/// none. Throws Error naming the first triangle (from 0) or vertex that is bad where most are.
+/// `warnings`: or null.
+void finish_mesh(Mesh& mesh, const MeshFileOptions& options,
+                 std::vector<std::string>* warnings = nullptr);
 
 }  // namespace pt

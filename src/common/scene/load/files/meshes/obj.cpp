@@ -25,8 +25,8 @@ Mesh decode(std::string_view bytes, const MeshFileOptions& options) {
   CountedWarnings warnings;
   parse_obj(bytes, sink, warnings);
   if (options.warnings) std::ranges::copy(warnings.lines(), std::back_inserter(*options.warnings));
-  Mesh mesh = std::move(sink.builder).finish();
-  finish_mesh(mesh, options);
+  Mesh mesh = std::move(sink.builder).finish(options.warnings);
+  finish_mesh(mesh, options, options.warnings);
   return mesh;
 }
 

@@ -36,9 +36,11 @@ void ObjMeshBuilder::add_face(const std::vector<ObjCorner>& corners, const ObjVe
     mesh_.triangles.push_back({{a, b, c}});
     b = c;
   }
+  fans_.add(corners.size() - 2);
 }
 
-Mesh ObjMeshBuilder::finish() && {
+Mesh ObjMeshBuilder::finish(std::vector<std::string>* warnings) && {
+  fans_.cut_concave(mesh_, warnings);
   if (!has_uvs_) mesh_.uvs = {};
   if (!has_normals_) mesh_.normals = {};
   if (!mesh_.colors.empty()) mesh_.colors.resize(mesh_.positions.size(), Color(1.0f));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/mesh.h"
+#include "common/scene/load/files/meshes/polygons.h"
 
 namespace pt {
 
@@ -28,12 +29,13 @@ struct ObjCorner {
 
 class ObjMeshBuilder {
  public:
-  /// Adds a face of 3 or more corners as a fan.
+  /// Adds a face of 3 or more corners.
   void add_face(const std::vector<ObjCorner>& corners, const ObjVertices& vertices);
 
   /// The mesh, one vertex for each different corner. Without uvs, normals or colours where no
   /// corner has one; else a corner without has the uv (0, 0), the normal 0, and is white.
-  Mesh finish() &&;
+  /// `warnings`: of faces that could not be cut into triangles; or null.
+  Mesh finish(std::vector<std::string>* warnings) &&;
 
  private:
   struct Hash {
@@ -43,6 +45,7 @@ class ObjMeshBuilder {
   std::uint32_t vertex_of(const ObjCorner& corner, const ObjVertices& vertices);
 
   Mesh mesh_;
+  PolygonFans fans_;
   bool has_uvs_ = false, has_normals_ = false;
   std::unordered_map<ObjCorner, std::uint32_t, Hash> vertex_of_;
 };

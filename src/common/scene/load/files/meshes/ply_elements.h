@@ -1,22 +1,42 @@
 // The vertices and faces of a PLY file.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "common/geometry/mesh.h"
 #include "common/scene/load/files/meshes/ply_header.h"
 #include "common/scene/load/files/meshes/ply_values.h"
+#include "common/scene/load/files/meshes/polygons.h"
 
 namespace pt {
 
-/// Both read the elements that follow in `values` into the mesh; normals and uvs stay empty where
-/// the file has none. Throw Error naming the vertex or face.
-void read_ply_vertices(PlyBinaryValues& values, const PlyElement& element, Mesh& mesh);
-void read_ply_vertices(PlyTextValues& values, const PlyElement& element, Mesh& mesh);
+/// What a file has given so far.
+struct PlyMesh {
+  Mesh mesh;
+  PolygonFans fans;
+  std::uint64_t lost = 0;       ///< faces that are left out
+  std::string first_lost = {};  ///< the first of them and what is wrong with it
+  std::vector<std::string> warnings = {};
+};
+
+/// All read the elements that follow in `values`; normals and uvs stay empty where the file has
+/// none. Throw Error naming the vertex or face.
+void read_ply_vertices(PlyBinaryValues& values, const PlyElement& element, PlyMesh& out);
+void read_ply_vertices(PlyTextValues& values, const PlyElement& element, PlyMesh& out);
 
 /// `vertex_count` is the number of vertices, read or still to come.
 void read_ply_faces(PlyBinaryValues& values, const PlyElement& element, std::uint64_t vertex_count,
-                    Mesh& mesh);
+                    PlyMesh& out);
 void read_ply_faces(PlyTextValues& values, const PlyElement& element, std::uint64_t vertex_count,
-                    Mesh& mesh);
+                    PlyMesh& out);
+
+/// Strips of triangles, as scanners' programs write them: every second one is turned over, -1
+/// begins another strip.
+void read_ply_strips(PlyBinaryValues& values, const PlyElement& element, std::uint64_t vertex_count,
+                     PlyMesh& out);
+void read_ply_strips(PlyTextValues& values, const PlyElement& element, std::uint64_t vertex_count,
+                     PlyMesh& out);
 
 /// Throws Error where `element` announces more than the rest of a file can hold.
 void check_ply_count(const PlyElement& element, std::size_t rest_bytes, bool ascii);
@@ -29,9 +49,10 @@ std::uint64_t next_ply_count(Values& values, PlyType type) {
   return static_cast<std::uint64_t>(count);
 }
 
-/// The linear colour of three numbers of a file: integers are in the sRGB curve, the type's largest
-/// is 1; floats are linear. What is negative or not finite becomes 0.
-Color decode_ply_color(const Color& numbers, PlyType type);
+/// Makes linear colours of the numbers of a file. Floats are linear. Integers are in the sRGB
+/// curve; 1 is the largest number of 8 bits where none is larger, else that of 16 bits, else that
+/// of the type. What is negative or not finite becomes 0.
+void decode_ply_colors(std::vector<Color>& colors, PlyType type);
 
 /// Passes over a property.
 template <class Values>

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <initializer_list>
+#include <set>
 
 #include "common/error/error.h"
+#include "common/error/quoted.h"
 
 namespace pt {
 namespace {
@@ -27,7 +29,7 @@ PlyType type_of(std::string_view name) {
   for (const TypeName& known : type_names) {
     if (known.name == name) return known.type;
   }
-  throw Error(fmt::format("unknown type '{}'", name));
+  throw Error("unknown type " + in_quotes(name));
 }
 
 /// The words of a header's line.
@@ -47,7 +49,7 @@ PlyEncoding read_format(const std::vector<std::string_view>& words) {
   if (words[1] == "ascii") return PlyEncoding::ascii;
   if (words[1] == "binary_little_endian") return PlyEncoding::little_endian;
   if (words[1] == "binary_big_endian") return PlyEncoding::big_endian;
-  throw Error(fmt::format("unknown encoding '{}'", words[1]));
+  throw Error("unknown encoding " + in_quotes(words[1]));
 }
 
 PlyElement read_element(const std::vector<std::string_view>& words) {
@@ -56,7 +58,7 @@ PlyElement read_element(const std::vector<std::string_view>& words) {
   const char* end = words[2].data() + words[2].size();
   const auto [stop, failure] = std::from_chars(words[2].data(), end, element.count);
   if (failure != std::errc{} || stop != end) {
-    throw Error(fmt::format("'{}' is not a count of elements", words[2]));
+    throw Error(in_quotes(words[2]) + " is not a count of elements");
   }
   return element;
 }
@@ -77,7 +79,11 @@ class HeaderParser {
   /// False for the last line.
   bool parse(std::string_view line) {
     const std::vector<std::string_view> words = split(line);
-    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
+    if (words.empty() || words[0] == "obj_info") return true;
+    if (words[0] == "comment") {
+      header.names_texture |= words.size() > 2 && words[1] == "TextureFile";  // MeshLab and others
+      return true;
+    }
     if (words[0] == "end_header") {
       if (!has_format_) throw Error("the header ends without a format");
       return false;
@@ -87,15 +93,15 @@ class HeaderParser {
       has_format_ = true;
     } else if (words[0] == "element") {
       PlyElement element = read_element(words);
-      if (header.find(element.name)) {
-        throw Error(fmt::format("element {} appears twice", element.name));
+      if (!names_.insert(element.name).second) {
+        throw Error(fmt::format("element {} appears twice", clipped(element.name)));
       }
       header.elements.push_back(std::move(element));
     } else if (words[0] == "property") {
       if (header.elements.empty()) throw Error("a property before any element");
       header.elements.back().properties.push_back(read_property(words));
     } else {
-      throw Error(fmt::format("unknown keyword '{}'", words[0].substr(0, 40)));
+      throw Error("unknown keyword " + in_quotes(words[0]));
     }
     return true;
   }
@@ -104,6 +110,7 @@ class HeaderParser {
 
  private:
   bool has_format_ = false;
+  std::set<std::string, std::less<>> names_;  ///< of elements
 };
 
 }  // namespace

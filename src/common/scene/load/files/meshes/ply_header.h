@@ -41,6 +41,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;  ///< in the order in which they follow
   std::size_t bytes = 0;             ///< of the header
   std::size_t lines = 0;             ///< of the header
+  bool names_texture = false;        ///< a comment does
 
   const PlyElement* find(std::string_view name) const;
 };

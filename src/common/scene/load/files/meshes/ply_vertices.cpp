@@ -2,9 +2,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
+#include "common/error/host_memory.h"
+#include "common/error/quoted.h"
 #include "common/scene/load/files/meshes/ply_elements.h"
 
 namespace pt {
@@ -14,26 +17,40 @@ namespace {
 enum Role : int { x, y, z, nx, ny, nz, red, green, blue, u, v, role_count };
 using Roles = std::array<std::optional<std::size_t>, role_count>;  ///< the property of each
 
+/// Forgets `count` components from `first` on where one of them is not there.
+void drop_incomplete(Roles& roles, int first, int count, const char* what,
+                     std::vector<std::string>& warnings) {
+  const auto begin = roles.begin() + first, end = begin + count;
+  const auto found = std::count_if(begin, end, [](const auto& role) { return role.has_value(); });
+  if (found == count) return;
+  std::fill(begin, end, std::nullopt);
+  if (found > 0) {
+    warnings.push_back(fmt::format("{} of the {} components of {} are there: these are ignored",
+                                   found, count, what));
+  }
+}
+
 /// Which properties mean what. Throws Error for vertices without positions.
-Roles find_roles(const PlyElement& element) {
+Roles find_roles(const PlyElement& element, std::vector<std::string>& warnings) {
   Roles roles = {element.find({"x"}),
                  element.find({"y"}),
                  element.find({"z"}),
-                 element.find({"nx"}),
-                 element.find({"ny"}),
-                 element.find({"nz"}),
+                 element.find({"nx", "normal_x"}),
+                 element.find({"ny", "normal_y"}),
+                 element.find({"nz", "normal_z"}),
                  element.find({"red", "r", "diffuse_red", "color_0"}),
                  element.find({"green", "g", "diffuse_green", "color_1"}),
                  element.find({"blue", "b", "diffuse_blue", "color_2"}),
                  element.find({"u", "s", "texture_u", "texture_s"}),
                  element.find({"v", "t", "texture_v", "texture_t"})};
   if (!roles[x] || !roles[y] || !roles[z]) throw Error("vertices without x, y and z");
-  if (!roles[nx] || !roles[ny] || !roles[nz]) roles[nx] = roles[ny] = roles[nz] = {};
-  if (!roles[red] || !roles[green] || !roles[blue]) roles[red] = roles[green] = roles[blue] = {};
-  if (!roles[u] || !roles[v]) roles[u] = roles[v] = {};
+  drop_incomplete(roles, nx, 3, "normals", warnings);
+  drop_incomplete(roles, red, 3, "colours", warnings);
+  drop_incomplete(roles, u, 2, "texture coordinates", warnings);
   for (const auto& property : roles) {
     if (property && element.properties[*property].count_type) {
-      throw Error(fmt::format("vertex property {} is a list", element.properties[*property].name));
+      throw Error(
+          fmt::format("vertex property {} is a list", clipped(element.properties[*property].name)));
     }
   }
   return roles;
@@ -44,6 +61,7 @@ void allocate(const PlyElement& element, const Roles& roles, Mesh& mesh) {
   if (element.count > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(fmt::format("{} vertices, expected fewer than 2^32", element.count));
   }
+  check_host_memory(element.count * sizeof(Vec3) * 4, "the vertices of a mesh");
   mesh.positions.resize(element.count);
   if (roles[nx]) mesh.normals.resize(element.count);
   if (roles[red]) mesh.colors.resize(element.count);
@@ -121,14 +139,7 @@ void read_records(PlyBinaryValues& values, const PlyElement& element, const Role
 }
 
 void decode_colors(const PlyElement& element, const Roles& roles, Mesh& mesh) {
-  if (!roles[red]) return;
-  const PlyType type = element.properties[*roles[red]].type;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.colors.size(), 2048),
-                    [&](const tbb::blocked_range<std::size_t>& block) {
-                      for (std::size_t i = block.begin(); i < block.end(); ++i) {
-                        mesh.colors[i] = decode_ply_color(mesh.colors[i], type);
-                      }
-                    });
+  if (roles[red]) decode_ply_colors(mesh.colors, element.properties[*roles[red]].type);
 }
 
 }  // namespace
@@ -140,28 +151,28 @@ void check_ply_count(const PlyElement& element, std::size_t rest_bytes, bool asc
     throw Error(
         fmt::format("truncated or corrupted: {} bytes cannot hold the {} elements '{}' "
                     "that the header announces",
-                    rest_bytes, element.count, element.name));
+                    rest_bytes, element.count, clipped(element.name)));
   }
 }
 
-void read_ply_vertices(PlyBinaryValues& values, const PlyElement& element, Mesh& mesh) {
-  const Roles roles = find_roles(element);
+void read_ply_vertices(PlyBinaryValues& values, const PlyElement& element, PlyMesh& out) {
+  const Roles roles = find_roles(element, out.warnings);
   check_ply_count(element, values.rest().size(), false);
-  allocate(element, roles, mesh);
+  allocate(element, roles, out.mesh);
   if (element.has_lists()) {
-    read_in_turn(values, element, roles, mesh);
+    read_in_turn(values, element, roles, out.mesh);
   } else {
-    read_records(values, element, roles, mesh);
+    read_records(values, element, roles, out.mesh);
   }
-  decode_colors(element, roles, mesh);
+  decode_colors(element, roles, out.mesh);
 }
 
-void read_ply_vertices(PlyTextValues& values, const PlyElement& element, Mesh& mesh) {
-  const Roles roles = find_roles(element);
+void read_ply_vertices(PlyTextValues& values, const PlyElement& element, PlyMesh& out) {
+  const Roles roles = find_roles(element, out.warnings);
   check_ply_count(element, values.rest().size(), true);
-  allocate(element, roles, mesh);
-  read_in_turn(values, element, roles, mesh);
-  decode_colors(element, roles, mesh);
+  allocate(element, roles, out.mesh);
+  read_in_turn(values, element, roles, out.mesh);
+  decode_colors(element, roles, out.mesh);
 }
 
 }  // namespace pt

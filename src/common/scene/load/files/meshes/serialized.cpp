@@ -112,7 +112,7 @@ Mesh read_shape(std::string_view bytes, std::uint64_t offset, std::vector<std::s
 
 Mesh decode_shape(std::string_view bytes, int shape_index, const MeshFileOptions& options) {
   Mesh mesh = read_shape(bytes, offset_of(bytes, shape_index), options.warnings);
-  finish_mesh(mesh, options);
+  finish_mesh(mesh, options, options.warnings);
   return mesh;
 }
 

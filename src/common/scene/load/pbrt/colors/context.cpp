@@ -37,12 +37,7 @@ void Context::add_mapping(const TextureMapping& mapping) {
 bool Context::has_alpha(const std::filesystem::path& path) {
   const auto [entry, is_new] = alphas_.try_emplace(path, false);
   if (!is_new) return entry->second;
-  const TextureImage image = read_texture_image(path);
-  if (image.format == TextureFormat::rgb32f) return false;
-  for (std::size_t i = 3; i < image.texels.size(); i += 4) {
-    if (image.texels[i] != std::byte{255}) return entry->second = true;
-  }
-  return false;
+  return entry->second = read_texture_image(path).has_alpha();
 }
 
 namespace {

@@ -8,18 +8,14 @@
 #include <new>
 
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
+#include "common/scene/load/files/inflater.h"
 #include "common/scene/load/files/mapped_file.h"
 
 namespace pt::pbrt {
 namespace {
 
 constexpr std::size_t step = 1 << 20;  // bytes decompressed at once
-
-/// Scenes and meshes are packed to a third or a tenth; gzip can make a thousand times more of a
-/// byte.
-std::size_t most_for(std::size_t packed_bytes) {
-  return std::max(std::size_t{64} << 20, 100 * packed_bytes);
-}
 
 struct End {
   void operator()(z_stream* stream) const { inflateEnd(stream); }
@@ -30,18 +26,13 @@ std::string decompress(std::string_view bytes) {
   z_stream stream{};
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   std::size_t left = bytes.size();
-  const std::size_t most = most_for(left);
   if (inflateInit2(&stream, 15 + 16) != Z_OK) throw std::bad_alloc();
   const std::unique_ptr<z_stream, End> end(&stream);
   std::string out;
   while (true) {
     const std::size_t before = out.size();
-    if (before > most) {
-      throw Error(
-          fmt::format("more than {} MiB when decompressed; expected at most 64 MiB or a "
-                      "hundred times the compressed size",
-                      most >> 20));
-    }
+    if (before > most_unpacked_bytes(bytes.size())) throw unpacks_to_more(bytes.size());
+    if (before + step > out.capacity()) check_host_memory(2 * before, "the unpacked file");
     out.resize(before + step);
     stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
     stream.avail_out = static_cast<uInt>(step);

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "common/error/host_memory.h"
+#include "common/error/quoted.h"
 
 namespace pt::nanovdb_files {
 namespace {
@@ -58,9 +59,10 @@ void expect_nanovdb(std::uint64_t first_bytes, bool is_first) {
 std::string names_of(const std::vector<GridEntry>& entries) {
   std::string names;
   for (const GridEntry& entry : entries) {
-    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", entry.name);
+    names += (names.empty() ? "" : ", ") + in_quotes(entry.name);
+    if (names.size() > 400) break;
   }
-  return names.empty() ? "none" : names;
+  return names.empty() ? "none" : clipped(names, 400);
 }
 
 void unzip(ByteReader& reader, GridBytes& bytes) {
