@@ -154,6 +154,30 @@ TEST(GltfErrors, WrongPartsOfATransformationAreLeftOut) {
   EXPECT_EQ(mesh.positions[2], Vec3(5, 12, 7));
 }
 
+// Beyond the numbers of 32 bits: what cannot be placed is lost, and the rest is not.
+TEST(GltfErrors, WhatOverflowsIsLeftOut) {
+  GltfMaker maker = triangle_file();
+  const Json huge = {1e30, 1e30, 1e30};
+  maker.root["nodes"] = {{{"mesh", 0}},
+                         {{"scale", huge}, {"children", {2}}},
+                         {{"scale", huge}, {"children", {3}}},
+                         {{"scale", {0, 0, 0}}, {"mesh", 0}}};
+  maker.root["scenes"][0]["nodes"] = {0, 1};
+  const Loaded nested(maker);
+  EXPECT_EQ(nested.count("nodes[2]: its transformation overflows"), 1u);
+  EXPECT_EQ(nested.scene.meshes.size(), 1u);
+  EXPECT_TRUE(nested.scene.instances.empty()) << "its child is lost, too";
+  maker.root["nodes"] = {{{"mesh", 0}}, {{"mesh", 1}, {"scale", {1, 3e38, 1}}}};
+  const int positions =
+      maker.floats({0, 0, 0, 1, 0, 0, 0, 2, 0, 5, 0, 0, 6, 0, 0, 5, 0, 1}, "VEC3");
+  maker.mesh({{"attributes", {{"POSITION", positions}}}});
+  const Loaded vertex(maker);
+  EXPECT_EQ(vertex.count("nodes[1]: a vertex in world space overflows"), 1u);
+  ASSERT_EQ(vertex.scene.meshes.size(), 2u);
+  EXPECT_EQ(vertex.scene.meshes[1].triangles.size(), 1u);
+  for (const Vec3& p : vertex.scene.meshes[1].positions) EXPECT_TRUE(std::isfinite(p.y));
+}
+
 TEST(GltfErrors, AMeshLosesWhatCannotBeDrawn) {
   expect_warning_with("/meshes/0/primitives/0/material", 7, "materials[7] does not exist");
   const auto with_indices = [](std::initializer_list<std::uint16_t> indices) {

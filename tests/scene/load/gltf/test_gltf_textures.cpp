@@ -138,6 +138,20 @@ TEST(GltfTextures, ImagesInBufferViewsAndFiles) {
   EXPECT_EQ(texel_at(from_file, base_texture(from_file), 0.75f, 0.75f), (std::vector{0, 255, 0}));
 }
 
+// The content says what a picture is, and not the type that its URI names.
+TEST(GltfTextures, TypesOfDataUrisDoNotMatter) {
+  GltfMaker maker = with_texture();
+  for (const char* type : {"image/bmp", "image/jpg", "image/x-ms-bmp", "application/octet-stream",
+                           "", "image/png;charset=utf-8"}) {
+    maker.root["images"][0]["uri"] = fmt::format("data:{};base64,{}", type, base64(four_texels()));
+    const Loaded loaded(maker);
+    EXPECT_EQ(loaded.count("images"), 0u) << type;
+    EXPECT_EQ(texel_at(loaded.scene, base_texture(loaded.scene), 0.25f, 0.75f),
+              (std::vector{255, 0, 0}))
+        << type;
+  }
+}
+
 TEST(GltfTextures, AnImageIsStoredOnce) {
   GltfMaker maker = with_texture();
   maker.root["materials"][0]["emissiveFactor"] = {1, 1, 1};
