@@ -241,8 +241,10 @@ TEST(MitsubaSpectrum, ADaylightWithinWhichAPictureLiesIsThePicture) {
   const LoadedScene loaded = load_xml(
       "<sensor type='perspective'/><shape type='rectangle'><emitter type='area'><texture "
       "type='d65' "
-      "name='radiance'><texture type='checkerboard'/></texture></emitter></shape>");
+      "name='radiance'><float name='scale' value='3'/><texture "
+      "type='checkerboard'/></texture></emitter></shape>");
   EXPECT_TRUE(loaded.warnings.empty());
+  EXPECT_EQ(loaded.scene.materials.at(0).emission.radiance, Color(1.0f));
   EXPECT_EQ(loaded.scene.textures.at(0).kind, TextureKind::checkerboard);
 }
 

@@ -508,6 +508,34 @@ TEST(MitsubaParameters, OfShapes) {
       lit + "%");
 }
 
+// A quad has no coordinates: shapes of materials that ask for them are meshes, also where a part
+// asks.
+TEST(MitsubaParameters, OfWhatNeedsCoordinates) {
+  const std::string brushed =
+      bsdf("roughconductor", number("alpha_u", 0.1) + number("alpha_v", 0.3));
+  const std::string round = bsdf("roughconductor", number("alpha", 0.1));
+  const std::string board = bsdf("diffuse", "<texture type='checkerboard' name='reflectance'/>");
+  const auto blend = [](const std::string& a, const std::string& b) {
+    return bsdf("blendbsdf", number("weight", 0.5) + a + b);
+  };
+  const auto meshes = of([](const SceneData& s) { return s.meshes.size(); });
+  expect_rows({{round, meshes, 0},
+               {brushed, meshes, 1},
+               {board, meshes, 1},
+               {blend(round, round), meshes, 0},
+               {blend(round, brushed), meshes, 1},
+               {blend(blend(round, board), round), meshes, 1}},
+              lit_square);
+  const auto vertices = [](const std::string& material) {
+    return load_xml(lit + "<shape type='disk'>" + material + "</shape>")
+        .scene.meshes.at(0)
+        .positions.size();
+  };
+  EXPECT_EQ(vertices(round), vertices(board));
+  EXPECT_GT(vertices(brushed), 10 * vertices(board));  // 64 rings
+  EXPECT_EQ(vertices(blend(round, brushed)), vertices(brushed));
+}
+
 // Golden: of the first vertex that Mitsuba 3.9.1 sees from +x; a negative radius turns a cylinder
 // by half a turn and leaves its normals where they are.
 TEST(MitsubaParameters, OfCylindersAndDisks) {
