@@ -140,6 +140,16 @@ TEST(PbrtLosses, PicturesHaveStandIns) {
             kind_of<Dielectric>);
 }
 
+TEST(PbrtLosses, ASkyWithoutItsPictureIsGrey) {
+  const auto sky = [](const std::string& more) {
+    return load_pbrt_text(pbrt_world("LightSource \"infinite\" \"string filename\" \"none.exr\" " +
+                                     more + " Shape \"sphere\""))
+        .scene.sky.zenith;
+  };
+  expect_near(sky("\"float scale\" 20"), Color(0.5f));
+  expect_near(sky("\"float illuminance\" 3"), Color(3 * inverse_pi));
+}
+
 TEST(PbrtLosses, WarningsAreBoundedInNumberAndLength) {
   std::string world = lit + big_ball;
   for (int i = 0; i < 1000; ++i) world += fmt::format("Shape \"sphere\" \"float p{}\" 1\n", i);

@@ -126,6 +126,8 @@ void SkyLights::add(Context& context, const Entity& entity) {
       pictures_.push_back(std::move(picture));
     });
     if (has_picture) return;
+    // Its scale is nothing without it: half of white in the image.
+    if (!(illuminance > 0.0f)) scale = Color(0.5f);
   }
   const Color radiance = scale * (illuminance > 0.0f ? illuminance / pi : 1.0f);
   context.scene.sky.nadir += radiance;
