@@ -11,6 +11,11 @@ namespace pt {
 /// Error, which names the scene, where more have to be ordered than overlapping_media_max.
 void prepare_media(SceneData& scene);
 
+/// Moves the boundaries of media off the surfaces that they touch, by what rays can tell apart, so
+/// that a ray meets both and in the right order (docs/design/media.md). What touches nothing keeps
+/// its bits. After convert_quads() and prepare_media().
+void separate_boundaries(SceneData& scene);
+
 /// As Scene has it. After prepare_media().
 std::uint32_t around_camera(const SceneData& scene);
 

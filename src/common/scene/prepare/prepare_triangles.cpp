@@ -12,8 +12,8 @@
 #include "common/scene/prepare/convert_quads.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_media.h"
 #include "common/scene/prepare/prepare_primitives.h"
-#include "common/scene/prepare/separate_boundaries.h"
 
 namespace pt {
 namespace {

@@ -1,9 +1,13 @@
-#include "common/scene/prepare/separate_boundaries.h"
+// Boundaries of media that lie in other surfaces: fog that stands on a floor.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
+
+#include "common/scene/prepare/prepare_media.h"
 
 namespace pt {
 namespace {
