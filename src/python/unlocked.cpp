@@ -32,6 +32,8 @@ Away& away() {
 
 /// At the interpreter's end: Python's other threads are daemons, which nobody has joined.
 void end_all() {
+  const int threads = nb::cast<int>(nb::module_::import_("threading").attr("active_count")());
+  if (threads > 1) nb::set_leak_warnings(false);  // what the others hold is never freed
   Away& a = away();
   {
     const std::lock_guard lock(a.mutex);

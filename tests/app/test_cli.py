@@ -122,6 +122,21 @@ class Information(CommandLine):
         self.assertRegex(text, r"ptexp \d+\.\d+\.\d+")
         self.assertRegex(text, r"(?i)commit\s*:?\s*\S+|[0-9a-f]{7,}|unknown")
         self.assertRegex(text, r"(?i)cuda")
+        # By their values, which the statistics have, too; doctor knows the MPI that is loaded.
+        self.render_ok("--output", "a.ppm", "--stats", "s.json")
+        program = json.loads((self.folder / "s.json").read_text(encoding="utf-8"))["program"]
+        math_text = ", fast math" if program["fast_math"] else ""
+        self.assertTrue(text.startswith(
+            f"ptexp {program['version']}\ncommit {program['commit']}\nbuild {program['build_type']}, "
+            f"{program['compiler']}\nCUDA {program['cuda']}{math_text}\nMPI "), text)
+
+    def test_a_device_is_listed_as_it_is_called(self):
+        line = next(line for line in self.run_ok("--list-devices").stdout.splitlines() if line.startswith("cpu"))
+        run = self.render_ok("--output", "a.ppm", "--stats", "s.json")
+        name, detail = re.fullmatch(r"cpu +(.*) \((.*)\)", line).groups()
+        self.assertTrue(run.stdout.startswith(f"device cpu: {name} ({detail})\n"), run.stdout)
+        device = json.loads((self.folder / "s.json").read_text(encoding="utf-8"))["device"]
+        self.assertEqual(device["name"], f"{name}, {detail}")
 
     def test_scenes_are_listed_and_can_be_rendered(self):
         text = self.run_ok("--list-scenes").stdout

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <tuple>
 
 #include "app/compact_command.h"
 #include "app/options/command_line.h"
@@ -141,6 +142,44 @@ TEST_F(CompactFiles, HaveARowForEachMeasurement) {
   EXPECT_EQ(rows[2].at("strategy"), "atomic");
   EXPECT_EQ(rows[3].at("strategy"), "none");
   EXPECT_EQ(rows[0].at("queues") + rows.back().at("queues"), "12");
+}
+
+// By their values: each line that is printed, and its row.
+TEST_F(CompactFiles, HaveTheNumbersThatArePrinted) {
+  command_.quiet = false;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(compact_command(command_), 0);
+  std::istringstream text(testing::internal::GetCapturedStdout());
+  const std::vector<Row> rows = read_rows(command_.csv);
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, "device     cpu: " + rows[0].at("device"));
+  std::getline(text, line);
+  for (const Row& row : rows) {
+    SCOPED_TRACE(row.at("strategy"));
+    ASSERT_TRUE(std::getline(text, line));
+    std::erase(line, ',');
+    std::istringstream words(line);
+    std::string word;
+    const std::tuple<const char*, double, double> columns[] = {{"queues", 1, 0},
+                                                               {"items", 1, 0},
+                                                               {"density", 1, 1e-4},
+                                                               {"time_ms", 1e3, 0.006},
+                                                               {"time_min_ms", 1e3, 0.006},
+                                                               {"time_max_ms", 1e3, 0.006},
+                                                               {"gb_per_s", 1, 0.051},
+                                                               {"copy_gb_per_s", 1, 0.051},
+                                                               {"copy_share", 1, 0.00051}};
+    words >> word;
+    EXPECT_EQ(word, row.at("strategy"));
+    for (const auto& [name, scale, tolerance] : columns) {
+      words >> word;
+      // The row has six digits.
+      const double right = scale * std::stod(row.at(name));
+      EXPECT_NEAR(std::stod(word), right, tolerance + 1e-5 * right) << name << " in " << line;
+    }
+    EXPECT_FALSE(words >> word);
+  }
 }
 
 TEST_F(CompactFiles, OfOtherColumnsAreRefusedBeforeAnythingIsMeasured) {

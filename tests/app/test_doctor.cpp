@@ -207,6 +207,25 @@ TEST(DoctorJson, HasChecksAndNumbers) {
   EXPECT_EQ(json["checks"][0]["status"], "ok");
 }
 
+TEST(DoctorJson, HasTheNumbersOfTheMachine) {
+  Machine machine = healthy();
+  machine.memory = 111, machine.free_memory = 22;
+  machine.cpu = {"Name", 33, true, false};
+  machine.cuda.gpus = {{"G", 8, 6, 444, 55, 66, 77, "p"}};
+  const auto json = nlohmann::json::parse(doctor_json(machine, {}));
+  EXPECT_EQ(json["machine"], nlohmann::json::parse(R"({
+    "driver": "580.95.05", "cpu": "Name", "threads": 33, "avx2": true, "avx512": false,
+    "memory_bytes": 111, "free_memory_bytes": 22,
+    "gpus": [{"name": "G", "compute_capability": "8.6", "memory_bytes": 444,
+              "free_memory_bytes": 55, "block_shared_bytes": 66, "block_shared_bytes_max": 77,
+              "problem": "p"}]})"));
+  EXPECT_EQ(json["version"], "0.1.0");
+  EXPECT_EQ(json["commit"], "abc");
+  EXPECT_EQ(json["cuda"], "13.0.88, architectures 90");
+  EXPECT_EQ(json["mpi"], "Open MPI 4.1.4");
+  EXPECT_EQ(json["exit_code"], 0);
+}
+
 TEST(DoctorCommandLine, IsASubcommandAlone) {
   EXPECT_FALSE(std::get<DoctorCommand>(parse_command_line({"doctor"})).as_json);
   EXPECT_TRUE(std::get<DoctorCommand>(parse_command_line({"doctor", "--json"})).as_json);

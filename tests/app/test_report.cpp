@@ -430,7 +430,8 @@ TEST(CsvFile, HeaderOnceAndQuoting) {
   const std::string path = folder.file("runs.csv");
   append_csv_row(path, {{"a", "1"}, {"b", "x, \"y\"\nz"}});
   append_csv_row(path, {{"a", ""}, {"b", "2"}});
-  EXPECT_EQ(read_text(path), "a,b\n1,\"x, \"\"y\"\"\nz\"\n,2\n");
+  append_csv_row(path, {{"a", "c\rd"}, {"b", "e\"f"}});
+  EXPECT_EQ(read_text(path), "a,b\n1,\"x, \"\"y\"\"\nz\"\n,2\n\"c\rd\",\"e\"\"f\"\n");
 }
 
 TEST(CsvFile, AnEmptyFileGetsTheHeader) {

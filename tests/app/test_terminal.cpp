@@ -12,6 +12,7 @@
 #include "app/checkpoint_keeper.h"
 #include "app/options/option_values.h"
 #include "app/warning_limit.h"
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/error/terminal.h"
 

@@ -168,7 +168,18 @@ TEST_F(TraceFiles, PrintTheNumbersOfTheRow) {
                             grouped(std::stoull(row.at("nodes"))), number("bytes_per_triangle"))),
       std::string::npos)
       << text;
-  EXPECT_NE(text.find(fmt::format("SAH cost {:.2f}\n", number("sah_cost"))), std::string::npos);
+  const auto is_printed = [&](const std::string& line) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << " in\n" << text;
+  };
+  const auto whole = [&](const char* name) { return grouped(std::stoull(row.at(name))); };
+  is_printed(fmt::format("SAH cost {:.2f}\n", number("sah_cost")));
+  is_printed(fmt::format("built in   {:.1f} ms", number("build_ms")));
+  is_printed(fmt::format("tree       {} by {}: {} triangles, ", row.at("accel"), row.at("builder"),
+                         whole("triangles")));
+  is_printed(
+      fmt::format("rays       {}, {} hit, {}\n", whole("rays"), row.at("type"), row.at("variant")));
+  is_printed("device     cpu: " + row.at("device") + "\n");
+  EXPECT_NE(row.at("rays"), row.at("triangles"));
 }
 
 TEST_F(TraceFiles, BuildersOfTheDeviceNeedOne) {
