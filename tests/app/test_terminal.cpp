@@ -65,12 +65,13 @@ TEST(TerminalText, ShowsLettersAndNoControl) {
 }
 
 TEST(TerminalText, IsClippedBetweenCharacters) {
-  EXPECT_EQ(clipped("123456789", 9), "123456789");
-  EXPECT_EQ(clipped("1234567890", 9), "123456 [...] 890 (10 bytes in all)");
+  EXPECT_EQ(begin_and_end("123456789", 9), "123456789");
+  EXPECT_EQ(begin_and_end("1234567890", 9), "123456 [...] 890 (10 bytes in all)");
   for (std::size_t most = 9; most < 20; ++most) {
-    const std::string text = clipped(std::string(4, 'x') + "\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8" +
-                                         "\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8",
-                                     most);
+    const std::string text =
+        begin_and_end(std::string(4, 'x') + "\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8" +
+                          "\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8\xe6\x9c\xa8",
+                      most);
     EXPECT_EQ(terminal_text(text), text) << "no half character";
   }
   const std::string line =

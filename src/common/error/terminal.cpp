@@ -70,7 +70,7 @@ std::string terminal_text(std::string_view text, bool keeps_lines) {
   return result;
 }
 
-std::string clipped(std::string_view text, std::size_t most) {
+std::string begin_and_end(std::string_view text, std::size_t most) {
   if (text.size() <= most) return std::string(text);
   std::size_t head = most - most / 3, tail = text.size() - most / 3;
   for (int i = 0; i < 3 && is_within_character(text, head); ++i) --head;
@@ -80,7 +80,7 @@ std::string clipped(std::string_view text, std::size_t most) {
 }
 
 std::string message_line(std::string_view message) {
-  return terminal_text(clipped(message, most_of_message));
+  return terminal_text(begin_and_end(message, most_of_message));
 }
 
 void print_text(std::string_view text) {

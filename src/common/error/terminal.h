@@ -17,7 +17,7 @@ namespace pt {
 std::string terminal_text(std::string_view text, bool keeps_lines = false);
 
 /// The begin and the end of a text of more than `most` bytes, and between them its size.
-std::string clipped(std::string_view text, std::size_t most);
+std::string begin_and_end(std::string_view text, std::size_t most);
 
 /// A message of any length and content as one line of a terminal or a log.
 std::string message_line(std::string_view message);

@@ -69,7 +69,6 @@ class TextureStore {
   std::vector<std::byte>& texels_;
   std::map<std::string, Stored> stored_;                         ///< by encoding and name
   std::unordered_multimap<std::size_t, std::uint32_t> by_hash_;  ///< what add_plain() has added
-  std::map<std::string, Stored> stored_;           ///< by encoding and name
   std::map<std::uint64_t, std::uint64_t> alphas_;  ///< offsets of floats' alpha, by the image's
 };
 

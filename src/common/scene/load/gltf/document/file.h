@@ -33,17 +33,15 @@ inline constexpr std::array<std::string_view, 12> known_extensions = {
     "KHR_mesh_quantization",
     "KHR_texture_transform"};
 
-/// Names in files may be as long as the files: messages are not.
-inline std::string clipped(const std::string& text) {
-  constexpr std::size_t longest = 500;
-  return text.size() <= longest ? text : text.substr(0, longest) + " ...";
-}
+/// Bytes of a message: names in files may be as long as the files.
+inline constexpr std::size_t longest_message = 500;
 
 /// A place is a path of names and numbers such as meshes[3].primitives[0].
 [[noreturn]] inline void fail(const std::string& file, const std::string& place,
                               const std::string& message) {
   throw Error(fmt::format(
-      "{}: {}", file, clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", message))));
+      "{}: {}", file,
+      clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", message), longest_message)));
 }
 
 class File {
@@ -62,9 +60,10 @@ class File {
 
   /// Reports what is ignored or replaced, and by what; the same message once, with its first place.
   void report(const std::string& place, const std::string& message) {
-    const std::string text = clipped(message);
+    const std::string text = clipped(message, longest_message);
     if (!reported_.insert(text).second) return;
-    last_report_ = clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", text));
+    last_report_ =
+        clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", text), longest_message);
     options_.report(fmt::format("{}: {}", name_, last_report_));
   }
   const std::string& last_report() const { return last_report_; }
@@ -77,7 +76,9 @@ class File {
   }
 
   /// A name for a part of the file.
-  std::string describe(const std::string& place) const { return name_ + ": " + clipped(place); }
+  std::string describe(const std::string& place) const {
+    return name_ + ": " + clipped(place, longest_message);
+  }
 
   /// Says what was chosen where the file leaves it open.
   void note(const std::string& message) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/error/error.h"
+#include "common/error/quoted.h"
 
 namespace pt::pbrt {
 
@@ -13,17 +14,6 @@ std::string Place::text() const { return fmt::format("{}:{}:{}", *file, line, co
 namespace {
 
 constexpr std::size_t longest_name = 80, longest_message = 800;  // bytes
-
-/// Its beginning, cut between characters of UTF-8.
-std::string clipped(std::string_view text, std::size_t longest) {
-  if (text.size() <= longest) return std::string(text);
-  const auto continues = [&](std::size_t i) {
-    return (static_cast<unsigned char>(text[i]) & 0xc0) == 0x80;
-  };
-  std::size_t end = longest - 3;
-  while (end > 0 && continues(end)) --end;
-  return std::string(text.substr(0, end)) + "...";
-}
 
 }  // namespace
 
