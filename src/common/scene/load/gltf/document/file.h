@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/error/quoted.h"
 #include "common/scene/load/files/load_options.h"
 
 namespace pt::gltf {
