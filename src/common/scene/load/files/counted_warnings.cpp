@@ -20,7 +20,7 @@ void CountedWarnings::add(std::string_view kind, std::string_view message, std::
   Kind& known = kinds_[entry->second];
   if (!is_new) ++known.more;
   if (name.empty() || known.names.size() == names_max) return;
-  const std::string shown = quoted(name);
+  const std::string shown = in_quotes(name);
   if (std::ranges::find(known.names, shown) == known.names.end()) known.names.push_back(shown);
 }
 

@@ -76,7 +76,7 @@ fs::path NamedFiles::search(const std::vector<fs::path>& folders, std::string_vi
       const fs::path path = find_file(folder, tail_of(parts, count), {});
       if (!is_file(path)) continue;
       warnings_.add("last parts",
-                    fmt::format("{} does not exist: {} is used", quoted(name), path.string()),
+                    fmt::format("{} does not exist: {} is used", in_quotes(name), path.string()),
                     name);
       return path;
     }

@@ -60,7 +60,7 @@ class Libraries {
     if (found == defined_.end()) {
       warnings_.add("unknown material",
                     fmt::format("{}: line {}: material {} is not defined: grey is used",
-                                obj_.string(), line_number, quoted(name)),
+                                obj_.string(), line_number, in_quotes(name)),
                     name);
       return fallback;
     }

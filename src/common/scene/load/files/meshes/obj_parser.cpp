@@ -47,7 +47,7 @@ std::uint32_t parse_index(std::string_view text, const char* what, std::size_t c
   std::int64_t index = 0;
   const auto [stop, failure] = std::from_chars(text.data(), text.data() + text.size(), index);
   if (failure == std::errc::invalid_argument || stop != text.data() + text.size()) {
-    throw Error(fmt::format("expected the number of a {}, found {}", what, quoted(text, 40)));
+    throw Error(fmt::format("expected the number of a {}, found {}", what, in_quotes(text, 40)));
   }
   const auto signed_count = static_cast<std::int64_t>(count);
   if (failure != std::errc{} || index == 0 || index > signed_count || index < -signed_count) {

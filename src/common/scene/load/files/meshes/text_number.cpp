@@ -45,7 +45,7 @@ double parse_number(std::string_view word) {
   const char* end = digits.data() + digits.size();
   const auto [stop, failure] = std::from_chars(digits.data(), end, value);
   if (failure == std::errc::invalid_argument || stop != end) {
-    throw Error(fmt::format("expected a number, found {}", quoted(word, 40)));
+    throw Error(fmt::format("expected a number, found {}", in_quotes(word, 40)));
   }
   return failure == std::errc::result_out_of_range ? out_of_range(digits) : value;
 }
