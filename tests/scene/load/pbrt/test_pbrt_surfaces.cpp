@@ -246,6 +246,7 @@ TEST(PbrtTextures, ANumberIsTheAlphaOfAPictureThatHasOne) {
                                 "alpha\" \"a\""));
     const SceneData scene = load_pbrt_file(folder.file("scene.pbrt")).scene;
     const auto& o = scene.materials[scene.meshes.at(0).material].opacity;
+    EXPECT_EQ(o.cutoff, 0.0f);
     return sample_texture(scene.textures.data(), o.texture, scene.texels.data(), {u, 0.5f}).x;
   };
   write(0, 51);

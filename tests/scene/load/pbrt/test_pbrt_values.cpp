@@ -261,6 +261,15 @@ TEST(PbrtValues, SpotsLiveInTheirOwnSpace) {
   irradiance("Scale 2 2 2 ", scale(Vec3(2.0f)));
 }
 
+/// All of the light is within the picture: at twice the tangent of the cone's angle.
+TEST(PbrtValues, AStretchedConeIsWhole) {
+  const SceneData scene = load_pbrt_silently(pbrt_world(
+      "Scale 2 1 1 LightSource \"spot\" \"float coneangle\" 35 \"float conedeltaangle\" 10 Shape "
+      "\"sphere\""));
+  EXPECT_NEAR(std::acos(double{scene.delta_lights.at(0).cos_outer}),
+              std::atan(2 * std::tan(35 * degree)), 2e-3);
+}
+
 // ---- textures
 
 /// What a texture named t is at a place.
