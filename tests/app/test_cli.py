@@ -627,11 +627,12 @@ class Streams(CommandLine):
                 folder.mkdir(exist_ok=True)
             process = subprocess.Popen(
                 [PTEXP, "--scene", "cornell", "--device", "cpu", "--width", "32", "--height", "32", "--time-limit",
-                 "1.5", "-q", "-o", "image/a.exr", "--stats", "json/s.json", "--csv", "csv/r.csv"],
-                cwd=self.folder, stderr=subprocess.PIPE, text=True)
+                 "1.5", "-o", "image/a.exr", "--stats", "json/s.json", "--csv", "csv/r.csv"],
+                cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
             time.sleep(0.7)
             folders[missing].rmdir()
-            errors = process.communicate()[1]
+            printed, errors = process.communicate()
+            self.assertEqual("wrote image/a.exr\n" in printed, missing != "image")
             with self.subTest(missing=missing):
                 self.assertEqual(process.returncode, 2)
                 self.assertRegex(errors, rf"^ptexp: error: [^\n]*{missing}/[^\n]*\n$")

@@ -73,6 +73,13 @@ class Parts(unittest.TestCase):
         self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
         self.assertRegex(run.stdout, r"differing pixels +0\b")
 
+    def header(self, name):
+        """String attributes of an EXR."""
+        data = (self.folder / name).read_bytes()
+        return {m[1].decode(): data[m.end() + 4:m.end() + 4 + int.from_bytes(
+            data[m.end():m.end() + 4], "little")].decode()
+            for m in re.finditer(rb"(ptexp[\w.]+)\0string\0", data)}
+
     def files(self):
         return sorted(path.name for path in self.folder.iterdir())
 
@@ -195,13 +202,6 @@ class Checkpoints(Parts):
         self.assertEqual(run.returncode, 0, run.stderr)
         self.render(*scene, "--spp", done + 5, "-o", "whole.exr")
         self.assert_same_image("b.exr", "whole.exr")
-
-    def header(self, name):
-        """String attributes of an EXR."""
-        data = (self.folder / name).read_bytes()
-        return {m[1].decode(): data[m.end() + 4:m.end() + 4 + int.from_bytes(
-            data[m.end():m.end() + 4], "little")].decode()
-            for m in re.finditer(rb"(ptexp[\w.]+)\0string\0", data)}
 
     def test_a_full_disk_keeps_the_old_one(self):
         self.render(*SMALL, "--spp", 2, "--checkpoint", "c.exr", "-o", "a.exr")
@@ -349,9 +349,16 @@ class Merges(Parts):
         names = self.make_parts(4)
         said = self.refused("merge", "out.exr", names[0], names[2])
         self.assertIn("no file of --part 2, 4: 50 % of the samples are missing", said)
+        for missing in range(1, 5):
+            others = [name for i, name in enumerate(names, 1) if i != missing]
+            self.assertIn(f": error: no file of --part {missing}: 25 % of the samples are missing;",
+                          self.refused("merge", "out.exr", *others))
         self.assertFalse((self.folder / "out.exr").exists())
         run = self.render("merge", "out.exr", names[0], names[2], "--allow-missing")
-        self.assertIn("50 % of the samples are missing", run.stderr)
+        self.assertIn("warning: no file of --part 2, 4: 50 % of the samples are missing", run.stderr)
+        self.assertEqual(self.header("out.exr")["ptexp.samples_done"], "0", "of the worst pixel")
+        self.render("merge", "out.exr", *names)
+        self.assertEqual(self.header("out.exr")["ptexp.samples_done"], "6")
         self.assertIn("expected at least one checkpoint", self.refused("merge", "out.exr"))
 
     def test_foreign_parts_are_named(self):

@@ -129,6 +129,14 @@ TEST_F(TraceFiles, ReplaceNothingThatIsRead) {
     EXPECT_EQ(read_text(read), before);
   }
   RaysCommand rays;
+  rays.size = 16;
+  rays.scene = command_.mesh, rays.output = folder_.file("few");
+  flush_printed();
+  testing::internal::CaptureStdout();
+  rays_command(rays);
+  flush_printed();
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            fmt::format("wrote {}: {} rays\n", rays.output, read_rays(rays.output).rays.size()));
   rays.scene = rays.output = command_.mesh;
   expect_error([&] { rays_command(rays); }, "--output " + command_.mesh + ": is the file");
 }
