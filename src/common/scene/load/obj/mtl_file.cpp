@@ -108,7 +108,8 @@ class MtlLines {
     const auto found = statements().find(key);
     if (found == statements().end()) {
       return warn("unknown statement",
-                  fmt::format("unknown statement {}: it is ignored", pt::quoted(word, 40)), word);
+                  fmt::format("unknown statement {}: it is ignored", pt::in_quotes(word, 40)),
+                  word);
     }
     if (key == "d") line = without_halo(line);
     key_ = word;
@@ -124,7 +125,7 @@ class MtlLines {
 
   std::string place() const {
     const std::string line = fmt::format("{}: line {}", file_, line_number_);
-    return materials.empty() ? line : line + ": material " + pt::quoted(materials.back().name);
+    return materials.empty() ? line : line + ": material " + pt::in_quotes(materials.back().name);
   }
 
   void read_comment(std::string_view comment) {

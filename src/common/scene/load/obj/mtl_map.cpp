@@ -62,7 +62,7 @@ class MapLine {
     read_options();
     if (!rest_.empty()) {
       warn_("text behind a map",
-            fmt::format("{} behind the name of a picture: it is ignored", quoted(rest_)));
+            fmt::format("{} behind the name of a picture: it is ignored", in_quotes(rest_)));
     }
     return map_;
   }
@@ -85,7 +85,7 @@ class MapLine {
         take();
         read_option(*option);
       } else if (word.size() > 1 && word[0] == '-' && word.size() < rest_.size()) {
-        warn_("unknown option", fmt::format("unknown option {}: it is ignored", quoted(take())));
+        warn_("unknown option", fmt::format("unknown option {}: it is ignored", in_quotes(take())));
         while (rest_.size() > peek().size() && number_in(peek())) take();
       } else {
         return;
@@ -108,7 +108,7 @@ class MapLine {
       }
       if (numbers.size() < static_cast<std::size_t>(option.least)) {
         warn_(name, fmt::format("{}: expected {} {}, found {}: it is ignored", name, option.least,
-                                option.least == 1 ? "number" : "numbers", quoted(peek(), 40)));
+                                option.least == 1 ? "number" : "numbers", in_quotes(peek(), 40)));
         return;
       }
     }
@@ -135,8 +135,8 @@ class MapLine {
 
   bool is_on(const std::string& name, const std::string& word, bool fallback) {
     if (word == "on" || word == "off") return word == "on";
-    warn_(name,
-          fmt::format("{}: expected on or off, found {}: it is ignored", name, quoted(word, 40)));
+    warn_(name, fmt::format("{}: expected on or off, found {}: it is ignored", name,
+                            in_quotes(word, 40)));
     return fallback;
   }
 
@@ -145,7 +145,7 @@ class MapLine {
       map_.channel = word[0];
     } else {
       warn_("-imfchan", fmt::format("-imfchan: expected r, g, b, m or l, found {}: it is ignored",
-                                    quoted(word, 40)));
+                                    in_quotes(word, 40)));
     }
   }
 

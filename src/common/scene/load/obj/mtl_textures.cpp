@@ -68,7 +68,7 @@ std::uint32_t MtlTextures::read_or_warn(const MapUse& use, const Read& read) {
     }
   }
   warnings_.add(std::string("picture of ") + use.key,
-                fmt::format("{}: {} {}: {}: {}", use.place, use.key, pt::quoted(use.map.name),
+                fmt::format("{}: {} {}: {}: {}", use.place, use.key, pt::in_quotes(use.map.name),
                             reason, use.instead),
                 use.map.name);
   return no_texture;
