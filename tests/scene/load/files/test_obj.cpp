@@ -119,6 +119,11 @@ TEST(Obj, ABadLineLosesItself) {
   expect_error([&] { read_obj(folder.file("missing.obj")); }, "missing.obj: No such file");
 }
 
+TEST(Obj, VerticesBetweenColouredOnesAreWhite) {
+  const Mesh mesh = decode_obj("v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
+  EXPECT_EQ(mesh.colors, (std::vector<Color>{Color(1), Color(1, 0, 0), Color(1)}));
+}
+
 TEST(Obj, BadLinesAreCounted) {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (int i = 0; i < 1000; ++i) text += "f 1 2\nf 1 2 9\nf 1//7 2 3\n";

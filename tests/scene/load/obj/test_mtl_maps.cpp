@@ -47,6 +47,7 @@ TEST(MtlMaps, Options) {
       {"-o 0.5 0 0 t.ppm", {0.25f, 0.25f}, white},
       {"-o 0.5 t.ppm", {0.25f, 0.25f}, white},
       {"-o 0 0.5 t.ppm", {0.25f, 0.25f}, red},
+      {"-o 0 0.25 t.ppm", {0.25f, 0.5f}, red},
       {"-s 1 -1 1 t.ppm", {0.25f, 0.25f}, red},
       {"-s -1 t.ppm", {0.25f, 0.25f}, white},
       {"-s 2 2 1 t.ppm", {0.375f, 0.125f}, white},
@@ -87,6 +88,15 @@ TEST(MtlMaps, Options) {
   expect_maps({{"-mm 1 2 t.ppm", {0.25f, 0.75f}, {3, 1, 1}}}, "map_Ke ");
 }
 
+TEST(MtlMaps, OnePictureWithSeveralGains) {
+  const ObjFolder folder;
+  folder.write("t.ppm", four_colors);
+  const LoadedObj file = folder.load_m("map_Kd -mm 0 0.5 t.ppm\nmap_Ke -mm 0 0.25 t.ppm\n");
+  const MaterialDescription& m = file.material("m");
+  expect_near(file.texture_at(m.parameters[0].texture, {0.25f, 0.75f}), {0.5f, 0, 0});
+  expect_near(file.texture_at(m.emission.texture, {0.25f, 0.75f}), {0.25f, 0, 0});
+}
+
 TEST(MtlMaps, NamesOfOtherSystemsAndMachines) {
   const std::string elsewhere = "does not exist: ";
   expect_maps({
@@ -99,6 +109,8 @@ TEST(MtlMaps, NamesOfOtherSystemsAndMachines) {
       {"C:\\Users\\some one\\my tex.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"C:/Users/someone/sub/s.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"/home/someone/sub/s.ppm", {0.25f, 0.75f}, red, elsewhere},
+      {"/t.ppm", {0.25f, 0.75f}, red, elsewhere},
+      {"C:t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"\\\\server\\share\\t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"..\\textures\\t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"textures/t.ppm", {0.25f, 0.75f}, red, elsewhere},

@@ -86,6 +86,7 @@ TEST(Mtl, Opacity) {
       {"Kd 0.5 0.5 0.5\nTr 0.4\nd 0.4", "diffuse 0.5 opacity 0.4", "d and Tr contradict"},
       {"Kd 0.5 0.5 0.5\nd -halo 0.6", "diffuse 0.5 opacity 0.6", "d -halo"},
       {"Kd 0.5 0.5 0.5\nd 1.5", "diffuse 0.5", "d 1.5: expected a number in [0, 1], 1 is used"},
+      {"Kd 0.5 0.5 0.5\nTr 1.5", "diffuse 0.5 opacity 0", "Tr 1.5: expected a number in [0, 1]"},
       {"Kd 0.5 0.5 0.5\nd -2", "diffuse 0.5 opacity 0", "0 is used"},
       {"Kd 0.5 0.5 0.5\nmap_d t.ppm", "diffuse 0.5 opacity 0+1*"},
       {"Kd 0.5 0.5 0.5\nd 0.5\nmap_d t.ppm", "diffuse 0.5 opacity 0+0.5*"},
