@@ -83,7 +83,7 @@ TEST(GltfWalls, OneWallPassesWhatItDoesNotReflect) {
       {"tinted", clear(1, {{"baseColorFactor", {0.5, 0.25, 1, 1}}}), {0.48f, 0.24f, 0.96f}},
       {"half", clear(0.5), Color(0.48f)},
       {"metal", clear(1, {{"metallicFactor", 1}}), Color(0.0f)},
-      {"half metal", clear(1, {{"metallicFactor", 0.5}}), Color(0.48f)},
+      {"quarter metal", clear(1, {{"metallicFactor", 0.25}}), Color(0.72f)},
       {"half of half", clear(0.5, {{"metallicFactor", 0.5}}), Color(0.24f)},
       {"textured", clear(1, Json::object(), textured), Color(0.48f)},
       {"textured in half metal", clear(1, {{"metallicFactor", 0.5}}, textured), Color(0.24f)},
