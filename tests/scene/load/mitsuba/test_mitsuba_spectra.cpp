@@ -138,6 +138,8 @@ std::vector<PluginRow> plugin_rows() {
       {"d65",
        number("scale", 0.5) + "<texture type='uniform'>" + number("value", 0.3) + "</texture>",
        Color(0.3f), Color(0.3f)},
+      {"d65", "<spectrum type='uniform'>" + number("value", 0.3) + "</spectrum>", Color(0.3f),
+       Color(0.3f)},
       {"uniform", number("value", 0.4), Color(0.4f), Color(0.4f)},
       {"uniform", "<integer name='value' value='1'/>", Color(1.0f), Color(1.0f)},
       {"uniform", number("value", 0.4) + number("wavelength_min", 500), Color(0.4f), Color(0.4f)},

@@ -273,9 +273,93 @@ TEST(MitsubaParameters, OfEmitters) {
        {emitter("area", number("radiance", 4) + number("radiance", 5)), area, 5, "twice"},
        {"<luminaire type='area'>" + number("radiance", 4) + "</luminaire>", area, 4, "", "0.5.0"}},
       "<sensor type='perspective'/><shape type='rectangle'>%</shape>");
-  // Golden: traverse() of a sunsky; the sun's direction, where y is 0.691748.
-  const SceneData sky = load_xml(emitter("sunsky")).scene;
-  expect_near(sky.sun.direction, {0.0513854f, 0.691748f, 0.720308f}, 2e-4f);
+}
+
+// Golden: traverse() of a sunsky.
+TEST(MitsubaParameters, OfSunAndSky) {
+  const auto sky = [](const std::string& inside, const char* type = "sunsky",
+                      const char* version = "3.0.0") {
+    return load_xml(fmt::format("<emitter type='{}'>{}</emitter>", type, inside), version).scene;
+  };
+  const auto expect_sun = [&](const std::string& inside, const Vec3& direction) {
+    SCOPED_TRACE(inside);
+    expect_near(sky(inside).sun.direction, direction, 2e-4f);
+  };
+  const auto integer = [](const char* name, int n) {
+    return fmt::format("<integer name='{}' value='{}'/>", name, n);
+  };
+  expect_sun("", {0.0513854f, 0.691748f, 0.720308f});
+  expect_sun(number("latitude", -20), {-0.566034f, 0.69174f, 0.448443f});
+  expect_sun(number("longitude", 120), {0.166385f, 0.444057f, 0.880414f});
+  expect_sun(number("timezone", 8), {-0.0652906f, 0.827357f, 0.557869f});
+  expect_sun(integer("year", 2024) + integer("month", 2) + integer("day", 3),
+             {0.619224f, 0.692225f, 0.370658f});
+  expect_sun(integer("month", 12), {0.650361f, 0.721261f, 0.238357f});
+  expect_sun(integer("day", 31), {0.11526f, 0.706659f, 0.698103f});
+  expect_sun(number("hour", 9), {0.0956952f, -0.614786f, 0.782867f});
+  expect_sun(number("minute", 30), {-0.00436178f, 0.766109f, 0.642696f});
+  expect_sun(number("second", 50), {0.0499142f, 0.693982f, 0.71826f});
+  expect_sun("<vector name='sun_direction' x='0' y='3' z='4'/>", {0, 0.6f, 0.8f});
+
+  const auto disk = [&](const std::string& inside) {  // its half angle in degrees
+    return std::acos(1.0 - sky(inside).sun.one_minus_cos) * 180 / std::acos(-1.0);
+  };
+  EXPECT_NEAR(disk(""), 0.2679, 1e-3);
+  EXPECT_NEAR(disk(number("sun_radius_scale", 10)), 2.679, 1e-3);
+  EXPECT_NEAR(disk(number("sun_aperture", 3)), 1.5, 1e-3);
+
+  // Defaults are what is said aloud.
+  const auto zenith = [&](const std::string& inside, const char* type = "sunsky",
+                          const char* version = "3.0.0") {
+    return sky(inside, type, version).environment.pixels.at(0);
+  };
+  EXPECT_EQ(zenith(""), zenith(number("albedo", 0.3) + number("turbidity", 3)));
+  EXPECT_NE(zenith(""), zenith(number("albedo", 0.31)));
+  EXPECT_NE(zenith(""), zenith(number("turbidity", 3.1)));
+  EXPECT_EQ(zenith("", "sky", "0.6.0"), zenith(number("albedo", 0.15), "sky", "0.6.0"));
+  expect_near(zenith(number("sky_scale", 2)), 2.0f * zenith(""), 1e-5f);
+  expect_near(zenith(number("scale", 2)), 2.0f * zenith(""), 1e-5f);
+  const Color sun = sky("").sun.radiance;
+  EXPECT_NEAR(sky(number("sun_scale", 2)).sun.radiance.y / sun.y, 2.0f, 1e-5f);
+  EXPECT_EQ(sky("", "sky", "0.6.0").sun.one_minus_cos, 0.0f);
+  EXPECT_EQ(sky("", "sun", "0.6.0").environment.width, 0);
+  for (const double bad : {0.99, 10.01}) {
+    expect_error([&] { sky(number("turbidity", bad)); }, "expected 1 to 10");
+  }
+  EXPECT_NO_THROW(sky(number("turbidity", 1)));
+  EXPECT_NO_THROW(sky(number("turbidity", 10)));
+  expect_error([&] { sky(integer("month", 13)); }, "expected 1 to 12");
+  expect_error([&] { sky(integer("day", 0)); }, "expected 1 to 31");
+}
+
+// What editing calls them.
+TEST(MitsubaParameters, OfNames) {
+  const SceneNames names =
+      load_xml(
+          "<shape type='rectangle' id='lamp'><bsdf type='diffuse' id='grey'/>"
+          "<emitter type='area'/></shape><shape type='rectangle' id='panel'>"
+          "<emitter type='area' id='glow'/></shape><emitter type='point' id='bulb'/>"
+          "<emitter type='point'/>")
+          .scene.names;
+  using Names = std::map<std::uint32_t, std::string>;
+  EXPECT_EQ(names.materials, (Names{{0, "grey"}, {1, "panel.bsdf"}}));
+  EXPECT_EQ(names.emitters, (Names{{0, "lamp"}, {1, "glow"}}));
+  EXPECT_EQ(names.delta_lights, (Names{{0, "bulb"}}));
+}
+
+// Read once, it is a colour here and a number there, which begins with the other square.
+TEST(MitsubaParameters, OfACheckerboardThatIsBoth) {
+  const SceneData scene = load_xml("<texture type='checkerboard' id='t'/><shape type='rectangle'>" +
+                                   bsdf("roughconductor",
+                                        "<ref name='specular_reflectance' id='t'/>"
+                                        "<ref name='alpha' id='t'/>") +
+                                   "</shape>")
+                              .scene;
+  const MaterialDescription& metal = top_of(scene);
+  const Texture& color = scene.textures.at(metal.parameters[Conductor::Index::tint].texture);
+  const Texture& alpha = scene.textures.at(metal.parameters[Conductor::Index::alpha_x].texture);
+  EXPECT_EQ(color.color0, Color(0.4f));
+  EXPECT_EQ(alpha.color0, Color(0.2f));
 }
 
 TEST(MitsubaParameters, OfSensorsAndFilms) {

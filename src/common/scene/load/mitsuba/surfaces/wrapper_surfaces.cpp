@@ -67,7 +67,6 @@ Surface blend(Context& context, const Object& bsdf, const ColorTexture& weight, 
   const BlendParts parts =
       split(context, bsdf, weight, first.material.opacity, second.material.opacity);
   if (parts.weight.texture == no_texture && parts.weight.value.x <= 0.0f) {
-    first.material.opacity = parts.opacity;
     return node_of(first.material, parts.opacity);
   }
   if (parts.weight.texture == no_texture && parts.weight.value.x >= 1.0f) {

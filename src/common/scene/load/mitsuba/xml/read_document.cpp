@@ -168,7 +168,7 @@ class DocumentReader {
     folders.insert(folders.end(), search_path_.folders().begin(), search_path_.folders().end());
     folders.push_back(stack_.back().canonical.parent_path());
     const auto warn = [&](const std::string& line) {
-      options_.report(element.place() + ": " + line);
+      options_.report(element.place() + ": " + shortened(line));
     };
     const std::filesystem::path found = find_in(folders, name, warn);
     return found.empty() ? folders.front() / name : found;
