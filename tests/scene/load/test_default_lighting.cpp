@@ -1,4 +1,6 @@
 // Which models are lit by what they bring, and which get default lighting.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "common/image/codecs/image_io.h"
@@ -134,6 +136,11 @@ TEST(DefaultLighting, WhatTheLampsOfAModelDoNotShow) {
   };
   const Case cases[] = {
       {"a weak one", model("Kd .8 .3 .2\nKe .001 .001 .001").level("lamp", {}, 1, true)},
+      {"a sign beside a dark wall", model("Kd .8 .8 .8\nKe .5 .5 .5")
+                                        .level("lamp", {}, 1, true)
+                                        .level("grey", {1.6f, 0, 0}, 0.6f, true)},
+      {"a wide weak one",
+       model("Ke .009 .009 .009").level("grey", {}, 2, true).level("lamp", {0, 1, 0}, 2, false)},
       {"a weak one in a room", room("Ke .001 .001 .001")},
       {"a black picture", model("Kd .8 .3 .2\nmap_Ke black.png").level("lamp", {}, 1, true)},
       {"a ball with a small one",
@@ -161,6 +168,18 @@ TEST(DefaultLighting, WhatTheLampsOfAModelDoNotShow) {
     EXPECT_NE(result.said.find("--default-lighting off"), std::string::npos);
     EXPECT_TRUE(result.scene.defaults.measure_exposure) << one.name;
   }
+}
+
+/// A camera of the file's own shows what its author wants seen.
+TEST(DefaultLighting, OtherDirectionsCountForCamerasThatWereGuessed) {
+  const TempFolder folder;
+  room(lamp).write(folder);
+  LoadOptions off;
+  off.default_lighting = DefaultLighting::off;
+  SceneData scene = load_scene_file(folder.file("m.obj"), off);
+  scene.camera.look_from = {5, 2.5f, 4};  // a third of what it sees is the inside
+  EXPECT_EQ(light_model({}, true, scene), "");
+  EXPECT_NE(light_model({}, false, scene), "");
 }
 
 TEST(DefaultLighting, WhatShinesAllOverIsAsItIs) {
