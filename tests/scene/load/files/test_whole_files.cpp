@@ -9,10 +9,10 @@
 
 #include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/files/inflater.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/volumes/nanovdb_file.h"
 #include "common/scene/load/files/volumes/vol_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/load_scene.h"
 #include "load/mesh_bytes.h"
 #include "temp_folder.h"
@@ -25,9 +25,9 @@ TEST(WholeFiles, HaveTheirBytes) {
   std::string bytes(70'000'001, 'x');
   for (std::size_t i = 0; i < bytes.size(); i += 997) bytes[i] = static_cast<char>(i >> 8);
   write_text(folder.file("a"), bytes);
-  EXPECT_TRUE(MappedFile(folder.file("a")).bytes() == bytes);
+  EXPECT_TRUE(WholeFile(folder.file("a")).bytes() == bytes);
   write_text(folder.file("b"), "");
-  EXPECT_TRUE(MappedFile(folder.file("b")).bytes().empty());
+  EXPECT_TRUE(WholeFile(folder.file("b")).bytes().empty());
 }
 
 // A mapped file that becomes shorter ends the program at the next look at it (SIGBUS).
@@ -43,7 +43,7 @@ TEST(WholeFiles, MayBecomeShorterMeanwhile) {
   std::size_t sum = 0;
   for (int i = 0; i < 20; ++i) {
     try {
-      const MappedFile file(path);
+      const WholeFile file(path);
       for (std::size_t k = 0; k < file.bytes().size(); k += 4096) sum += file.bytes()[k] == 'x';
     } catch (const Error& error) {
       EXPECT_STREQ(error.what(), "it became shorter while it was read");

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "common/error/error.h"
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -93,7 +93,7 @@ std::string pack_files(const std::vector<fs::path>& paths) {
     append_size(packed, name.size());
     packed += name;
     try {
-      const MappedFile file(path);
+      const WholeFile file(path);
       append_size(packed, file.bytes().size());
       packed += file.bytes();
     } catch (const Error& error) {

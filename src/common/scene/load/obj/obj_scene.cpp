@@ -9,11 +9,11 @@
 
 #include "common/error/error_context.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/meshes/mesh_finish.h"
 #include "common/scene/load/files/meshes/obj_parser.h"
 #include "common/scene/load/files/meshes/text_number.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/obj/mtl_materials.h"
 
 namespace pt {
@@ -133,7 +133,7 @@ class Libraries {
     if (folder_ != folders[0]) folders.push_back(folder_);
     const auto textures = std::make_shared<MtlTextures>(folders, files_, scene_, warnings_);
     std::map<std::string, Entry, std::less<>> defined;
-    for (MtlMaterial& material : parse_mtl(MappedFile(path).bytes(), path.string(), warnings_)) {
+    for (MtlMaterial& material : parse_mtl(WholeFile(path).bytes(), path.string(), warnings_)) {
       Entry& entry = defined[material.name];
       if (entry.textures) {
         warnings_.add("material twice", material.place + ": defined twice: the last one is used");
@@ -203,7 +203,7 @@ void read_libraries(std::string_view text, Libraries& libraries) {
 
 SceneData load(const fs::path& path, CountedWarnings& warnings) {
   SceneData scene;
-  const MappedFile file(path);
+  const WholeFile file(path);
   const std::string_view text = without_byte_order_mark(file.bytes());
   Libraries libraries(path, scene, warnings);
   read_libraries(text, libraries);

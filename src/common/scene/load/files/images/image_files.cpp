@@ -8,7 +8,7 @@
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/tone_mapping.h"
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -123,7 +123,7 @@ bool TextureImage::has_alpha() const {
 
 TextureImage read_texture_image(const std::filesystem::path& path, TextureFormat integers) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode_texture(MappedFile(path).bytes(), integers); });
+                    [&] { return decode_texture(WholeFile(path).bytes(), integers); });
 }
 
 TextureImage decode_texture_image(std::string_view bytes, const std::string& name,
@@ -133,7 +133,7 @@ TextureImage decode_texture_image(std::string_view bytes, const std::string& nam
 
 Image read_radiance_image(const std::filesystem::path& path) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode_radiance(MappedFile(path).bytes()); });
+                    [&] { return decode_radiance(WholeFile(path).bytes()); });
 }
 
 Image decode_radiance_image(std::string_view bytes, const std::string& name) {

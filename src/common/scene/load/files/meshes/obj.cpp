@@ -2,10 +2,10 @@
 #include <iterator>
 
 #include "common/error/error_context.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/mesh_finish.h"
 #include "common/scene/load/files/meshes/obj_parser.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -38,7 +38,7 @@ Mesh decode_obj(std::string_view bytes, const std::string& name, const MeshFileO
 
 Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode(MappedFile(path).bytes(), options); });
+                    [&] { return decode(WholeFile(path).bytes(), options); });
 }
 
 }  // namespace pt

@@ -4,11 +4,11 @@
 
 #include "common/error/error_context.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/mesh_finish.h"
 #include "common/scene/load/files/meshes/ply_elements.h"
 #include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -107,7 +107,7 @@ Mesh decode_ply(std::string_view bytes, const std::string& name, const MeshFileO
 
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode_file(MappedFile(path).bytes(), options); });
+                    [&] { return decode_file(WholeFile(path).bytes(), options); });
 }
 
 }  // namespace pt

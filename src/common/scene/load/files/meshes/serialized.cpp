@@ -7,9 +7,9 @@
 
 #include "common/error/error_context.h"
 #include "common/scene/load/files/inflater.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/mesh_finish.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -131,7 +131,7 @@ Mesh decode_serialized(std::string_view bytes, const std::string& name, int shap
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options) {
   return explaining(cannot_read(shape_index, path.string()),
-                    [&] { return decode_shape(MappedFile(path).bytes(), shape_index, options); });
+                    [&] { return decode_shape(WholeFile(path).bytes(), shape_index, options); });
 }
 
 }  // namespace pt

@@ -11,8 +11,8 @@
 
 #include "common/error/error_context.h"
 #include "common/error/host_memory.h"
-#include "common/scene/load/files/mapped_file.h"
 #include "common/scene/load/files/volumes/nanovdb/grid_tree.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 
@@ -169,12 +169,12 @@ VolumeData decode_nanovdb(std::string_view bytes, const std::string& grid,
 
 VolumeData read_nanovdb(const std::filesystem::path& path, const std::string& grid) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode(MappedFile(path).bytes(), grid); });
+                    [&] { return decode(WholeFile(path).bytes(), grid); });
 }
 
 bool has_nanovdb_grid(const std::filesystem::path& path, const std::string& grid) {
   return explaining("cannot read " + path.string(), [&] {
-    return find_entry(entries_of(MappedFile(path).bytes()), grid) != nullptr;
+    return find_entry(entries_of(WholeFile(path).bytes()), grid) != nullptr;
   });
 }
 

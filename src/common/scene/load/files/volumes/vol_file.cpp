@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "common/error/error_context.h"
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt {
 namespace {
@@ -106,7 +106,7 @@ VolFile decode_vol(std::string_view bytes, const std::string& name) {
 
 VolFile read_vol(const std::filesystem::path& path) {
   return explaining("cannot read " + path.string(),
-                    [&] { return decode(MappedFile(path).bytes()); });
+                    [&] { return decode(WholeFile(path).bytes()); });
 }
 
 }  // namespace pt

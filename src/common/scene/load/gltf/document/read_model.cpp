@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/scene/load/files/find_file.h"
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/gltf/document/check_json.h"
 #include "common/scene/load/gltf/document/file.h"
 
@@ -15,8 +15,8 @@ namespace pt::gltf {
 namespace {
 
 /// A pipe, a device or a folder is refused, not waited for.
-MappedFile map_file(const std::filesystem::path& path) try {
-  return MappedFile(path);
+WholeFile map_file(const std::filesystem::path& path) try {
+  return WholeFile(path);
 } catch (const Error& error) {
   throw Error(fmt::format("{}: cannot be read: {}", path.string(), error.what()));
 }
@@ -24,7 +24,7 @@ MappedFile map_file(const std::filesystem::path& path) try {
 /// tinygltf's, of buffers and pictures beside the model.
 bool read_beside(std::vector<unsigned char>* bytes, std::string* error, const std::string& path,
                  void*) try {
-  const MappedFile file(path);
+  const WholeFile file(path);
   bytes->assign(file.bytes().begin(), file.bytes().end());
   return true;
 } catch (const std::exception& problem) {
@@ -157,7 +157,7 @@ std::string one_line(const std::string& complaints) {
 
 ReadModel read_model(const std::filesystem::path& path) {
   const std::string file = path.string();
-  const MappedFile mapped = map_file(path);
+  const WholeFile mapped = map_file(path);
   std::string_view bytes = mapped.bytes();
   if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
     fail(file, "", "larger than 4 GiB, which glTF does not allow");

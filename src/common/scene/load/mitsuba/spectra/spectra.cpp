@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/mitsuba/xml/values.h"
 
 namespace pt::mitsuba {
@@ -80,7 +80,7 @@ std::optional<Samples> sample_file(Context& context, const Element& element) {
   const std::filesystem::path path = context.resolve(element, element.required("filename"));
   std::string text;
   try {
-    text = MappedFile(path).bytes();
+    text = WholeFile(path).bytes();
   } catch (const Error& error) {
     context.warn_unreadable(
         element, fmt::format("cannot read the spectrum {}: {}", path.string(), error.what()),

@@ -5,7 +5,7 @@
 #include <pugixml.hpp>
 #include <set>
 
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/mitsuba/xml/element.h"
 #include "common/scene/load/mitsuba/xml/search_path.h"
 #include "common/scene/load/mitsuba/xml/variables.h"
@@ -73,7 +73,7 @@ class DocumentReader {
 
   SourceFile parse(const std::filesystem::path& path, pugi::xml_document& document) {
     try {
-      const MappedFile file(path);
+      const WholeFile file(path);
       count_repeats(stack_.back().canonical, file.bytes().size());
       SourceFile source(path, file.bytes());
       const pugi::xml_parse_result result =

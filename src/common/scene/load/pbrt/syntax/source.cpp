@@ -10,7 +10,7 @@
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/scene/load/files/inflater.h"
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt::pbrt {
 namespace {
@@ -55,7 +55,7 @@ std::string decompress(std::string_view bytes) {
 
 std::string read_source(const std::filesystem::path& path) {
   try {
-    const MappedFile file(path);
+    const WholeFile file(path);
     if (file.bytes().starts_with("\x1f\x8b")) return decompress(file.bytes());
     return std::string(file.bytes());
   } catch (const Error& error) {

@@ -10,9 +10,9 @@ namespace pt {
 /// The bytes of a regular file, read once: a file that is mapped and then becomes shorter, or whose
 /// disk fails, ends the program (SIGBUS). Throws Error with the system's reason (without the file's
 /// name) where it cannot be read, and where it needs more memory than there is.
-class MappedFile {
+class WholeFile {
  public:
-  explicit MappedFile(const std::filesystem::path& path);
+  explicit WholeFile(const std::filesystem::path& path);
 
   std::string_view bytes() const { return bytes_; }
 

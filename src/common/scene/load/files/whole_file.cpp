@@ -1,4 +1,4 @@
-#include "common/scene/load/files/mapped_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -37,7 +37,7 @@ void read_bytes(int fd, char* out, std::size_t begin, std::size_t end) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
+WholeFile::WholeFile(const std::filesystem::path& path) {
   // O_NONBLOCK: a pipe is refused below instead of waited for.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) fail();
