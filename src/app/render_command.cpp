@@ -184,7 +184,8 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
     renderer.describe(report);
     if (is_new && !options.quiet) print("{}", tree_text(report.scene.tree));
     report.runs = measurement.runs;
-    if (const std::string text = black_image_text(options, image); !text.empty()) warn(text);
+    if (const std::string text = black_image_text(options, image); !text.empty())
+      print_warning(text);
     report.exposure = choose_exposure(options, image, scene.defaults.measure_exposure);
     write_outputs(options, image, scene.source_hash, renderer, report, has_checkpoint, attempts);
   }
