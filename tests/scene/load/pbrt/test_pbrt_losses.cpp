@@ -285,9 +285,9 @@ TEST(PbrtLimits, CompressedFilesUnpackToALimit) {
     for (int i = 0; i < mebibytes; ++i) gzwrite(file, line.data(), 1u << 20);
     gzclose(file);
   };
-  write(60);
+  write(250);
   EXPECT_EQ(load_pbrt_file(folder.file("scene.pbrt")).scene.spheres.size(), 1u);
-  write(70);
+  write(260);
   EXPECT_THROW(load_pbrt_file(folder.file("scene.pbrt")), Error);
 }
 

@@ -109,7 +109,7 @@ TEST(PbrtSyntax, MessagesAreOneLineWhateverNamesContain) {
   }
   const LoadedScene loaded =
       load_pbrt_text(pbrt_world(lit + "Material \"a\\nb\" Shape \"sphere\""));
-  EXPECT_EQ(loaded.count("material 'a b' is not known"), 1);
+  EXPECT_EQ(loaded.count("material 'a?b' is not known"), 1);
 }
 
 TEST(PbrtSyntax, AMediumInterfaceHasOneNameOrTwo) {
