@@ -49,10 +49,11 @@ LAYERS = [
     # Around the physics: renderers and batches; what becomes of the samples.
     ("render", ["common/render/*"], ["film", "image", "plan", *PHYSICS, *HOST]),
     ("film", ["common/film/*"], ["image", *PHYSICS, *HOST]),
+    # Scene files. A small picture of a model tells whether it is lit.
+    ("loaders", ["common/scene/load/*"], ["transport", "builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
     # Physics, which knows no device, film or renderer.
     ("transport", ["common/transport/*"], ["scene", *SCENE_PARTS]),
-    # Scenes in files and in code make scene data, which is prepared for tracing as the plan says.
-    ("loaders", ["common/scene/load/*"], ["transport", "builtin", "prepare", "scene", "image", *SCENE_PARTS, *HOST]),
+    # Scene data, made in code, is prepared for tracing as the plan says.
     ("builtin", ["common/scene/builtin/*"], ["prepare", "scene", *BUILDERS]),
     ("prepare", ["common/scene/prepare/*"], ["scene", "plan", "image", *BUILDERS]),
     # What of a scene can be changed, by name.

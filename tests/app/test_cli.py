@@ -688,7 +688,7 @@ class Streams(CommandLine):
         (self.folder / "many.xml").write_text(f'<scene version="3.0.0"><shape type="sphere"/>{shapes}</scene>')
         lines = self.run_ok(*self.scene, "--scene", "many.xml").stderr.splitlines()
         self.assertLess(len(lines), 30)
-        self.assertRegex(lines[-1], r"warning: 29\d\d warnings more, of kinds that were shown")
+        self.assertRegex(lines[-1], r"warning: \d\d\d warnings more, of kinds that were shown")
         (self.folder / "long.xml").write_text(f'<scene version="3.0.0"><shape type="{"y" * 5_000_000}"/></scene>')
         run = self.run_ptexp(*self.scene, "--scene", "long.xml", "--strict")
         self.assert_refused(run, "bytes in all")
