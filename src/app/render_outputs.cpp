@@ -33,7 +33,9 @@ std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoi
 std::string black_image_text(const Options& options, const Image& image) {
   constexpr float least = 1e-6f;
   const bool is_part = options.part.count > 1 || options.crop;
-  if (options.quiet || is_part || std::ranges::any_of(image.rgb, [](float x) { return !(x < least); })) return "";
+  if (options.quiet || is_part ||
+      std::ranges::any_of(image.rgb, [](float x) { return !(x < least); }))
+    return "";
   return "the image is black: no light of the scene reaches what the camera sees";
 }
 
