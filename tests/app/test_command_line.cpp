@@ -133,6 +133,105 @@ TEST(CommandLine, DefaultsAreThoseOfOptions) {
   EXPECT_FALSE(options.camera.look_from);
 }
 
+// The documented defaults, by hand; an option that is not here has none, or is off.
+TEST(CommandLine, DefaultsAreTheDocumentedOnes) {
+  const std::map<std::string, std::string> expected{{"width", "600"},
+                                                    {"height", "300"},
+                                                    {"spp", "50"},
+                                                    {"integrator", "path"},
+                                                    {"max-depth", "50"},
+                                                    {"rr", "0"},
+                                                    {"nee", "on"},
+                                                    {"light-selection", "auto"},
+                                                    {"mis", "power"},
+                                                    {"sampling", "bsdf"},
+                                                    {"sampler", "independent"},
+                                                    {"seed", "1"},
+                                                    {"output", "image.exr"},
+                                                    {"chains", "auto"},
+                                                    {"large-step-probability", "0.05"},
+                                                    {"mutation-size", "0.00390625"},
+                                                    {"bootstrap", "auto"},
+                                                    {"scene", "spheres"},
+                                                    {"default-lighting", "auto"},
+                                                    {"spheres", "50"},
+                                                    {"create-world", "host"},
+                                                    {"mode", "auto"},
+                                                    {"device", "auto"},
+                                                    {"threads", "0"},
+                                                    {"accel", "auto"},
+                                                    {"builder", "auto"},
+                                                    {"work", "persistent"},
+                                                    {"block", "16x16"},
+                                                    {"kernel-set", "auto"},
+                                                    {"kernel", "auto"},
+                                                    {"compaction", "atomic"},
+                                                    {"pool-size", "auto"},
+                                                    {"layout", "sectors"},
+                                                    {"shade", "auto"},
+                                                    {"order-surfaces", "auto"},
+                                                    {"stages", "auto"},
+                                                    {"wave-collisions", "0"},
+                                                    {"wave-rays", "2"},
+                                                    {"regenerate", "on"},
+                                                    {"persistent", "on"},
+                                                    {"finish-paths", "auto"},
+                                                    {"schedule", "auto"},
+                                                    {"stage-block", "256,shade_surface=640"},
+                                                    {"scene-memory", "auto"},
+                                                    {"branching", "divergent"},
+                                                    {"rng", "philox"},
+                                                    {"repeat", "1"},
+                                                    {"warmup", "0"}};
+  std::map<std::string, std::string> found;
+  for (const OptionEntry& entry : option_list()) {
+    const std::string text = entry.text(Options());
+    if (!text.empty() && text != "off") found[entry.name] = text;
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(parse_options("--checkpoint c.exr").checkpoint.interval_s, 300);
+  EXPECT_EQ(parse_options("--display tev").display.port, 14158);
+}
+
+// The samples of two renders may be added if they differ in no other option.
+TEST(CommandLine, OptionsThatDetermineTheImage) {
+  std::set<std::string> found;
+  for (const OptionEntry& entry : option_list())
+    if (determines_image(entry)) found.insert(entry.name);
+  EXPECT_EQ(found, (std::set<std::string>{"width",
+                                          "height",
+                                          "integrator",
+                                          "max-depth",
+                                          "rr",
+                                          "nee",
+                                          "light-selection",
+                                          "mis",
+                                          "sampling",
+                                          "sampler",
+                                          "multiple-scattering",
+                                          "seed",
+                                          "crop",
+                                          "filter",
+                                          "aov",
+                                          "chains",
+                                          "large-step-probability",
+                                          "mutation-size",
+                                          "bootstrap",
+                                          "scene",
+                                          "define",
+                                          "default-lighting",
+                                          "spheres",
+                                          "create-world",
+                                          "look-from",
+                                          "look-at",
+                                          "up",
+                                          "fov",
+                                          "aperture",
+                                          "focus-distance",
+                                          "kernel-set",
+                                          "rng"}));
+}
+
 TEST(CommandLine, EveryOptionIsParsedAndWrittenBack) {
   for (const OptionEntry& entry : option_list()) {
     ASSERT_TRUE(other_values().contains(entry.name)) << entry.name << " has no test value";
@@ -346,6 +445,58 @@ TEST(Refused, WholeNumbers) {
       {"--warmup -1", "--warmup -1: expected a whole number from 0"},
   });
   expect_error([] { parse_command_line({"--spp", " 4"}); }, "--spp  4: expected a whole");
+}
+
+// The last values on either side that are taken, and the first that are not.
+TEST(Refused, NothingWithinTheLimits) {
+  const auto is_taken = [](const std::string& name, const std::string& value) {
+    Options options;
+    try {
+      find_option(name).set(options, value);
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  };
+  struct Limits {
+    const char* name;
+    std::vector<std::string> taken, refused;
+  };
+  const Limits table[] = {
+      {"width", {"1", "65535"}, {"0", "65536"}},
+      {"height", {"1", "65535"}, {"0", "65536"}},
+      {"spp", {"1", "2147483647"}, {"0", "2147483648"}},
+      {"max-depth", {"1", "65535"}, {"0", "65536"}},
+      {"rr", {"0", "65535"}, {"65536"}},
+      {"chains", {"1", "134217728", "128M"}, {"0", "134217729", "129M"}},
+      {"bootstrap", {"1", "1073741824", "1024M"}, {"0", "1073741825", "1025M"}},
+      {"large-step-probability", {"1e-6", "1"}, {"0", "1.0001", "-0.1"}},
+      {"mutation-size", {"1e-6", "0.5"}, {"0", "0.5001", "-0.1"}},
+      {"time-limit", {"1e-3"}, {"0", "-1"}},
+      {"target-error", {"1e-6", "2"}, {"0", "-1"}},
+      {"exposure", {"-100", "100"}, {"-100.1", "100.1"}},
+      {"fov", {"1e-3", "179.99"}, {"0", "180"}},
+      {"aperture", {"0", "1e9"}, {"-1e-6"}},
+      {"focus-distance", {"1e-6"}, {"0", "-1"}},
+      {"spheres", {"0", "100000000"}, {"100000001"}},
+      {"threads", {"0", "65535"}, {"65536"}},
+      {"pool-size", {"1", "2147483647", "2047M"}, {"0", "2147483648", "2048M"}},
+      {"wave-collisions", {"0", "65535"}, {"65536"}},
+      {"wave-rays", {"1", "65535"}, {"0", "65536"}},
+      {"finish-paths", {"0", "1073741824"}, {"1073741825"}},
+      {"stage-block", {"1", "1024", "shadow=1024"}, {"0", "1025", "shadow=1025"}},
+      {"block", {"1x1", "1024x1", "32x32"}, {"0x1", "1025x1", "33x32"}},
+      {"repeat", {"1", "1000000"}, {"0", "1000001"}},
+      {"warmup", {"0", "1000000"}, {"1000001"}},
+      {"part", {"1/1", "65535/65535"}, {"0/1", "2/1", "1/65536"}},
+      {"crop", {"0,0,1,1"}, {"0,0,0,1", "0,0,1,0", "-1,0,1,1"}},
+      {"device", {"cpu:1", "cpu:64", "cuda:0"}, {"cpu:0", "cpu:65", "cuda:-1"}},
+      {"checkpoint", {"a.exr,1e-3"}, {"a.exr,0", "a.exr,-1"}},
+  };
+  for (const auto& [name, taken, refused] : table) {
+    for (const std::string& value : taken) EXPECT_TRUE(is_taken(name, value)) << name << value;
+    for (const std::string& value : refused) EXPECT_FALSE(is_taken(name, value)) << name << value;
+  }
 }
 
 TEST(Refused, NumbersAndVectors) {

@@ -90,6 +90,56 @@ TEST(Doctor, NamesEachFaultAlone) {
   EXPECT_EQ(faulty([](M m) { m.current.free = 1000; }), Names{"warning current folder"});
 }
 
+// Every number is another one: which is whose, and in which unit.
+TEST(Doctor, PrintsTheMachinesNumbers) {
+  Machine machine = healthy();
+  machine.cuda.driver = 13020, machine.cuda.built = machine.cuda.runtime = 13010;
+  machine.cuda.gpus = {{"GPU", 9, 3, 8ull << 30, 6ull << 30, 48 << 10, 227 << 10, ""}};
+  machine.build.cuda = "13.1.20, architectures 90";
+  machine.cpu.has_avx512 = true;
+  machine.temp.free = 3ull << 30, machine.current.free = 5ull << 30;
+  EXPECT_EQ(doctor_text(check_machine(machine)),
+            R"(ok       ptexp            0.1.0, commit abc, Release, GNU 12.2.0
+ok       driver           580.95.05, for CUDA 13.2
+ok       CUDA             runtime 13.1, built by nvcc 13.1.20, architectures 90
+ok       GPU cuda:0       GPU, compute capability 9.3, 6.0 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
+ok       code for cuda:0  machine code, of 90
+ok       counters         libcupti.so.13; the driver lets this user read them
+ok       MPI              built with Open MPI 4.1.4, loaded Open MPI v4.1.4, launched by /usr/bin/orterun
+ok       CPU              Some CPU, 8 threads, rays are traced by AVX-512
+ok       memory           32.0 GiB may be used of 64.0 GiB
+ok       temporary files  /tmp: writable, 3.0 GiB free
+ok       current folder   /home/me: writable, 5.0 GiB free
+)");
+  machine.cuda.driver = 12080, machine.mpi.launcher = "", machine.driver.counters_known = false;
+  machine.cpu = {"", 1, false, false};
+  machine.free_memory = 3ull << 29;
+  machine.temp.free = 1ull << 26, machine.current.problem = "read-only";
+  machine.cuda.gpus[0].free_memory = 1ull << 29;
+  machine.build.cuda = "13.1.20, architectures 80";
+  EXPECT_EQ(doctor_text(check_machine(machine)),
+            R"(ok       ptexp            0.1.0, commit abc, Release, GNU 12.2.0
+missing  driver           580.95.05, for CUDA 12.8
+                          -> install a driver for CUDA 13.1 or newer
+ok       CUDA             runtime 13.1, built by nvcc 13.1.20, architectures 80
+warning  GPU cuda:0       GPU, compute capability 9.3, 0.5 GiB free of 8.0 GiB, 48 KiB of shared memory per block (at most 227 KiB)
+                          -> scene and paths need memory: see `nvidia-smi` for who has it
+warning  code for cuda:0  PTX alone, of 80: the driver compiles it at the first start, for a minute or more, and keeps it in ~/.nv/ComputeCache
+                          -> build with -DCMAKE_CUDA_ARCHITECTURES=93
+ok       counters         libcupti.so.13; whether the driver permits is unknown
+warning  MPI              built with Open MPI 4.1.4, loaded Open MPI v4.1.4, no launcher
+                          -> for several processes, install Open MPI's mpirun, or have it in PATH
+warning  CPU              1 thread, rays are traced by plain code: no AVX2
+                          -> a processor with AVX2 traces several times faster
+warning  memory           1.5 GiB may be used of 64.0 GiB
+                          -> scene, image and samples need it: end other programs, or raise the limit of the container or job
+warning  temporary files  /tmp: writable, 0.1 GiB free
+                          -> name another folder in the variable TMPDIR
+missing  current folder   /home/me: read-only
+                          -> images go there: change it, or name files by --output
+)");
+}
+
 TEST(Doctor, SaysWhatToBuildForAnotherGpu) {
   Machine machine = healthy();
   machine.build.cuda = "13.0.88, architectures 75-virtual";

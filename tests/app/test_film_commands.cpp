@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "app/compare_command.h"
+#include "app/film_header.h"
 #include "app/merge_command.h"
 #include "app/render_outputs.h"
 #include "app/render_session.h"
@@ -13,6 +14,7 @@
 #include "common/error/terminal.h"
 #include "common/film/checkpoint.h"
 #include "common/image/atomic_file.h"
+#include "common/platform/build_info.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -166,6 +168,50 @@ TEST(Merge, NamesThePlacesOfACropWindow) {
             }),
             "wrote " + out + ", of 1 file\n");
   EXPECT_EQ(read_checkpoint(out).film.samples(), 2u * 23 * 19);
+}
+
+// Which file has which value; what no sample depends on may differ.
+TEST(FilmHeaders, NameWhatDiffersAndWhere) {
+  Options options;
+  options.seed = 7, options.exposure = {ExposureChoice::Kind::fixed, 1.5f};
+  const ImageMetadata a = film_header(options, "abc", "cpu");
+  const auto refusal = [&](const char* key, const char* value) -> std::string {
+    ImageMetadata b = a;
+    b[key] = value;
+    if (b[key].empty()) b.erase(key);
+    try {
+      check_same_render(a, "a.exr", b, "b.exr");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string end = "; expected films of one render";
+  EXPECT_EQ(refusal("ptexp.option.seed", "8"), "b.exr: --seed 8, but a.exr has 7" + end);
+  EXPECT_EQ(refusal("ptexp.option.fov", "20"), "b.exr: --fov 20, but a.exr has none" + end);
+  EXPECT_EQ(refusal("ptexp.scene_hash", ""), "b.exr: scene hash none, but a.exr has abc" + end);
+  EXPECT_EQ(refusal("ptexp.device_kind", "cuda"),
+            "b.exr: device kind cuda, but a.exr has cpu" + end);
+  EXPECT_EQ(refusal("ptexp.film_version", "0"),
+            "b.exr: ptexp.film_version 0, but a.exr has 1" + end);
+  for (const char* other : {"exposure", "spp", "threads", "strict", "output", "mode"}) {
+    EXPECT_EQ(refusal((std::string("ptexp.option.") + other).c_str(), "8"), "");
+  }
+  ImageMetadata old = a;
+  old["ptexp.film_version"] = "0", old["ptexp.version"] = "0.0.3";
+  expect_error([&] { options_in_header(old, "o.exr"); },
+               "o.exr: ptexp.film_version 0, of ptexp 0.0.3; this program, " +
+                   build_info().version + ", has 1 and gives other bits");
+  Options changed = options_in_header(a, "a.exr");
+  EXPECT_EQ(film_header(changed, "abc", "cpu"), a);
+  apply_settings({{&find_option("seed"), "7"}, {&find_option("spp"), "9"}}, "a.exr", changed);
+  EXPECT_EQ(changed.spp, 9);
+  expect_error(
+      [&] {
+        apply_settings({{&find_option("seed"), "8"}}, "a.exr", changed);
+      },
+      "--seed 8: a.exr was begun with 7, and its samples are of that; expected the same, "
+      "or a new render");
 }
 
 TEST(Attempts, AreAllMade) {

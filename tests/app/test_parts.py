@@ -151,6 +151,7 @@ class Checkpoints(Parts):
                                 (["--width", 32], "--width 32: c.exr was begun with 64"),
                                 (["--filter", "tent"], "--filter tent: c.exr was begun with"),
                                 (["--scene", "cornell"], "--scene cornell: c.exr was begun with"),
+                                (["--fov", 30], "--fov 30: c.exr was begun with none"),
                                 (["--spp", 4], "pixels with 8 samples"),
                                 (["--mode", "serial", "--threads", 2], "--threads 2")):
             with self.subTest(arguments):

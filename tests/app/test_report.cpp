@@ -413,6 +413,14 @@ TEST(ReportTable, Counters) {
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
   EXPECT_EQ(table.find("begin_wave"), std::string::npos);
   EXPECT_EQ(table.find("not counted"), std::string::npos);
+  for (const auto& [name, ns] : {std::pair{"just_shown", 9e3}, {"too_short", 7e3}}) {  // of 8 ms
+    LaunchCounters& launch = report.counters->launches.emplace_back();
+    launch.kernel = name;
+    launch.values[static_cast<std::size_t>(Counter::time_ns)] = ns;
+  }
+  const std::string more = report_table(make_options(), report);
+  EXPECT_NE(more.find("\njust_shown                      1     0.009"), std::string::npos) << more;
+  EXPECT_EQ(more.find("too_short"), std::string::npos);
   report.counters->uncounted_launches = 7;
   EXPECT_NE(report_table(make_options(), report).find("the last 7 launches were not counted"),
             std::string::npos);

@@ -7,7 +7,9 @@
 
 #include "checkpoint_films.h"
 #include "common/error/error.h"
+#include "common/film/aov.h"
 #include "common/film/checkpoint.h"
+#include "common/film/checkpoint_header.h"
 #include "common/film/develop.h"
 #include "temp_folder.h"
 
@@ -63,6 +65,39 @@ TEST_F(Checkpoints, ShowTheImageSoFar) {
   EXPECT_EQ(image.width, 8);
   EXPECT_TRUE(same_bits(image.rgb, expected.rgb));
   for (int x = 0; x < 8; ++x) EXPECT_EQ(image.pixel(x, 1)[0], 0.0f);  // no samples there
+}
+
+// The file format, by hand: what files of other versions have. The last number is zlib's CRC-32 of
+// the attributes before it.
+TEST(CheckpointHeader, IsWhatItWas) {
+  ImageFilm film({5, 9, 8, 7}, {0, true, false});
+  film.pixels.clear(), film.moments.clear(), film.features.clear();  // their checksum is 0
+  film.plan.aovs = aov_bit<aov::Albedo> | aov_bit<aov::Depth>;
+  film.parts = {{{5, 9, 8, 3}, 1, 4}, {{5, 12, 6, 2}, 0, 2}};
+  film.tally.rays = 100, film.tally.shadow_rays = 20, film.tally.nonfinite = 3;
+  film.tally.lengths[0] = 11, film.tally.lengths[1] = 12, film.tally.lengths[127] = 13;
+  ImageMetadata header{{"note", "x"}};
+  add_film_header(film, header);
+  std::string tally = "100 20 3 11 12";
+  for (int i = 2; i < 127; ++i) tally += " 0";
+  const ImageMetadata expected{{"note", "x"},
+                               {"ptexp.film.format", "1"},
+                               {"ptexp.film.window", "5 9 8 7"},
+                               {"ptexp.film.aovs", "albedo,depth"},
+                               {"ptexp.film.plan", "1 0"},
+                               {"ptexp.film.parts", "5 9 8 3 1 4 5 12 6 2 0 2"},
+                               {"ptexp.film.tally", tally + " 13"},
+                               {"ptexp.film.checksum", "0"},
+                               {"ptexp.film.header_checksum", "1669735562"}};
+  EXPECT_EQ(header, expected);
+  const FilmHeader read = parse_film_header(header, 8, 7);
+  EXPECT_EQ(read.plan.aovs, film.plan.aovs);
+  EXPECT_TRUE(read.plan.moments && !read.plan.two_signs);
+  EXPECT_EQ(read.parts, film.parts);
+  EXPECT_EQ(read.tally.rays, 100u);
+  EXPECT_EQ(read.tally.shadow_rays, 20u);
+  EXPECT_EQ(read.tally.nonfinite, 3u);
+  EXPECT_EQ(read.tally.lengths[127], 13u);
 }
 
 TEST_F(Checkpoints, AreRefusedWhereTheHeaderIsWrong) {

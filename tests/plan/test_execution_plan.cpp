@@ -489,6 +489,9 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   expect_refused({{"scene-memory", "constant"}, {"accel", "brute"}}, spheres(1025), gpu(),
                  "--scene-memory constant: the scene has 1025 spheres; a kernel's parameters hold "
                  "at most 1024");
+  // The largest that are taken.
+  EXPECT_NO_THROW(plan_of({{"scene-memory", "constant"}, {"accel", "brute"}, {"stages", "fused"}},
+                          spheres(1024), gpu()));
   const SceneProperties many = changed(spheres(8000), [](auto& s) { s.scan_bytes = 64000; });
   const Choices shared = {{"scene-memory", "shared"}, {"accel", "brute"}};
   expect_refused(shared, many, gpu(48),

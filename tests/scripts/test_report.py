@@ -18,8 +18,9 @@ RESULTS = ROOT / "results" / "nvidia-h200"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "scripts"))
 from report_parts import answers, claims, verdicts, words  # noqa: E402
-from report_parts.axes import Scale  # noqa: E402
-from report_parts.tables import Interval, interval, read_device, read_table  # noqa: E402
+from report_parts.axes import Scale, domain  # noqa: E402
+from report_parts.scaling import against_prediction  # noqa: E402
+from report_parts.tables import Device, Interval, Table, interval, read_device, read_table  # noqa: E402
 
 VOID = {"meta", "img", "input", "br", "link", "hr"}
 # A PNG of one pixel.
@@ -603,6 +604,54 @@ class Report(unittest.TestCase):
         error = self.run_report(self.folder, fails=True)
         self.assertIn("toggles.json: not JSON", error)
         self.assertEqual(len(error.splitlines()), 1)
+
+    def test_words_by_hand(self):
+        for value, text in ((0, "0"), (1.094, "1.09"), (29.46, "29.5"), (104678.4, "104,678"),
+                            (0.00123456, "0.00123"), (-2, "-2.00")):
+            self.assertEqual(words.show(value), text)
+        for value, text in ((512, "512"), (4096, "4096"), (2000, "2k"), (180e3, "180k"),
+                            (2.88e6, "2.88M"), (3e9, "3G"), (1.25, "1.25")):
+            self.assertEqual(words.short(value), text)
+        fast, slow = Interval(2, 1.9, 2.2), Interval(3, 2.2, 3.5)
+        self.assertEqual(words.with_interval(fast, "ms"), "2.00 ms [1.90, 2.20]")
+        self.assertEqual(words.relation(fast, slow), "overlap")  # they touch
+        self.assertEqual(words.relation(slow, fast), "overlap")
+        slow = Interval(3, 2.3, 3.5)
+        self.assertEqual(words.change(fast, slow), ("slower", 1.5))
+        self.assertEqual(words.change(slow, fast), ("faster", 2 / 3))
+        self.assertEqual(words.versus("A", fast, "B", slow),
+                         "A (2.00 ms [1.90, 2.20]) is 1.50 times as fast as B (3.00 ms [2.30, 3.50])"
+                         ".")
+        self.assertEqual(words.quotient(Interval(6, 4, 8), Interval(2, 1, 4)), Interval(3, 1, 8))
+        self.assertEqual(Interval(2, 1, 4).inverse(), Interval(0.5, 0.25, 1))
+        # Logarithms to 10: 0, 1, 2 and 0, 3, 1; by least squares the slope is 1/2.
+        self.assertAlmostEqual(words.exponent([(1, 1), (10, 1000), (100, 10)]), 0.5)
+
+    def test_efficiency_is_held_against_its_interval(self):
+        row = {"efficiency_median": "0.8", "efficiency_min": "0.7", "efficiency_max": "0.9"}
+        for predicted, text in (("0.85", "as predicted"), ("0.75", "as predicted"),
+                                ("0.95", "worse than predicted"), ("0.9", "as predicted"),
+                                ("0.65", "better than predicted"), ("", "not predicted")):
+            self.assertEqual(against_prediction({**row, "predicted": predicted}), text)
+        self.assertEqual(against_prediction({"efficiency": "0.8", "predicted": "1"}), "not known")
+
+    def test_axes_have_air(self):
+        self.assertEqual(domain([Interval(10, 5, 20)], True), (5 / 1.3, 26))
+        self.assertEqual(domain([Interval(10, 5, 50)], False), (0, 53))
+        self.assertEqual(Scale(1, 1000, True, 0, 1).ticks(), [1, 10, 100, 1000])
+        self.assertEqual(Scale(1, 100, True, 0, 1).ticks(), [1, 2, 5, 10, 20, 50, 100])
+
+    def test_the_block_that_loses_least(self):
+        times = {"A": {"64": 2, "128": 3}, "B": {"64": 6, "128": 2}}
+        rows = [{"panel": panel, "series": "s", "x": x, "commit": "abcdefghi",
+                 "kernel_ms_median": str(ms), "kernel_ms_min": str(ms - 0.25),
+                 "kernel_ms_max": str(ms + 0.5)}
+                for panel, sizes in times.items() for x, ms in sizes.items()]
+        page = answers.which_block(Device(None, "D", {"block_size": Table("block_size", [], rows)}))
+        for part in ("Take 128 threads: over the 2 cases they take at most 1.50 times as long as the "
+                     "best size of the case. 64 threads take up to 3.00 times as long.",
+                     "128 (x1.50)", "64 (x3.00)", "commit abcdefg)"):
+            self.assertIn(part, page)
 
     def test_scales(self):
         scale = Scale(1, 100, True, 0, 10)

@@ -494,7 +494,7 @@ bool determines_image(const OptionEntry& entry) {
   if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk"}))
     return false;
   if (is_one_of(entry.name, {"rng", "kernel-set"})) return true;
-  return entry.group == "Image" || entry.group == "Scene" || entry.group == "Camera" ||
+  return entry.group == "Image" || entry.group == "Scene" || entry.group.starts_with("Camera") ||
          entry.group.starts_with("Metropolis");
 }
 
