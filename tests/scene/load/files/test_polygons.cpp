@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "common/scene/load/files/meshes/mesh_files.h"
@@ -313,6 +314,55 @@ TEST(Polygons, ThatAreTooIntricateKeepTheirFan) {
             comb.size() - 2);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].find("1 concave faces with up to 60003 corners are too intricate"), 0u);
+}
+
+/// Twice the area along Newell's normal, summed over the sides.
+glm::dvec3 newell(const Ring& ring) {
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    sum += glm::cross(glm::dvec3(ring[i]), glm::dvec3(ring[(i + 1) % ring.size()]));
+  }
+  return sum;
+}
+
+// Stars that bend as far as they are wide, in any direction. Their heights are such that Newell's
+// normal stays that of the flat star, as seen along which they are simple.
+TEST(Polygons, ThatBendFarAreCoveredOnceAsSeenAlongTheirNormal) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int n = 0; n < 40; ++n) {
+    std::vector<glm::dvec3> star;
+    for (int i = 0; i < 11; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 11, radius = i % 2 ? 1 : 0.35;
+      star.emplace_back(radius * std::cos(angle), radius * std::sin(angle), uniform(random));
+    }
+    // The normal's x and y are sums of heights by weights: what of the heights adds to them goes.
+    std::vector<double> of_x, of_y;
+    for (std::size_t i = 0; i < 11; ++i) {
+      const glm::dvec3 across = star[(i + 1) % 11] - star[(i + 10) % 11];
+      of_x.push_back(across.y), of_y.push_back(across.x);
+    }
+    const auto dot = [](const auto& a, const auto& b) {
+      return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    };
+    const double skew = dot(of_x, of_y) / dot(of_x, of_x);
+    for (std::size_t i = 0; i < 11; ++i) of_y[i] -= skew * of_x[i];
+    for (const auto& weights : {of_x, of_y}) {
+      double part = 0;
+      for (std::size_t i = 0; i < 11; ++i) part += star[i].z * weights[i];
+      for (std::size_t i = 0; i < 11; ++i) star[i].z -= part / dot(weights, weights) * weights[i];
+    }
+    const glm::dvec3 up =
+        glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random)));
+    const glm::dvec3 right = glm::normalize(glm::cross(up, glm::dvec3(0.3, 0.5, -0.8)));
+    Ring ring;
+    for (const glm::dvec3& p : star) {
+      ring.emplace_back(p.x * right + p.y * glm::cross(up, right) + p.z * up);
+    }
+    const glm::dvec3 normal = newell(ring);
+    ASSERT_NEAR(glm::dot(glm::normalize(normal), up), 1, 1e-9);
+    expect_covered_from_all_corners(ring, 0.5 * glm::length(normal), up);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "load/mesh_bytes.h"
+#include "load/mitsuba_scene.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -118,6 +119,21 @@ TEST(Serialized, BrokenFilesAreRefused) {
     expect_error([&] { decode_serialized(file_of({.vertices = huge}), "a.serialized", 0); }, "");
     expect_error([&] { decode_serialized(file_of({.triangles = huge}), "a.serialized", 0); }, "");
   }
+}
+
+TEST(Serialized, MitsubasShapeIsTheFirstUnlessItSays) {
+  const TempFolder folder;
+  write_text(folder.file("a.serialized"), file_of({}));
+  const auto height = [&](const std::string& inside) {
+    write_text(folder.file("scene.xml"),
+               "<scene version='3.0.0'><shape type='serialized'><string name='filename' "
+               "value='a.serialized'/>" +
+                   inside + "</shape></scene>");
+    return load_with_warnings(folder.file("scene.xml")).scene.meshes.at(0).positions.at(0).z;
+  };
+  EXPECT_EQ(height(""), 0.0f);
+  EXPECT_EQ(height("<integer name='shape_index' value='1'/>"), 1.0f);
+  EXPECT_EQ(height("<integer name='shape_index' value='2'/>"), 2.0f);
 }
 
 }  // namespace

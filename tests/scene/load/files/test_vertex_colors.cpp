@@ -309,5 +309,12 @@ TEST(VertexColors, AreFoundAsMitsubaWritesThem) {
   EXPECT_EQ(faces.count("attribute"), 0u);
 }
 
+TEST(VertexColors, OfAnObjAreWhiteWhereTheFileHasNone) {
+  const Mesh mesh = decode_obj("v 0 0 0\nv 1 0 0 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 3 2 4\n", "a");
+  const Color white(1.0f), red(1, 0, 0);
+  EXPECT_EQ(mesh.colors, (std::vector<Color>{white, red, white, white}));
+  EXPECT_TRUE(decode_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a").colors.empty());
+}
+
 }  // namespace
 }  // namespace pt

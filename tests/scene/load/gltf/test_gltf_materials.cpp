@@ -1,5 +1,6 @@
 // The glTF loader: materials.
 #include "common/texture/sample_texture.h"
+#include "common/transport/mask.h"
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
 
@@ -171,6 +172,24 @@ TEST(GltfMaterials, ANormalTextureIsAMapOverTheMaterial) {
   EXPECT_EQ(inside.node, MaterialNode::none);
   EXPECT_TRUE(is_black(inside.emission.radiance));
   EXPECT_TRUE(inside.opacity.is_opaque());
+}
+
+// "If the alpha value is greater than or equal to the alphaCutoff value, then it is rendered as
+// fully opaque" (specification, section 3.9.4).
+TEST(GltfMaterials, AlphaOfATextureThatEqualsTheCutoffIsSeen) {
+  const Json half = {{"baseColorFactor", {1, 1, 1, 0.5}}};
+  const auto passes = [&](double cutoff, float u) {
+    const Loaded loaded(with_alpha(
+        {{"alphaMode", "MASK"}, {"alphaCutoff", cutoff}, {"pbrMetallicRoughness", half}}, 51));
+    Scene view;
+    view.textures = loaded.scene.textures.data(), view.texels = loaded.scene.texels.data();
+    view.opacities = &loaded.scene.materials.at(0).opacity;
+    return passes_mask(view, 1, Triangle{}, u, 0.5f, [] { return 0u; });
+  };
+  EXPECT_FALSE(passes(0.5, 0.25f));  // of 0.5
+  EXPECT_TRUE(passes(0.50001, 0.25f));
+  EXPECT_TRUE(passes(0.5, 0.75f));  // of 0.1
+  EXPECT_FALSE(passes(0.09, 0.75f));
 }
 
 }  // namespace

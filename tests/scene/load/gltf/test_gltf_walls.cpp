@@ -230,5 +230,33 @@ TEST(GltfWalls, InstancesOfDoubleSidedLampsHaveTwoSides) {
   EXPECT_EQ(loaded.scene.instances.size(), 2u);
 }
 
+// With T of transmission and m of metal, T (1 - m) is clear, and of the rest m / (1 - T (1 - m))
+// is metal.
+TEST(GltfWalls, MetalHasItsShareUnderPartialTransmission) {
+  const auto top_of = [](const Loaded& loaded) {
+    return loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
+  };
+  const auto metallic = [](const MaterialDescription& m) {
+    return m.scalar(Principled::Index::metallic);
+  };
+  const Loaded both = wall(clear(0.5, {{"metallicFactor", 0.5}}));
+  const MaterialDescription& of_both = top_of(both);
+  ASSERT_EQ(of_both.node, MaterialNode::blend);
+  EXPECT_FLOAT_EQ(of_both.scalar(0), 0.25f);
+  const MaterialDescription& opaque = both.scene.materials.at(of_both.children[0]);
+  EXPECT_EQ(opaque.kind, kind_of<Principled>);
+  EXPECT_FLOAT_EQ(metallic(opaque), 2.0f / 3.0f);
+  EXPECT_EQ(both.scene.materials.at(of_both.children[1]).kind, kind_of<PrincipledThin>);
+
+  const Loaded all_clear = wall(clear(1, {{"metallicFactor", 0.25}}));
+  const MaterialDescription& of_clear = top_of(all_clear);
+  ASSERT_EQ(of_clear.node, MaterialNode::blend);
+  EXPECT_FLOAT_EQ(of_clear.scalar(0), 0.25f);
+  EXPECT_EQ(all_clear.scene.materials.at(of_clear.children[0]).kind, kind_of<PrincipledThin>);
+  const MaterialDescription& metal = all_clear.scene.materials.at(of_clear.children[1]);
+  EXPECT_EQ(metal.kind, kind_of<Principled>);
+  EXPECT_EQ(metallic(metal), 1.0f);
+}
+
 }  // namespace
 }  // namespace pt

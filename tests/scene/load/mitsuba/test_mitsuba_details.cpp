@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "common/light/sky/sunsky.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/texture/sample_texture.h"
 #include "common/transport/mask.h"
@@ -264,6 +269,135 @@ TEST(MitsubaInstances, MasksLetThroughIndependently) {
   }
   // 4096 rays of which a quarter passes: a standard deviation of 0.0068.
   EXPECT_NEAR(sum / 256, 0.25, 0.03);
+}
+
+// One checkerboard, whose colours are the other way round as numbers.
+TEST(MitsubaTexture, OneCheckerboardIsAColourAndANumber) {
+  const SceneData scene =
+      load(
+          "<texture type='checkerboard' id='t'><rgb name='color0' value='0.1'/><rgb "
+          "name='color1' value='0.6'/></texture>" +
+          square(bsdf("roughconductor",
+                      "<ref name='specular_reflectance' id='t'/><ref "
+                      "name='alpha' id='t'/>")))
+          .scene;
+  const auto at = [&](int parameter) {
+    return sample_texture(scene.textures.data(), top_of(scene).parameters[parameter].texture,
+                          scene.texels.data(), {0.1f, 0.9f});
+  };
+  expect_near(at(Conductor::Index::tint), Color(0.1f));
+  expect_near(at(Conductor::Index::alpha_x), Color(0.6f));
+  expect_near(at(Conductor::Index::alpha_y), Color(0.6f));
+}
+
+// Mitsuba's names of a brushed metal's coordinates: without them it has no directions.
+TEST(MitsubaSurface, BrushedMetalHasCoordinatesOnEveryShape) {
+  const std::string brushed =
+      bsdf("roughconductor", number("alpha_u", 0.1) + number("alpha_v", 0.3));
+  for (const char* type : {"rectangle", "disk", "cube", "cylinder"}) {
+    SCOPED_TRACE(type);
+    const SceneData scene =
+        load(fmt::format("<shape type='{}'>{}</shape><emitter type='constant'/>", type, brushed))
+            .scene;
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    EXPECT_EQ(scene.meshes[0].uvs.size(), scene.meshes[0].positions.size());
+  }
+}
+
+// A d65 multiplies its colour by its scale, but not what lies within it (Mitsuba 3.9's RGB).
+TEST(MitsubaTexture, ADaylightsScaleIsOfItsOwnColour) {
+  const auto intensity = [](const std::string& inside) {
+    return load("<emitter type='point'>" + inside + "</emitter>")
+        .scene.delta_lights.at(0)
+        .intensity;
+  };
+  const std::string three = number("scale", 3), color = "<rgb name='color' value='1 2 4'/>";
+  const auto d65 = [](const std::string& inside, const char* name) {
+    return fmt::format("<spectrum type='d65' name='{}'>{}</spectrum>", name, inside);
+  };
+  EXPECT_EQ(intensity(d65("", "intensity")), Color(1.0f));
+  EXPECT_EQ(intensity(d65(three, "intensity")), Color(3.0f));
+  EXPECT_EQ(intensity(d65(three + color, "intensity")), Color(3, 6, 12));
+  const std::string own = number("scale", 2) + color;
+  EXPECT_EQ(intensity(d65(three + d65(own, "x"), "intensity")), Color(2, 4, 8));
+}
+
+TEST(MitsubaEmitter, NamesAreThoseOfTheirOwnLights) {
+  const SceneData scene =
+      load(
+          "<emitter type='point'/><emitter type='constant' id='sky'/><emitter type='spot' "
+          "id='b'/><emitter type='point'/><emitter type='directional' id='d'/><shape "
+          "type='rectangle' id='s'><emitter type='area'/></shape><shape type='sphere'><emitter "
+          "type='area' id='e'/></shape>")
+          .scene;
+  const std::map<std::uint32_t, std::string> lights(scene.names.delta_lights.begin(),
+                                                    scene.names.delta_lights.end());
+  EXPECT_EQ(lights, (std::map<std::uint32_t, std::string>{{1, "b"}, {3, "d"}}));
+  const std::map<std::uint32_t, std::string> emitters(scene.names.emitters.begin(),
+                                                      scene.names.emitters.end());
+  EXPECT_EQ(emitters, (std::map<std::uint32_t, std::string>{{0, "s"}, {1, "e"}}));
+}
+
+Sun sun_of(const std::string& inside) {
+  return load("<emitter type='sun'>" + inside + "</emitter>").scene.sun;
+}
+
+/// 0.x has +y up.
+Color zenith_of(const std::string& inside, const std::string& version = "3.0.0") {
+  const EnvironmentData data =
+      load("<emitter type='sky'>" + inside + "</emitter>", version).scene.environment;
+  return data.pixels.at(0);  // the first row is all zenith
+}
+
+TEST(MitsubaEmitter, TheSunStandsWhereItsTimeSays) {
+  const std::vector<std::pair<std::string, std::function<void(SunTime&)>>> rows = {
+      {"", [](SunTime&) {}},
+      {number("latitude", 20), [](SunTime& t) { t.latitude = 20; }},
+      {number("longitude", 120), [](SunTime& t) { t.longitude = 120; }},
+      {number("timezone", 8), [](SunTime& t) { t.timezone = 8; }},
+      {number("hour", 11), [](SunTime& t) { t.hour = 11; }},
+      {number("minute", 40), [](SunTime& t) { t.minute = 40; }},
+      {number("second", 3000), [](SunTime& t) { t.second = 3000; }},
+      {"<integer name='year' value='2013'/>", [](SunTime& t) { t.year = 2013; }},
+      {"<integer name='month' value='4'/>", [](SunTime& t) { t.month = 4; }},
+      {"<integer name='day' value='28'/>", [](SunTime& t) { t.day = 28; }}};
+  for (const auto& [inside, change] : rows) {
+    SunTime time;
+    change(time);
+    SCOPED_TRACE(inside);
+    expect_near(sun_of(inside).direction, sun_direction(time), 1e-6f);
+  }
+  expect_near(sun_direction({}), {0.2f, 0.7f, 0.65f}, 0.15f);  // in the afternoon: west of Tokyo
+}
+
+TEST(MitsubaEmitter, SunAndSkyHaveTheirOwnSizesScalesAndAir) {
+  const double degree = double{pi} / 180;
+  const Sun sun = sun_of("");
+  const double elevation = std::asin(double{sun_direction({}).z});
+  const auto irradiance = [](const Sun& s) { return s.radiance * (2.0f * pi * s.one_minus_cos); };
+  const auto expect_ratio = [](const Color& found, const Color& expected) {
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 1e-4);
+  };
+  EXPECT_NEAR(sun.one_minus_cos / (1 - std::cos(0.5 * 0.5358 * degree)), 1, 1e-5);
+  expect_ratio(irradiance(sun), sun_irradiance(3, elevation));
+  const Sun wide = sun_of(number("sun_radius_scale", 4));
+  EXPECT_NEAR(wide.one_minus_cos / (1 - std::cos(2 * 0.5358 * degree)), 1, 1e-5);
+  expect_ratio(irradiance(wide), irradiance(sun));
+  expect_ratio(irradiance(sun_of(number("scale", 2) + number("sun_scale", 3))),
+               6.0f * irradiance(sun));
+  expect_ratio(irradiance(sun_of(number("sky_scale", 3))), irradiance(sun));
+  expect_ratio(irradiance(sun_of(number("turbidity", 1))), sun_irradiance(1, elevation));
+  expect_ratio(irradiance(sun_of(number("turbidity", 10))), sun_irradiance(10, elevation));
+
+  const auto model = [&](double turbidity, float albedo) {
+    return SkyModel(turbidity, Color(albedo), elevation).radiance(1, 0.5 * double{pi} - elevation);
+  };
+  expect_ratio(zenith_of(""), model(3, 0.3f));
+  expect_ratio(zenith_of("", "0.6.0"), model(3, 0.15f));
+  expect_ratio(zenith_of(number("turbidity", 5)), model(5, 0.3f));
+  expect_ratio(zenith_of("<rgb name='albedo' value='0.8'/>"), model(3, 0.8f));
+  expect_ratio(zenith_of(number("scale", 2) + number("sky_scale", 3)), 6.0f * model(3, 0.3f));
+  expect_ratio(zenith_of(number("sun_scale", 3)), model(3, 0.3f));
 }
 
 }  // namespace

@@ -111,6 +111,7 @@ TEST(MtlMaps, NamesOfOtherSystemsAndMachines) {
       {"/home/someone/sub/s.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"/t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"C:t.ppm", {0.25f, 0.75f}, red, elsewhere},
+      {"\\t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"\\\\server\\share\\t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"..\\textures\\t.ppm", {0.25f, 0.75f}, red, elsewhere},
       {"textures/t.ppm", {0.25f, 0.75f}, red, elsewhere},
@@ -287,6 +288,64 @@ TEST(MtlLibraries, ManyLinesAndLongNames) {
                   "\nf 1 2 3\nv " + long_name + "\nf " + long_name + "\n");
   EXPECT_EQ(text_of(file.scene, file.material("m4999")), "diffuse 1,0,0");
   for (const std::string& warning : file.warnings) EXPECT_LT(warning.size(), 1000u);
+}
+
+// The last parts of a foreign path lead to nothing above the scene's folder.
+TEST(MtlMaps, LastPartsDoNotBeginAbove) {
+  const ObjFolder folder;
+  folder.write("t.ppm", std::string("P6 1 1 255\n\0\xff\0", 14));
+  folder.write("scene/t.ppm", four_colors);
+  folder.write("scene/a.obj", triangle_of_m);
+  for (const std::string name : {"C:\\..\\t.ppm", "C:\\x\\..\\..\\t.ppm", "/x/y/../../../t.ppm"}) {
+    SCOPED_TRACE(name);
+    folder.write("scene/a.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    const LoadedObj file(folder.file("scene/a.obj"));
+    expect_near(file.texture_at(file.material("m").parameters[0].texture, {0.25f, 0.75f}), red);
+    EXPECT_EQ(file.count("does not exist: "), 1);
+  }
+}
+
+// Maps of one picture that differ in any option show what each shows alone.
+TEST(MtlMaps, ScaledPicturesDifferByEveryOption) {
+  const std::string maps[] = {"map_Kd -mm 0 0.5",
+                              "map_Kd -mm 0.25 0.5",
+                              "map_Kd -mm 0 2",
+                              "map_Ke -mm 0 2",
+                              "map_Kd -mm 0 0.5 -o 0.5",
+                              "map_Kd -mm 0 0.5 -o 0 0.5",
+                              "map_Kd -mm 0 0.5 -s 2",
+                              "map_Kd -mm 0 0.5 -s 1 2",
+                              "map_Kd -mm 0 0.5 -clamp on",
+                              "map_Kd -mm 0 0.5 -blendu off -blendv off",
+                              "map_Pr -mm 0 0.5",
+                              "map_Pr -mm 0 0.5 -imfchan r",
+                              "map_Pr -mm 0 0.5 -imfchan g",
+                              "map_Pr -mm 0 0.5 -imfchan b"};
+  const ObjFolder folder;
+  folder.write("t.ppm", four_colors);
+  const auto texture_of = [](const MaterialDescription& m) {
+    std::uint32_t texture = m.emission.texture;
+    for (const Parameter& p : m.parameters) texture = std::min(texture, p.texture);
+    EXPECT_NE(texture, no_texture);
+    return texture;
+  };
+  std::string library, triangles = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (std::size_t i = 0; i < std::size(maps); ++i) {
+    library += fmt::format("newmtl m{}\n{} t.ppm\n", i, maps[i]);
+    triangles += fmt::format("usemtl m{}\nf 1 2 3\n", i);
+  }
+  folder.write("a.mtl", library);
+  const LoadedObj together = folder.load(triangles);
+  for (std::size_t i = 0; i < std::size(maps); ++i) {
+    SCOPED_TRACE(maps[i]);
+    const LoadedObj alone = folder.load_m(maps[i] + " t.ppm\n");
+    for (const Vec2 uv : {Vec2(0.25f, 0.75f), Vec2(0.25f, 0.25f), Vec2(0.49f, 0.3f),
+                          Vec2(1.25f, 0.25f), Vec2(0.7f, 1.3f), Vec2(0.75f, 0.75f)}) {
+      expect_near(together.texture_at(texture_of(together.material(fmt::format("m{}", i))), uv),
+                  alone.texture_at(texture_of(alone.material("m")), uv));
+    }
+  }
+  EXPECT_EQ(together.scene.textures.size(), std::size(maps));
 }
 
 }  // namespace

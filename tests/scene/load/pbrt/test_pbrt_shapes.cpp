@@ -258,7 +258,9 @@ TEST(PbrtShapes, AlphaIsOpacity) {
       pbrt_world(lit + "Shape \"disk\" \"float alpha\" .25\nTexture \"a\" \"float\" "
                        "\"checkerboard\" Shape \"disk\" \"texture alpha\" \"a\""));
   EXPECT_FLOAT_EQ(scene.materials[scene.meshes.at(0).material].opacity.offset, 0.25f);
-  EXPECT_NE(scene.materials[scene.meshes.at(1).material].opacity.texture, no_texture);
+  const Opacity& textured = scene.materials[scene.meshes.at(1).material].opacity;
+  EXPECT_NE(textured.texture, no_texture);
+  EXPECT_EQ(textured.cutoff, 0.0f);  // a probability; all or nothing in pbrt-v3 alone
   EXPECT_FALSE(scene.meshes[1].uvs.empty());
 }
 

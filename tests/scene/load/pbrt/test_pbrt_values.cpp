@@ -266,8 +266,12 @@ TEST(PbrtValues, AStretchedConeIsWhole) {
   const SceneData scene = load_pbrt_silently(pbrt_world(
       "Scale 2 1 1 LightSource \"spot\" \"float coneangle\" 35 \"float conedeltaangle\" 10 Shape "
       "\"sphere\""));
-  EXPECT_NEAR(std::acos(double{scene.delta_lights.at(0).cos_outer}),
-              std::atan(2 * std::tan(35 * degree)), 2e-3);
+  const double angle = std::acos(double{scene.delta_lights.at(0).cos_outer});
+  const double edge = std::atan(2 * std::tan(35 * degree));
+  EXPECT_GT(angle, edge + 5e-4);  // with a margin, since edges between those tried are farther
+  EXPECT_LT(angle, edge + 2e-3);
+  // The picture has the falloff.
+  EXPECT_EQ(scene.delta_lights.at(0).cos_inner, scene.delta_lights.at(0).cos_outer);
 }
 
 // ---- textures

@@ -71,7 +71,8 @@ fs::path NamedFiles::search(const std::vector<fs::path>& folders, std::string_vi
   }
   const std::size_t most = is_absolute ? parts.size() : parts.size() - std::min(parts.size(), 1ul);
   for (std::size_t count = std::min(most, last_parts_max); count > 0; --count) {
-    if (parts[parts.size() - count] == "..") continue;
+    const auto first = parts.end() - static_cast<std::ptrdiff_t>(count);
+    if (std::find(first, parts.end(), "..") != parts.end()) continue;  // may lead above the folder
     for (const fs::path& folder : folders) {
       const fs::path path = find_file(folder, tail_of(parts, count), {});
       if (!is_file(path)) continue;
