@@ -4,6 +4,7 @@
 #include <random>
 
 #include "common/geometry/mesh_view.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/load_scene.h"
 #include "common/texture/sample_texture.h"
