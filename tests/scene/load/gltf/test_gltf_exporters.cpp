@@ -2,6 +2,8 @@
 // (tests/data/exporters), four squares of 2 x 2 units each, seen from z = 10 with x to the right
 // and y up. Where they are and what they show was worked out by hand from the specification; a
 // square with a picture has four texels: red, green, and below them blue and white.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "load/expect_near.h"

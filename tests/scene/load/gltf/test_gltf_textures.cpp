@@ -1,4 +1,6 @@
 // The glTF loader: textures.
+#include <fmt/format.h>
+
 #include "common/texture/sample_texture.h"
 #include "load/gltf_files.h"
 
