@@ -16,7 +16,7 @@ namespace pt::pbrt {
 namespace {
 
 constexpr std::uint32_t picture_side = 512;
-constexpr std::size_t most_spots = 100;     // 3 MB each
+constexpr std::size_t most_spots = 100;        // 3 MB each
 constexpr float widest = 80.0f * pi / 180.0f;  // beyond, a picture on a plane has too few texels
 
 /// The angle in the world, about the light's direction, within which all of its light is.
