@@ -60,4 +60,15 @@ Mesh back_of(const Mesh& mesh) {
   return back;
 }
 
+std::optional<float> uniform_scale(const Affine& map) {
+  const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
+  const float scale = glm::length(columns[0]);
+  for (int i = 0; i < 3; ++i) {
+    const Vec3& next = columns[(i + 1) % 3];
+    if (std::abs(glm::dot(columns[i], next)) > 1e-4f * scale * scale) return std::nullopt;
+    if (std::abs(glm::length(next) - scale) > 1e-4f * scale) return std::nullopt;
+  }
+  return scale > 0.0f ? std::optional(scale) : std::nullopt;
+}
+
 }  // namespace pt

@@ -1,6 +1,8 @@
 // Meshes into other spaces, and inside out.
 #pragma once
 
+#include <optional>
+
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
 
@@ -17,5 +19,8 @@ void wind_by_normals(Mesh& mesh);
 
 /// The other side of a lamp that shines on both: a surface of its own, a little behind the first.
 Mesh back_of(const Mesh& mesh);
+
+/// The scale of a map that keeps angles, or none.
+std::optional<float> uniform_scale(const Affine& map);
 
 }  // namespace pt

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/math/frame.h"
+#include "common/scene/load/files/meshes/move_mesh.h"
 #include "common/scene/load/mitsuba/shapes/box_faces.h"
 #include "common/scene/load/mitsuba/shapes/shape_kinds.h"
 #include "common/scene/load/mitsuba/shapes/tessellate.h"
@@ -22,18 +23,6 @@ void add_quad(Context& context, const BoxFace& face, const Affine& to_world, boo
 /// A mirroring transform turns the edges, not the normals.
 bool turns_edges(const Object& shape, const Affine& to_world) {
   return shape.boolean("flip_normals", false) != (to_world.determinant() < 0.0f);
-}
-
-/// The scale of a map that keeps angles, or none.
-std::optional<float> uniform_scale(const Affine& map) {
-  const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
-  const float scale = glm::length(columns[0]);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& next = columns[(i + 1) % 3];
-    if (std::abs(glm::dot(columns[i], next)) > 1e-4f * scale * scale) return std::nullopt;
-    if (std::abs(glm::length(next) - scale) > 1e-4f * scale) return std::nullopt;
-  }
-  return scale;
 }
 
 SphereFrame frame_of(const Affine& to_world, float scale, bool inside_out) {

@@ -20,17 +20,6 @@ bool is_invertible(const Affine& map) {
   return std::isfinite(determinant) && determinant != 0.0f;
 }
 
-std::optional<float> uniform_scale(const Affine& map) {
-  const Vec3 columns[3] = {map.vector({1, 0, 0}), map.vector({0, 1, 0}), map.vector({0, 0, 1})};
-  const float scale = glm::length(columns[0]);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3& next = columns[(i + 1) % 3];
-    if (std::abs(glm::dot(columns[i], next)) > 1e-4f * scale * scale) return std::nullopt;
-    if (std::abs(glm::length(next) - scale) > 1e-4f * scale) return std::nullopt;
-  }
-  return scale > 0.0f ? std::optional(scale) : std::nullopt;
-}
-
 Affine read_translate(TokenStream& tokens) { return translate(Vec3(read_vector(tokens))); }
 Affine read_scale(TokenStream& tokens) { return scale(Vec3(read_vector(tokens))); }
 

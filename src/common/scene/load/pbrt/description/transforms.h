@@ -21,7 +21,4 @@ std::optional<Affine> read_matrix(TokenStream& tokens);
 /// Whether it has an inverse.
 bool is_invertible(const Affine& map);
 
-/// The scale of a map that keeps angles, or none.
-std::optional<float> uniform_scale(const Affine& map);
-
 }  // namespace pt::pbrt

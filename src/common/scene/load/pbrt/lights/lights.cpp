@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/scene/load/files/meshes/move_mesh.h"
 #include "common/scene/load/pbrt/description/transforms.h"
 
 namespace pt::pbrt {
