@@ -145,8 +145,9 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   RenderReport report;
   SceneData scene;
   report.scene_ms = timed_ms([&] {
+    const bool warns = is_first && !options.quiet;
     scene =
-        load_shared_scene(ranks, options, devices.front(), options.quiet ? Warn() : print_warning);
+        load_shared_scene(ranks, options, devices.front(), warns ? Warn(print_warning) : Warn());
     apply_defaults(scene.defaults, command.given, options);
     prepare_scene_for(scene, options, devices.front());
   });
