@@ -131,8 +131,14 @@ class Ranks(unittest.TestCase):
         self.assertEqual(set(Path("/dev/shm").glob("ptexp-*")), before)
         (self.folder / "more/mesh.obj").unlink()
         run = self.run_ranks(3, *scene, "-o", "ranks.exr")
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+        self.assertEqual(len(re.findall("ptexp: warning: .*mesh.obj", run.stderr)), 1, run.stderr)
+        self.run_one(*scene, "-o", "one.exr")
+        self.assert_same_image("ranks.exr", "one.exr")
+        (self.folder / "scene.xml").write_text(SCENE.replace("</scene>", ""))
+        run = self.run_ranks(3, *scene, "-o", "ranks.exr")
         self.assertEqual(run.returncode, 2)
-        self.assertEqual(len(re.findall("ptexp: error: .*mesh.obj", run.stderr)), 1, run.stderr)
+        self.assertEqual(len(re.findall("ptexp: error: .*scene.xml", run.stderr)), 1, run.stderr)
 
     def test_errors_are_said_once(self):
         for arguments, text in ((["--spp", 0], "--spp 0"),

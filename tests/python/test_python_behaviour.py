@@ -320,7 +320,7 @@ class Texts(TestCase):
         folder = os.fsencode(self.folder)
         with open(folder + b"/a.obj", "wb") as file:
             file.write(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\x1b[31m\nf 1 2 3\n")
-        with self.assertWarnsRegex(ptexp.SceneWarning, r"caf\?\?\[31m is not defined"):
+        with self.assertWarnsRegex(ptexp.SceneWarning, r"'caf\?\?\[31m' is not defined"):
             ptexp.load(self.folder / "a.obj")
         with open(folder + b"/b.obj", "wb") as file:
             file.write(b"mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl caf\xe9\nf 1 2 3\n")
