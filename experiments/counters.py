@@ -21,13 +21,12 @@ from lib.provenance import scene_hash
 SCENES = ["cornell", "dial:8:0:closed", "dial:8:1:closed", "statue:1M"]
 VARIANTS = {
     "megakernel": "--mode megakernel",
-    "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
-    "by material": "--mode wavefront --shade material",
-    "cub": "--mode wavefront --shade uber --compaction cub",
-    "no queues": "--mode wavefront --shade uber --compaction none",
-    "aos": "--mode wavefront --shade uber --layout aos",
-    "soa": "--mode wavefront --shade uber --layout soa",
+    "uber": "--mode wavefront --stages split --order-surfaces off",
+    "uber, sorted": "--mode wavefront --stages split --order-surfaces on",
+    "cub": "--mode wavefront --stages split --order-surfaces off --compaction cub",
+    "no queues": "--mode wavefront --stages split --order-surfaces off --compaction none",
+    "aos": "--mode wavefront --stages split --order-surfaces off --layout aos",
+    "soa": "--mode wavefront --stages split --order-surfaces off --layout soa",
 }
 DEPTH = 8
 ALL = "all kernels"

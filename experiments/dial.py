@@ -26,9 +26,8 @@ VARIANTS = {
     BASE: "--mode megakernel",
     "voting megakernel": "--mode megakernel --accel cwbvh --kernel vote",
     "sorting megakernel": "--mode megakernel --accel cwbvh --kernel sort",
-    "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
-    "by material": "--mode wavefront --shade material",
+    "uber": "--mode wavefront --stages split --order-surfaces off",
+    "uber, sorted": "--mode wavefront --stages split --order-surfaces on",
     "wide tree": "--mode wavefront --accel cwbvh",
 }
 DEPTH = 8

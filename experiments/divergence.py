@@ -20,10 +20,9 @@ from lib.scene_files import add_scene_files, scene_files, short_name
 BUILT_IN = ["dial:16:0:closed", "statue:1M", "cloud"]
 VARIANTS = {
     "megakernel": "--mode megakernel",
-    "uber": "--mode wavefront --compaction atomic --shade uber",
-    "uber, sorted": "--mode wavefront --order-surfaces on --shade uber",
-    "by material": "--mode wavefront --compaction atomic --shade material",
-    "uber, tags": "--mode wavefront --compaction none --shade uber",
+    "uber": "--mode wavefront --compaction atomic --stages split --order-surfaces off",
+    "uber, sorted": "--mode wavefront --stages split --order-surfaces on",
+    "uber, tags": "--mode wavefront --compaction none --stages split --order-surfaces off",
 }
 SIZE, SPP, DEPTH = 1024, 4, 8
 DRAWN = ["node", "primitive", "shade_surface", "bsdf", "shadow_node"]  # points in the picture

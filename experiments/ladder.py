@@ -30,11 +30,10 @@ STEPS = [
     ("wide tree", "--accel cwbvh --persistent off", (CUDA, TRIANGLES)),
     ("persistent warps", "--persistent on", (CUDA, TRIANGLES)),
 ]
-# Above all of them, for spheres. Fused stages sort no hits, and their kernel is for all materials.
-SHADE = "--shade uber "
+# Above all of them, for spheres. Fused stages sort no hits.
 FUSED = [("fused stages", "--stages fused --wave-rays 1 --order-surfaces off"),
          ("two rays a wave", "--wave-rays 2")]
-PLAIN = (f"--mode wavefront --stages split --compaction none {SHADE}--regenerate off "
+PLAIN = ("--mode wavefront --stages split --compaction none --regenerate off "
          "--finish-paths 0 --schedule host --pool-size 1M "
          "--order-surfaces off")
 QUICK = "--pool-size 256"
@@ -54,7 +53,7 @@ def steps_of(scene, device):
             options = " ".join(with_options(options, change))
             yield step, options
     for step, change in FUSED if SPHERES in has else []:
-        options = " ".join(with_options(options.replace(SHADE, ""), change))
+        options = " ".join(with_options(options, change))
         yield step, options
 
 

@@ -21,7 +21,7 @@ SUITABLE = {"megakernel": "bvh2", "wavefront": "cwbvh"}
 # As the modes are usually written: a pixel for each thread; a selection before each stage, launched
 # by the host up to the last ray, and surfaces in any order. A binary tree in both.
 USUAL = {"megakernel": "--work pixel",
-         "wavefront": "--compaction cub --schedule host --finish-paths 0 --shade uber"}
+         "wavefront": "--compaction cub --schedule host --finish-paths 0 --stages split --order-surfaces off"}
 DEPTH = 8
 
 

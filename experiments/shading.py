@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Shading: one kernel for all materials, the same over an ordered queue, or a kernel for each kind?
+"""Shading: does it pay to order the queue of surfaces by BSDF type?
 
-The wavefront's three ways to shade surfaces, beside the megakernel. Scene files may be named as
+The wavefront with and without the order, beside the megakernel. Scene files may be named as
 further arguments of --scenes.
 """
 import sys
@@ -17,13 +17,9 @@ BUILT_IN = [("cornell", 64, None), ("statue:1M", 64, None), ("dial:16:0:closed",
 PROMISES = {"modern-hall/scene.xml": 430, "grey-white-room/scene.xml": 300}
 WAYS = {
     "megakernel": "--mode megakernel",
-    "uber": "--mode wavefront --shade uber",
-    "uber, sorted": "--mode wavefront --shade uber --order-surfaces on",
-    "by material": "--mode wavefront --shade material",
+    "uber": "--mode wavefront --stages split --order-surfaces off",
+    "uber, sorted": "--mode wavefront --stages split --order-surfaces on",
 }
-# --shade material takes kernels for all lights, which draw other numbers than the lean ones that a
-# scene of quads has otherwise: another image, and another question.
-OTHER_KERNELS = ("cornell", "by material")
 SIZE, DEPTH = 1024, 8
 
 
@@ -38,8 +34,6 @@ def configurations(arguments, _device):
     for scene, spp, promise in scenes:
         name = short_name(scene)
         for way, options in WAYS.items():
-            if (scene, way) == OTHER_KERNELS:
-                continue
             rows.append(Configuration(
                 f"{name}: {way}",
                 f"--scene {scene} --width {size} --height {size} --spp {spp} "

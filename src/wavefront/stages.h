@@ -288,7 +288,7 @@ struct SampleMedium {
 struct RouteFlights {
   static constexpr StageId id = StageId::sample_medium;
   static constexpr SphereAccess spheres = SphereAccess::once;
-  static constexpr const char* kind = "route";
+  static constexpr const char* variant = "route";  ///< follows the stage's name
   static constexpr StageOutcomes outcomes = {{StageId::shade_surface, StageId::shade_miss},
                                              true,
                                              false,
@@ -352,9 +352,6 @@ struct ShadeSurface {
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, has_lights};
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr int block_max = streams ? streaming_block_max : shading_block_max<Traits>;
-  /// The only BSDF that it shades; null: several.
-  static constexpr const char* kind =
-      Traits::BsdfList::size == 1 ? TypeAt<0, typename Traits::BsdfList>::name : nullptr;
   StageContext<Source> context;
 
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {

@@ -1,12 +1,10 @@
-// The surfaces that wait to be shaded, ordered by the kind of their BSDFs: a counting sort of their
-// queue. Threads side by side then execute the same code (after Laine et al. 2013, 'Megakernels
-// Considered Harmful', section 4). One kernel for all kinds needs no more than an order within
-// tiles of the queue, and what was near in the queue stays near in memory. A kernel for one
-// kind needs all of its surfaces in one range.
+// Orders the queue of surfaces by BSDF type: a counting sort of each tile of the queue.
+// Neighbouring threads then execute the same code (after Laine et al. 2013, 'Megakernels Considered
+// Harmful', section 4), and neighbours in the queue stay close in memory.
 //
-// Contract: the ordered queue holds the same slots as the queue, either range by range (KindRanges)
-// or tile by tile and ascending by kind in each; within one kind in any order, on the CPU in that
-// of the queue.
+// Contract: each tile of the ordered queue holds the same slots as that tile of the queue,
+// ascending by BSDF type; the order within one type is unspecified on CUDA and that of the queue on
+// the CPU.
 #pragma once
 
 #include "common/transport/surface.h"
@@ -15,8 +13,7 @@
 
 namespace pt {
 
-/// Places of the queue that are ordered together: enough for warps of one kind, few enough that a
-/// block's threads keep their kinds.
+/// Entries of a tile: enough for warps of one BSDF type, few enough for a block's shared memory.
 inline constexpr std::uint32_t order_tile = 1 << 14;
 
 struct SurfaceOrder {
@@ -24,13 +21,10 @@ struct SurfaceOrder {
   const std::uint32_t* slots = nullptr;  ///< the queue, the first *count of it
   const std::uint32_t* count = nullptr;
   std::uint32_t* ordered = nullptr;  ///< [capacity of the queue]
-  // For ranges; null: within tiles
-  KindRanges* ranges = nullptr;   ///< counts and indices are 0 before
-  std::uint8_t* kinds = nullptr;  ///< [capacity of the queue] room for the kind of each entry
 };
 
-/// That of the surface that the slot's path has met; 0 for a miss, which waits among the surfaces
-/// where branches are reduced.
+/// The BSDF type of the surface that the slot's ray hit; 0 for a miss, which is in this queue with
+/// branch-free shading.
 PT_HD std::uint8_t surface_kind(const Scene& scene, const PathPool& pool, std::uint32_t slot) {
   const Hit hit = pool.load_hit(slot);
   if (hit.is_miss()) return 0;

@@ -53,15 +53,11 @@ struct WaveBuffers {
   std::uint32_t all_slots = 0;
   // The order of surfaces:
   bool orders_surfaces = false;
-  bool shades_by_kind = false;            ///< --shade material: only where they are ordered
-  std::uint32_t kinds = 0;                ///< a bit for each MaterialKind of the scene
-  std::uint8_t* kind_of_entry = nullptr;  ///< [slot_count] likewise
-  std::uint32_t* ordered = nullptr;       ///< [slot_count] the queue of surfaces, in order
+  std::uint32_t* ordered = nullptr;  ///< [slot_count] the queue of surfaces, in order
 
   /// Of all queues, at most.
   std::size_t queue_bytes_per_slot() const {
-    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? sizeof *ordered : 0) +
-           (shades_by_kind ? sizeof *kind_of_entry : 0);
+    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? sizeof *ordered : 0);
   }
 
   /// Fused stages send paths on while they read the queue of rays: they fill one half of it while
@@ -78,7 +74,6 @@ struct WaveBuffers {
       function(queues[queue_index(stage.id)], std::uint64_t{pool.slot_count} * (twice ? 2 : 1));
     }
     if (orders_surfaces) function(ordered, pool.slot_count);
-    if (shades_by_kind) function(kind_of_entry, pool.slot_count);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -152,9 +147,6 @@ inline std::uint32_t wave_collisions(const Options& options) {
 //   order_surfaces(order)    see surface_order.h
 //   begin_wave()             the decision between two waves
 //   run(stage, queues)       a stage over its slots, a thread for each
-//   kinds_have_kernels<Traits, Bsdf>  whether it has a kernel for this kind in such scenes; else
-//   the
-//                            one for all shades its range
 //   streams_shading          whether it is short of registers (PoolSink)
 //   traces_queues<Traits>    whether persistent warps can trace queues of rays in scenes of such
 //                            kinds, and
@@ -194,48 +186,17 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
   execute.run(TraceShadowRays<RayTraits<Traits>>{{b.pool, samples}}, rays);
 }
 
-/// Surfaces by one kernel, which streams its results where that pays.
-template <class Shading, Branching branching, class Source, class Executor>
-void shade_surfaces_by(Executor& execute, const StageContext<Source>& context,
-                       const StageQueues& surfaces) {
-  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
-  execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
-}
-
-/// Surfaces by kernels for one kind of BSDF each, and by one for all where only shading can
-/// tell the kind. `surfaces`: their ordered queue.
-template <class Shading, class Source, class Executor>
-void shade_each_kind(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context,
-                     const StageQueues& surfaces) {
-  const auto shade = [&]<class Kind>(std::type_identity<Kind>, MaterialKind kind) {
-    const int k = static_cast<int>(kind);
-    if ((b.kinds >> k & 1) == 0) return;
-    StageQueues range = surfaces;
-    range.first = &b.counters->kinds.first[k], range.count = &b.counters->kinds.count[k];
-    shade_surfaces_by<Kind, Branching::divergent>(execute, context, range);
-  };
-  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    using Kind = std::conditional_t<(Executor::template kinds_have_kernels<Shading, Bsdf>),
-                                    OneKind<Shading, Bsdf>, Shading>;
-    shade(std::type_identity<Kind>{}, kind_of<Bsdf>);
-  });
-  shade(std::type_identity<Shading>{}, several_kinds);
-}
-
+/// All surfaces by one kernel, which streams its results where that pays.
 template <class Shading, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   constexpr StageId id = StageId::shade_surface;
   StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
   if (b.orders_surfaces) {
-    KindRanges* const ranges = b.shades_by_kind ? &b.counters->kinds : nullptr;
-    execute.order_surfaces(
-        SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered, ranges, b.kind_of_entry});
+    execute.order_surfaces(SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered});
     surfaces.slots = b.ordered;
   }
-  if constexpr (Shading::lighting == Lighting::full) {
-    if (b.shades_by_kind) return shade_each_kind<Shading>(execute, b, context, surfaces);
-  }
-  shade_surfaces_by<Shading, branching>(execute, context, surfaces);
+  constexpr bool streams = Executor::streams_shading && Shading::lighting == Lighting::full;
+  execute.run(ShadeSurface<Shading, branching, Source, streams>{context}, surfaces);
 }
 
 /// Where paths repeat: paths that have ended are followed by the next ones of their indices, which

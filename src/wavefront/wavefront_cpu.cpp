@@ -12,7 +12,6 @@
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/host_memory.h"
 #include "common/options/option_names.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/shade_block_cpu.h"
@@ -128,9 +127,6 @@ class CpuExecutor {
                      [&] { order_surfaces_cpu(scene_, order); });
   }
 
-  // They would take minutes to compile and gain nothing where threads do not run in warps.
-  template <class, class>
-  static constexpr bool kinds_have_kernels = false;
   static constexpr bool streams_shading = false;
 
   template <class Traits>
@@ -181,9 +177,7 @@ class WavefrontCpu : public CpuRenderer {
     common.fused = fused;
     common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
     common.wave_collisions = wave_collisions(options);
-    common.shades_by_kind = execution_.shades_by_kind;
     common.orders_surfaces = execution_.orders_surfaces;
-    common.kinds = kinds_of(scene);
     common.has_media = traits_.has_media;
     common.only_triangles = scene_.has_only_triangles();
     common.all_slots = static_cast<std::uint32_t>(pool_size_);

@@ -7,7 +7,6 @@
 
 #include "common/device/cuda/profiler_range.cuh"
 #include "common/error/error.h"
-#include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {
@@ -44,7 +43,6 @@ WavefrontCuda::~WavefrontCuda() {
 void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.compaction = compaction_info(options_.compaction);
   const bool appends = buffers_.compaction.appends;
-  buffers_.kinds = kinds_of(scene);
   buffers_.has_media = traits_.has_media;
   buffers_.has_volumes = std::ranges::any_of(
       scene.media, [](const Medium& medium) { return !medium.is_homogeneous(); });
@@ -52,7 +50,6 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   buffers_.fused = execution_.fused;
   buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
   buffers_.wave_collisions = wave_collisions(options_);
-  buffers_.shades_by_kind = execution_.shades_by_kind;
   buffers_.orders_surfaces = execution_.orders_surfaces;
   parts_ = {traits_.has_lights() && !buffers_.fused,
             traits_.geometry == Geometry::mixed,
@@ -283,7 +280,6 @@ void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
   layout.queues_free = buffers_.queue(free_slot) != nullptr;
   layout.all_lights = traits_.lighting == Lighting::full;
   layout.persistent = traces_queues_here();
-  layout.shades_by_kind = buffers_.shades_by_kind;
   for (LaunchCounters& launch : launches) {
     if (launch.wave < 0) continue;
     const WaveFlow& flow = flows_.at(static_cast<std::size_t>(launch.wave));

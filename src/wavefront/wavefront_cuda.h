@@ -25,11 +25,6 @@ class WavefrontCuda : public CudaRenderer {
   void compact(const CompactionRequest& request);
   void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
-  /// Where the experiment looks at them: one kernel, or one for each material.
-  template <class Traits, class Bsdf>
-  static constexpr bool kinds_have_kernels =
-      Traits::geometry == Geometry::triangles && !Traits::has_media &&
-      !std::is_same_v<Bsdf, CompensatedConductor>;
   static constexpr bool streams_shading = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);

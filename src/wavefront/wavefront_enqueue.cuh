@@ -11,9 +11,7 @@ namespace pt {
 template <class Stage>
 std::string kernel_name(const Stage& stage) {
   std::string name = to_string(id_of(stage));
-  if constexpr (requires { Stage::kind; }) {
-    if (Stage::kind != nullptr) name += std::string("/") + Stage::kind;
-  }
+  if constexpr (requires { Stage::variant; }) name += std::string("/") + Stage::variant;
   return name;
 }
 

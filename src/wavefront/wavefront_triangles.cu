@@ -40,10 +40,6 @@ void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBu
 
 using SamplerContext = StageContext<SamplerSource>;
 
-// In shade_kinds.cu, which compiles beside this file.
-extern template void shade_each_kind<Traits<Accel::brute, Geometry::triangles, Lighting::full>>(
-    WavefrontCuda&, const WaveBuffers&, const SamplerContext&, const StageQueues&);
-
 template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const SamplerContext&, bool);
 template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(const SamplerContext&);
 

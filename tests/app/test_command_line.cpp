@@ -46,7 +46,6 @@ const std::map<std::string, std::string>& other_values() {
       {"sampling", "cosine"},
       {"sampler", "sobol"},
       {"multiple-scattering", "on"},
-      {"shade", "material"},
       {"stages", "fused"},
       {"wave-rays", "3"},
       {"wave-collisions", "4"},
@@ -168,7 +167,6 @@ TEST(CommandLine, DefaultsAreTheDocumentedOnes) {
                                                     {"compaction", "atomic"},
                                                     {"pool-size", "auto"},
                                                     {"layout", "sectors"},
-                                                    {"shade", "auto"},
                                                     {"order-surfaces", "auto"},
                                                     {"stages", "auto"},
                                                     {"wave-collisions", "0"},
@@ -614,8 +612,6 @@ TEST(Refused, Contradictions) {
       {"--exposure 1", "--exposure 1: applies to .png and .ppm; image.exr holds linear radiance"},
       {"--stats a --csv ./a", "--csv ./a: is the file of --stats too"},
       {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
-      {"--shade material --compaction none",
-       "--shade material: sorts a queue; --compaction none has no queues"},
   });
 }
 
@@ -676,21 +672,16 @@ TEST(CommandLine, TakesTheModeThatItsOptionsAreFor) {
 
 TEST(Refused, WhatFusedOrSplitStagesDoNotKnow) {
   expect_refused({
-      {"--stages fused --shade uber",
-       "--shade uber: has no effect with --stages fused; it applies to split"},
       {"--stages fused --persistent off", "--persistent off: has no effect with --stages fused"},
       {"--stages fused --order-surfaces on",
        "--order-surfaces on: has no effect with --stages fused"},
       {"--order-surfaces on --compaction none", "--order-surfaces on: sorts a queue"},
-      {"--order-surfaces off --shade material", "--order-surfaces off: not with --shade material"},
       {"--stages fused --branching reduced", "--branching reduced: has no effect with --stages"},
       {"--wave-rays 2", "--wave-rays 2: has no effect with --stages auto; it applies to fused"},
       {"--stages split --wave-rays 1", "--wave-rays 1: has no effect with --stages split"},
       {"--stages fused --wave-rays 0", "--wave-rays 0: expected"},
   });
-  for (const char* line : {"--stages fused --wave-rays 3 --compaction cub",
-                           "--stages split --shade "
-                           "uber",
+  for (const char* line : {"--stages fused --wave-rays 3 --compaction cub", "--stages split",
                            "--stages auto --branching reduced", "--stages fused"})
     EXPECT_NO_THROW(parse(line)) << line;
 }

@@ -29,8 +29,8 @@ TEST_P(MaterialModes, EqualSerial) {
     expect_same(render({{"mode", "wavefront"}, {"accel", accel}, {"finish-paths", "0"}}), serial);
   }
   for (const Settings& ordered :
-       {Settings{{"shade", "material"}}, Settings{{"shade", "uber"}, {"order-surfaces", "on"}},
-        Settings{{"shade", "material"}, {"compaction", "cub"}, {"layout", "aos"}}}) {
+       {Settings{{"order-surfaces", "on"}},
+        Settings{{"order-surfaces", "on"}, {"compaction", "cub"}, {"layout", "aos"}}}) {
     Settings wavefront{{"mode", "wavefront"}, {"finish-paths", "0"}, {"pool-size", "1000"}};
     wavefront.insert(wavefront.end(), ordered.begin(), ordered.end());
     expect_same(render(wavefront), serial);

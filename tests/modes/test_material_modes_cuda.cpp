@@ -80,18 +80,15 @@ TEST_F(CudaVotingMaterials, EqualTheLoop) {
   }
 }
 
-// By default a scene of several kinds is shaded by kind.
+// By default the surfaces of a scene with several BSDF types are ordered.
 TEST_P(GpuRoomsOf, OrderedSurfacesEqualMegakernel) {
   const Rendered expected = render({{"device", "cuda"}, {"mode", "megakernel"}});
-  for (const auto& [shade, order] :
-       {std::pair{"uber", "auto"}, {"uber", "on"}, {"material", "auto"}, {"auto", "auto"}}) {
+  for (const char* order : {"auto", "on", "off"}) {
     for (const std::string& compaction : names_where(Compaction::atomic, has_queues)) {
       for (const char* pool : {"1000", "auto"}) {
-        SCOPED_TRACE(testing::Message()
-                     << shade << ", " << order << ", " << compaction << ", " << pool);
+        SCOPED_TRACE(testing::Message() << order << ", " << compaction << ", " << pool);
         expect_same(render({{"device", "cuda"},
                             {"mode", "wavefront"},
-                            {"shade", shade},
                             {"order-surfaces", order},
                             {"compaction", compaction},
                             {"pool-size", pool},

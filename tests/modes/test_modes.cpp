@@ -220,7 +220,6 @@ TEST(Stages, AreFusedWhereRaysAreCheap) {
     EXPECT_EQ(of({{"mode", "megakernel"}}), "");
     // What fused stages do not know.
     EXPECT_EQ(of({{"branching", "reduced"}}), "split");
-    EXPECT_EQ(of({{"shade", "uber"}}), "split");
     EXPECT_EQ(of({{"order-surfaces", "on"}}), "split");
   }
   EXPECT_EQ(stages({{"accel", "bvh2"}}), "split");

@@ -169,18 +169,13 @@ const std::vector<Row>& rows() {
         {"accel", "cwbvh"},
         {"persistent", "on"},
         {"stages", "split"},
-        {"shade", "uber"},
         {"finish-paths", "1048576"}}},
-      {"five kinds of BSDFs",
-       {},
-       mesh(five_kinds),
-       gpu(),
-       {{"shade", "uber"}, {"finish-paths", "1048576"}}},
+      {"five kinds of BSDFs", {}, mesh(five_kinds), gpu(), {{"finish-paths", "1048576"}}},
       {"six",
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
        gpu(),
-       {{"shade", "uber"}, {"order-surfaces", "on"}, {"finish-paths", "1048576"}}},
+       {{"order-surfaces", "on"}, {"finish-paths", "1048576"}}},
       {"six where blocks have little memory",
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
@@ -192,18 +187,13 @@ const std::vector<Row>& rows() {
        {},
        mesh(bit(kind_of<Principled>) | bit(kind_of<Diffuse>)),
        gpu(),
-       {{"shade", "uber"}, {"order-surfaces", "on"}}},
+       {{"order-surfaces", "on"}}},
       {"six kinds on the CPU",
        {},
        mesh(five_kinds | bit(kind_of<Metal>)),
        cpu(),
        {{"order-surfaces", "off"}}},
-      {"order, asked for",
-       {{"order-surfaces", "on"}},
-       mesh(),
-       cpu(),
-       {{"shade", "uber"}, {"order-surfaces", "on"}}},
-      {"by material", {{"shade", "material"}}, mesh(), gpu(), {{"shade", "material"}}},
+      {"order, asked for", {{"order-surfaces", "on"}}, mesh(), cpu(), {{"order-surfaces", "on"}}},
       {"passes over tags",
        {{"compaction", "cub"}},
        mesh(),
@@ -442,7 +432,6 @@ TEST(ExecutionPlan, SaysWhatItIs) {
     expect("persistent", plan.persistent_warps ? "on" : "off");
     expect("finish-paths", std::to_string(plan.finish_paths));
     expect("schedule", plan.uses_graph ? "graph" : "host");
-    expect("shade", plan.shades_by_kind ? "material" : "uber");
     expect("order-surfaces", plan.orders_surfaces ? "on" : "off");
   }
 }

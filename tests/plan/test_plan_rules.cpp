@@ -177,29 +177,16 @@ TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
   EXPECT_EQ(accel_of("instances:20", Mode::wavefront), Accel::bvh2);
 }
 
-TEST(SceneOptions, ShadingByMaterialNeedsTheGeneralKernels) {
-  for (const auto& [shade, specialized] :
-       {std::pair{Shade::material, false}, {Shade::uber, true}}) {
-    Options options;
-    options.shade = shade;
-    SceneData scene = build_scene(options);
-    prepare_materials(scene, false);
-    EXPECT_EQ(why_general(options, properties_of(scene)).empty(), specialized);
-  }
-}
-
 TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(
       refusal("boxes", "rng", "xorwow"),
       "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, "
-      "--sampler independent, --integrator path, not --kernel-set general and not --shade "
-      "material; expected such a scene instead of 'boxes', "
-      "or other options");
+      "--sampler independent, --integrator path and not --kernel-set general; expected such a "
+      "scene instead of 'boxes', or other options");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
             "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
-            "--mis power, --sampler independent, --integrator path, not --kernel-set "
-            "general and not --shade material; expected such a scene instead of 'boxes', or other "
-            "options");
+            "--mis power, --sampler independent, --integrator path and not --kernel-set general; "
+            "expected such a scene instead of 'boxes', or other options");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),
               "--scene-memory " + value +

@@ -120,9 +120,9 @@ class AgainstNcu(unittest.TestCase):
         '"smsp__thread_inst_executed_per_inst_executed.ratio"',
         '"","","ns","inst",""',
         '"0","void pt::stage_kernel<pt::GeneratePaths<PhiloxSource>, 0>(int)","1","1","1"',
-        '"1","void pt::stage_kernel<pt::ShadeSurface<pt::OneKind<pt::Diffuse>>, 0>(int)",'
+        '"1","void pt::stage_kernel<pt::ShadeSurface<pt::Traits<0, 1>>, 0>(int)",'
         '"1,000","30","32"',
-        '"2","void pt::stage_kernel<pt::ShadeSurface<pt::OneKind<pt::Metal>>, 0>(int)",'
+        '"2","void pt::stage_kernel<pt::ShadeSurface<pt::Traits<1, 1>>, 0>(int)",'
         '"2000","10","16"', ""])
 
     def test_tables_of_ncu(self):
@@ -135,9 +135,9 @@ class AgainstNcu(unittest.TestCase):
 
     def test_launches_are_paired_from_the_end(self):
         launches = AGAINST_NCU.parse_ncu(self.TABLE)
-        ours = [{"kernel": "shade_surface/diffuse"}, {"kernel": "shade_surface/diffuse"}]
+        ours = [{"kernel": "shade_surface"}, {"kernel": "shade_surface"}]
         groups = AGAINST_NCU.pair_launches(ours, launches)
-        group = groups["shade_surface/diffuse"]
+        group = groups["shade_surface"]
         self.assertEqual(AGAINST_NCU.value_of(group, "gpu__time_duration.sum", 1e-3, None), 3)
         # 30 instructions of 32 threads, 10 of 16
         self.assertEqual(AGAINST_NCU.value_of(

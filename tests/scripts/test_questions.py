@@ -79,7 +79,7 @@ class Ladder(unittest.TestCase):
         for made in self.ladder.configurations(FULL, CUDA):
             by_scene.setdefault(made.same_image, []).append(made)
         self.assertEqual(len(by_scene), 3)
-        names = ("--stages", "--layout", "--compaction", "--shade", "--regenerate",
+        names = ("--stages", "--layout", "--compaction", "--regenerate",
                  "--finish-paths", "--schedule", "--pool-size", "--accel", "--persistent",
                  "--wave-rays", "--order-surfaces")
         for scene, steps in by_scene.items():
@@ -89,7 +89,7 @@ class Ladder(unittest.TestCase):
                 changed = {name for name in names if option(above, name) != option(below, name)
                            and not (name == "--persistent" and option(below, name) is None)}
                 if "--stages" in changed:  # and what only split stages have
-                    changed -= {"--shade", "--wave-rays", "--order-surfaces"}
+                    changed -= {"--wave-rays", "--order-surfaces"}
                 self.assertEqual(len(changed), 1, f"{above.name}: {changed}")
             # Persistent warps, the default, trace wide trees alone: each comes by itself.
             self.assertEqual([(option(step, "--accel"), option(step, "--persistent"))

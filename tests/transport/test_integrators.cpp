@@ -111,8 +111,6 @@ struct Executor {
   std::uint32_t path_count, finish_paths, half_ring;
   bool more = true;
 
-  template <class, class>
-  static constexpr bool kinds_have_kernels = false;
   static constexpr bool streams_shading = false;
   template <class>
   static constexpr bool traces_queues = false;

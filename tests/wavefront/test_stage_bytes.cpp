@@ -97,29 +97,11 @@ TEST(StageBytes, PersistentWarpsStoreAllHits) {
   expect_bytes(predict_bytes("route_hits", first_wave(), layout), 100 * 12, 100 * 4);
 }
 
-TEST(StageBytes, KindsShareTheSurfaces) {
-  WaveLayout layout = usual();
-  layout.shades_by_kind = true;
-  WaveFlow flow = first_wave();
-  flow.kinds[static_cast<std::size_t>(kind_of<Diffuse>)] = 15;
-  flow.kinds[static_cast<std::size_t>(several_kinds)] = 45;
-  const PredictedBytes all = predict_bytes("shade_surface", first_wave(), usual());
-  const std::string diffuse = std::string("shade_surface/") + Diffuse::name;
-  const PredictedBytes part = predict_bytes(diffuse, flow, layout);
-  const PredictedBytes rest = predict_bytes("shade_surface", flow, layout);
-  EXPECT_DOUBLE_EQ(part.read, all.read / 4);
-  EXPECT_DOUBLE_EQ(part.written, all.written / 4);
-  EXPECT_DOUBLE_EQ(part.read + rest.read, all.read);
-  EXPECT_DOUBLE_EQ(part.written + rest.written, all.written);
-}
-
 TEST(StageBytes, OrdersOfSurfacesReadTheHits) {
   const auto predict = [](const char* kernel) {
     return predict_bytes(kernel, first_wave(), usual());
   };
   expect_bytes(predict("order_tiles"), 60 * (4 + 8), 60 * 4);
-  expect_bytes(predict("count_surfaces"), 60 * (4 + 8), 60);
-  expect_bytes(predict("place_surfaces"), 60 * (4 + 1), 60 * 4);
 }
 
 TEST(StageBytes, FusedStagesStoreWhatGoesOn) {
@@ -153,7 +135,6 @@ TEST(StageBytes, FlowIsWhatTheCountersSay) {
   counters.waiting[queue_of<StageId::shade_miss>] = 1;
   counters.waiting[queue_of<StageId::shade_surface>] = 7;
   counters.waiting[queue_of<StageId::shadow>] = 4;
-  counters.kinds.count[1] = 6;
   const WaveFlow flow = flow_of(counters);
   EXPECT_EQ(flow.generated, 3);
   EXPECT_EQ(flow.rays, 8);
@@ -161,7 +142,6 @@ TEST(StageBytes, FlowIsWhatTheCountersSay) {
   EXPECT_EQ(flow.surfaces, 7);
   EXPECT_EQ(flow.shadows, 4);
   EXPECT_EQ(flow.finished, 2);
-  EXPECT_EQ(flow.kinds[1], 6);
 }
 
 /// A pool in one block of memory, filled with a pattern that no stage writes.

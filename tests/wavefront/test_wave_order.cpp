@@ -18,8 +18,6 @@ using SphereScene = Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::
 template <bool persistent>
 class Notes {
  public:
-  template <class, class>
-  static constexpr bool kinds_have_kernels = true;
   static constexpr bool streams_shading = persistent;
   template <class Traits>
   static constexpr bool traces_queues = persistent;
@@ -40,9 +38,8 @@ class Notes {
     queues_of[id_of(stage)] = queues;
     if constexpr (requires { stage.starts_paths; }) starts_paths |= stage.starts_paths;
     inputs.push_back(queues.input);
-    if constexpr (requires { Stage::kind; }) {
-      shaded.push_back({Stage::kind == nullptr ? "all" : Stage::kind, queues});
-    }
+    if (id_of(stage) == StageId::shade_surface) shaded.push_back(queues);
+    if constexpr (requires { Stage::variant; }) variants.push_back(Stage::variant);
     for (const StageId to : Stage::outcomes.to) EXPECT_TRUE(stage_info(to).has_own_queue());
   }
   bool traces_queues_here() const { return here; }
@@ -62,7 +59,8 @@ class Notes {
   std::map<StageId, StageQueues> queues_of;
   bool starts_paths = false;  ///< a stage that follows paths begins them, too
   SurfaceOrder order;
-  std::vector<std::pair<std::string, StageQueues>> shaded;  ///< by which kernels, and what
+  std::vector<StageQueues> shaded;
+  std::vector<std::string> variants;  ///< of the stages' kernels
 
  private:
   void note_traced() { ran.push_back(traced.back()); }
@@ -104,17 +102,15 @@ using Ids = std::vector<StageId>;
 struct OrderedWave {
   WaveCounters counters{};
   std::uint32_t slot_count = 0, queue[1] = {}, ordered[1] = {};
-  std::uint8_t kinds[1] = {};
   Notes<false> notes;
 
-  void run(bool orders, std::uint32_t scene_kinds, bool by_kind) {
+  void run(bool orders) {
     WaveBuffers buffers;
     buffers.compaction = compaction_info(Compaction::atomic);
     buffers.counters = &counters, buffers.slot_count = &slot_count;
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
     buffers.orders_surfaces = orders;
-    buffers.shades_by_kind = by_kind, buffers.kinds = scene_kinds;
-    buffers.ordered = ordered, buffers.kind_of_entry = kinds;
+    buffers.ordered = ordered;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}, {}};
     run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
   }
@@ -181,7 +177,7 @@ TEST(WaveOrder, PersistentWarpsTakeFlightsToTheirEnds) {
         EXPECT_EQ(notes.traced, by_warps ? Ids{sample_medium} : Ids{});
         // By warps, they are routed then.
         EXPECT_EQ(std::ranges::count(notes.ran, sample_medium), by_warps ? 2 : 1);
-        EXPECT_EQ(notes.shaded.front().first, by_warps ? "route" : "all");
+        EXPECT_EQ(notes.variants, std::vector<std::string>(by_warps ? 1 : 0, "route"));
       }
     }
   }
@@ -268,37 +264,16 @@ TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
   EXPECT_EQ(places_of(true, false), 2u);
 }
 
-TEST(WaveOrder, EachKindOfTheSceneIsShadedOverItsRangeOfTheOrderedQueue) {
-  const auto bit = [](MaterialKind kind) { return 1u << static_cast<int>(kind); };
-  OrderedWave wave;
-  wave.run(true, bit(kind_of<Conductor>) | bit(kind_of<Diffuse>) | bit(several_kinds), true);
-  const Notes<false>& notes = wave.notes;
-  EXPECT_EQ(notes.order.slots, wave.queue);
-  EXPECT_EQ(notes.order.count, &wave.counters.waiting[queue_index(StageId::shade_surface)]);
-  EXPECT_EQ(notes.order.ordered, wave.ordered);
-  const std::pair<std::string, MaterialKind> expected[] = {
-      {"diffuse", kind_of<Diffuse>}, {"conductor", kind_of<Conductor>}, {"all", several_kinds}};
-  ASSERT_EQ(notes.shaded.size(), std::size(expected));
-  for (std::size_t i = 0; i < std::size(expected); ++i) {
-    const auto& [kernel, queues] = notes.shaded[i];
-    const int kind = static_cast<int>(expected[i].second);
-    EXPECT_EQ(kernel, expected[i].first);
-    EXPECT_EQ(queues.slots, wave.ordered);
-    EXPECT_EQ(queues.first, &wave.counters.kinds.first[kind]);
-    EXPECT_EQ(queues.count, &wave.counters.kinds.count[kind]);
-  }
-}
-
 TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
   OrderedWave sorted, as_they_come;
-  sorted.run(true, 3, false);
+  sorted.run(true);
   ASSERT_EQ(sorted.notes.shaded.size(), 1u);
-  EXPECT_EQ(sorted.notes.shaded[0].second.slots, sorted.ordered);
-  EXPECT_EQ(sorted.notes.shaded[0].second.count, sorted.notes.order.count);
-  EXPECT_EQ(sorted.notes.shaded[0].second.first, nullptr);
-  as_they_come.run(false, 3, false);
+  EXPECT_EQ(sorted.notes.shaded[0].slots, sorted.ordered);
+  EXPECT_EQ(sorted.notes.shaded[0].count, sorted.notes.order.count);
+  EXPECT_EQ(sorted.notes.queues_of[StageId::shade_surface].first, nullptr);
+  as_they_come.run(false);
   ASSERT_EQ(as_they_come.notes.shaded.size(), 1u);
-  EXPECT_EQ(as_they_come.notes.shaded[0].second.slots, as_they_come.queue);
+  EXPECT_EQ(as_they_come.notes.shaded[0].slots, as_they_come.queue);
   EXPECT_EQ(std::ranges::count(as_they_come.notes.ran, StageId::order_surfaces), 0);
 }
 

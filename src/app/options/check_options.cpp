@@ -120,7 +120,7 @@ void check_stages(const Options& options, const GivenOptions& given) {
     if (given.contains("wave-rays")) refuse_with_stages(options, "wave-rays", Stages::fused);
     return;
   }
-  for (const char* name : {"shade", "persistent", "wave-collisions"}) {
+  for (const char* name : {"persistent", "wave-collisions"}) {
     if (given.contains(name)) refuse_with_stages(options, name, Stages::split);
   }
   if (options.order_surfaces == SurfaceOrdering::on)
@@ -129,18 +129,12 @@ void check_stages(const Options& options, const GivenOptions& given) {
     refuse_with_stages(options, "branching", Stages::split);
 }
 
-/// Only a queue can be sorted, and kernels for each kind of BSDF need it so.
 void check_surface_order(const Options& options) {
-  const bool by_kind = options.shade == Shade::material;
-  if (!compaction_info(options.compaction).has_queues &&
-      (by_kind || options.order_surfaces == SurfaceOrdering::on))
-    throw Error(fmt::format("--{}: sorts a queue; --compaction {} has no queues, expected another",
-                            by_kind ? "shade material" : "order-surfaces on",
-                            to_string(options.compaction)));
-  if (by_kind && options.order_surfaces == SurfaceOrdering::off)
-    throw Error(
-        "--order-surfaces off: not with --shade material, which takes ranges of a sorted "
-        "queue; expected on or auto");
+  if (options.order_surfaces == SurfaceOrdering::on &&
+      !compaction_info(options.compaction).has_queues)
+    throw Error(fmt::format(
+        "--order-surfaces on: sorts a queue; --compaction {} has no queues, expected another",
+        to_string(options.compaction)));
 }
 
 /// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.

@@ -332,15 +332,9 @@ void add_execution(std::vector<OptionEntry>& list) {
            "same with a ray's two records in one 32-byte sector, or array\n"
            "of structures")
       .only(wavefront, any_device)
-      .add(choice("shade", &Options::shade),
-           "wavefront: uber: one kernel shades all surfaces; material:\n"
-           "they are sorted by BSDF and shaded one BSDF after the other,\n"
-           "on CUDA by a kernel for each; auto: uber")
-      .only(wavefront, any_device)
       .add(choice("order-surfaces", &Options::order_surfaces),
-           "wavefront: the queue of surfaces is sorted by the kind of BSDF;\n"
-           "auto: with --shade material, and on CUDA with --shade auto if\n"
-           "the kinds are many or long")
+           "wavefront: the queue of surfaces is sorted by BSDF type; auto:\n"
+           "on CUDA, if the scene has many types or expensive ones")
       .only(wavefront, any_device)
       .add(choice("stages", &Options::stages),
            "wavefront: split: a stage traces and others shade; fused: one\n"

@@ -60,9 +60,6 @@ template <>
 inline constexpr auto enum_names<PoolLayout> = std::to_array<EnumName<PoolLayout>>(
     {{PoolLayout::soa, "soa"}, {PoolLayout::sectors, "sectors"}, {PoolLayout::aos, "aos"}});
 template <>
-inline constexpr auto enum_names<Shade> = std::to_array<EnumName<Shade>>(
-    {{Shade::automatic, "auto"}, {Shade::uber, "uber"}, {Shade::material, "material"}});
-template <>
 inline constexpr auto enum_names<SurfaceOrdering> =
     std::to_array<EnumName<SurfaceOrdering>>({{SurfaceOrdering::automatic, "auto"},
                                               {SurfaceOrdering::on, "on"},

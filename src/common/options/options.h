@@ -22,7 +22,6 @@ enum class KernelSet { automatic, specialized, general };
 enum class MegakernelKind { automatic, loop, vote, sort };
 enum class Schedule { automatic, host, graph };
 enum class PoolLayout { soa, sectors, aos };
-enum class Shade { automatic, uber, material };
 enum class SurfaceOrdering { automatic, on, off };
 enum class Stages { automatic, split, fused };
 enum class SceneMemory { automatic, global, shared, constant };
@@ -179,8 +178,7 @@ struct Options {
   std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
   PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state
   bool regenerate = true;
-  bool persistent = true;          ///< warps trace queues where they can (CUDA)
-  Shade shade = Shade::automatic;  ///< wavefront: who shades surfaces
+  bool persistent = true;  ///< warps trace queues where they can (CUDA)
   SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
   int wave_collisions = 0;            ///< Stages::split: null ones of a flight in a wave, 0: all

@@ -241,15 +241,15 @@ class Planner {
   }
 
   void choose_stages() {
-    const bool is_possible = o_.branching == Branching::divergent && o_.shade == Shade::automatic &&
-                             o_.order_surfaces != SurfaceOrdering::on;
+    const bool is_possible =
+        o_.branching == Branching::divergent && o_.order_surfaces != SurfaceOrdering::on;
     const bool is_cheap = is_specialized() && plan_.accel == Accel::brute;
     std::string reason = asked;
     plan_.fused = o_.stages == Stages::fused;
     if (o_.stages == Stages::automatic) {
       plan_.fused = is_possible && is_cheap && !device_.has_ray_blocks;
       reason = plan_.fused       ? "one scan a ray and few BSDFs: saves the hits' bytes"
-               : !is_possible    ? "--branching, --shade or --order-surfaces look at stages"
+               : !is_possible    ? "--branching and --order-surfaces apply to split stages"
                : device_.is_cuda ? "threads of one kernel would wait for each other"
                : is_cheap        ? "stages take blocks of rays, which save more"
                                  : "rays and surfaces are dear: stages take them in blocks";
@@ -267,22 +267,17 @@ class Planner {
   }
 
   void choose_surface_order() {
-    plan_.shades_by_kind = o_.shade == Shade::material && !plan_.fused;
     if (plan_.fused) return;
-    decide("shade", plan_.shades_by_kind ? "material" : "uber",
-           o_.shade != Shade::automatic ? asked : "kernels for each kind give no more");
     const bool has_queues = compaction_info(o_.compaction).has_queues;
     const bool pays = device_.is_cuda && !is_specialized() && order_pays_for(scene_.bsdf_kinds);
     const bool is_free = o_.order_surfaces == SurfaceOrdering::automatic;
-    const bool wanted =
-        is_free ? o_.shade == Shade::automatic && pays : o_.order_surfaces == SurfaceOrdering::on;
-    plan_.orders_surfaces = plan_.shades_by_kind || (has_queues && wanted);
+    const bool wanted = is_free ? pays : o_.order_surfaces == SurfaceOrdering::on;
+    plan_.orders_surfaces = has_queues && wanted;
     const int kinds = std::popcount(scene_.bsdf_kinds);
     decide("order-surfaces", plan_.orders_surfaces ? "on" : "off",
-           !is_free               ? asked
-           : plan_.shades_by_kind ? "--shade material"
-           : !has_queues          ? "there is no queue"
-           : !device_.is_cuda     ? "threads of a CPU do not run in warps"
+           !is_free           ? asked
+           : !has_queues      ? "there is no queue"
+           : !device_.is_cuda ? "threads of a CPU do not run in warps"
                               : fmt::format("{} kind{} of BSDFs", kinds, kinds == 1 ? "" : "s"));
   }
 
@@ -363,7 +358,6 @@ std::string why_general(const Options& o, const SceneProperties& scene) {
   if (o.sampling != DirectionSampling::bsdf) return "--sampling " + to_string(o.sampling);
   if (o.mis != MisHeuristic::power) return "--mis " + to_string(o.mis);
   if (o.sampler != SamplerKind::independent) return "--sampler " + to_string(o.sampler);
-  if (o.shade == Shade::material) return "--shade material";
   if (o.integrator == IntegratorKind::mlt) return "--integrator mlt";
   return "";
 }

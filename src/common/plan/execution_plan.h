@@ -19,8 +19,7 @@ struct ExecutionPlan {
   MegakernelKind megakernel = MegakernelKind::loop;
   SceneMemory scene_memory = SceneMemory::global;
   bool fused = false;             ///< wavefront: Stages::fused
-  bool orders_surfaces = false;   ///< wavefront: the queue of surfaces is sorted by kind of BSDF
-  bool shades_by_kind = false;    ///< wavefront: and each kind has a kernel
+  bool orders_surfaces = false;   ///< wavefront: the queue of surfaces is sorted by BSDF type
   bool persistent_warps = false;  ///< wavefront: they trace its queues
   std::uint32_t finish_paths = 0;
   bool finishes_in_blocks = false;   ///< wavefront: block-local wavefronts follow them, not threads

@@ -52,9 +52,8 @@ bool has_media(const SceneProperties& scene, const Options&) { return scene.has_
 
 constexpr const char* paper =
     "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
-    "independent, --integrator path, not --kernel-set general and not --shade material; expected "
-    "such "
-    "a scene instead of '{}', or other options";
+    "independent, --integrator path and not --kernel-set general; expected such a scene instead of "
+    "'{}', or other options";
 
 /// What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {

@@ -38,11 +38,9 @@ class Predictor {
     return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
   }
 
-  /// `n` of the surfaces.
-  PredictedBytes shade_surface(double n) const {
-    const double share = flow_.surfaces > 0 ? n / flow_.surfaces : 0;
-    const double alive = share * flow_.continued, ended = n - alive;
-    const double shadows = share * flow_.shadows;
+  PredictedBytes shade_surface() const {
+    const double n = flow_.surfaces, alive = flow_.continued, ended = n - alive;
+    const double shadows = flow_.shadows;
     return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
             alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
                 shadows * (3 * record + (layout_.appends ? index : 0)) +
@@ -72,12 +70,6 @@ class Predictor {
   PredictedBytes order_tiles() const {
     return {flow_.surfaces * (index + hit()), flow_.surfaces * index};
   }
-  PredictedBytes count_surfaces() const {
-    return {flow_.surfaces * (index + hit()), flow_.surfaces * sizeof(std::uint8_t)};
-  }
-  PredictedBytes place_surfaces() const {
-    return {flow_.surfaces * (sizeof(std::uint8_t) + index), flow_.surfaces * index};
-  }
 
  private:
   /// To find the `n` slots that wait.
@@ -106,7 +98,7 @@ class Predictor {
   const WaveLayout& layout_;
 };
 
-/// The kernels besides shade_surface, by the names of the statistics.
+/// The kernels by the names of the statistics.
 struct PredictedKernel {
   std::string_view name;
   PredictedBytes (Predictor::*bytes)() const;
@@ -119,19 +111,8 @@ constexpr PredictedKernel predicted_kernels[] = {
     {stage_info(StageId::shadow).name, &Predictor::shadow},
     {stage_info(StageId::bounce).name, &Predictor::bounce},
     {stage_info(StageId::finish).name, &Predictor::finish},
-    {"order_tiles", &Predictor::order_tiles},
-    {"count_surfaces", &Predictor::count_surfaces},
-    {"place_surfaces", &Predictor::place_surfaces}};
-
-/// Surfaces that the kernel shades: those of its kind, or what is left.
-double surfaces_of(std::string_view kind, const WaveFlow& flow, const WaveLayout& layout) {
-  if (!layout.shades_by_kind) return flow.surfaces;
-  auto chosen = static_cast<std::size_t>(several_kinds);
-  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
-    if (kind == Bsdf::name) chosen = static_cast<std::size_t>(kind_of<Bsdf>);
-  });
-  return flow.kinds[chosen];
-}
+    {stage_info(StageId::shade_surface).name, &Predictor::shade_surface},
+    {"order_tiles", &Predictor::order_tiles}};
 
 }  // namespace
 
@@ -144,9 +125,6 @@ WaveFlow flow_of(const WaveCounters& counters) {
   flow.surfaces = waiting(StageId::shade_surface);
   flow.shadows = waiting(StageId::shadow);
   flow.finished = counters.finish;
-  for (int kind = 0; kind < kind_count; ++kind) {
-    flow.kinds[static_cast<std::size_t>(kind)] = counters.kinds.count[kind];
-  }
   return flow;
 }
 
@@ -154,10 +132,6 @@ PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
                              const WaveLayout& layout) {
   const Predictor predict(flow, layout);
   const std::string stage = kernel.substr(0, kernel.find('/'));
-  const std::string kind = stage.size() < kernel.size() ? kernel.substr(stage.size() + 1) : "";
-  if (stage == stage_info(StageId::shade_surface).name) {
-    return predict.shade_surface(surfaces_of(kind, flow, layout));
-  }
   for (const PredictedKernel& one : predicted_kernels) {
     if (one.name == stage) return (predict.*one.bytes)();
   }

@@ -5,7 +5,6 @@
 // sector (a ray in the layout `sectors`), which L1 merges in part. results/ has the comparison.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "common/film/film.h"
@@ -20,10 +19,9 @@ struct WaveFlow {
   double generated = 0;  ///< new paths
   double rays = 0;       ///< all paths in flight, the new ones included
   double misses = 0, surfaces = 0;
-  double shadows = 0;                      ///< surfaces that sampled a light
-  double continued = 0;                    ///< paths that are in flight in the next wave
-  double finished = 0;                     ///< paths that were followed to their ends after it
-  std::array<double, kind_count> kinds{};  ///< [MaterialKind] of the surfaces, where ordered
+  double shadows = 0;    ///< surfaces that sampled a light
+  double continued = 0;  ///< paths that are in flight in the next wave
+  double finished = 0;   ///< paths that were followed to their ends after it
 };
 
 /// Of the counters after the wave, but for `continued`: begin_wave tells that of the next one.
@@ -39,13 +37,11 @@ struct WaveLayout {
   bool all_lights = false;   ///< Lighting::full: a miss needs the whole ray
   bool fused = false;        ///< one kernel traces and shades: parts.lights concerns samples alone
   bool persistent = false;   ///< persistent warps trace the rays, and route_hits sends them on
-  bool shades_by_kind = false;
 };
 
 /// Of one launch in a wave of this flow; nothing for kernels that are no stages of it. `kernel` as
-/// the statistics name it: "intersect", "shade_surface/diffuse". A path is as likely to be new
-/// among misses as among surfaces, all kinds of surfaces continue as often, and each light that is
-/// asked arrives.
+/// the statistics name it: "intersect", "shade_surface". A path is as likely to be new
+/// among misses as among surfaces, and each sampled light contributes.
 PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
                              const WaveLayout& layout);
 

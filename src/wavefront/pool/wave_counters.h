@@ -1,18 +1,9 @@
 // The counts of a wave, in the device's memory: the host is not needed between two waves.
 #pragma once
 
-#include "common/material/material.h"
 #include "common/options/stage_info.h"
 
 namespace pt {
-
-/// The kinds of BSDFs in the ordered queue of surfaces: those of kind k stand in
-/// [first[k], first[k] + count[k]).
-struct KindRanges {
-  std::uint32_t count[kind_count];
-  std::uint32_t first[kind_count];
-  std::uint32_t placed[kind_count];  ///< while they are put in order
-};
 
 struct WaveCounters {
   std::uint32_t waiting[queue_count + 1];  ///< slots in each queue; a pass may use the one behind
@@ -29,7 +20,6 @@ struct WaveCounters {
   std::uint32_t shadow_traced;             ///< shadow rays, likewise
   std::uint32_t flown;                     ///< flights, likewise
   std::uint32_t waves;
-  KindRanges kinds;
 };
 
 /// Decides how many free slots get a new path and empties the queues behind the rays. Returns false
@@ -46,7 +36,6 @@ PT_HD bool begin_wave(WaveCounters& c, std::uint32_t path_count, bool regenerate
   for (int queue = 0; queue < queue_count; ++queue) {
     if (queue != free_queue && queue != ray_queue) c.waiting[queue] = 0;
   }
-  for (int kind = 0; kind < kind_count; ++kind) c.kinds.count[kind] = c.kinds.placed[kind] = 0;
   c.first_ray = c.next_first_ray;
   c.live = rays - c.first_ray;
   c.generate = 0;

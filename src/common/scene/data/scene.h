@@ -116,10 +116,4 @@ using TrianglesAlone =
                               T::has_media, typename T::Integrator>,
                        T>;
 
-/// Of surfaces whose materials are all of one kind.
-template <class T, class Bsdf>
-struct OneKind : T {
-  using BsdfList = TypeList<Bsdf>;
-};
-
 }  // namespace pt
