@@ -17,6 +17,7 @@
 #include "common/image/atomic_file.h"
 #include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
+#include "common/plan/kernels.h"
 #include "common/platform/build_info.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "view/view_command.h"
@@ -49,6 +50,11 @@ int execute(const ViewCommand& command) { return view_command(command); }
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())
     print("{:<13} {}\n", scene.usage(), scene.description);
+  return 0;
+}
+
+int execute(const ListKernelsCommand&) {
+  print_text(kernel_list());
   return 0;
 }
 

@@ -65,10 +65,9 @@ class MegakernelCpu : public CpuRenderer {
     const auto cancelled = [this] { return is_cancelled(); };
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(
-          KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
-          [&](auto traits) {
-            dispatch_branching<decltype(traits)>(options_.branching, [&](auto branching) {
+      dispatch_traits(CpuKindsWith<Source>{}, traits_, [&](auto traits) {
+        dispatch_branching<false, decltype(traits), Source, SceneMemory::global, KernelBody::loop>(
+            options_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
                   PathRange work(supply(), batch, first, end, step, cancelled);
@@ -76,7 +75,7 @@ class MegakernelCpu : public CpuRenderer {
                 });
               });
             });
-          });
+      });
     });
   }
 

@@ -25,17 +25,15 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        const SampleBuffer& batch) {
   const dim3 block(options_.block.x, options_.block.y);
   const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
-  // Only where brute force scans the spheres do they lie elsewhere than in global memory.
-  using Kinds = std::conditional_t<memory == SceneMemory::global,
-                                   CudaKindsWith<Source, LoopTriangleKinds>, KindsInMemory<memory>>;
-  dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
-    constexpr bool may_reduce = may_reduce_on_cuda<decltype(traits), Source, memory>;
-    dispatch_branching<decltype(traits), may_reduce>(options_.branching, [&](auto branching) {
-      constexpr auto kernel =
-          megakernel<decltype(traits), decltype(branching)::value, memory, Source>;
-      launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,
-             shared_bytes, storage, batch, division, source, limits_, clock());
-    });
+  using Kernels = KernelSelection<true, number_source<Source>, memory, KernelBody::loop>;
+  dispatch_traits(TraitsOf<Kernels>{}, traits_, [&](auto traits) {
+    using Kind = decltype(traits);
+    dispatch_branching<true, Kind, Source, memory, KernelBody::loop>(
+        options_.branching, [&](auto branching) {
+          constexpr auto kernel = megakernel<Kind, decltype(branching)::value, memory, Source>;
+          launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,
+                 shared_bytes, storage, batch, division, source, limits_, clock());
+        });
   });
 }
 

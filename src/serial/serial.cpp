@@ -16,10 +16,9 @@ class SerialRenderer : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
-                      [&](auto traits) {
-                        timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
-                      });
+      dispatch_traits(CpuKindsWith<Source>{}, traits_, [&](auto traits) {
+        timer_.time("serial", [&] { trace_all<decltype(traits)>(source, batch); });
+      });
     });
   }
 

@@ -4,7 +4,7 @@
 
 #include "common/device/cuda/stage_stamp.cuh"
 #include "wavefront/flight_warp.cuh"
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_steps.h"
 
 namespace pt {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "common/transport/intersect_block.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_buffers.h"
 
 namespace pt {
 

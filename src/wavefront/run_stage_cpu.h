@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_buffers.h"
 
 namespace pt {
 

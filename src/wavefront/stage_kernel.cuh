@@ -3,7 +3,7 @@
 
 #include "common/device/cuda/bind_scene.cuh"
 #include "common/device/cuda/stage_stamp.cuh"
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_buffers.h"
 
 namespace pt {
 

@@ -6,7 +6,7 @@
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/accel/trace_cuda/reserve_rays.cuh"
 #include "common/device/cuda/stage_stamp.cuh"
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_buffers.h"
 
 namespace pt {
 

@@ -12,9 +12,11 @@
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/host_memory.h"
 #include "common/options/option_names.h"
+#include "wavefront/loop.h"
 #include "wavefront/run_block_cpu.h"
 #include "wavefront/run_stage_cpu.h"
 #include "wavefront/shade_block_cpu.h"
+#include "wavefront/wavefront.h"
 
 namespace pt {
 namespace {
@@ -120,7 +122,10 @@ class CpuExecutor {
                            part_.buffers.half_ring());
   }
 
-  bool more() const { return more_; }
+  template <class Wave>
+  void while_waves(Wave&& wave) {
+    while (more_) wave();
+  }
 
   void order_surfaces(const SurfaceOrder& order) {
     part_.timer.time(to_string(StageId::order_surfaces),
@@ -206,13 +211,12 @@ class WavefrontCpu : public CpuRenderer {
   void trace_batch(const SampleBuffer& batch) override {
     with_random_source(batch, [&](const auto& source) {
       using Source = std::remove_cvref_t<decltype(source)>;
-      dispatch_traits(KindsWith<Source, CpuTriangleSceneKinds>{}, traits_, options_.integrator,
-                      [&](auto traits) {
-                        dispatch_branching<decltype(traits)>(
-                            options_.branching, [&](auto branching) {
-                              run_parts<decltype(traits), branching()>(source, batch);
-                            });
-                      });
+      dispatch_traits(CpuKindsWith<Source>{}, traits_, [&](auto traits) {
+        dispatch_branching<false, decltype(traits), Source, SceneMemory::global,
+                           KernelBody::stages>(options_.branching, [&](auto branching) {
+          run_parts<decltype(traits), branching()>(source, batch);
+        });
+      });
     });
   }
 
@@ -239,15 +243,16 @@ class WavefrontCpu : public CpuRenderer {
     const StageContext<Source> context{
         buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
         this->limits_, this->supply()};
-    const std::uint64_t finish_paths =
+    const std::uint64_t most_left =
         repeats ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
     CpuExecutor execute(scene_, options_, part, runs, repeats,
-                        static_cast<std::uint32_t>(finish_paths), has_open_boundaries_);
-    while (execute.more()) {
-      run_wave<Traits, branching>(execute, buffers, context);
+                        static_cast<std::uint32_t>(most_left), has_open_boundaries_);
+    const auto wave = [&](bool starts_paths) {
+      run_wave<Traits, branching>(execute, buffers, context, starts_paths);
       if (is_cancelled()) runs.end();
-    }
-    if (!repeats) run_finish<Traits>(execute, buffers, context);
+    };
+    run_all_waves(execute, buffers, repeats, wave,
+                  [&] { finish_paths<Traits>(execute, buffers, context); });
   }
 
   std::vector<std::unique_ptr<PoolPart>> parts_;

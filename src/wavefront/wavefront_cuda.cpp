@@ -7,6 +7,7 @@
 
 #include "common/device/cuda/profiler_range.cuh"
 #include "common/error/error.h"
+#include "wavefront/wavefront.h"
 
 namespace pt {
 namespace {
@@ -141,9 +142,9 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
   with_random_source([&](const auto& source) {
     using Source = std::remove_cvref_t<decltype(source)>;
     if constexpr (std::is_same_v<Source, SamplerSource>) {
-      if (traits_.has_media) return function(MediaSceneKinds{}, context_of(batch, source));
+      if (traits_.has_media) return function(WaveKinds<Source, true>{}, context_of(batch, source));
     }
-    function(CudaKindsWith<Source, TriangleSceneKinds>{}, context_of(batch, source));
+    function(WaveKinds<Source>{}, context_of(batch, source));
   });
 }
 
@@ -230,6 +231,19 @@ void WavefrontCuda::read_counters() {
   check_cuda(cudaStreamSynchronize(stream()), "running a wave");
 }
 
+template <class Wave>
+void WavefrontCuda::while_waves(Wave&& wave) {
+  if (graph_exec_ != nullptr && !is_counting()) {
+    const ProfilerRange range("waves of a graph");
+    check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
+    return read_counters();
+  }
+  do {
+    wave();
+    if (!is_counting()) read_counters();
+  } while (host_counters_->intersect > 0);
+}
+
 void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   flows_.clear();
   if (has_few_paths(batch)) {
@@ -237,28 +251,15 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
     return blocks_->trace(scene_, batch, sampler_source_of(options_), limits_, StageId::finish);
   }
   start_queues();
-  // A pool that holds the whole batch starts all paths in the first wave.
-  int wave = 0;
-  if (!buffers_.reuses_slots) {
-    const ProfilerRange range(fmt::format("wave {}", wave++));
-    enqueue_wave(batch, 0, true);
+  int number = 0;
+  const auto wave = [&](bool starts_paths) {
+    const ProfilerRange range(fmt::format("wave {}", number++));
+    enqueue_wave(batch, 0, starts_paths);
     if (is_counting()) note_flow();
-  }
-  if (graph_exec_ != nullptr && !is_counting()) {
-    const ProfilerRange range("waves of a graph");
-    check_cuda(cudaGraphLaunch(graph_exec_, stream()), "cudaGraphLaunch");
-    read_counters();
-  } else {
-    do {
-      const ProfilerRange range(fmt::format("wave {}", wave++));
-      enqueue_wave(batch, 0, buffers_.reuses_slots);
-      if (is_counting())
-        note_flow();
-      else
-        read_counters();
-    } while (host_counters_->intersect > 0);
-  }
-  if (finish_paths_ > 0 && !supply().repeats()) enqueue_finish(batch);
+  };
+  run_all_waves(*this, buffers_, supply().repeats(), wave, [&] {
+    if (finish_paths_ > 0) enqueue_finish(batch);
+  });
   waves_ += host_counters_->waves;
 }
 

@@ -4,10 +4,24 @@
 #include "common/block_wavefront/block_wavefront_cuda.h"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
+#include "wavefront/loop.h"
 #include "wavefront/pool/stage_bytes.h"
-#include "wavefront/wavefront.h"
 
 namespace pt {
+
+/// The scenes of a wavefront with this source of random numbers, as Traits; those with media apart,
+/// whose kernels compile beside the others.
+template <class Source, bool has_media>
+struct WaveKernels {
+  static constexpr bool has(const SceneTraits& scene) {
+    using enum KernelBody;
+    return scene.has_media == has_media &&
+           KernelSelection<true, number_source<Source>, SceneMemory::global, stages, warps,
+                           fused>::has(scene);
+  }
+};
+template <class Source, bool has_media = false>
+using WaveKinds = TraitsOf<WaveKernels<Source, has_media>>;
 
 class WavefrontCuda : public CudaRenderer {
  public:
@@ -21,22 +35,24 @@ class WavefrontCuda : public CudaRenderer {
   /// Enqueues what follows the last wave.
   void enqueue_finish(const SampleBuffer& batch);
 
-  // The Executor of run_wave (wavefront.h):
+  // The Executor of run_wave (wave_steps.h):
   void compact(const CompactionRequest& request);
   void order_surfaces(const SurfaceOrder& order);
   void begin_wave();
   static constexpr bool streams_shading = true;
   template <class Stage>
   void run(const Stage& stage, const StageQueues& queues);
-  /// Wide trees, where a thread per ray would wait for the slowest of its warp. Scenes with spheres
-  /// or masks are of the same kinds as some without.
   template <class Traits>
-  static constexpr bool traces_queues = Traits::accel == Accel::cwbvh;
+  static constexpr bool traces_queues = has_kernel({true, KernelBody::warps, Traits::value(),
+                                                    NumberSource::sampler});
   bool traces_queues_here() const { return execution_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
   static constexpr bool flies_queues = true;
   void fly_queue(const StageQueues& queues, const SampleBuffer& samples);
+  /// Repeats a wave, on the host or in the graph that has been built of waves (run_all_waves).
+  template <class Wave>
+  void while_waves(Wave&& wave);
 
  protected:
   void prepare_batch(const SampleBuffer& batch) override;

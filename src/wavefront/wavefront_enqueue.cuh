@@ -15,28 +15,24 @@ std::string kernel_name(const Stage& stage) {
   return name;
 }
 
-/// Stages of which a thread traces a ray alone walk binary trees, and wide ones over triangles;
-/// persistent warps walk the others (check_plan). With lights no shared memory holds the spheres.
+/// Whether the table of kernels has the stage, for the stages that trace rays. RayTraits say
+/// nothing of the scene's lights.
 template <class Stage, SceneMemory>
-inline constexpr bool has_kernel = true;
+inline constexpr bool is_in_table = true;
 template <class T, SceneMemory memory>
-inline constexpr bool has_kernel<IntersectRays<T>, memory> =
-    T::accel != Accel::cwbvh || T::geometry == Geometry::triangles;
+inline constexpr bool is_in_table<IntersectRays<T>, memory> = traces_rays(T::value(), memory);
 template <class T, SceneMemory memory>
-inline constexpr bool has_kernel<TraceShadowRays<T>, memory> = has_kernel<IntersectRays<T>, memory>;
-template <class T, class Source>
-inline constexpr bool has_kernel<FollowPaths<T, Source>, SceneMemory::shared> = !T::has_lights;
-/// Blocks finish paths in media where wide trees are traced.
-template <class T, class Source>
-inline constexpr bool has_kernel<FollowPaths<T, Source>, SceneMemory::global> =
-    !T::has_media || T::accel == Accel::bvh2;
+inline constexpr bool is_in_table<TraceShadowRays<T>, memory> = traces_rays(T::value(), memory);
+template <class T, class Source, SceneMemory memory>
+inline constexpr bool is_in_table<FollowPaths<T, Source>, memory> =
+    has_kernel({true, KernelBody::fused, T::value(), number_source<Source>, memory});
 
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
   const int block = options_.stage_block[static_cast<int>(id_of(stage))];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
-    if constexpr (has_kernel<Stage, Storage::memory>) {
+    if constexpr (is_in_table<Stage, Storage::memory>) {
       constexpr auto kernel = stage_kernel<Stage, Storage::memory>;
       const std::uint32_t blocks =
           (buffers_.pool.slot_count + static_cast<std::uint32_t>(block) - 1) / block;
@@ -45,7 +41,7 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
       launch(kernel_name(stage).c_str(), kernel, blocks < resident ? blocks : resident, block,
              shared_bytes, storage, stage, queues, clock());
     } else {
-      throw_no_kernel(traits_, options_.integrator);
+      throw_no_kernel(traits_);
     }
   };
   if constexpr (Stage::spheres == SphereAccess::once) {
@@ -58,19 +54,19 @@ void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
 
 template <class Kinds, class Source>
 void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool starts_paths) {
-  dispatch_traits(Kinds{}, traits_, options_.integrator, [&](auto traits) {
-    constexpr bool may_reduce = may_reduce_on_cuda<decltype(traits), Source>;
-    dispatch_branching<decltype(traits), may_reduce>(options_.branching, [&](auto branching) {
-      run_wave<decltype(traits), decltype(branching)::value>(*this, buffers_, context,
-                                                             starts_paths);
-    });
+  dispatch_traits(Kinds{}, traits_, [&](auto traits) {
+    using Kind = decltype(traits);
+    dispatch_branching<true, Kind, Source, SceneMemory::global, KernelBody::stages>(
+        options_.branching, [&](auto branching) {
+          run_wave<Kind, decltype(branching)::value>(*this, buffers_, context, starts_paths);
+        });
   });
 }
 
 template <class Kinds, class Source>
 void WavefrontCuda::enqueue_finish_of(const StageContext<Source>& context) {
-  dispatch_traits(Kinds{}, traits_, options_.integrator,
-                  [&](auto traits) { run_finish<decltype(traits)>(*this, buffers_, context); });
+  dispatch_traits(Kinds{}, traits_,
+                  [&](auto traits) { finish_paths<decltype(traits)>(*this, buffers_, context); });
 }
 
 }  // namespace pt

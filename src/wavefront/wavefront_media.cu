@@ -14,8 +14,9 @@ void WavefrontCuda::fly_queue(const StageQueues& queues, const SampleBuffer& sam
 }
 
 using SamplerContext = StageContext<SamplerSource>;
+using MediaKinds = WaveKinds<SamplerSource, true>;
 
-template void WavefrontCuda::enqueue_wave_of<MediaSceneKinds>(const SamplerContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<MediaSceneKinds>(const SamplerContext&);
+template void WavefrontCuda::enqueue_wave_of<MediaKinds>(const SamplerContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<MediaKinds>(const SamplerContext&);
 
 }  // namespace pt

@@ -6,9 +6,12 @@ namespace pt {
 using PhiloxContext = StageContext<PhiloxSource>;
 using XorwowContext = StageContext<XorwowSource<CurandState>>;
 
-template void WavefrontCuda::enqueue_wave_of<SphereSceneKinds>(const PhiloxContext&, bool);
-template void WavefrontCuda::enqueue_wave_of<BruteSkyKinds>(const XorwowContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<SphereSceneKinds>(const PhiloxContext&);
-template void WavefrontCuda::enqueue_finish_of<BruteSkyKinds>(const XorwowContext&);
+using PhiloxKinds = WaveKinds<PhiloxSource>;
+using XorwowKinds = WaveKinds<XorwowSource<CurandState>>;
+
+template void WavefrontCuda::enqueue_wave_of<PhiloxKinds>(const PhiloxContext&, bool);
+template void WavefrontCuda::enqueue_wave_of<XorwowKinds>(const XorwowContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<PhiloxKinds>(const PhiloxContext&);
+template void WavefrontCuda::enqueue_finish_of<XorwowKinds>(const XorwowContext&);
 
 }  // namespace pt

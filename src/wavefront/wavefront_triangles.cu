@@ -40,7 +40,7 @@ void WavefrontCuda::trace_shadow_queue(const StageQueues& queues, const SampleBu
 
 using SamplerContext = StageContext<SamplerSource>;
 
-template void WavefrontCuda::enqueue_wave_of<TriangleSceneKinds>(const SamplerContext&, bool);
-template void WavefrontCuda::enqueue_finish_of<TriangleSceneKinds>(const SamplerContext&);
+template void WavefrontCuda::enqueue_wave_of<WaveKinds<SamplerSource>>(const SamplerContext&, bool);
+template void WavefrontCuda::enqueue_finish_of<WaveKinds<SamplerSource>>(const SamplerContext&);
 
 }  // namespace pt

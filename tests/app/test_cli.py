@@ -25,7 +25,7 @@ TIMEOUT_S = 300  # of one run; generous, because the sanitizers share a busy mac
 OPTIONS = """--mode --device --spp --width --height --max-depth --seed --scene --spheres --output
     --exposure --look-from --look-at --up --fov --aperture --focus-distance --threads --work --block
     --compaction --pool-size --layout --regenerate --schedule --scene-memory --branching --rng --repeat
-    --warmup --stats --csv --quiet --list-scenes --list-devices --version --help""".split()
+    --warmup --stats --csv --quiet --list-scenes --list-devices --list-kernels --version --help""".split()
 
 
 def read_ppm(path):
@@ -149,7 +149,7 @@ class Information(CommandLine):
         self.assertRegex(self.run_ok("--list-devices").stdout, r"(?m)^\s*cpu\b")
 
     def test_information_writes_no_file(self):
-        for option in ["--help", "--version", "--list-scenes", "--list-devices"]:
+        for option in ["--help", "--version", "--list-scenes", "--list-devices", "--list-kernels"]:
             self.run_ok(option)
         self.assertEqual(self.files(), [])
 
@@ -508,7 +508,7 @@ class StandardOutput(CommandLine):
         self.render_ok("--output", "a.ppm")
         self.run_ok("rays", "--scene", "boxes", "--size", "16", "--output", "r")
         before = self.files()
-        for arguments in [["--help"], ["--version"], ["--list-scenes"], ["--list-devices"],
+        for arguments in [["--help"], ["--version"], ["--list-scenes"], ["--list-devices"], ["--list-kernels"],
                           ["compare", "--help"], ["compare", "a.ppm", "a.ppm"],
                           ["trace", "--mesh", "boxes", "--rays", "r", "--device", "cpu"],
                           ["compact", "--device", "cpu", "--items", "1K", "--repeat", "1"],

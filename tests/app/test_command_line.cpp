@@ -327,6 +327,7 @@ TEST(CommandLine, CompactionSortIsAtomicWithSurfacesInOrder) {
 
 TEST(CommandLine, OtherCommands) {
   EXPECT_TRUE(std::holds_alternative<ListScenesCommand>(parse("--list-scenes")));
+  EXPECT_TRUE(std::holds_alternative<ListKernelsCommand>(parse("--list-kernels")));
   EXPECT_TRUE(std::holds_alternative<ListDevicesCommand>(parse("--list-devices")));
   EXPECT_TRUE(std::holds_alternative<VersionCommand>(parse("--version")));
   auto compare = std::get<CompareCommand>(parse("compare a.exr b.png"));

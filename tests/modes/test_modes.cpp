@@ -79,7 +79,7 @@ PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32
       }
       return u;
     };
-    dispatch_traits(CpuSceneKinds{}, scene.traits, options.integrator, [&](auto traits) {
+    dispatch_traits(CpuSceneKinds{}, scene.traits, [&](auto traits) {
       sum.radiance += glm::dvec3(
           follow_path<decltype(traits)>(view, pixel, path_limits_of(options), draw, sum));
     });

@@ -499,12 +499,16 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
 
 TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
   expect_refused(mega({{"rng", "xorwow"}, {"accel", "bvh2"}}), spheres(51), gpu(),
-                 "--rng xorwow: on CUDA not with --accel bvh2; expected brute or auto");
-  expect_refused({{"branching", "reduced"}, {"scene-memory", "constant"}}, spheres(51), gpu(),
-                 "--branching reduced: on CUDA not with --scene-memory constant; expected global "
-                 "or auto");
-  expect_refused({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
-                 "--rng xorwow: on CUDA not with --branching reduced; expected divergent");
+                 "--accel bvh2: no kernel on CUDA renders scene '' (spheres and quads) so; "
+                 "expected --accel brute");
+  expect_refused(
+      {{"branching", "reduced"}, {"scene-memory", "constant"}}, spheres(51), gpu(),
+      "--scene-memory constant: no kernel on CUDA renders scene '' (spheres and quads) so; "
+      "expected --scene-memory global");
+  expect_refused(
+      {{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
+      "--rng xorwow: no kernel on CUDA renders scene '' (spheres and quads) so; expected --rng "
+      "philox");
   EXPECT_NO_THROW(plan_of({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), cpu()));
 }
 
@@ -514,14 +518,21 @@ SceneProperties lit(SceneProperties scene) {
 }
 
 TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
-  expect_refused({{"accel", "brute"}}, mesh(), gpu(),
-                 "--accel brute: on CUDA by lean kernels alone (--kernel-set)");
-  expect_refused(mega({{"kernel", "loop"}, {"accel", "cwbvh"}}), forest(), gpu(),
-                 "--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA");
-  expect_refused({{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
-                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
+  expect_refused(
+      {{"accel", "brute"}}, mesh(), gpu(),
+      "--accel brute: no kernel on CUDA renders scene '' (triangles) so; expected --accel bvh2 or "
+      "cwbvh");
+  expect_refused(
+      mega({{"kernel", "loop"}, {"accel", "cwbvh"}}), forest(), gpu(),
+      "--accel cwbvh: no kernel on CUDA renders scene '' (triangles, instances) so; expected "
+      "--accel bvh2");
+  expect_refused(
+      {{"accel", "cwbvh"}, {"persistent", "off"}}, masked_mesh(), gpu(),
+      "--accel cwbvh: no kernel on CUDA renders scene '' (triangles, masks, a far plane or "
+      "hidden emitters) so; expected --accel bvh2");
   expect_refused({{"accel", "cwbvh"}}, mesh_and_sphere(), gpu(),
-                 "--accel cwbvh: threads trace triangles alone in it on CUDA");
+                 "--accel cwbvh: no kernel on CUDA renders scene '' (triangles, spheres) so; "
+                 "expected --accel bvh2");
   EXPECT_TRUE(plan_of({{"accel", "cwbvh"}, {"stages", "fused"}}, forest(), gpu()).fused);
   EXPECT_EQ(plan_of(mega({{"accel", "cwbvh"}}), masked_mesh(), gpu()).megakernel,
             MegakernelKind::sort);
@@ -530,24 +541,32 @@ TEST(ExecutionPlan, KernelsThatWinNowhereAreRefused) {
 }
 
 TEST(ExecutionPlan, SpheresLieInGlobalMemoryForMostKernels) {
-  expect_refused({{"scene-memory", "constant"}, {"stages", "split"}}, spheres(51), gpu(),
-                 "--scene-memory constant: for kernels that scan the spheres and shade");
-  expect_refused(mega({{"scene-memory", "shared"}, {"accel", "bvh2"}}), spheres(51), gpu(),
-                 "--scene-memory shared: for kernels that scan the spheres and shade");
-  expect_refused(mega({{"scene-memory", "shared"}}), lit(spheres(51)), gpu(),
-                 "--scene-memory shared: has kernels for spheres under the sky alone");
+  expect_refused(
+      {{"scene-memory", "constant"}, {"stages", "split"}}, spheres(51), gpu(),
+      "--scene-memory constant: no kernel on CUDA renders scene '' (spheres and quads) so; "
+      "expected --scene-memory global");
+  expect_refused(
+      mega({{"scene-memory", "shared"}, {"accel", "bvh2"}}), spheres(51), gpu(),
+      "--accel bvh2: no kernel on CUDA renders scene '' (spheres and quads) so; expected "
+      "--accel brute");
+  expect_refused(
+      mega({{"scene-memory", "shared"}}), lit(spheres(51)), gpu(),
+      "--scene-memory shared: no kernel on CUDA renders scene '' (spheres and quads, emitters) "
+      "so; expected --scene-memory global");
   EXPECT_EQ(plan_of(mega(), lit(spheres(51)), gpu()).scene_memory, SceneMemory::constant);
   EXPECT_EQ(plan_of(mega({{"rng", "xorwow"}}), spheres(51), gpu()).scene_memory,
             SceneMemory::global);
-  expect_refused(mega({{"rng", "xorwow"}}), lit(quads(9)), gpu(),
-                 "--rng xorwow: on CUDA not with surfaces that shine, as scene '' has; expected "
-                 "a scene without");
+  expect_refused(
+      mega({{"rng", "xorwow"}}), lit(quads(9)), gpu(),
+      "--rng xorwow: no kernel on CUDA renders scene '' (spheres and quads, emitters) so; "
+      "expected --rng philox");
 }
 
 TEST(ExecutionPlan, EmbreeHasNoMasks) {
-  expect_refused({{"accel", "embree"}}, masked_mesh(), cpu(),
-                 "--accel embree: scene '' has masks, media, a far plane or hidden emitters; "
-                 "expected brute, bvh2 or cwbvh");
+  expect_refused(
+      {{"accel", "embree"}}, masked_mesh(), cpu(),
+      "--accel embree: no kernel on the CPU renders scene '' (triangles, masks, a far plane or "
+      "hidden emitters) so; expected --accel brute or bvh2 or cwbvh");
 }
 
 TEST(ExecutionPlan, IsPrintedInColumns) {

@@ -35,10 +35,11 @@ std::string refusal(const std::string& scene, const std::string& name, const std
 
 TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
   for (const std::string value : {"cwbvh", "embree"}) {
-    EXPECT_EQ(refusal("cornell", "accel", value),
-              "--accel " + value +
-                  ": holds triangles; scene 'cornell' has spheres and quads only, expected brute "
-                  "or bvh2");
+    EXPECT_EQ(
+        refusal("cornell", "accel", value),
+        "--accel " + value +
+            ": no kernel on the CPU renders scene 'cornell' (spheres and quads, emitters) so; "
+            "expected --accel brute or bvh2");
   }
   for (const std::string value : {"sah", "sbvh", "lbvh", "hploc", "hploc-reinsert"}) {
     EXPECT_EQ(refusal("spheres", "builder", value),
@@ -55,37 +56,42 @@ TEST(SceneOptions, OfTrianglesAreRefusedInScenesOfSpheresAndQuads) {
 }
 
 TEST(SceneOptions, VotesAreForTrianglesAlone) {
-  SceneData masked = build_scene(with_scene("boxes"));
-  masked.materials[0].opacity.offset = 0.5f;
-  Options voting = with_scene("boxes");
-  voting.kernel = MegakernelKind::vote;
-  const auto check = [](const Options& options, SceneData scene) {
-    prepare_materials(scene, false);
-    check_options_for_scene(options, properties_of(scene));
+  const auto check = [](MegakernelKind kernel, const char* name, bool masked = false) {
+    Options options = with_scene(name);
+    options.device.kind = DeviceChoice::Kind::cuda;
+    options.mode = Mode::megakernel;
+    options.kernel = kernel;
+    SceneData scene = build_scene(options);
+    if (masked) scene.materials[0].opacity.offset = 0.5f;
+    try {
+      prepare_scene(scene, options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
   };
-  EXPECT_NO_THROW(check(voting, build_scene(voting)));
-  EXPECT_THROW(check(voting, masked), Error);
-  Options sorting = with_scene("boxes");
-  sorting.kernel = MegakernelKind::sort;
-  EXPECT_NO_THROW(check(sorting, masked));
-  SceneData instanced_masks = build_scene(with_scene("instances:20"));
-  EXPECT_NO_THROW(check(sorting, instanced_masks));
-  instanced_masks.materials[0].opacity.offset = 0.5f;
-  EXPECT_THROW(check(sorting, instanced_masks), Error);
-  for (const std::string scene : {"cornell", "spheres", "instances:20"}) {
-    EXPECT_EQ(refusal(scene, "kernel", "sort"),
-              scene == "instances:20"
-                  ? ""
-                  : "--kernel sort: traces triangles and their instances alone; scene '" + scene +
-                        "' has spheres, masks or media among instances, boundaries without a BSDF "
-                        "or no triangles, expected auto or loop");
-    EXPECT_EQ(
-        refusal(scene, "kernel", "vote"),
-        "--kernel vote: traces triangles alone; scene '" + scene +
-            "' has spheres, instances, masks, media, a far plane, hidden emitters or no triangles, "
-            "expected auto or loop");
-    EXPECT_EQ(refusal(scene, "kernel", "loop"), "");
+  using enum MegakernelKind;
+  EXPECT_EQ(check(vote, "boxes"), "");
+  EXPECT_EQ(check(vote, "boxes", true),
+            "--kernel vote: no kernel on CUDA renders scene 'boxes' (triangles, masks, a far plane "
+            "or hidden emitters) so; expected --kernel sort");
+  EXPECT_EQ(check(sort, "boxes", true), "");
+  EXPECT_EQ(check(sort, "instances:20"), "");
+  EXPECT_EQ(check(sort, "instances:20", true),
+            "--kernel sort: no kernel on CUDA renders scene 'instances:20' (triangles, instances, "
+            "masks, a far plane or hidden emitters) so; expected --accel bvh2, --kernel loop");
+  EXPECT_EQ(
+      check(vote, "instances:20"),
+      "--kernel vote: no kernel on CUDA renders scene 'instances:20' (triangles, instances) so; "
+      "expected --kernel sort");
+  for (const auto& [kernel, name] : {std::pair{sort, "sort"}, {vote, "vote"}}) {
+    EXPECT_EQ(check(kernel, "cornell"),
+              "--kernel " + std::string(name) +
+                  ": no kernel on CUDA renders scene 'cornell' (spheres and quads, emitters) so; "
+                  "expected --kernel loop");
   }
+  for (const char* scene : {"cornell", "spheres", "instances:20", "boxes"})
+    EXPECT_EQ(check(loop, scene), "");
 }
 
 // Threads that follow rays alone are faster in a binary tree, warps that vote and blocks that sort
@@ -180,17 +186,16 @@ TEST(SceneOptions, MaskedTreesAreWideForTheWavefrontOfTheCpu) {
 TEST(SceneOptions, OfThePaperAreRefusedInAllOthers) {
   EXPECT_EQ(
       refusal("boxes", "rng", "xorwow"),
-      "--rng xorwow: is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, "
-      "--sampler independent, --integrator path and not --kernel-set general; expected such a "
-      "scene instead of 'boxes', or other options");
+      "--rng xorwow: no kernel on the CPU renders scene 'boxes' (triangles) so; expected --rng "
+      "philox");
   EXPECT_EQ(refusal("boxes", "branching", "reduced"),
-            "--branching reduced: is for scenes of spheres and quads alone, with --sampling bsdf, "
-            "--mis power, --sampler independent, --integrator path and not --kernel-set general; "
-            "expected such a scene instead of 'boxes', or other options");
+            "--branching reduced: no kernel on the CPU renders scene 'boxes' (triangles) so; "
+            "expected --branching divergent");
   for (const std::string value : {"shared", "constant"}) {
     EXPECT_EQ(refusal("boxes", "scene-memory", value),
               "--scene-memory " + value +
-                  ": holds the spheres of scenes without triangles; expected global or auto");
+                  ": no kernel on the CPU renders scene 'boxes' (triangles) so; expected "
+                  "--scene-memory global");
   }
   for (const char* value : {"auto", "global"})
     EXPECT_EQ(refusal("boxes", "scene-memory", value), "");
@@ -228,6 +233,21 @@ TEST(SceneOptions, LeanKernelsAreRefusedWithAReason) {
   options.mis = MisHeuristic::balance;
   SceneData scene = build_scene(options);
   EXPECT_THROW(prepare_scene(scene, options), Error);
+}
+
+TEST(SceneOptions, ARefusalSaysWhatAsksForGeneralKernels) {
+  Options options = with_scene("spheres");
+  options.rng = RngKind::xorwow;
+  options.mis = MisHeuristic::balance;
+  SceneData scene = build_scene(options);
+  try {
+    prepare_scene(scene, options);
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "--rng xorwow: no kernel on the CPU renders scene 'spheres' (spheres and quads by "
+                 "general kernels, because of --mis balance) so; expected --rng philox");
+  }
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ void for_each_kind(TypeList<T...>, Test&& test) {
 TEST(Dispatch, EveryKindOfSceneFindsItself) {
   for_each_kind(CpuSceneKinds{}, [](auto kind) {
     int calls = 0;
-    dispatch_traits(CpuSceneKinds{}, kind.value(), IntegratorKind::path, [&](auto found) {
+    dispatch_traits(CpuSceneKinds{}, kind.value(), [&](auto found) {
       ++calls;
       EXPECT_TRUE(found.value() == kind.value());
     });
@@ -36,8 +36,7 @@ void expect_no_kernel(const std::function<void()>& call, const std::string& trai
 TEST(Dispatch, NamesTheTraitsThatHaveNoKernel) {
   const auto call = [](SceneTraits traits) {
     return [traits] {
-      dispatch_traits(SphereSceneKinds{}, traits, IntegratorKind::path,
-                      [](auto) { FAIL() << "called"; });
+      dispatch_traits(CpuKindsWith<PhiloxSource>{}, traits, [](auto) { FAIL() << "called"; });
     };
   };
   expect_no_kernel(call({Accel::cwbvh, Geometry::triangles, Lighting::full}),

@@ -22,7 +22,7 @@
 #include "common/error/error.h"
 #include "common/options/compaction_info.h"
 #include "statistics.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/wave_buffers.h"
 
 namespace pt {
 

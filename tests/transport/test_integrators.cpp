@@ -6,6 +6,7 @@
 
 #include "common/scene/prepare/prepare_scene.h"
 #include "megakernel/trace_path.h"
+#include "wavefront/loop.h"
 #include "wavefront/run_stage_cpu.h"
 
 namespace pt {
@@ -158,7 +159,7 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
   for (bool starts = true; execute.more; starts = b.reuses_slots) {
     run_wave<Kind, Branching::divergent>(execute, b, context, starts);
   }
-  run_finish<Kind>(execute, b, context);
+  finish_paths<Kind>(execute, b, context);
   return result;
 }
 

@@ -6,7 +6,7 @@
 
 #include "common/options/option_names.h"
 #include "common/sampling/random.h"
-#include "wavefront/wavefront.h"
+#include "wavefront/loop.h"
 
 namespace pt {
 namespace {
@@ -86,7 +86,7 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   Notes<persistent> notes;
   notes.here = here;
   run_wave<Traits, branching>(notes, buffers, context, starts_paths);
-  run_finish<Traits>(notes, buffers, context);
+  finish_paths<Traits>(notes, buffers, context);
   return notes;
 }
 

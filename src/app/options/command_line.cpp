@@ -68,7 +68,8 @@ constexpr const char* footer_text =
 struct Parser {
   CLI::App app{program_text, "ptexp"};
   std::vector<std::pair<const OptionEntry*, CLI::Option*>> options;
-  CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *version = nullptr;
+  CLI::Option *list_scenes = nullptr, *list_devices = nullptr, *list_kernels = nullptr;
+  CLI::Option* version = nullptr;
   CLI::Option *completion = nullptr, *reference = nullptr;
   Subcommand<TraceCommand> trace{app, "trace", trace_text, trace_options()};
   Subcommand<RaysCommand> rays{app, "rays", rays_text, rays_options()};
@@ -119,12 +120,15 @@ Parser::Parser() {
   app.set_help_flag("-h,--help", "Prints this help")->group("Information");
   list_scenes = add_flag(app, "--list-scenes", "Names and describes the scenes");
   list_devices = add_flag(app, "--list-devices", "Names the devices that --device can take");
+  list_kernels =
+      add_flag(app, "--list-kernels", "Prints which kernels there are, for which scenes");
   version = add_flag(app, "--version", "Prints version, commit and build options");
   completion = add_text(app, "--completion", "Prints the completion of options for a shell");
   completion->type_name(joined_names<Shell>("|"));
   reference = add_text(app, "--reference", "Prints all of this help as a page");
   reference->type_name(joined_names<ReferencePage>("|"));
-  for (CLI::Option* option : {list_scenes, list_devices, version, completion, reference})
+  for (CLI::Option* option :
+       {list_scenes, list_devices, list_kernels, version, completion, reference})
     option->group("Information");
   app.allow_extras();
 
@@ -368,6 +372,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   const std::pair<const CLI::Option*, Command> information[] = {
       {parser.list_scenes, ListScenesCommand{}},
       {parser.list_devices, ListDevicesCommand{}},
+      {parser.list_kernels, ListKernelsCommand{}},
       {parser.version, VersionCommand{}}};
   for (const auto& [option, command] : information) {
     if (option->count() == 0) continue;

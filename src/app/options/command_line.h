@@ -48,6 +48,7 @@ struct CompareCommand {
 };
 struct ListScenesCommand {};
 struct ListDevicesCommand {};
+struct ListKernelsCommand {};
 struct VersionCommand {};
 enum class Shell { bash, zsh, fish };
 struct CompletionCommand {
@@ -63,10 +64,11 @@ struct HelpCommand {
   std::string text;  ///< to be printed as it is
 };
 
-using Command = std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand,
-                             CompareCommand, TraceCommand, RaysCommand, CompactCommand,
-                             DoctorCommand, ViewCommand, ListScenesCommand, ListDevicesCommand,
-                             VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
+using Command =
+    std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand,
+                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, ViewCommand,
+                 ListScenesCommand, ListDevicesCommand, ListKernelsCommand, VersionCommand,
+                 CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// Options of rendering from their settings, of which a later one overrides an earlier one. Throws
 /// Error for everything that can be refused without a device or a scene.

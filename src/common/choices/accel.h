@@ -1,7 +1,7 @@
 // The list of acceleration structures.
 #pragma once
 
-#include "common/platform/type_list.h"
+#include <initializer_list>
 
 namespace pt {
 
@@ -22,8 +22,8 @@ enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) };
 enum class Accel { PT_ACCELS(PT_ACCEL_ENUMERATOR) cwbvh_avx2 };
 #undef PT_ACCEL_ENUMERATOR
 
-/// The trees over triangles for which all devices have kernels, in scenes of each kind.
-using TreeAccels = TypeList<Constant<Accel::bvh2>, Constant<Accel::cwbvh>>;
+/// The trees over triangles for which all devices have kernels.
+inline constexpr std::initializer_list<Accel> tree_accels = {Accel::bvh2, Accel::cwbvh};
 
 /// Not of AccelKind::automatic.
 constexpr Accel accel_of(AccelKind kind) {

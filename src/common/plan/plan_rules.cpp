@@ -5,6 +5,7 @@
 #include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
+#include "common/plan/kernels.h"
 
 namespace pt {
 namespace {
@@ -34,52 +35,16 @@ bool is_general(const SceneProperties& scene, const Options& o) {
   return !has_specialized_kernels(scene, o);
 }
 
-bool has_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return is_general(scene, o) && scene.spheres == 0 && scene.has_plain_instances() &&
-         !scene.has_open_boundaries;
-}
-
-bool has_plain_triangles_alone(const SceneProperties& scene, const Options& o) {
-  return has_triangles_alone(scene, o) && scene.instances == 0 && !scene.has_masks &&
-         !scene.has_media;
-}
-
 bool has_rough_conductors(const SceneProperties& scene, const Options&) {
   return scene.has_rough_conductors;
 }
 
 bool has_media(const SceneProperties& scene, const Options&) { return scene.has_media; }
 
-constexpr const char* paper =
-    "is for scenes of spheres and quads alone, with --sampling bsdf, --mis power, --sampler "
-    "independent, --integrator path and not --kernel-set general; expected such a scene instead of "
-    "'{}', or other options";
-
 /// What stands in no rule is for every scene.
 constexpr SceneRule rules[] = {
-    {"accel",
-     [](const Options& o) {
-       return unless(o.accel, AccelKind::automatic, AccelKind::brute, AccelKind::bvh2);
-     },
-     is_general, "holds triangles; scene '{}' has spheres and quads only, expected brute or bvh2"},
     {"builder", [](const Options& o) { return unless(o.builder, TreeBuilder::automatic); },
      is_general, "builds trees over triangles; scene '{}' has none"},
-    {"kernel",
-     [](const Options& o) {
-       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop,
-                     MegakernelKind::sort);
-     },
-     has_plain_triangles_alone,
-     "traces triangles alone; scene '{}' has spheres, instances, masks, media, a far plane, hidden "
-     "emitters or no triangles, expected auto or loop"},
-    {"kernel",
-     [](const Options& o) {
-       return unless(o.kernel, MegakernelKind::automatic, MegakernelKind::loop,
-                     MegakernelKind::vote);
-     },
-     has_triangles_alone,
-     "traces triangles and their instances alone; scene '{}' has spheres, masks or media among "
-     "instances, boundaries without a BSDF or no triangles, expected auto or loop"},
     {"light-selection",
      [](const Options& o) {
        return unless(o.light_selection, LightSelection::automatic, LightSelection::uniform);
@@ -87,16 +52,6 @@ constexpr SceneRule rules[] = {
      is_general,
      "needs triangles, textures, an environment or lights without extent; scene '{}' has spheres "
      "and quads only, expected uniform"},
-    {"scene-memory",
-     [](const Options& o) {
-       return unless(o.scene_memory, SceneMemory::automatic, SceneMemory::global);
-     },
-     has_specialized_kernels,
-     "holds the spheres of scenes without triangles; expected global or auto"},
-    {"branching", [](const Options& o) { return unless(o.branching, Branching::divergent); },
-     has_specialized_kernels, paper},
-    {"rng", [](const Options& o) { return unless(o.rng, RngKind::philox); },
-     has_specialized_kernels, paper},
     {"wave-collisions",
      [](const Options& o) {
        return o.wave_collisions == 0 ? std::string() : std::to_string(o.wave_collisions);
@@ -107,39 +62,77 @@ constexpr SceneRule rules[] = {
      has_rough_conductors, "makes up for what rough conductors lose; scene '{}' has none"},
 };
 
-/// On CUDA the paper's toggles each have kernels alone, and for its scene, spheres that are scanned
-/// under the sky: no experiment combines them, and together they would be as many kernels as all
-/// others.
-void check_toggles(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene) {
-  if (!is_toggled(o)) return;
-  const std::string toggle = o.rng != RngKind::philox ? "--rng " + to_string(o.rng)
-                                                      : "--branching " + to_string(o.branching);
-  const auto refuse = [&](const std::string& other, const char* expected) {
-    throw Error(fmt::format("{}: on CUDA not with {}; expected {}", toggle, other, expected));
-  };
-  if (plan.accel != Accel::brute) refuse("--accel bvh2", "brute or auto");
-  if (scene.has_emitters)
-    refuse("surfaces that shine, as scene '" + scene.name + "' has", "a scene without");
-  if (o.rng != RngKind::philox && o.branching != Branching::divergent)
-    refuse("--branching reduced", "divergent");
-  if (plan.scene_memory != SceneMemory::global)
-    refuse("--scene-memory " + to_string(plan.scene_memory), "global or auto");
+EnumSet<Content> contents_of(const SceneProperties& scene) {
+  EnumSet<Content> contents;
+  if (scene.spheres > 0) contents = contents | Content::spheres;
+  if (scene.instances > 0) contents = contents | Content::instances;
+  if (scene.has_open_boundaries) contents = contents | Content::open_boundaries;
+  return contents;
+}
+
+KernelBody body_of(const ExecutionPlan& plan, bool on_cuda) {
+  using enum KernelBody;
+  switch (plan.mode) {
+    case Mode::serial:
+      return serial;
+    case Mode::megakernel:
+      return !on_cuda || plan.megakernel == MegakernelKind::loop ? loop
+             : plan.megakernel == MegakernelKind::vote           ? vote
+                                                                 : blocks;
+    default:
+      return plan.fused ? fused : plan.persistent_warps ? warps : stages;
+  }
+}
+
+EnumSet<KernelChoice> asked_choices(const Options& o) {
+  EnumSet<KernelChoice> asked{KernelChoice::branching, KernelChoice::rng};
+  if (o.accel != AccelKind::automatic) asked = asked | KernelChoice::accel;
+  if (o.scene_memory != SceneMemory::automatic) asked = asked | KernelChoice::memory;
+  if (o.kernel != MegakernelKind::automatic || o.stages != Stages::automatic)
+    asked = asked | KernelChoice::body;
+  return asked;
+}
+
+/// "triangles, masks": what decides which kernels a scene has.
+std::string scene_text(const KernelNeed& need, const Options& o, const SceneProperties& scene) {
+  const bool is_specialized = need.scene.geometry == Geometry::spheres_and_quads;
+  if (!is_specialized && scene.is_primitive_only)
+    return "spheres and quads by general kernels, because of " + why_general(o, scene);
+  std::string text = is_specialized ? "spheres and quads" : "triangles";
+  const std::pair<bool, const char*> more[] = {
+      {is_specialized && scene.has_emitters, "emitters"},
+      {!is_specialized && scene.spheres > 0, "spheres"},
+      {scene.instances > 0, "instances"},
+      {scene.has_masks, "masks, a far plane or hidden emitters"},
+      {scene.has_media, "media"},
+      {scene.has_open_boundaries, "boundaries without a BSDF"}};
+  for (const auto& [has, name] : more)
+    if (has) text += std::string(", ") + name;
+  return text;
+}
+
+/// Everything that is to run has a row in the table of kernels.
+void check_kernels(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene,
+                   bool on_cuda) {
+  std::vector<KernelNeed> needs{need_of(plan, o, scene, on_cuda)};
+  if (plan.mode == Mode::wavefront && plan.finish_paths > 0 &&
+      o.integrator == IntegratorKind::path) {
+    KernelNeed& last = needs.emplace_back(needs.front());
+    last.bodies = plan.finishes_in_blocks ? KernelBody::blocks : KernelBody::fused;
+    last.branching = Branching::divergent, last.memory = SceneMemory::global;
+  }
+  for (const KernelNeed& need : needs) {
+    if (has_kernel(need)) continue;
+    const auto [refused, expected] = nearest_kernel(need, asked_choices(o));
+    throw Error(fmt::format("{}: no kernel on {} renders scene '{}' ({}) so; expected {}", refused,
+                            on_cuda ? "CUDA" : "the CPU", scene.name, scene_text(need, o, scene),
+                            expected));
+  }
 }
 
 void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
                         const DeviceProperties& device) {
   if (plan.scene_memory == SceneMemory::global) return;
-  const std::string memory = to_string(plan.scene_memory);
-  if (plan.accel != Accel::brute || (plan.mode == Mode::wavefront && !plan.fused))
-    throw Error(
-        fmt::format("--scene-memory {}: for kernels that scan the spheres and shade; expected "
-                    "--accel brute, and --stages fused in waves, or global memory",
-                    memory));
-  if (plan.scene_memory == SceneMemory::shared && scene.has_emitters)
-    throw Error(
-        fmt::format("--scene-memory shared: has kernels for spheres under the sky alone; scene "
-                    "'{}' has surfaces that shine, expected constant or global",
-                    scene.name));
   if (plan.scene_memory == SceneMemory::constant && scene.spheres > constant_spheres_max)
     throw Error(
         fmt::format("--scene-memory constant: the scene has {} spheres; a kernel's "
@@ -152,35 +145,6 @@ void check_scene_memory(const ExecutionPlan& plan, const SceneProperties& scene,
         fmt::format("--scene-memory shared: the scene's {} spheres take {} bytes; a block "
                     "of this device has at most {}",
                     scene.spheres, scene.scan_bytes, device.block_shared_bytes));
-}
-
-/// What has no kernel because it would win nowhere.
-void check_structure(const ExecutionPlan& plan, const SceneProperties& scene) {
-  if (plan.kernel_set != KernelSet::general) return;
-  if (plan.accel == Accel::brute)
-    throw Error(
-        "--accel brute: on CUDA by lean kernels alone (--kernel-set); expected bvh2 or "
-        "cwbvh");
-  const bool is_plain = scene.has_only_triangles() && !scene.has_masked_kernels();
-  if (plan.accel != Accel::cwbvh || is_plain) return;
-  const bool in_blocks = plan.megakernel == MegakernelKind::sort || plan.persistent_warps;
-  if (scene.has_media && (scene.has_open_boundaries || !scene.has_only_triangles() || !in_blocks))
-    throw Error(
-        fmt::format("--accel cwbvh: with media for triangles alone whose boundaries have BSDFs, by "
-                    "--kernel sort or persistent warps without --wave-collisions, on CUDA; not for "
-                    "scene '{}', expected bvh2 "
-                    "or auto",
-                    scene.name));
-  if (plan.mode == Mode::megakernel && plan.megakernel == MegakernelKind::loop)
-    throw Error(
-        fmt::format("--accel cwbvh: the megakernel's loop traces triangles alone in it on CUDA; "
-                    "scene '{}' has more, expected bvh2 or auto",
-                    scene.name));
-  if (plan.mode == Mode::wavefront && !plan.persistent_warps && !plan.fused)
-    throw Error(
-        fmt::format("--accel cwbvh: threads trace triangles alone in it on CUDA; scene '{}' has "
-                    "more, expected bvh2 or auto, or persistent warps",
-                    scene.name));
 }
 
 void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceProperties& device) {
@@ -205,6 +169,26 @@ void check_megakernel(const ExecutionPlan& plan, const Options& o, const DeviceP
 
 }  // namespace
 
+KernelNeed need_of(const ExecutionPlan& plan, const Options& o, const SceneProperties& scene,
+                   bool on_cuda) {
+  KernelNeed need;
+  need.on_cuda = on_cuda;
+  need.bodies = body_of(plan, on_cuda);
+  need.contents = contents_of(scene);
+  need.branching = o.branching;
+  if (plan.kernel_set == KernelSet::specialized) {
+    need.scene = {plan.traversal, Geometry::spheres_and_quads,
+                  scene.has_emitters ? Lighting::emitters : Lighting::sky};
+    need.sources = o.rng == RngKind::philox ? NumberSource::philox : NumberSource::xorwow;
+    if (on_cuda) need.memory = plan.scene_memory;
+  } else {
+    need.scene = general_traits(plan.traversal, need.contents, scene.has_masks, scene.has_media);
+    need.sources = o.rng == RngKind::philox ? NumberSource::sampler : NumberSource::xorwow;
+    if (o.scene_memory != SceneMemory::automatic) need.memory = o.scene_memory;
+  }
+  return need;
+}
+
 void check_options_for_scene(const Options& options, const SceneProperties& scene) {
   const std::string why = why_general(options, scene);
   if (options.kernel_set == KernelSet::specialized && !why.empty())
@@ -219,15 +203,9 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
 
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device) {
-  if (plan.accel == Accel::embree && scene.has_masked_kernels())
-    throw Error(
-        fmt::format("--accel embree: scene '{}' has masks, media, a far plane or hidden emitters; "
-                    "expected brute, bvh2 or cwbvh",
-                    scene.name));
+  check_kernels(plan, options, scene, device.is_cuda);
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);
   if (!device.is_cuda) return;
-  check_toggles(plan, options, scene);
-  check_structure(plan, scene);
   check_scene_memory(plan, scene, device);
   if (plan.mode == Mode::megakernel) check_megakernel(plan, options, device);
 }

@@ -73,7 +73,7 @@ RaySet generate_rays(RayKind kind, const SceneData& scene, int size, int bounces
   const auto pixels = static_cast<std::uint32_t>(size) * static_cast<std::uint32_t>(size);
   RaySet set;
   set.type = kind == RayKind::ao ? RayType::any : RayType::closest;
-  dispatch_traits(CpuSceneKinds{}, scene.traits, IntegratorKind::path, [&](auto traits) {
+  dispatch_traits(CpuSceneKinds{}, scene.traits, [&](auto traits) {
     set.rays = collect(RayPaths<decltype(traits)>(view, sizes), kind, bounces, pixels);
   });
   if (set.rays.empty()) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "common/error/error.h"
-#include "common/options/option_names.h"
 
 namespace pt {
 namespace {
@@ -34,15 +33,14 @@ const char* name_of(Lighting lighting) {
 
 }  // namespace
 
-void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator) {
-  throw Error(
-      fmt::format("no kernel of --integrator {} for a scene with --accel {}, geometry: {}, lights: "
-                  "{}{}; expected one of the kinds that this mode, device and --rng have",
-                  to_string(integrator), accel_name(traits.accel), name_of(traits.geometry),
-                  name_of(traits.lighting),
-                  traits.has_media   ? ", media"
-                  : traits.has_masks ? ", masks"
-                                     : ""));
+void throw_no_kernel(const SceneTraits& traits) {
+  throw Error(fmt::format(
+      "no kernel for a scene with --accel {}, geometry: {}, lights: {}{}; expected a row of "
+      "--list-kernels",
+      accel_name(traits.accel), name_of(traits.geometry), name_of(traits.lighting),
+      traits.has_media   ? ", media"
+      : traits.has_masks ? ", masks"
+                         : ""));
 }
 
 }  // namespace pt

@@ -1,110 +1,116 @@
-// From run-time choices to types: calls a generic function with the choice as a constant.
+// From run-time choices to types: calls a generic function with the choice as a constant. Which
+// types there are is read from the table of kernels (plan/kernels.h).
 #pragma once
 
+#include <array>
 #include <type_traits>
 #include <utility>
 
-#include "common/options/options.h"
+#include "common/plan/kernels.h"
 #include "common/platform/type_list.h"
 #include "common/sampling/sampler_source.h"
 #include "common/scene/data/scene.h"
-#include "common/transport/path_integrator.h"
 
 namespace pt {
 
-/// Every integrator, in the order of IntegratorKind.
-using Integrators = TypeList<PathIntegrator>;
+template <class Source>
+inline constexpr NumberSource number_source = NumberSource::xorwow;
+template <>
+inline constexpr NumberSource number_source<PhiloxSource> = NumberSource::philox;
+template <>
+inline constexpr NumberSource number_source<SamplerSource> = NumberSource::sampler;
 
-/// Whose kernels trace the paths: Metropolis light transport is a way to draw their numbers.
-constexpr IntegratorKind traced_by(IntegratorKind integrator) {
-  return integrator == IntegratorKind::mlt ? IntegratorKind::path : integrator;
+/// Kernels with one of these bodies, one source of random numbers and one scene memory.
+template <bool on_cuda, NumberSource source, SceneMemory memory, KernelBody... bodies>
+struct KernelSelection {
+  static constexpr bool has(const SceneTraits& scene) {
+    KernelNeed need{on_cuda, {bodies...}, scene, source, memory};
+    if (has_kernel(need)) return true;
+    need.branching = Branching::reduced;
+    return has_kernel(need);
+  }
+};
+
+/// Kernels of a CPU's scenes, with any source of random numbers.
+struct CpuKernels {
+  static constexpr bool has(const SceneTraits& scene) {
+    using enum NumberSource;
+    return has_kernel({false, KernelBody::serial, scene, {philox, xorwow, sampler}});
+  }
+};
+
+namespace detail {
+
+inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
+inline constexpr int traits_count = accel_count * 3 * 3 * 2 * 2;
+
+/// All combinations, by number.
+constexpr SceneTraits traits_at(int i) {
+  SceneTraits traits;
+  traits.accel = Accel{i % accel_count}, i /= accel_count;
+  traits.geometry = Geometry{i % 3}, i /= 3;
+  traits.lighting = Lighting{i % 3}, i /= 3;
+  traits.has_masks = i % 2 == 1, traits.has_media = i / 2 == 1;
+  return traits;
 }
 
-// The kinds of scenes for which kernels exist. The paper's scenes have lean ones of their own;
-// whatever a file can hold shares the rest.
-using BruteSkyKinds = TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::sky>>;
-using BruteSphereKinds = decltype(concatenate(
-    BruteSkyKinds{},
-    TypeList<Traits<Accel::brute, Geometry::spheres_and_quads, Lighting::emitters>>{}));
-using SphereSceneKinds = decltype(concatenate(
-    BruteSphereKinds{},
-    TypeList<Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::sky>,
-             Traits<Accel::bvh2, Geometry::spheres_and_quads, Lighting::emitters>>{}));
-template <Geometry geometry, bool has_masks, class... TreeAccel>
-TypeList<Traits<TreeAccel::value, geometry, Lighting::full, has_masks>...> kinds_with_trees(
-    TypeList<TreeAccel...>);
-template <Geometry geometry, bool has_masks = false>
-using KindsWithTrees = decltype(kinds_with_trees<geometry, has_masks>(TreeAccels{}));
-/// Of scenes with media, which may have all else as well.
-template <Accel accel>
-using MediaKind = Traits<accel, Geometry::mixed, Lighting::full, true, true>;
-using TriangleSceneKinds = decltype(concatenate(
-    KindsWithTrees<Geometry::triangles>{},
-    concatenate(KindsWithTrees<Geometry::mixed>{}, KindsWithTrees<Geometry::mixed, true>{})));
-using MediaSceneKinds = TypeList<MediaKind<Accel::bvh2>, MediaKind<Accel::cwbvh>>;
-/// Those that a megakernel's loop traces on CUDA.
-using LoopTriangleKinds =
-    decltype(concatenate(KindsWithTrees<Geometry::triangles>{},
-                         TypeList<Traits<Accel::bvh2, Geometry::mixed, Lighting::full>,
-                                  Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
-                                  MediaKind<Accel::bvh2>>{}));
-using CpuTriangleSceneKinds = decltype(concatenate(
-    TriangleSceneKinds{},
-    TypeList<Traits<Accel::cwbvh_avx2, Geometry::triangles, Lighting::full>,
-             Traits<Accel::brute, Geometry::mixed, Lighting::full>,
-             Traits<Accel::cwbvh_avx2, Geometry::mixed, Lighting::full>,
-             Traits<Accel::embree, Geometry::mixed, Lighting::full>,
-             Traits<Accel::brute, Geometry::mixed, Lighting::full, true>, MediaKind<Accel::bvh2>,
-             MediaKind<Accel::cwbvh>, MediaKind<Accel::brute>>{}));
-using CpuSceneKinds = decltype(concatenate(SphereSceneKinds{}, CpuTriangleSceneKinds{}));
+template <class Selection>
+consteval int selected_count() {
+  int count = 0;
+  for (int i = 0; i < traits_count; ++i) count += Selection::has(traits_at(i)) ? 1 : 0;
+  return count;
+}
 
-/// The kinds of scenes that have kernels with this source: samplers are for all but the paper's
-/// scenes, which keep its generators.
-template <class Source, class OtherKinds>
-using KindsWith =
-    std::conditional_t<std::is_same_v<Source, SamplerSource>, OtherKinds, SphereSceneKinds>;
+/// Of the n-th combination that the selection has.
+template <class Selection>
+consteval int selected(int n) {
+  for (int i = 0; i < traits_count; ++i)
+    if (Selection::has(traits_at(i)) && n-- == 0) return i;
+  return -1;
+}
+
+template <int i>
+using TraitsAt = Traits<traits_at(i).accel, traits_at(i).geometry, traits_at(i).lighting,
+                        traits_at(i).has_masks, traits_at(i).has_media>;
+
+template <class Selection, int... n>
+TypeList<TraitsAt<selected<Selection>(n)>...> traits_of(std::integer_sequence<int, n...>);
+
+}  // namespace detail
+
+/// The list of Traits that a selection of kernels has.
+template <class Selection>
+using TraitsOf = decltype(detail::traits_of<Selection>(
+    std::make_integer_sequence<int, detail::selected_count<Selection>()>{}));
+
+using CpuSceneKinds = TraitsOf<CpuKernels>;
+
+/// Those with this source of random numbers.
+template <class Source>
+using CpuKindsWith = TraitsOf<
+    KernelSelection<false, number_source<Source>, SceneMemory::global, KernelBody::serial>>;
 
 /// Throws Error, which names them.
-[[noreturn]] void throw_no_kernel(const SceneTraits& traits, IntegratorKind integrator);
+[[noreturn]] void throw_no_kernel(const SceneTraits& traits);
 
-/// function(Traits<...>{}) for the member of the list that has these traits and this integrator.
-/// Throws Error when none has.
+/// function(Traits<...>{}) for the member of the list that has these traits. Throws Error when none
+/// has: the plan was not checked against the table.
 template <class Function, class... T>
-void dispatch_traits(TypeList<T...>, SceneTraits traits, IntegratorKind integrator,
-                     Function&& function) {
+void dispatch_traits(TypeList<T...>, SceneTraits traits, Function&& function) {
   const auto called = [&](auto kind) {
-    using Kind = decltype(kind);
-    const bool is_it =
-        Kind::value() == traits &&
-        IntegratorKind{index_in<typename Kind::Integrator>(Integrators{})} == traced_by(integrator);
+    const bool is_it = decltype(kind)::value() == traits;
     if (is_it) function(kind);
     return is_it;
   };
-  if (!(called(T{}) || ...)) throw_no_kernel(traits, integrator);
+  if (!(called(T{}) || ...)) throw_no_kernel(traits);
 }
 
-/// The same on CUDA, where each of the paper's toggles has kernels alone, and only for its scene:
-/// spheres that are scanned, under the sky (check_toggles).
-template <class Source, class OtherKinds>
-using CudaKindsWith = std::conditional_t<std::is_same_v<Source, PhiloxSource> ||
-                                             std::is_same_v<Source, SamplerSource>,
-                                         KindsWith<Source, OtherKinds>, BruteSkyKinds>;
-
-/// Of scenes whose spheres lie in such memory.
-template <SceneMemory memory>
-using KindsInMemory =
-    std::conditional_t<memory == SceneMemory::shared, BruteSkyKinds, BruteSphereKinds>;
-
-/// Whether CUDA has kernels of reduced branching for such scenes, by this source and memory.
-template <class Traits, class Source, SceneMemory memory = SceneMemory::global>
-inline constexpr bool may_reduce_on_cuda =
-    Traits::accel == Accel::brute&& Traits::lighting ==
-    Lighting::sky&& std::is_same_v<Source, PhiloxSource>&& memory == SceneMemory::global;
-
-/// function(Constant<branching>). Branches are reduced in the paper's scenes only.
-template <class Traits, bool may_reduce = true, class Function>
+/// function(Constant<branching>): with Branching::reduced where these kernels exist.
+template <bool on_cuda, class Traits, class Source, SceneMemory memory, KernelBody body,
+          class Function>
 void dispatch_branching(Branching branching, Function&& function) {
-  if constexpr (may_reduce && Traits::geometry == Geometry::spheres_and_quads) {
+  if constexpr (has_kernel({on_cuda, body, Traits::value(), number_source<Source>, memory,
+                            Branching::reduced})) {
     if (branching == Branching::reduced) return function(Constant<Branching::reduced>{});
   }
   function(Constant<Branching::divergent>{});

@@ -216,7 +216,7 @@ void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum)
 void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
   const FilmView film = film_view();
   const SamplerSource source = sampler_source_of(options_);
-  dispatch_traits(CpuSceneKinds{}, traits_, IntegratorKind::path, [&](auto traits) {
+  dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
     tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
       pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);
     });

@@ -32,10 +32,10 @@ FeatureKernel feature_kernel(const SceneTraits& traits) {
                          Traits<Accel::cwbvh, Geometry::mixed, Lighting::full>,
                          Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true>,
                          Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true>,
-                         MediaKind<Accel::bvh2>, MediaKind<Accel::cwbvh>>;
+                         Traits<Accel::bvh2, Geometry::mixed, Lighting::full, true, true>,
+                         Traits<Accel::cwbvh, Geometry::mixed, Lighting::full, true, true>>;
   FeatureKernel kernel = nullptr;
-  dispatch_traits(Kinds{}, needed, IntegratorKind::path,
-                  [&](auto kind) { kernel = find_features<decltype(kind)>; });
+  dispatch_traits(Kinds{}, needed, [&](auto kind) { kernel = find_features<decltype(kind)>; });
   return kernel;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/triangle_tree.h"
-#include "common/choices/accel.h"
+#include "common/choices/scene_traits.h"
 #include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
 #include "common/geometry/sphere_frame.h"
@@ -63,29 +63,9 @@ struct Scene {
   }
 };
 
-/// What rays can meet. `mixed`: triangles, instances of triangles, spheres.
-enum class Geometry { spheres_and_quads, triangles, mixed };
-
-/// The light sources. `sky`: rays that leave the scene, alone; `emitters`: spheres and quads as
-/// well; `full`: lights of all kinds and an environment, with textures on all surfaces.
-enum class Lighting { sky, emitters, full };
-
-/// What is known of a scene before its kernels are chosen: each combination is a kernel of its own.
-struct SceneTraits {
-  Accel accel = Accel::brute;
-  Geometry geometry = Geometry::spheres_and_quads;
-  Lighting lighting = Lighting::sky;
-  bool has_masks = false;
-  bool has_media = false;
-
-  bool operator==(const SceneTraits&) const = default;
-  bool has_lights() const { return lighting != Lighting::sky; }
-};
-
 struct PathIntegrator;  // transport/path_integrator.h
 
-/// The same as a type, and the integrator, for all that is known of a path before its kernels are
-/// chosen. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+/// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
           bool has_masks_value = false, bool has_media_value = false,
           class IntegratorType = PathIntegrator>
@@ -100,7 +80,7 @@ struct Traits {
   static constexpr bool has_instances = geometry == Geometry::mixed;
   /// The BSDFs that a kernel shades.
   using BsdfList = std::conditional_t<lighting == Lighting::full, Bsdfs, PaperBsdfs>;
-  static SceneTraits value() { return {accel, geometry, lighting, has_masks, has_media}; }
+  static constexpr SceneTraits value() { return {accel, geometry, lighting, has_masks, has_media}; }
 };
 
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.

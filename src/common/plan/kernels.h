@@ -1,0 +1,185 @@
+// The table of kernels: which code follows paths on which device, and in which scenes. Templates
+// are instantiated from it (render/dispatch.h), a plan that has no row in it is refused, and `ptexp
+// --list-kernels` prints it. A combination that no row names has no kernel, because no measurement
+// needs it or because another one was faster everywhere (results/log/).
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "common/choices/scene_traits.h"
+#include "common/options/options.h"
+
+namespace pt {
+
+/// The code that takes paths from ray to ray.
+enum class KernelBody {
+  serial,  ///< one thread follows one path after the other
+  loop,    ///< megakernel: each thread follows its paths
+  vote,    ///< megakernel: each warp votes on what it does next
+  blocks,  ///< megakernel: a wavefront in each block (--kernel sort), which ends the waves' last
+           ///< paths
+  stages,  ///< wavefront: a kernel for each stage; a thread traces a ray
+  warps,   ///< wavefront: the same, but persistent warps trace the queues of rays
+  fused,   ///< wavefront: one stage traces and shades
+};
+
+/// Where a kernel's random numbers come from: Philox or XORWOW, inlined, or any sampler.
+enum class NumberSource { philox, xorwow, sampler };
+
+/// A set of enumerators.
+template <class E>
+class EnumSet {
+ public:
+  using value_type = E;
+  constexpr EnumSet() = default;
+  constexpr EnumSet(E value) : bits_(bit(value)) {}
+  constexpr EnumSet(std::initializer_list<E> values) {
+    for (const E value : values) bits_ |= bit(value);
+  }
+  constexpr EnumSet operator|(EnumSet other) const {
+    EnumSet both;
+    both.bits_ = bits_ | other.bits_;
+    return both;
+  }
+  constexpr bool contains(E value) const { return (bits_ & bit(value)) != 0; }
+  constexpr bool intersects(EnumSet other) const { return (bits_ & other.bits_) != 0; }
+  constexpr bool is_empty() const { return bits_ == 0; }
+
+ private:
+  static constexpr std::uint32_t bit(E value) { return 1u << static_cast<int>(value); }
+  std::uint32_t bits_ = 0;
+};
+
+/// What a kernel knows of a scene besides its geometry; `with_media`: and masks.
+enum class Extras { plain, with_masks, with_media };
+
+/// What some kernels cannot have in a scene although its SceneTraits allow it.
+enum class Content { spheres, instances, open_boundaries };
+
+struct KernelRow {
+  bool on_cuda;
+  EnumSet<KernelBody> bodies;
+  EnumSet<Accel> accels;
+  Geometry geometry;
+  EnumSet<Lighting> lighting;
+  Extras extras;
+  EnumSet<NumberSource> sources;
+  EnumSet<Content> without = {};
+  EnumSet<SceneMemory> memories = SceneMemory::global;
+  EnumSet<Branching> branchings = Branching::divergent;
+};
+
+namespace kernel_rows {
+using enum KernelBody;
+using enum Accel;
+using enum Geometry;
+using enum Lighting;
+using enum Extras;
+using enum NumberSource;
+using enum SceneMemory;
+using enum Branching;
+using enum Content;
+inline constexpr bool cpu = false, cuda = true;
+inline constexpr EnumSet<Accel> trees = tree_accels;
+
+// clang-format off
+inline constexpr KernelRow table[] = {
+    // The paper's scenes, with its random numbers.
+    {cpu,  {serial, loop, stages, fused}, {brute, bvh2}, spheres_and_quads, {sky, emitters}, plain, {philox, xorwow}},
+    {cpu,  {loop, stages}, {brute, bvh2}, spheres_and_quads, {sky, emitters}, plain, {philox, xorwow}, {}, global, reduced},
+    {cuda, {loop, fused}, brute, spheres_and_quads, sky, plain, philox, {}, {global, shared, constant}},
+    {cuda, {loop, fused}, brute, spheres_and_quads, emitters, plain, philox, {}, {global, constant}},
+    {cuda, stages, brute, spheres_and_quads, {sky, emitters}, plain, philox},
+    {cuda, {loop, stages, fused}, bvh2, spheres_and_quads, {sky, emitters}, plain, philox},
+    {cuda, {loop, stages}, brute, spheres_and_quads, sky, plain, philox, {}, global, reduced},
+    {cuda, {loop, stages, fused}, brute, spheres_and_quads, sky, plain, xorwow},
+    // All other scenes.
+    {cpu,  {serial, loop, stages, fused}, trees | cwbvh_avx2, triangles, full, plain, sampler},
+    {cpu,  {serial, loop, stages, fused}, trees | EnumSet{cwbvh_avx2, brute, embree}, mixed, full, plain, sampler},
+    {cpu,  {serial, loop, stages, fused}, trees | brute, mixed, full, with_masks, sampler},
+    {cpu,  {serial, loop, stages, fused}, {bvh2, cwbvh, brute}, mixed, full, with_media, sampler},
+    {cuda, {loop, stages, fused}, trees, triangles, full, plain, sampler},
+    {cuda, {loop, stages}, bvh2, mixed, full, plain, sampler},
+    {cuda, {loop, stages}, bvh2, mixed, full, with_masks, sampler},
+    {cuda, {loop, stages, fused}, bvh2, mixed, full, with_media, sampler},
+    {cuda, fused, trees, mixed, full, plain, sampler},
+    {cuda, fused, trees, mixed, full, with_masks, sampler},
+    {cuda, {vote, blocks, warps}, cwbvh, triangles, full, plain, sampler},
+    {cuda, {blocks, warps}, cwbvh, mixed, full, plain, sampler, spheres},
+    {cuda, {blocks, warps}, cwbvh, mixed, full, with_masks, sampler, {spheres, instances}},
+    {cuda, {blocks, warps}, cwbvh, mixed, full, with_media, sampler, {spheres, instances, open_boundaries}},
+};
+// clang-format on
+}  // namespace kernel_rows
+inline constexpr auto& kernel_table = kernel_rows::table;
+
+/// What a kernel is asked for. An empty set, or no branching, asks for any.
+struct KernelNeed {
+  bool on_cuda = false;
+  EnumSet<KernelBody> bodies;  ///< one of them
+  SceneTraits scene;
+  EnumSet<NumberSource> sources;
+  SceneMemory memory = SceneMemory::global;
+  Branching branching = Branching::divergent;
+  EnumSet<Content> contents = {};
+};
+
+constexpr bool is_of_scene(const KernelRow& row, const SceneTraits& scene) {
+  return row.geometry == scene.geometry && row.lighting.contains(scene.lighting) &&
+         (row.extras >= Extras::with_masks) == scene.has_masks &&
+         (row.extras == Extras::with_media) == scene.has_media;
+}
+
+constexpr bool serves(const KernelRow& row, const KernelNeed& need) {
+  return row.on_cuda == need.on_cuda && row.bodies.intersects(need.bodies) &&
+         row.accels.contains(need.scene.accel) && is_of_scene(row, need.scene) &&
+         row.sources.intersects(need.sources) && row.memories.contains(need.memory) &&
+         row.branchings.contains(need.branching) && !row.without.intersects(need.contents);
+}
+
+constexpr bool has_kernel(const KernelNeed& need) {
+  for (const KernelRow& row : kernel_table)
+    if (serves(row, need)) return true;
+  return false;
+}
+
+/// Whether stages trace rays, one by each thread, in such scenes; `scene` says nothing of the
+/// lights.
+constexpr bool traces_rays(SceneTraits scene, SceneMemory memory) {
+  using enum NumberSource;
+  for (const Lighting lighting : {Lighting::sky, Lighting::emitters, Lighting::full}) {
+    scene.lighting = lighting;
+    if (has_kernel({true, KernelBody::stages, scene, {philox, xorwow, sampler}, memory}))
+      return true;
+  }
+  return false;
+}
+
+/// The traits of a scene whose kernels are not the paper's, in this structure.
+constexpr SceneTraits general_traits(Accel accel, EnumSet<Content> contents, bool has_masks,
+                                     bool has_media) {
+  const bool mixed = has_masks || has_media || accel == Accel::brute || accel == Accel::embree ||
+                     contents.intersects({Content::spheres, Content::instances});
+  return {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full,
+          has_masks || has_media, has_media};
+}
+
+/// Which parts of a need the user asked for; the plan chose the others.
+enum class KernelChoice { accel, memory, body, branching, rng };
+
+/// For a need that no kernel serves: the options that the user gave and that stand in the way,
+/// "--accel cwbvh", and those of a kernel for the same scene, "--accel bvh2". The nearest row
+/// changes the fewest of them: first the structure or the scene's memory, then the body, last the
+/// paper's toggles.
+struct NearestKernel {
+  std::string refused, expected;
+};
+NearestKernel nearest_kernel(const KernelNeed& need, EnumSet<KernelChoice> asked);
+
+/// The table as text, with a line for each row.
+std::string kernel_list();
+
+}  // namespace pt
