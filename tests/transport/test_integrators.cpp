@@ -159,7 +159,7 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
   for (bool starts = true; execute.more; starts = b.reuses_slots) {
     run_wave<Kind, Branching::divergent>(execute, b, context, starts);
   }
-  finish_paths<Kind>(execute, b, context);
+  pt::finish_paths<Kind>(execute, b, context);
   return result;
 }
 
