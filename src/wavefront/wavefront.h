@@ -1,4 +1,4 @@
-// The waves: what one of them does, the same on every device. Read this file first.
+// The waves: what one of them does, the same on every device.
 #pragma once
 
 #include <memory>
