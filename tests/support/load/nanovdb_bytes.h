@@ -1,5 +1,19 @@
-// NanoVDB's files of tests/data/nanovdb, and ways to damage them. docs/testing.md says how they
-// were made.
+// NanoVDB's files of tests/data/nanovdb, and ways to damage them. OpenVDB's vdb_tool 10.6.1
+// (Debian: libopenvdb-tools) wrote them:
+//
+//   balls="-sphere radius=1 voxel=0.125 center=(3,4,5)
+//          -sphere radius=0.75 voxel=0.125 center=(4,4.25,5) -union"
+//   vdb_tool $balls -ls2fog name=density -write codec=zip balls.nvdb
+//   vdb_tool $balls -ls2fog name=density -write codec=blosc checksum=full balls_blosc.nvdb
+//   vdb_tool $balls -ls2fog name=density
+//       -write codec=zip checksum=full bits=4 tolerance=0.01 balls_fp4.nvdb  # 8, 16, N
+//   vdb_tool $balls -ls2fog name=density -sphere radius=1.25 voxel=0.25 'center=(3.25,4,5)'
+//       -ls2fog name=temperature -write codec=zip two.nvdb
+//   vdb_tool -sphere radius=1.5 voxel=0.125 'center=(4.4375,4.4375,4.4375)' -ls2fog name=smoke
+//       -write codec=zip tile.nvdb
+//   vdb_tool -sphere radius=1 voxel=0.125 'center=(3,4,5)' name=ball
+//       -write codec=zip level_set.nvdb
+//   vdb_tool -sphere radius=0.5 voxel=0.125 'center=(3,4,5)' -grad -write codec=zip vectors.nvdb
 #pragma once
 
 #include <gtest/gtest.h>
