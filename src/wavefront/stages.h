@@ -472,7 +472,7 @@ struct FollowPaths {
   static constexpr bool has_lights = Traits::has_lights;
   static constexpr StageId id = StageId::bounce;
   static constexpr StageOutcomes outcomes = {{StageId::intersect, free_slot}, true, false};
-  /// With the paper's generator they are in global memory alone (check_toggles).
+  /// With the paper's generator they are in global memory alone (plan/kernels.h).
   static constexpr SphereAccess spheres =
       std::is_same_v<Source, PhiloxSource> ? sphere_access<Traits> : SphereAccess::once;
   static constexpr int block_max = shading_block_max<Traits>;
