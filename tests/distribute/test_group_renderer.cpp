@@ -4,7 +4,10 @@
 
 #include <ctime>
 #include <functional>
+#include <future>
 #include <set>
+#include <thread>
+#include <utility>
 
 #include "app/make_group.h"
 #include "common/distribute/group_renderer.h"
@@ -328,6 +331,87 @@ TEST(GroupRenderer, UnitsDoNotShrinkForTheirOverhead) {
   // 240 s of work, in units of about one second of the largest window.
   EXPECT_GT(run.devices[0].units + run.devices[1].units, 240u);
   EXPECT_LT(run.devices[0].units + run.devices[1].units, 3000u);
+}
+
+/// Of a speed in paths per second.
+class TimedWorker : public FakeWorker {
+ public:
+  explicit TimedWorker(double speed, int fails_at = 0) : FakeWorker(fails_at), speed_(speed) {}
+  std::optional<UnitResult> poll() override {
+    std::optional<UnitResult> result = FakeWorker::poll();
+    if (!result || !result->error.empty()) return result;
+    const auto pixels = static_cast<double>(result->film.window.pixel_count());
+    result->run.kernel_ms = 1e3 * pixels * result->run.samples_done / speed_;
+    return result;
+  }
+
+ private:
+  double speed_;
+};
+
+// The image grows evenly until 20 s of work are left for those that still work: 2e6 paths.
+TEST(GroupRenderer, AFailedDevicesSpeedIsForgotten) {
+  const Options options = small({{"width", "40"}, {"height", "30"}, {"spp", "20000"}});
+  GroupRenderer::Workers workers;
+  workers.push_back(std::make_unique<TimedWorker>(1e5));
+  workers.push_back(std::make_unique<TimedWorker>(1e9, 2));
+  std::uint32_t widest = 0;
+  const std::vector<Window> image{window_of(options)};
+  const auto look = [&](const ImageFilm& film) {
+    if (film.samples() > 20000u * 1200 - 3'000'000) return;
+    std::uint32_t most = 0;
+    for (const FilmPart& part : film.parts) most = std::max(most, part.next_sample);
+    widest = std::max(widest, most - film.least_samples(image));
+  };
+  GroupRenderer group(options, {}, std::move(workers), nullptr, {look, [](const std::string&) {}});
+  EXPECT_EQ(group.render(RenderHooks{}).samples_done, 20000);
+  EXPECT_GT(widest, 0u);
+  EXPECT_LT(widest, 3000u);  // units are of some 600 samples
+}
+
+/// Its first render goes on until it is stopped.
+class PatientRenderer : public Renderer {
+ public:
+  explicit PatientRenderer(std::promise<void>& has_begun) : has_begun_(has_begun) {}
+  RenderRun render(const RenderHooks&) override { return {}; }
+  RenderRun render(Film&, int samples, const RenderHooks& hooks) override {
+    if (std::exchange(is_first_, false)) {
+      has_begun_.set_value();
+      while (!hooks.stop()) std::this_thread::yield();
+    }
+    RenderRun run;
+    run.samples_done = hooks.stop() ? 0 : samples;
+    return run;
+  }
+  RenderRun add(int, const RenderHooks&) override { return {}; }
+  Image image() override { return {}; }
+  void describe(RenderReport&) const override {}
+
+ private:
+  std::promise<void>& has_begun_;
+  bool is_first_ = true;
+};
+
+TEST(LocalWorker, AnInterruptionEndsWithItsUnits) {
+  ResultBell bell;
+  std::promise<void> has_begun;
+  LocalWorker worker(
+      "w", 1, [&](int) { return std::make_unique<PatientRenderer>(has_begun); }, bell);
+  const auto result = [&] {
+    for (;;) {
+      if (const auto found = worker.poll()) return *found;
+      bell.wait(0.02);
+    }
+  };
+  worker.begin({1, {}, 5});
+  has_begun.get_future().wait();
+  worker.cancel();
+  EXPECT_EQ(result().run.samples_done, 0);
+  for (const std::uint64_t id : {2u, 3u}) {
+    worker.begin({id, {}, 5});
+    EXPECT_EQ(result().run.samples_done, 5) << id;
+    worker.cancel();  // has nothing to do
+  }
 }
 
 TEST(GroupRenderer, SaysSoWhereNoWorkerIsLeft) {
