@@ -252,6 +252,45 @@ TEST(GroupRenderer, OtherWorkersTakeTheUnitsOfOneThatFails) {
   }
 }
 
+// Devices work at the same time: the longest of their times is the render's.
+TEST(GroupRenderer, SamplesThatAreAddedAreThoseOfTheCall) {
+  const Options options = small({{"width", "300"}, {"height", "200"}, {"spp", "50"}});
+  GroupRenderer::Workers workers;
+  for (int i = 0; i < 3; ++i) workers.push_back(std::make_unique<FakeWorker>(0));
+  GroupRenderer group(options, {}, std::move(workers), nullptr);
+  for (const int samples : {7, 1, 20}) {
+    const RenderRun run = group.add(samples, {});
+    EXPECT_EQ(run.samples_done, samples);
+    double longest = 0, sum = 0;
+    for (const DeviceShare& share : run.devices) {
+      EXPECT_EQ(share.kernel_ms, static_cast<double>(share.units));
+      longest = std::max(longest, share.kernel_ms), sum += share.kernel_ms;
+    }
+    EXPECT_EQ(run.kernel_ms, longest);
+    EXPECT_LT(longest, sum);
+  }
+  EXPECT_EQ(group.film().least_samples(), 28u);
+  EXPECT_EQ(group.render(RenderHooks{}).samples_done, 50);
+  EXPECT_EQ(group.film().least_samples(), 50u) << "a render begins anew";
+}
+
+TEST(GroupRenderer, AWindowsFilmHasItsOwnTally) {
+  const Options options = small({{"scene", "boxes"}});
+  const DeviceInfo device = choose_device(options.device);
+  const SceneData scene = make_scene_for(options, device);
+  Film expected;
+  expected.window = {5, 3, 20, 11};
+  make_renderer(options, scene, device)->render(expected, 4, {});
+  Group group(options, scene, 2);
+  Film film;
+  film.window = expected.window;
+  group.renderer->render(film, 1, {});
+  group.renderer->render(film, 3, {});
+  EXPECT_EQ(film.next_sample, 4u);
+  EXPECT_EQ(differing_sums(film, expected), 0u);
+  expect_same_counts(summarize(film.tally), summarize(expected.tally));
+}
+
 /// With memory, kernels and a name of its own; breaks at once, or never.
 class DescribedWorker : public FakeWorker {
  public:
@@ -529,6 +568,20 @@ TEST(Parts, AreDisjointAndTheWhole) {
   Options options = small();
   options.part = {1, 30};
   EXPECT_THROW(part_windows(options), Error);  // 29 rows
+  options.part = {29, 29};
+  EXPECT_EQ(part_windows(options).size(), 1u);
+}
+
+// Units are as large as a device needs to be busy.
+TEST(Parts, WorkersOfMoreThreadsWantMorePaths) {
+  const Options options = small();
+  std::vector<DeviceInfo> devices(2, choose_device(options.device));
+  devices[0].properties.threads = 1, devices[1].properties.threads = 3;
+  const SceneData scene = make_scene_for(options, devices[0]);
+  ResultBell bell;
+  const auto workers = make_workers(options, scene, devices, bell);
+  EXPECT_EQ(workers[0]->least_paths(), 4096u);
+  EXPECT_EQ(workers[1]->least_paths(), 3u * 4096);
 }
 
 }  // namespace
