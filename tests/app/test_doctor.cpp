@@ -238,6 +238,19 @@ TEST(DoctorMachine, IsAnAdministratorsByOneBit) {
   EXPECT_FALSE(is_admin("0000000000000000"));
 }
 
+// The kernel counts kilobytes of 1024 bytes.
+TEST(DoctorMachine, HasTheMemoryOfItsFiles) {
+  const TempFolder folder;
+  const std::string path = folder.file("proc/meminfo");
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+  write_text(path,
+             "MemTotal:       65536000 kB\nMemFree:         1000 kB\n"
+             "MemAvailable:   32768000 kB\n");
+  const Machine machine = read_machine(folder.file(""));
+  EXPECT_EQ(machine.memory, 65536000ull * 1024);
+  EXPECT_EQ(machine.free_memory, 32768000ull * 1024);
+}
+
 TEST(DoctorFolders, AreTriedByWriting) {
   const TempFolder folder;
   EXPECT_EQ(try_folder(folder.file("")).problem, "");

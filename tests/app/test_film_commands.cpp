@@ -68,6 +68,23 @@ TEST(Verify, FindsAPixelAtEachRimAndNamesIt) {
   }
 }
 
+// Windows of 16x16 pixels, at least the share that is asked for.
+TEST(Verify, RendersItsShareOfThePixels) {
+  const TempFolder folder;
+  const RenderResult result = render({"--scene", "boxes", "--device", "cpu", "--width", "64",
+                                      "--height", "48", "--spp", "2", "--max-depth", "3"});
+  const std::string path = folder.file("a.exr");
+  write_image(path, result.image, result.header);
+  const std::pair<double, const char*> shares[] = {{0.5, ": 1536 pixels (50 %)"},
+                                                   {0.51, ": 1792 pixels (58.3 %)"},
+                                                   {1e-3, ": 256 pixels (8.33 %)"},
+                                                   {0.25, ": 768 pixels (25 %)"}};
+  for (const auto& [share, text] : shares) {
+    const std::string said = printed([&] { EXPECT_EQ(verify_command({path, share, {}}), 0); });
+    EXPECT_TRUE(said.starts_with(path + text)) << said;
+  }
+}
+
 Image grey(float value) { return {4, 1, std::vector<float>(12, value)}; }
 
 // One of twelve values is 0.5 + 0.25; by hand: sqrt(0.0625 / 12), 0.0625 / 0.26 / 12.
@@ -202,6 +219,7 @@ TEST(Merge, AddsTheCountsOfItsFiles) {
   EXPECT_EQ(found.shadow_rays, expected.shadow_rays);
   EXPECT_EQ(found.lengths[2], expected.lengths[2]);
   EXPECT_NE(found.rays, read_checkpoint(b).film.tally.rays);
+  EXPECT_FALSE(read_checkpoint(out).metadata.contains("ptexp.option.part"));
 }
 
 // Where a format has a place for radiance nothing is exposed; a scene of unknown brightness is

@@ -98,6 +98,10 @@ TEST_P(DeviceGroup, MakesTheImageOfOne) {
     EXPECT_EQ(differing_sums(whole_film(group.renderer->film()), expected), 0u) << devices;
     const Image made = group.renderer->image();
     EXPECT_EQ(differing_pixels(made, image), 0u);
+    EXPECT_EQ(made.place.x, static_cast<int>(expected.window.x));
+    EXPECT_EQ(made.place.y, static_cast<int>(expected.window.y));
+    EXPECT_EQ(made.place.width, options.width);
+    EXPECT_EQ(made.place.height, options.height);
     ASSERT_EQ(made.layers.size(), image.layers.size());
     for (std::size_t i = 0; i < image.layers.size(); ++i) {
       EXPECT_EQ(made.layers[i].values, image.layers[i].values) << image.layers[i].name;

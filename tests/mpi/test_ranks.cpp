@@ -91,6 +91,8 @@ TEST(Ranks, AgreementNamesRankHostAndWhatDiffers) {
              "rank 3 (host1): expected options seed 1, has none\n");
   expect_all(run({{"commit", "abc"}}, worked), 2,
              "rank 3 (host1): expected to compare options, has \n");
+  expect_all(run({{"commit", "abc"}, {"options", same}, {"scene", "x"}}, worked), 2,
+             "rank 3 (host1): expected to compare , has scene\n");
   EXPECT_FALSE(worked);
 }
 
