@@ -622,6 +622,8 @@ TEST(Refused, Contradictions) {
       {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
       {"--checkpoint a.exr --output a.exr", "--checkpoint a.exr: is the file of --output too"},
       {"--checkpoint a.exr --stats a.exr", "a.exr: is the file of --stats too"},
+      {"--checkpoint a.exr --repeat 2", "is of one render; expected neither --repeat nor --warmup"},
+      {"--checkpoint a.exr --warmup 1", "is of one render; expected neither --repeat nor --warmup"},
       {"--width 8 --height 4 --crop 0,0,9,4",
        "--crop 0,0,9,4: expected pixels of the image of 8x4"},
       {"--width 8 --height 4 --crop 0,0,8,5", "--crop 0,0,8,5: expected pixels"},
