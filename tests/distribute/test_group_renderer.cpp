@@ -258,7 +258,7 @@ TEST(GroupRenderer, OtherWorkersTakeTheUnitsOfOneThatFails) {
 
 // Devices work at the same time: the longest of their times is the render's.
 TEST(GroupRenderer, SamplesThatAreAddedAreThoseOfTheCall) {
-  const Options options = small({{"width", "300"}, {"height", "200"}, {"spp", "50"}});
+  const Options options = small({{"width", "60"}, {"height", "40"}, {"spp", "50"}});
   GroupRenderer::Workers workers;
   for (int i = 0; i < 3; ++i) workers.push_back(std::make_unique<FakeWorker>(0));
   GroupRenderer group(options, {}, std::move(workers), nullptr);
