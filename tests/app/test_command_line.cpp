@@ -461,6 +461,11 @@ TEST(Refused, NothingWithinTheLimits) {
     const char* name;
     std::vector<std::string> taken, refused;
   };
+  const auto devices = [](int count) {
+    std::string text = "cuda:0";
+    for (int i = 1; i < count; ++i) text += "," + std::to_string(i);
+    return text;
+  };
   const Limits table[] = {
       {"width", {"1", "65535"}, {"0", "65536"}},
       {"height", {"1", "65535"}, {"0", "65536"}},
@@ -483,6 +488,7 @@ TEST(Refused, NothingWithinTheLimits) {
       {"wave-collisions", {"0", "65535"}, {"65536"}},
       {"wave-rays", {"1", "65535"}, {"0", "65536"}},
       {"finish-paths", {"0", "1073741824"}, {"1073741825"}},
+      {"device", {devices(64)}, {devices(65)}},
       {"stage-block", {"1", "1024", "shadow=1024"}, {"0", "1025", "shadow=1025"}},
       {"block", {"1x1", "1024x1", "32x32"}, {"0x1", "1025x1", "33x32"}},
       {"repeat", {"1", "1000000"}, {"0", "1000001"}},
@@ -613,6 +619,13 @@ TEST(Refused, Contradictions) {
       {"--exposure 1", "--exposure 1: applies to .png and .ppm; image.exr holds linear radiance"},
       {"--stats a --csv ./a", "--csv ./a: is the file of --stats too"},
       {"--output a.png --csv a.png", "--csv a.png: is the file of --output too"},
+      {"--checkpoint a.exr --output a.exr", "--checkpoint a.exr: is the file of --output too"},
+      {"--checkpoint a.exr --stats a.exr", "a.exr: is the file of --stats too"},
+      {"--checkpoint a.exr --repeat 2", "is of one render; expected neither --repeat nor --warmup"},
+      {"--checkpoint a.exr --warmup 1", "is of one render; expected neither --repeat nor --warmup"},
+      {"--width 8 --height 4 --crop 0,0,9,4",
+       "--crop 0,0,9,4: expected pixels of the image of 8x4"},
+      {"--width 8 --height 4 --crop 0,0,8,5", "--crop 0,0,8,5: expected pixels"},
   });
 }
 

@@ -90,6 +90,29 @@ TEST(Doctor, NamesEachFaultAlone) {
   EXPECT_EQ(faulty([](M m) { m.current.free = 1000; }), Names{"warning current folder"});
 }
 
+// Both sides of each limit: 2 GiB of memory, 1 GiB of a GPU's, 0.1 GiB of a folder.
+TEST(Doctor, WarnsBelowItsLimits) {
+  constexpr std::uint64_t gib = 1ull << 30;
+  const auto complaints_of = [](std::uint64_t memory, std::uint64_t gpu, std::uint64_t temp,
+                                std::uint64_t current) {
+    Machine machine = healthy();
+    machine.free_memory = memory, machine.cuda.gpus[0].free_memory = gpu;
+    machine.temp.free = temp, machine.current.free = current;
+    return complaints(machine);
+  };
+  EXPECT_EQ(complaints_of(2 * gib, gib, gib / 10, gib / 10), Names{});
+  EXPECT_EQ(complaints_of(2 * gib - 1, gib, gib / 10, gib / 10), Names{"warning memory"});
+  EXPECT_EQ(complaints_of(2 * gib, gib - 1, gib / 10, gib / 10), Names{"warning GPU cuda:0"});
+  EXPECT_EQ(complaints_of(2 * gib, gib, gib / 10 - 1, gib / 10), Names{"warning temporary files"});
+  EXPECT_EQ(complaints_of(2 * gib, gib, gib / 10, gib / 10 - 1), Names{"warning current folder"});
+}
+
+TEST(Doctor, VersionsHaveMinorNumbersOfTwoDigits) {
+  Machine machine = healthy();
+  machine.cuda.driver = 13120;
+  EXPECT_EQ(find(machine, "driver").detail, "580.95.05, for CUDA 13.12");
+}
+
 // Every number is another one: which is whose, and in which unit.
 TEST(Doctor, PrintsTheMachinesNumbers) {
   Machine machine = healthy();
@@ -218,6 +241,8 @@ TEST_F(DriverFiles, SayWhoMayReadCounters) {
   write("params", "RmProfilingAdminOnlyOther: 1\nRmProfilingAdminOnly: 0\n");
   EXPECT_TRUE(read().counters_known);
   EXPECT_FALSE(read().counters_restricted);
+  write("params", "RmProfilingAdminOnly: 2\n");  // whatever is not 0
+  EXPECT_TRUE(read().counters_restricted);
 }
 
 // CapEff of capabilities(7): bit 21 is CAP_SYS_ADMIN; its neighbours are SYS_PACCT and SYS_BOOT.
@@ -236,6 +261,19 @@ TEST(DoctorMachine, IsAnAdministratorsByOneBit) {
   EXPECT_FALSE(is_admin("0000000000400000"));
   EXPECT_FALSE(is_admin("000001ffffdfffff"));
   EXPECT_FALSE(is_admin("0000000000000000"));
+}
+
+// The kernel counts kilobytes of 1024 bytes.
+TEST(DoctorMachine, HasTheMemoryOfItsFiles) {
+  const TempFolder folder;
+  const std::string path = folder.file("proc/meminfo");
+  std::filesystem::create_directories(std::filesystem::path(path).parent_path());
+  write_text(path,
+             "MemTotal:       65536000 kB\nMemFree:         1000 kB\n"
+             "MemAvailable:   32768000 kB\n");
+  const Machine machine = read_machine(folder.file(""));
+  EXPECT_EQ(machine.memory, 65536000ull * 1024);
+  EXPECT_EQ(machine.free_memory, 32768000ull * 1024);
 }
 
 TEST(DoctorFolders, AreTriedByWriting) {

@@ -68,6 +68,23 @@ TEST(Verify, FindsAPixelAtEachRimAndNamesIt) {
   }
 }
 
+// Windows of 16x16 pixels, at least the share that is asked for.
+TEST(Verify, RendersItsShareOfThePixels) {
+  const TempFolder folder;
+  const RenderResult result = render({"--scene", "boxes", "--device", "cpu", "--width", "64",
+                                      "--height", "48", "--spp", "2", "--max-depth", "3"});
+  const std::string path = folder.file("a.exr");
+  write_image(path, result.image, result.header);
+  const std::pair<double, const char*> shares[] = {{0.5, ": 1536 pixels (50 %)"},
+                                                   {0.51, ": 1792 pixels (58.3 %)"},
+                                                   {1e-3, ": 256 pixels (8.33 %)"},
+                                                   {0.25, ": 768 pixels (25 %)"}};
+  for (const auto& [share, text] : shares) {
+    const std::string said = printed([&] { EXPECT_EQ(verify_command({path, share, {}}), 0); });
+    EXPECT_TRUE(said.starts_with(path + text)) << said;
+  }
+}
+
 Image grey(float value) { return {4, 1, std::vector<float>(12, value)}; }
 
 // One of twelve values is 0.5 + 0.25; by hand: sqrt(0.0625 / 12), 0.0625 / 0.26 / 12.
@@ -97,6 +114,21 @@ TEST(Compare, PrintsTheNumbersOfTwoImages) {
             "size                   4x1\nRMSE                   0\nrelMSE                 0\n"
             "HDR-FLIP               0.000000\nlargest difference     0\n"
             "differing pixels       0\npixels past tolerance  0\n");
+}
+
+// One picture of radiance is enough for the comparison of radiance.
+TEST(Compare, TakesTheFlipOfItsFormats) {
+  const TempFolder folder;
+  for (const char* name : {"a.exr", "b.png"}) write_image(folder.file(name), grey(0.5f), {});
+  const auto flip_of = [&](const char* a, const char* b) {
+    const std::string text =
+        printed([&] { compare_command(folder.file(a), folder.file(b), 1, ""); });
+    return text.substr(text.find("-FLIP") - 3, 3);
+  };
+  EXPECT_EQ(flip_of("a.exr", "a.exr"), "HDR");
+  EXPECT_EQ(flip_of("a.exr", "b.png"), "HDR");
+  EXPECT_EQ(flip_of("b.png", "a.exr"), "HDR");
+  EXPECT_EQ(flip_of("b.png", "b.png"), "LDR");
 }
 
 TEST(FilmCommands, ReplaceNoFileThatTheyRead) {
@@ -168,6 +200,74 @@ TEST(Merge, NamesThePlacesOfACropWindow) {
             }),
             "wrote " + out + ", of 1 file\n");
   EXPECT_EQ(read_checkpoint(out).film.samples(), 2u * 23 * 19);
+}
+
+// Counts of two parts together are those of the whole.
+TEST(Merge, AddsTheCountsOfItsFiles) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr"),
+                    whole = folder.file("w.exr"), out = folder.file("o.exr");
+  const auto part = [](const std::string& file, const char* index) {
+    render({"--scene", "boxes", "--device", "cpu", "--width", "40", "--height", "30", "--spp", "2",
+            "--max-depth", "3", "--part", index, "--checkpoint", file});
+  };
+  part(a, "1/2"), part(b, "2/2"), part(whole, "1/1");
+  printed([&] { merge_command({out, {a, b}, false, true}); });
+  const PathTally found = read_checkpoint(out).film.tally,
+                  expected = read_checkpoint(whole).film.tally;
+  EXPECT_EQ(found.rays, expected.rays);
+  EXPECT_EQ(found.shadow_rays, expected.shadow_rays);
+  EXPECT_EQ(found.lengths[2], expected.lengths[2]);
+  EXPECT_NE(found.rays, read_checkpoint(b).film.tally.rays);
+  EXPECT_FALSE(read_checkpoint(out).metadata.contains("ptexp.option.part"));
+}
+
+// Where a format has a place for radiance nothing is exposed; a scene of unknown brightness is
+// measured for PNGs alone.
+TEST(Exposures, OfFormatsAndWhatIsAskedFor) {
+  using Kind = ExposureChoice::Kind;
+  struct Case {
+    const char* file;
+    ExposureChoice choice;
+    bool by_default;
+    std::optional<float> stops;
+    bool is_measured;
+  };
+  const float measured = std::log2(0.18f / 0.045f);
+  const Case cases[] = {{"a.exr", {Kind::scene, 1.5f}, true, std::nullopt, false},
+                        {"a.exr", {Kind::measured, 1.5f}, true, std::nullopt, false},
+                        {"a.png", {Kind::scene, 1.5f}, true, measured, true},
+                        {"a.png", {Kind::scene, 1.5f}, false, 1.5f, false},
+                        {"a.ppm", {Kind::scene, 1.5f}, true, 1.5f, false},
+                        {"a.ppm", {Kind::measured, 1.5f}, false, measured, true},
+                        {"a.png", {Kind::measured, 1.5f}, false, measured, true},
+                        {"a.png", {Kind::fixed, 1.5f}, true, 1.5f, false}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(testing::Message() << c.file << ' ' << static_cast<int>(c.choice.kind));
+    const auto found = exposure_for(c.file, c.choice, grey(0.045f), c.by_default);
+    ASSERT_EQ(found.has_value(), c.stops.has_value());
+    if (!found) continue;
+    EXPECT_NEAR(found->stops, *c.stops, 1e-5);
+    EXPECT_EQ(found->is_measured, c.is_measured);
+  }
+}
+
+// A part of an image may well be black.
+TEST(Exposures, ABlackImageIsSaidSo) {
+  const auto is_said = [](float value, auto&& change) {
+    Options options;
+    change(options);
+    return !black_image_text(options, grey(value)).empty();
+  };
+  const auto nothing = [](Options&) {};
+  EXPECT_TRUE(is_said(0, nothing));
+  EXPECT_TRUE(is_said(9e-7f, nothing));
+  EXPECT_FALSE(is_said(1.1e-6f, nothing));
+  EXPECT_FALSE(is_said(NAN, nothing));
+  EXPECT_FALSE(is_said(0, [](Options& o) { o.quiet = true; }));
+  EXPECT_FALSE(is_said(0, [](Options& o) { o.part = {1, 2}; }));
+  EXPECT_TRUE(is_said(0, [](Options& o) { o.part = {1, 1}; }));
+  EXPECT_FALSE(is_said(0, [](Options& o) { find_option("crop").set(o, "0,0,5,5"); }));
 }
 
 // Which file has which value; what no sample depends on may differ.

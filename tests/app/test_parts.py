@@ -161,6 +161,10 @@ class Checkpoints(Parts):
         self.assertIn("missing.exr", self.refused("resume", "missing.exr"))
         self.render(*SMALL, "--spp", 8, "--sampler", "stratified", "--checkpoint", "s.exr")
         self.assertIn("stratified", self.refused("resume", "s.exr", "--spp", 16))
+        # What is complete may be written once more.
+        self.render("resume", "s.exr", "--spp", 8, "-o", "b.exr")
+        self.render("resume", "c.exr", "-o", "b.exr")
+        self.assert_same_image("a.exr", "b.exr")
 
     def test_a_scene_file_that_changed_is_refused(self):
         scene = self.folder / "scene.obj"

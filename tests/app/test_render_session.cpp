@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/render_session.h"
+#include "app/scene_defaults.h"
 #include "common/film/checkpoint.h"
 #include "common/image/compare/compare.h"
 #include "temp_folder.h"
@@ -126,6 +127,40 @@ TEST(RenderSession, KeepsTheSceneOrItsTree) {
   session.change_scene().sky.zenith = Color(0.0f);
   EXPECT_NE(render(session, command_of("terrain:2000")).report.scene.tree.build_ms,
             first.report.scene.tree.build_ms);
+}
+
+// What a file asks for holds where the command says nothing.
+TEST(RenderSession, OptionsGoBeforeTheScenesOwn) {
+  SceneDefaults defaults;
+  defaults.width = 40, defaults.height = 30, defaults.spp = 7, defaults.max_depth = 9;
+  defaults.rr_depth = 3, defaults.crop = CropWindow{1, 2, 20, 21};
+  Options options;
+  apply_defaults(defaults, {}, options);
+  EXPECT_EQ(options.width, 40);
+  EXPECT_EQ(options.height, 30);
+  EXPECT_EQ(options.spp, 7);
+  EXPECT_EQ(options.max_depth, 9);
+  EXPECT_EQ(options.rr_depth, 3);
+  EXPECT_EQ(options.crop->x1, 20);
+  Options given;
+  given.width = 50, given.height = 60, given.spp = 2, given.max_depth = 4, given.rr_depth = 1;
+  given.crop = CropWindow{0, 0, 45, 55};
+  apply_defaults(defaults, {"width", "height", "spp", "max-depth", "rr"}, given);
+  EXPECT_EQ(given.width, 50);
+  EXPECT_EQ(given.height, 60);
+  EXPECT_EQ(given.spp, 2);
+  EXPECT_EQ(given.max_depth, 4);
+  EXPECT_EQ(given.rr_depth, 1);
+  EXPECT_EQ(given.crop->x1, 45);
+  // A stop decides instead of the number of samples, unless that is given.
+  for (const bool has_time : {false, true}) {
+    Options stopped;
+    has_time ? stopped.time_limit = 1 : stopped.target_error = 0.1f;
+    apply_defaults(defaults, {"spp"}, stopped);
+    EXPECT_EQ(stopped.spp, Options().spp);
+    apply_defaults(defaults, {}, stopped);
+    EXPECT_EQ(stopped.spp, INT32_MAX);
+  }
 }
 
 TEST(RenderSession, GoesOnAfterAnError) {

@@ -4,7 +4,10 @@
 
 #include <ctime>
 #include <functional>
+#include <future>
 #include <set>
+#include <thread>
+#include <utility>
 
 #include "app/make_group.h"
 #include "common/distribute/group_renderer.h"
@@ -95,6 +98,10 @@ TEST_P(DeviceGroup, MakesTheImageOfOne) {
     EXPECT_EQ(differing_sums(whole_film(group.renderer->film()), expected), 0u) << devices;
     const Image made = group.renderer->image();
     EXPECT_EQ(differing_pixels(made, image), 0u);
+    EXPECT_EQ(made.place.x, static_cast<int>(expected.window.x));
+    EXPECT_EQ(made.place.y, static_cast<int>(expected.window.y));
+    EXPECT_EQ(made.place.width, options.width);
+    EXPECT_EQ(made.place.height, options.height);
     ASSERT_EQ(made.layers.size(), image.layers.size());
     for (std::size_t i = 0; i < image.layers.size(); ++i) {
       EXPECT_EQ(made.layers[i].values, image.layers[i].values) << image.layers[i].name;
@@ -249,6 +256,45 @@ TEST(GroupRenderer, OtherWorkersTakeTheUnitsOfOneThatFails) {
   }
 }
 
+// Devices work at the same time: the longest of their times is the render's.
+TEST(GroupRenderer, SamplesThatAreAddedAreThoseOfTheCall) {
+  const Options options = small({{"width", "60"}, {"height", "40"}, {"spp", "50"}});
+  GroupRenderer::Workers workers;
+  for (int i = 0; i < 3; ++i) workers.push_back(std::make_unique<FakeWorker>(0));
+  GroupRenderer group(options, {}, std::move(workers), nullptr);
+  for (const int samples : {7, 1, 20}) {
+    const RenderRun run = group.add(samples, {});
+    EXPECT_EQ(run.samples_done, samples);
+    double longest = 0, sum = 0;
+    for (const DeviceShare& share : run.devices) {
+      EXPECT_EQ(share.kernel_ms, static_cast<double>(share.units));
+      longest = std::max(longest, share.kernel_ms), sum += share.kernel_ms;
+    }
+    EXPECT_EQ(run.kernel_ms, longest);
+    EXPECT_LT(longest, sum);
+  }
+  EXPECT_EQ(group.film().least_samples(), 28u);
+  EXPECT_EQ(group.render(RenderHooks{}).samples_done, 50);
+  EXPECT_EQ(group.film().least_samples(), 50u) << "a render begins anew";
+}
+
+TEST(GroupRenderer, AWindowsFilmHasItsOwnTally) {
+  const Options options = small({{"scene", "boxes"}});
+  const DeviceInfo device = choose_device(options.device);
+  const SceneData scene = make_scene_for(options, device);
+  Film expected;
+  expected.window = {5, 3, 20, 11};
+  make_renderer(options, scene, device)->render(expected, 4, {});
+  Group group(options, scene, 2);
+  Film film;
+  film.window = expected.window;
+  group.renderer->render(film, 1, {});
+  group.renderer->render(film, 3, {});
+  EXPECT_EQ(film.next_sample, 4u);
+  EXPECT_EQ(differing_sums(film, expected), 0u);
+  expect_same_counts(summarize(film.tally), summarize(expected.tally));
+}
+
 /// With memory, kernels and a name of its own; breaks at once, or never.
 class DescribedWorker : public FakeWorker {
  public:
@@ -328,6 +374,87 @@ TEST(GroupRenderer, UnitsDoNotShrinkForTheirOverhead) {
   // 240 s of work, in units of about one second of the largest window.
   EXPECT_GT(run.devices[0].units + run.devices[1].units, 240u);
   EXPECT_LT(run.devices[0].units + run.devices[1].units, 3000u);
+}
+
+/// Of a speed in paths per second.
+class TimedWorker : public FakeWorker {
+ public:
+  explicit TimedWorker(double speed, int fails_at = 0) : FakeWorker(fails_at), speed_(speed) {}
+  std::optional<UnitResult> poll() override {
+    std::optional<UnitResult> result = FakeWorker::poll();
+    if (!result || !result->error.empty()) return result;
+    const auto pixels = static_cast<double>(result->film.window.pixel_count());
+    result->run.kernel_ms = 1e3 * pixels * result->run.samples_done / speed_;
+    return result;
+  }
+
+ private:
+  double speed_;
+};
+
+// The image grows evenly until 20 s of work are left for those that still work: 2e6 paths.
+TEST(GroupRenderer, AFailedDevicesSpeedIsForgotten) {
+  const Options options = small({{"width", "40"}, {"height", "30"}, {"spp", "20000"}});
+  GroupRenderer::Workers workers;
+  workers.push_back(std::make_unique<TimedWorker>(1e5));
+  workers.push_back(std::make_unique<TimedWorker>(1e9, 2));
+  std::uint32_t widest = 0;
+  const std::vector<Window> image{window_of(options)};
+  const auto look = [&](const ImageFilm& film) {
+    if (film.samples() > 20000u * 1200 - 3'000'000) return;
+    std::uint32_t most = 0;
+    for (const FilmPart& part : film.parts) most = std::max(most, part.next_sample);
+    widest = std::max(widest, most - film.least_samples(image));
+  };
+  GroupRenderer group(options, {}, std::move(workers), nullptr, {look, [](const std::string&) {}});
+  EXPECT_EQ(group.render(RenderHooks{}).samples_done, 20000);
+  EXPECT_GT(widest, 0u);
+  EXPECT_LT(widest, 3000u);  // units are of some 600 samples
+}
+
+/// Its first render goes on until it is stopped.
+class PatientRenderer : public Renderer {
+ public:
+  explicit PatientRenderer(std::promise<void>& has_begun) : has_begun_(has_begun) {}
+  RenderRun render(const RenderHooks&) override { return {}; }
+  RenderRun render(Film&, int samples, const RenderHooks& hooks) override {
+    if (std::exchange(is_first_, false)) {
+      has_begun_.set_value();
+      while (!hooks.stop()) std::this_thread::yield();
+    }
+    RenderRun run;
+    run.samples_done = hooks.stop() ? 0 : samples;
+    return run;
+  }
+  RenderRun add(int, const RenderHooks&) override { return {}; }
+  Image image() override { return {}; }
+  void describe(RenderReport&) const override {}
+
+ private:
+  std::promise<void>& has_begun_;
+  bool is_first_ = true;
+};
+
+TEST(LocalWorker, AnInterruptionEndsWithItsUnits) {
+  ResultBell bell;
+  std::promise<void> has_begun;
+  LocalWorker worker(
+      "w", 1, [&](int) { return std::make_unique<PatientRenderer>(has_begun); }, bell);
+  const auto result = [&] {
+    for (;;) {
+      if (const auto found = worker.poll()) return *found;
+      bell.wait(0.02);
+    }
+  };
+  worker.begin({1, {}, 5});
+  has_begun.get_future().wait();
+  worker.cancel();
+  EXPECT_EQ(result().run.samples_done, 0);
+  for (const std::uint64_t id : {2u, 3u}) {
+    worker.begin({id, {}, 5});
+    EXPECT_EQ(result().run.samples_done, 5) << id;
+    worker.cancel();  // has nothing to do
+  }
 }
 
 TEST(GroupRenderer, SaysSoWhereNoWorkerIsLeft) {
@@ -445,6 +572,20 @@ TEST(Parts, AreDisjointAndTheWhole) {
   Options options = small();
   options.part = {1, 30};
   EXPECT_THROW(part_windows(options), Error);  // 29 rows
+  options.part = {29, 29};
+  EXPECT_EQ(part_windows(options).size(), 1u);
+}
+
+// Units are as large as a device needs to be busy.
+TEST(Parts, WorkersOfMoreThreadsWantMorePaths) {
+  const Options options = small();
+  std::vector<DeviceInfo> devices(2, choose_device(options.device));
+  devices[0].properties.threads = 1, devices[1].properties.threads = 3;
+  const SceneData scene = make_scene_for(options, devices[0]);
+  ResultBell bell;
+  const auto workers = make_workers(options, scene, devices, bell);
+  EXPECT_EQ(workers[0]->least_paths(), 4096u);
+  EXPECT_EQ(workers[1]->least_paths(), 3u * 4096);
 }
 
 }  // namespace

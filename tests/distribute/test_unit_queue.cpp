@@ -161,5 +161,17 @@ TEST(UnitQueue, GoesOnWhereAUnitWasCutShort) {
   EXPECT_TRUE(queue.is_done());
 }
 
+// What would be left after the unit is part of it where it is less than half a unit.
+TEST(UnitQueue, LeavesNoSmallRest) {
+  struct Case {
+    std::uint64_t paths;
+    int samples;
+  };
+  for (const Case& c : {Case{10000, 10}, {900, 10}, {700, 10}, {600, 6}, {500, 5}, {1, 1}}) {
+    UnitQueue queue({{{0, 0, 10, 10}, 0, 0}}, 10);
+    EXPECT_EQ(queue.next(c.paths, 0)->samples, c.samples) << c.paths;
+  }
+}
+
 }  // namespace
 }  // namespace pt

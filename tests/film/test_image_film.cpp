@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/error/error.h"
+#include "common/film/develop.h"
 #include "common/film/image_film.h"
 
 namespace pt {
@@ -144,6 +145,25 @@ TEST(ImageFilm, IsWhatWasPutLast) {
     }
     EXPECT_EQ(film.tally.rays, rays);
   }
+}
+
+// Films may begin at a later sample than the first: what they have is the difference.
+TEST(ImageFilm, SamplesAreCountedFromTheFirst) {
+  const FilmPlan plan{0, true, false};
+  ImageFilm film({0, 0, 4, 2}, plan);
+  for (const auto& [y, first, next] : {std::tuple{0u, 3u, 8u}, {1u, 6u, 9u}}) {
+    Film part = film_of(plan, {0, y, 4, 1}, next);
+    part.first_sample = first;
+    for (PixelMoments& moments : part.moments) moments.rays = 2 * (next - first);
+    film.put(part);
+  }
+  EXPECT_EQ(film.least_samples(), 3u);
+  EXPECT_EQ(film.least_samples({{0, 0, 4, 1}}), 5u);
+  EXPECT_EQ(film.samples(), 4u * 5 + 4 * 3);
+  film.plan.aovs = aov_bit<aov::Bounces>;
+  const Image image = develop(film, {});
+  ASSERT_EQ(image.layers.size(), 1u);
+  EXPECT_EQ(image.layers[0].values, std::vector<float>(8, 1.0f));  // two rays, the camera's first
 }
 
 TEST(ImageFilm, RefusesPixelsOfUnlikeSamples) {

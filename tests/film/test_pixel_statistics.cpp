@@ -21,6 +21,54 @@ TEST(PixelStatistics, ByHand) {
   EXPECT_DOUBLE_EQ(found.rays, 27);
 }
 
+// Three samples where a filter is positive, of luminance 1, 2 and 6, and two where it is negative,
+// 1 and 3: 1.5 * 3 - 0.5 * 2, whose variance is 1.5^2 * 7 / 3 + 0.5^2 * 1.
+TEST(PixelStatistics, OfTwoSignsByHand) {
+  PixelFilter filter;
+  filter.positive_weight = 1.5f, filter.negative_weight = 0.5f;
+  const FilmPlan plan{0, true, true};
+  const FilmPixel three{{9, 9, 9}, 3}, two{{4, 4, 4}, 2}, one{{8, 8, 8}, 1}, none{};
+  struct Case {
+    FilmPixel positive, negative;
+    double value, variance, samples;
+  };
+  const Case cases[] = {{three, two, 3.5, 5.25 + 0.25, 5},
+                        {three, none, 3, 7.0 / 3, 3},
+                        {none, two, 2, 1, 2},
+                        {one, two, 11, 0.25, 3},
+                        {three, one, 0.5, 5.25, 4},
+                        {one, none, 8, 0, 1},
+                        {none, none, 0, 0, 0}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(testing::Message() << c.positive.samples << " and " << c.negative.samples);
+    FilmSums sums;
+    sums.pixels = {c.positive, c.negative};
+    const auto squares = [](const FilmPixel& p) {
+      return p.samples == 3 ? 41.0 : p.samples == 2 ? 10 : p.samples == 1 ? 64 : 0;
+    };
+    sums.moments = {{squares(c.positive), 6, 2}, {squares(c.negative), 4, 1}};
+    const PixelReader reader(sums, plan, filter, 1);
+    EXPECT_NEAR(reader.value(0)[1], c.value, 1e-12);
+    const PixelStatistics found = reader.statistics(0, 5);
+    EXPECT_NEAR(found.variance, c.variance, 1e-12);
+    EXPECT_EQ(found.samples, c.samples);
+    EXPECT_EQ(found.bounces, 1);  // 10 rays of 5 samples
+    EXPECT_EQ(found.rays, 13);
+  }
+}
+
+// Pixels of 3 and -5, variances 7 / 3 and 1 * 0.25: the mean is -1, the error that of a mean pixel.
+TEST(PixelStatistics, TheRelativeErrorIsPositive) {
+  PixelFilter filter;
+  filter.positive_weight = 1.5f, filter.negative_weight = 0.5f;
+  FilmSums sums;
+  sums.pixels = {{{9, 9, 9}, 3}, {{0, 0, 0}, 1}, {{0, 0, 0}, 0}, {{20, 20, 20}, 2}};
+  sums.moments = {{41, 3, 0}, {0, 1, 0}, {}, {202, 2, 0}};  // 9 and 11: 202 - 400 / 2
+  const FilmPlan plan{0, true, true};
+  EXPECT_NEAR(relative_error(PixelReader(sums, plan, filter, 2), 2, 3),
+              std::sqrt((7.0 / 3 + 0.25) / 2) / 1, 1e-12);
+}
+
 class SignedFilm : public testing::Test {
  protected:
   SignedFilm()

@@ -219,6 +219,11 @@ TEST(PictureLimits, HoldForTheTilesOfAnExr) {
   bytes.insert(bytes.find("compression\0"s), "tiles\0tiledesc\0\x09\0\0\0\1\0\0\0\1\0\0\0\0"s);
   bytes[5] = '\x02';
   expect_error([&] { decode_texture_image(bytes, "x"); }, "cannot hold the 67108864 tiles");
+  // Tiles at the rims count, however little of them there is: 2731 x 4096 of 3 x 2 pixels.
+  const std::string tiles = "\x09\0\0\0\1\0\0\0\1\0\0\0"s;
+  bytes.replace(bytes.find(tiles), tiles.size(), "\x09\0\0\0\3\0\0\0\2\0\0\0"s);
+  bytes.replace(bytes.find(box) + box.size() + 8, 8, "\xfe\x1f\0\0\xfe\x1f\0\0"s);  // 8191
+  expect_error([&] { decode_texture_image(bytes, "x"); }, "cannot hold the 11186176 tiles");
 }
 
 }  // namespace

@@ -208,5 +208,58 @@ TEST(MediaBehindSurfaces, LampsInRoughGlassShineThroughWhatIsInside) {
   }
 }
 
+// The camera sees a mirror through the lamp, and in the mirror the lamp's bright side.
+TEST(HiddenLamps, AreSeenInMirrors) {
+  for (const CloudShape shape : {CloudShape::quads, CloudShape::sphere}) {
+    for (const bool has_fog : {false, true}) {
+      SceneData scene = hidden_lamp(shape, has_fog);
+      scene.delta_lights.clear();
+      scene.materials[0] = make_metal(Color(1.0f), 0.0f);
+      scene.materials[1].emission.radiance = {2.0f, 3.0f, 4.0f};
+      if (shape == CloudShape::quads) {  // downwards
+        scene.quads[1] = make_quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1});
+      }
+      const double length = has_fog ? 1 : 0;  // there and back
+      const glm::dvec3 expected = glm::dvec3(2, 3, 4) * std::exp(-0.5 * length);
+      expect_mean(render_medium(scene, {{"spp", "1024"}, {"max-depth", "2"}}), expected, 0.008,
+                  3e-4);
+      for (const float value : render_medium(scene, {{"spp", "16"}, {"max-depth", "1"}}).rgb) {
+        EXPECT_EQ(value, 0.0f);
+      }
+    }
+  }
+}
+
+/// A glossy plate that mirrors a small lamp at a distance of 1.13. A box of nothing, whose
+/// boundaries rays cross, is in front of the camera or of the lamp.
+SceneData glossy_plate(bool is_before_camera) {
+  SceneData scene;
+  scene.name = "glossy plate";
+  scene.media.push_back(make_medium(Color(0.0f), Color(0.0f)));
+  scene.add_quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2},
+                 scene.add_material(describe_all<Conductor>(1, 0, 1, 0.08f, 0.08f, 0)));
+  const float s = 0.15f * std::sqrt(0.5f);
+  scene.add_quad({-0.15f, 0.8f - s, -0.8f - s}, {0.3f, 0, 0}, {0, 2 * s, 2 * s},
+                 scene.add_material(make_diffuse(Color(0.0f), {5.0f, 6.0f, 7.0f})));
+  const std::uint32_t boundary = scene.add_material(make_boundary(no_medium, 0));
+  const float z = is_before_camera ? 0.5f : -0.5f;
+  add_cuboid(scene, {-0.9f, 0.1f, z - 0.2f}, {0.9f, 1.9f, z + 0.2f}, boundary);
+  scene.camera = {{0, 1.5f, 1.5f}, {0, 0, 0}, {0, 1, 0}, 6.0f, 0.0f, 2.0f};
+  return scene;
+}
+
+// The density of asking is as seen from the last scattering: what a path travelled before a surface
+// does not count, and all of what it travelled since does, however many boundaries it crossed.
+TEST(MediaBehindSurfaces, DensitiesAreAsSeenFromTheSurface) {
+  for (const bool is_before_camera : {false, true}) {
+    SCOPED_TRACE(is_before_camera);
+    const SceneData scene = glossy_plate(is_before_camera);
+    const Image by_chance =
+        render_medium(scene, {{"max-depth", "2"}, {"nee", "off"}, {"spp", "1024"}});
+    expect_same_means(render_medium(scene, {{"max-depth", "2"}, {"spp", "512"}, {"seed", "5"}}),
+                      by_chance);
+  }
+}
+
 }  // namespace
 }  // namespace pt

@@ -280,5 +280,47 @@ TEST(MediumGrids, InInstancesAreWhereTheWorldHasThem) {
                     render_medium(instance, {{"spp", "64"}, {"seed", "9"}}));
 }
 
+std::vector<double> layer_means(const Image& image, const std::string& name) {
+  for (const ImageLayer& layer : image.layers) {
+    if (layer.name != name) continue;
+    std::vector<double> means(layer.channels.size());
+    const double pixels = static_cast<double>(layer.values.size() / means.size());
+    for (std::size_t i = 0; i < layer.values.size(); ++i) {
+      means[i % means.size()] += double{layer.values[i]} / pixels;
+    }
+    return means;
+  }
+  throw std::runtime_error("no layer " + name);
+}
+
+// Of a wall behind two media that do not touch: along the whole ray, not from the last boundary.
+TEST(MediumLayers, ReachThroughAllBoundaries) {
+  const Color near(0.4f, 0.1f, 0.7f), far(0.2f, 0.9f, 0.3f);
+  for (const CloudShape shape : {CloudShape::quads, CloudShape::mesh_box}) {
+    SceneData scene = slab_of(make_medium(near, Color(0.0f)), shape);
+    scene.media.push_back(make_medium(far, Color(0.0f)));
+    add_cuboid(scene, {-2, -2, -5}, {2, 2, -3.5f}, scene.add_material(make_boundary(no_medium, 1)));
+    scene.add_quad({-3, -3, -6}, {6, 0, 0}, {0, 6, 0},
+                   scene.add_material(make_diffuse({0.2f, 0.3f, 0.4f})));
+    const Settings settings{{"spp", "64"},
+                            {"max-depth", "1"},
+                            {"output", "a.exr"},
+                            {"aov", "depth,position,collision,transmittance"}};
+    const Image image = render_medium(scene, settings);
+    EXPECT_NEAR(layer_means(image, "depth")[0], 46, 1e-3);
+    EXPECT_NEAR(layer_means(image, "position")[2], -6, 1e-4);
+    const glm::dvec3 expected = beer(near, 2) * beer(far, 1.5);
+    const std::vector<double> found = layer_means(image, "transmittance");
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(found[static_cast<std::size_t>(c)], expected[c], 1e-4);
+    }
+    // All paths collide: a hundredth behind the near side of the second medium.
+    scene.media[0].extinction = Color(0.0f), scene.media[1].extinction = Color(100.0f);
+    const Image thick = render_medium(scene, settings);
+    EXPECT_NEAR(layer_means(thick, "collision")[0], 43.51, 1e-3);
+    EXPECT_NEAR(layer_means(thick, "depth")[0], 46, 1e-3);
+  }
+}
+
 }  // namespace
 }  // namespace pt

@@ -231,5 +231,45 @@ TEST(TouchingMedia, MoveByLittleAndOnce) {
   EXPECT_EQ(scene.meshes[0].positions, moved);
 }
 
+/// A plane's part about the axis of the view.
+Mesh sheet(float z, bool is_upwards, std::uint32_t material, float left = -1) {
+  Mesh mesh;
+  if (is_upwards) {
+    add_rectangle(mesh, {left, -1, z}, {1 - left, 0, 0}, {0, 2, 0});
+  } else {
+    add_rectangle(mesh, {left, -1, z}, {0, 2, 0}, {1 - left, 0, 0});
+  }
+  mesh.material = material;
+  return mesh;
+}
+
+// Behind the red box a blue one begins with a face that says that red is outside.
+TEST(TouchingMedia, AFaceNamesWhatIsBehindIt) {
+  for (const bool from_behind : {false, true}) {
+    SceneData scene = absorbers({{{-1, -1, -1}, {1, 1, 0.25f}, no_medium, 0}}, from_behind);
+    scene.meshes.push_back(sheet(0.25f, false, scene.add_material(make_boundary(0, 1))));
+    scene.meshes.push_back(sheet(1, true, scene.add_material(make_boundary(no_medium, 1))));
+    expect_everywhere(scene, many_samples, beer(red, 1.25) * beer(blue, 0.75));
+    std::swap(scene.meshes[0], scene.meshes[1]);
+    expect_everywhere(scene, many_samples, beer(red, 1.25) * beer(blue, 0.75));
+  }
+}
+
+// Two boxes and, beside the view, a board in the plane of their common face: the boxes decide where
+// their faces go, whichever of them is listed first.
+TEST(TouchingMedia, BoundariesDecideBeforeOtherSurfaces) {
+  for (const bool from_behind : {false, true}) {
+    for (const int board : {0, 1, 2}) {
+      SCOPED_TRACE(board);
+      SceneData scene = absorbers(
+          {{{-1, -1, -1}, {1, 1, 0.25f}, no_medium, 0}, {{-1, -1, 0.25f}, {1, 1, 1}, no_medium, 1}},
+          from_behind);
+      scene.meshes.insert(scene.meshes.begin() + board,
+                          sheet(0.25f, true, scene.add_material(make_diffuse(Color(0.5f))), 0.3f));
+      expect_everywhere(scene, many_samples, beer(red, 1.25) * beer(blue, 0.75));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pt

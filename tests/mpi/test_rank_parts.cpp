@@ -126,6 +126,18 @@ TEST(Heartbeats, OthersWatchRankZeroAlone) {
   EXPECT_EQ(live(beats, 100, 114, {1, 3}), 0);
 }
 
+// One after the other, a quarter of an interval apart, up to the ninth: one of them tells the rest.
+TEST(Heartbeats, RanksMissRankZeroInTurn) {
+  const std::pair<int, double> latest[] = {{1, 10},    {2, 10.25}, {3, 10.5},
+                                           {8, 11.75}, {9, 12},    {10, 12}};
+  for (const auto& [rank, time] : latest) {
+    Heartbeats beats(rank, 20, 10, 0);
+    EXPECT_EQ(live(beats, 0, 9.95, {}), std::nullopt);
+    EXPECT_EQ(beats.lost(time - 0.01), std::nullopt) << rank;
+    EXPECT_EQ(beats.lost(time + 0.01), 0) << rank;
+  }
+}
+
 TEST(Heartbeats, NobodyIsMissedAfterTheLastMessage) {
   Heartbeats beats(0, 2, 10, 0);
   beats.stop_watching(1);

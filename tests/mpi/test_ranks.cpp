@@ -1,4 +1,6 @@
 // Ranks as threads: collective calls, and how they end. tests/mpi/test_mpirun.py has them by MPI.
+#include <fmt/format.h>
+
 #include "common/error/error.h"
 #include "common/mpi/serve_units.h"
 #include "fake_worker.h"
@@ -91,6 +93,8 @@ TEST(Ranks, AgreementNamesRankHostAndWhatDiffers) {
              "rank 3 (host1): expected options seed 1, has none\n");
   expect_all(run({{"commit", "abc"}}, worked), 2,
              "rank 3 (host1): expected to compare options, has \n");
+  expect_all(run({{"commit", "abc"}, {"options", same}, {"scene", "x"}}, worked), 2,
+             "rank 3 (host1): expected to compare , has scene\n");
   EXPECT_FALSE(worked);
 }
 
@@ -110,6 +114,19 @@ TEST(Ranks, AnExceptionOnOneRankEndsAllAndIsReportedOnce) {
                    : "rank " + std::to_string(bad) + " (host" + std::to_string(bad / 2) + "): ";
       expect_all(outcomes, 2, who + "cannot read x.ply\n");
     }
+  }
+}
+
+// Rank 0 has ended well already, and waits for the others.
+TEST(Ranks, ALateExceptionIsTheEndOfAll) {
+  for (const int bad : {1, 3}) {
+    const auto outcomes = run_ranks(4, [&](Ranks& ranks) {
+      if (ranks.rank() == bad) throw Error("late");
+      return 0;
+    });
+    EXPECT_EQ(outcomes[0].reported, fmt::format("rank {} (host{}): late\n", bad, bad / 2));
+    EXPECT_EQ(outcomes[0].code, 2);
+    EXPECT_EQ(outcomes[bad].code, 2);
   }
 }
 

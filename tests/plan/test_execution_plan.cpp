@@ -170,6 +170,11 @@ const std::vector<Row>& rows() {
         {"persistent", "on"},
         {"stages", "split"},
         {"finish-paths", "1048576"}}},
+      {"chains, which blocks do not follow",
+       {{"integrator", "mlt"}},
+       mesh(),
+       gpu(),
+       {{"persistent", "on"}, {"finish-paths", "32768"}}},
       {"five kinds of BSDFs", {}, mesh(five_kinds), gpu(), {{"finish-paths", "1048576"}}},
       {"six",
        {},
@@ -394,6 +399,57 @@ TEST(ExecutionPlan, TakesTheModeThatWasFaster) {
   EXPECT_EQ(mode_of(spheres(51), {}, cpu()), "wavefront");
 }
 
+// Both sides of each limit between the modes: short paths have 6 rays, few paths are 2^19.
+TEST(ExecutionPlan, ModesChangeAtTheirLimits) {
+  const SceneProperties dial = mesh(five_kinds | bit(kind_of<Metal>));
+  struct Case {
+    SceneProperties scene;
+    const char *width, *depth, *mode;
+  };
+  const Case cases[] = {
+      {quads(17), "2048", "6", "wavefront"},  {quads(17), "2048", "7", "megakernel"},
+      {quads(17), "1024", "50", "wavefront"}, {quads(17), "1025", "50", "megakernel"},
+      {dial, "2048", "6", "wavefront"},       {dial, "2048", "7", "megakernel"}};
+  for (const Case& c : cases) {
+    const Choices settings{{"mode", "auto"},
+                           {"width", c.width},
+                           {"height", "128"},
+                           {"spp", "4"},
+                           {"max-depth", c.depth}};
+    EXPECT_EQ(to_string(plan_of(settings, c.scene, gpu()).mode), c.mode)
+        << c.width << ' ' << c.depth;
+  }
+}
+
+// The numbers in the reasons are those that decided.
+TEST(ExecutionPlan, ReasonsHaveTheirNumbers) {
+  const auto reason = [](const char* option, const SceneProperties& scene,
+                         const DeviceProperties& device, const Choices& settings = {}) {
+    for (const Decision& d : plan_of(settings, scene, device).decisions) {
+      if (d.option == option) return d.reason;
+    }
+    return std::string("not decided");
+  };
+  const auto lit_by = [](std::size_t count) {
+    return changed(mesh(), [&](SceneProperties& s) { s.emitters = count; });
+  };
+  const std::string walk = " are scanned faster than a tree is walked";
+  EXPECT_EQ(reason("accel", spheres(51), gpu()), "51 primitives: up to 384" + walk);
+  EXPECT_EQ(reason("accel", spheres(300), gpu(), mega()), "300 primitives: up to 224" + walk);
+  EXPECT_EQ(reason("accel", quads(17), gpu()), "17 primitives: up to 96" + walk);
+  EXPECT_EQ(reason("accel", spheres(97), cpu()), "97 primitives: up to 96" + walk);
+  EXPECT_EQ(reason("accel", spheres(51), gpu(), {{"accel", "bvh2"}}), "asked for");
+  EXPECT_EQ(reason("scene-memory", spheres(51), gpu()),
+            "51 spheres, up to 64 are scanned fastest there");
+  EXPECT_EQ(reason("scene-memory", spheres(65), gpu()), "more than 64 spheres");
+  EXPECT_EQ(reason("light-selection", lit_by(30), gpu()),
+            "30 of at least 17 lights that a tree pays for");
+  EXPECT_EQ(reason("light-selection", lit_by(3), gpu(), {{"light-selection", "tree"}}),
+            "asked for");
+  EXPECT_EQ(reason("order-surfaces", mesh(), gpu()), "1 kind of BSDFs");
+  EXPECT_EQ(reason("order-surfaces", mesh(five_kinds), gpu()), "5 kinds of BSDFs");
+}
+
 // What is prepared for a mode is rendered by it.
 TEST(ExecutionPlan, TakesTheSameModeWhenTheSceneIsPrepared) {
   for (const SceneProperties& scene :
@@ -466,6 +522,12 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   small.block_threads_max = 512;
   expect_refused(mega({{"block", "32x32"}}), mesh(), small,
                  "--block 32x32: 1024 threads; a block has at most 512");
+  EXPECT_NO_THROW(plan_of(mega({{"block", "32x16"}}), mesh(), small));
+  expect_refused(mega({{"block", "19x27"}}), mesh(), small,
+                 "--block 19x27: 513 threads; a block has at most 512");
+  EXPECT_NO_THROW(plan_of(mega({{"kernel", "vote"}, {"block", "32x8"}}), mesh(), gpu()));
+  EXPECT_NO_THROW(plan_of(mega({{"kernel", "sort"}}), mesh(), gpu(91)));
+  expect_refused(mega({{"kernel", "vote"}, {"block", "32x9"}}), mesh(), gpu(), "--kernel vote: ");
   Options huge;
   huge.mode = Mode::megakernel, huge.block = {32768, 65536};  // 2^31 threads
   EXPECT_THROW(plan_execution(huge, mesh(), gpu()), Error);
