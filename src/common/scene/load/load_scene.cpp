@@ -16,7 +16,6 @@
 #include "common/scene/load/pbrt/pbrt.h"
 
 namespace pt {
-
 namespace {
 
 /// What a file of meshes alone does not say.

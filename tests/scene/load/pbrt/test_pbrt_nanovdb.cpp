@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/pbrt/colors/glowing_gas.h"
+#include "common/scene/load/pbrt/media.h"
 #include "load/expect_near.h"
 #include "load/nanovdb_bytes.h"
 #include "load/pbrt_scene.h"

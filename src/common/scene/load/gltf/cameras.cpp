@@ -4,7 +4,6 @@
 #include <cmath>
 
 namespace pt::gltf {
-
 namespace {
 
 constexpr int image_height = 720;  // glTF gives an aspect ratio and no size

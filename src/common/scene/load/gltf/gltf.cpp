@@ -21,7 +21,6 @@
 #include "common/scene/load/gltf/uv_sets.h"
 
 namespace pt {
-
 namespace {
 
 using namespace gltf;

@@ -7,7 +7,6 @@
 #include "common/scene/load/gltf/document/values.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// Black where the lamp has no colour that could be used.

@@ -8,7 +8,6 @@
 #include "common/scene/load/gltf/document/values.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// As reflectance: within [0, 1]. NaN becomes 0.

@@ -6,7 +6,6 @@
 #include "common/scene/load/gltf/document/accessors.h"
 
 namespace pt::gltf {
-
 namespace {
 
 std::vector<Vec3> read_vec3s(const File& file, int accessor, const std::string& place) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace pt::gltf {
-
 namespace {
 
 using Numbers = std::vector<double>;

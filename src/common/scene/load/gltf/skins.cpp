@@ -8,7 +8,6 @@
 #include "common/scene/load/gltf/document/accessors.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// Column by column, as glTF has them; a last row is not looked at.

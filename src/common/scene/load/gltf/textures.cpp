@@ -8,7 +8,6 @@
 #include "common/texture/sample_texture.h"
 
 namespace pt::gltf {
-
 namespace {
 
 TextureWrap to_wrap(File& file, int wrap, const std::string& place) {

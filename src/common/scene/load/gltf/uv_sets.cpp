@@ -10,7 +10,6 @@
 #include "common/scene/load/gltf/document/values.h"
 
 namespace pt::gltf {
-
 namespace {
 
 using Corners = std::array<Vec2, 3>;

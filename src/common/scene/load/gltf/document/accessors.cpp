@@ -6,7 +6,6 @@
 #include "common/scene/load/gltf/document/elements.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// Of all accessors without a buffer view.

@@ -7,7 +7,6 @@
 #include "common/scene/load/gltf/document/json_forms.h"
 
 namespace pt::gltf {
-
 namespace {
 
 using Json = nlohmann::json;

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 namespace pt::gltf {
-
 namespace {
 
 using Json = nlohmann::json;

@@ -11,7 +11,6 @@
 #include "common/scene/load/gltf/document/file.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// A pipe, a device or a folder is refused, not waited for.

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "common/scene/load/pbrt/colors/named_spectra.h"
-#include "common/scene/load/pbrt/surfaces/surface_kinds.h"
+#include "common/scene/load/pbrt/surfaces/surfaces.h"
+#include "common/scene/load/pbrt/syntax/named_colors.h"
 
 namespace pt::pbrt {
 namespace {

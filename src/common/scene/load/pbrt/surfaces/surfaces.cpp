@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "common/scene/load/pbrt/surfaces/surface_kinds.h"
-
 namespace pt::pbrt {
 namespace {
 
