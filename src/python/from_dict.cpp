@@ -11,7 +11,7 @@
 #include "common/rays/ray_file.h"
 #include "common/scene/load/mitsuba/mitsuba_xml.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
-#include "common/scene/load/mitsuba/xml/element.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 #include "python/arrays.h"
 #include "python/module.h"
 #include "python/scene_object.h"

@@ -6,7 +6,7 @@
 #include "common/light/sky/sunsky.h"
 #include "common/scene/load/mitsuba/emitters.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
-#include "common/scene/load/mitsuba/xml/transforms.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -9,12 +9,6 @@ namespace pt::mitsuba {
 /// reported. Adding a kind is adding a line to the table in emitters.cpp.
 void add_emitter(Context& context, const Object& emitter);
 
-/// Fills the scene's environment with an `envmap`.
-void add_environment_map(Context& context, const Object& emitter);
-
-/// `projector`: a point light that shows a picture.
-void add_projector(Context& context, const Object& emitter);
-
 /// `sunsky`, `sky`, `sun`.
 void add_daylight(Context& context, const Object& emitter);
 

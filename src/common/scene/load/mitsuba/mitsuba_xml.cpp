@@ -6,9 +6,9 @@
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/load/mitsuba/emitters.h"
-#include "common/scene/load/mitsuba/media/add_grids.h"
+#include "common/scene/load/mitsuba/media.h"
 #include "common/scene/load/mitsuba/sensor.h"
-#include "common/scene/load/mitsuba/shapes/shapes.h"
+#include "common/scene/load/mitsuba/shapes.h"
 
 namespace pt {
 namespace {

@@ -13,12 +13,6 @@ void read_sensor(Context& context, const Object& sensor);
 /// image's final size.
 void read_fov(const Object& sensor, CameraParameters& camera);
 
-/// Width and height; what is about the file that Mitsuba would write is passed over.
-void read_film(Context& context, const Object& film);
-
-/// Samples per pixel.
-void read_sampler(Context& context, const Object& sampler);
-
 /// max_depth, rr_depth and hide_emitters; every integrator becomes a path tracer.
 void read_integrator(Context& context, const Object& integrator);
 

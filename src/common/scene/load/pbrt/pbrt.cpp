@@ -7,7 +7,7 @@
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/mitsuba/spectra/spectra.h"
+#include "common/scene/load/files/spectra.h"
 #include "common/scene/load/pbrt/lights.h"
 #include "common/scene/load/pbrt/media.h"
 #include "common/scene/load/pbrt/shapes.h"
@@ -25,7 +25,7 @@ using DMat3 = glm::dmat3;
 DVec3 daylight(double kelvins) {
   const double t = kelvins * 1.4388 / 1.4380;  // c2 was another then
   if (t < 4000) {
-    const DVec3 xyz = xyz_from_srgb() * DVec3(mitsuba::blackbody_to_rgb(t));
+    const DVec3 xyz = xyz_from_srgb() * DVec3(blackbody_to_rgb(t));
     return xyz / xyz.y;
   }
   const double x = t <= 7000

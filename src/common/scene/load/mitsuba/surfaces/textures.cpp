@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/scene/load/mitsuba/xml/transforms.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {

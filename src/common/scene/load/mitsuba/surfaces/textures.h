@@ -1,7 +1,7 @@
 // Colours that may be textures.
 #pragma once
 
-#include "common/scene/load/mitsuba/spectra/spectra.h"
+#include "common/scene/load/mitsuba/surfaces/spectra.h"
 
 namespace pt::mitsuba {
 

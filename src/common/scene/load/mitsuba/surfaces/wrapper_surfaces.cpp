@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "common/scene/load/mitsuba/surfaces/surface_kinds.h"
-#include "common/scene/load/mitsuba/xml/values.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/mitsuba/xml/values.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/scene/load/files/meshes/text_number.h"
-#include "common/scene/load/mitsuba/spectra/spectra.h"
+#include "common/scene/load/files/spectra.h"
 #include "common/scene/load/pbrt/syntax/named_colors.h"
 #include "common/scene/load/pbrt/syntax/tokens.h"
 
@@ -19,7 +19,7 @@ float luminance_of(const Color& c) { return dot(c, Color(0.2126f, 0.7152f, 0.072
 /// Of light. pbrt-v3 takes spectra as they are: a constant one of 1 has luminance 1.
 Color of_earlier_version(const Color& color) {
   static const Color constant =
-      mitsuba::spectrum_to_rgb({{360.0, 1.0}, {830.0, 1.0}}, mitsuba::Quantity::emission);
+      spectrum_to_rgb({{360.0, 1.0}, {830.0, 1.0}}, Illuminant::equal_energy);
   return color / luminance_of(constant);
 }
 
@@ -37,7 +37,7 @@ Color sampled(const Context& context, const Parameter& parameter,
                                       "(nm) and value",
                                       parameter.name, numbers.size()));
   }
-  mitsuba::Samples samples;
+  Samples samples;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
     if (i > 0 && !(numbers[i] > numbers[i - 2])) {
       fail(parameter.place, "a spectrum whose wavelengths do not grow");
@@ -45,8 +45,8 @@ Color sampled(const Context& context, const Parameter& parameter,
     samples.emplace_back(numbers[i], numbers[i + 1]);
   }
   const bool emits = quantity == Quantity::illuminant;
-  const Color color = mitsuba::spectrum_to_rgb(
-      samples, emits ? mitsuba::Quantity::emission : mitsuba::Quantity::reflectance);
+  const Color color = spectrum_to_rgb(
+      samples, emits ? Illuminant::equal_energy : Illuminant::d65);
   if (!emits) return color;
   return context.description.is_earlier ? of_earlier_version(color)
                                         : of_luminance_one(parameter, color);
@@ -104,7 +104,7 @@ Color blackbody(const Context& context, const Parameter& p) {
     const double scale = p.numbers.size() > 1 ? p.numbers[1] : 1.0;
     return static_cast<float>(scale / GlowingGas::y_integral) * radiance_of_gas(p.numbers[0]);
   }
-  return of_luminance_one(p, mitsuba::blackbody_to_rgb(p.numbers[0]));
+  return of_luminance_one(p, blackbody_to_rgb(p.numbers[0]));
 }
 
 Color color_of(Context& context, const Parameter& p, Quantity quantity) {
@@ -212,7 +212,7 @@ double peak_radiance(double kelvins) {
 
 Color radiance_of_gas(double kelvins) {
   return static_cast<float>(GlowingGas::y_integral / peak_radiance(kelvins)) *
-         mitsuba::blackbody_to_rgb(kelvins);
+         blackbody_to_rgb(kelvins);
 }
 
 GlowingGas::GlowingGas(float hottest_kelvins) {

@@ -1,11 +1,11 @@
-#include "common/scene/load/mitsuba/media/add_grids.h"
-
+// The grids of media become the scene's.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/primitive_bounds.h"
+#include "common/scene/load/mitsuba/media.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -19,4 +19,10 @@ ShapeMedia media_of(Context& context, const Object& shape);
 /// All types of phase functions that are read.
 std::vector<std::string> phase_types();
 
+// The grids of media become the scene's.
+
+/// To be called when the scene has its shapes and its sensor. Outside of the box around its density
+/// there is nothing of a medium: where shapes leave it room there, its grid gets a layer of zeros.
+void add_grids(Context& context);
+
 }  // namespace pt::mitsuba

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/math/vec.h"
+#include "common/scene/load/files/spectra.h"
 #include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {
@@ -28,21 +29,11 @@ Color read_spectrum_object(Context& context, const Object& object, Quantity quan
 /// The colour within what the quantity may be, as read_color() has it.
 Color bounded_color(Context& context, const Element& element, Color color, Quantity quantity);
 
-/// wavelength (nm, ascending) -> value
-using Samples = std::vector<std::pair<double, double>>;
-
 /// Throws Error where wavelengths do not ascend.
 Samples sorted_samples(const Element& element, Samples samples);
 
 /// spectrum_to_rgb(), of which a warning tells.
 Color samples_color(Context& context, const Element& element, const Samples& samples,
                     Quantity quantity);
-
-/// Linear sRGB of a sampled spectrum, with the CIE 1931 observer, as Mitsuba's RGB variants have
-/// it. Emission is taken as it is; all else is seen under D65, so that 1 everywhere is white.
-Color spectrum_to_rgb(const Samples& samples, Quantity quantity);
-
-/// Planck's law between two wavelengths in nm, W / (m^2 sr nm), as linear sRGB.
-Color blackbody_to_rgb(double kelvin, double from_nm = 0.0, double to_nm = 1e9);
 
 }  // namespace pt::mitsuba
