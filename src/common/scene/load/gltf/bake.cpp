@@ -1,7 +1,10 @@
-#include "common/scene/load/gltf/bake.h"
-
+// Meshes into world space, by their node or by joints.
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/meshes.h"
 
 namespace pt::gltf {
 
@@ -43,6 +46,70 @@ void finish_baking(File& file, bool mirrors, const std::string& place, Mesh& mes
     }
     n *= (mirrors ? -1.0f : 1.0f) / length;
   }
+}
+
+namespace {
+
+/// Column by column, as glTF has them; a last row is not looked at.
+std::vector<Affine> inverse_bind_matrices(const File& file, const tinygltf::Skin& skin,
+                                          const std::string& place) {
+  std::vector<Affine> result(skin.joints.size());
+  if (skin.inverseBindMatrices < 0) return result;
+  const std::vector<float> values =
+      read_floats(file, skin.inverseBindMatrices, 16, place + ".inverseBindMatrices");
+  for (std::size_t i = 0; i < std::min(result.size(), values.size() / 16); ++i) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 4; ++column) {
+        result[i].row[row][static_cast<int>(column)] = values[16 * i + 4 * column + row];
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Affine> joint_matrices(File& file, int skin,
+                                   const std::unordered_map<int, Affine>& places,
+                                   const std::string& place) {
+  constexpr const char* instead = "the mesh is placed by its node";
+  if (!file.has(file.model.skins, skin, "skins", place + ".skin", instead)) return {};
+  const auto& source = file.model.skins[static_cast<std::size_t>(skin)];
+  const std::string skin_place = fmt::format("skins[{}]", skin);
+  std::vector<Affine> result = inverse_bind_matrices(file, source, skin_place);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto joint = places.find(source.joints[i]);
+    if (joint == places.end()) {
+      file.report(skin_place, fmt::format("a joint that is not in the scene: {}", instead));
+      return {};
+    }
+    result[i] = joint->second * result[i];
+  }
+  return result;
+}
+
+void apply_skin(File& file, const std::vector<Affine>& joints, const Influences& influences,
+                const std::string& place, Mesh& mesh) {
+  std::size_t mirrored = 0;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    Affine map{{Vec4(0.0f), Vec4(0.0f), Vec4(0.0f)}};
+    for (std::size_t i = v * influences.per_vertex; i < (v + 1) * influences.per_vertex; ++i) {
+      if (influences.weights[i] == 0.0f) continue;
+      if (influences.joints[i] >= joints.size()) {
+        file.report_value(place, "joint",
+                          fmt::format("joint {}, the skin has {}: it moves nothing",
+                                      influences.joints[i], joints.size()));
+        continue;
+      }
+      for (int row = 0; row < 3; ++row) {
+        map.row[row] += influences.weights[i] * joints[influences.joints[i]].row[row];
+      }
+    }
+    mesh.positions[v] = map.point(mesh.positions[v]);
+    mirrored += map.determinant() < 0.0f;
+    if (!mesh.normals.empty()) mesh.normals[v] = Cofactors(map).normal(mesh.normals[v]);
+  }
+  finish_baking(file, 2 * mirrored > mesh.positions.size(), place, mesh);
 }
 
 }  // namespace pt::gltf

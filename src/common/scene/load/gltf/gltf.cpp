@@ -10,15 +10,10 @@
 #include "common/scene/load/files/meshes/move_mesh.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/gltf/bake.h"
-#include "common/scene/load/gltf/cameras.h"
-#include "common/scene/load/gltf/document/read_model.h"
-#include "common/scene/load/gltf/lights.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
-#include "common/scene/load/gltf/skins.h"
-#include "common/scene/load/gltf/uv_sets.h"
+#include "common/scene/load/gltf/read_model.h"
 
 namespace pt {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
 namespace {

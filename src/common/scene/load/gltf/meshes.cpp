@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/scene/load/gltf/document/accessors.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
 namespace {

@@ -1,10 +1,9 @@
-#include "common/scene/load/gltf/textures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/materials.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt::gltf {

@@ -1,5 +1,3 @@
-#include "common/scene/load/gltf/uv_sets.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,7 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/meshes.h"
 
 namespace pt::gltf {
 namespace {

@@ -1,9 +1,9 @@
-#include "common/scene/load/obj/mtl_materials.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "common/scene/load/obj/mtl.h"
 
 namespace pt::obj {
 namespace {

@@ -14,7 +14,7 @@
 #include "common/scene/load/files/meshes/text_number.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/whole_file.h"
-#include "common/scene/load/obj/mtl_materials.h"
+#include "common/scene/load/obj/mtl.h"
 
 namespace pt {
 namespace obj {

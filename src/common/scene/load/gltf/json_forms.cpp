@@ -1,9 +1,9 @@
-#include "common/scene/load/gltf/document/json_forms.h"
-
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+
+#include "common/scene/load/gltf/read_model.h"
 
 namespace pt::gltf {
 namespace {

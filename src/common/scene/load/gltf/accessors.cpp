@@ -1,9 +1,9 @@
-#include "common/scene/load/gltf/document/accessors.h"
-
+// Arrays of numbers in buffers.
 #include <algorithm>
 
 #include "common/error/host_memory.h"
-#include "common/scene/load/gltf/document/elements.h"
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/read_model.h"
 
 namespace pt::gltf {
 namespace {

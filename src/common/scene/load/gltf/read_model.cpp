@@ -1,4 +1,4 @@
-#include "common/scene/load/gltf/document/read_model.h"
+#include "common/scene/load/gltf/read_model.h"
 
 #include <algorithm>
 #include <cstring>
@@ -7,8 +7,7 @@
 
 #include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/whole_file.h"
-#include "common/scene/load/gltf/document/check_json.h"
-#include "common/scene/load/gltf/document/file.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
 namespace {

@@ -1,16 +1,18 @@
-// A glTF file that is being loaded: its objects, and what is said of them.
+// A glTF file while it is read: its objects, extensions and arrays, and what the user is told.
 #pragma once
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <array>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/error/quoted.h"
+#include "common/math/vec.h"
 #include "common/scene/load/files/load_options.h"
 
 namespace pt::gltf {
@@ -113,5 +115,52 @@ class File {
   std::set<std::string> reported_, kinds_;
   std::string last_report_;
 };
+
+// Members of JSON objects as tinygltf keeps extensions.
+
+/// The object's member, or a null value.
+inline const tinygltf::Value& member(const tinygltf::Value& object, const char* key) {
+  static const tinygltf::Value none;
+  return object.IsObject() && object.Has(key) ? object.Get(key) : none;
+}
+
+/// An extension of an object, or null.
+inline const tinygltf::Value* find_extension(const tinygltf::ExtensionMap& extensions,
+                                             const char* name) {
+  const auto found = extensions.find(name);
+  return found == extensions.end() ? nullptr : &found->second;
+}
+
+inline float number_or(const tinygltf::Value& object, const char* key, float fallback) {
+  const tinygltf::Value& value = member(object, key);
+  return value.IsNumber() ? static_cast<float>(value.GetNumberAsDouble()) : fallback;
+}
+
+inline int integer_or(const tinygltf::Value& object, const char* key, int fallback) {
+  const tinygltf::Value& value = member(object, key);
+  return value.IsNumber() ? value.GetNumberAsInt() : fallback;
+}
+
+/// The first numbers of an array; the fallback's where it is shorter.
+template <class Vector>
+Vector vector_or(const tinygltf::Value& object, const char* key, const Vector& fallback) {
+  const tinygltf::Value& value = member(object, key);
+  Vector result = fallback;
+  for (int i = 0; i < Vector::length() && static_cast<std::size_t>(i) < value.ArrayLen(); ++i) {
+    if (value.Get(i).IsNumber()) result[i] = static_cast<float>(value.Get(i).GetNumberAsDouble());
+  }
+  return result;
+}
+
+// Accessors: typed, strided, perhaps sparse arrays in buffers (specification, section 3.6.2).
+
+/// The accessor's elements, `components` (1 to 4, or 16) numbers each. Integers are converted:
+/// normalised ones to [0, 1] or [-1, 1], others by value. Throws Error at `place` where the
+/// accessor has another shape or exceeds its buffer.
+std::vector<float> read_floats(const File& file, int accessor, int components,
+                               const std::string& place);
+
+/// Indices of 8, 16 or 32 bits; errors as above.
+std::vector<std::uint32_t> read_indices(const File& file, int accessor, const std::string& place);
 
 }  // namespace pt::gltf
