@@ -9,7 +9,7 @@
 
 #include "app/warning_limit.h"
 #include "common/rays/ray_file.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 #include "python/arrays.h"

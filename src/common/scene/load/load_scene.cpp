@@ -10,10 +10,6 @@
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/gltf/gltf.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
-#include "common/scene/load/obj/obj_scene.h"
-#include "common/scene/load/pbrt/pbrt.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common/scene/load/pbrt/media.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 #include "statistics.h"

@@ -1,5 +1,3 @@
-#include "common/scene/load/gltf/gltf.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,13 +5,14 @@
 #include <utility>
 
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
 #include "common/scene/load/gltf/read_model.h"
+#include "common/scene/load/load_scene.h"
 
 namespace pt {
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/gltf/document.h"
 

@@ -7,8 +7,8 @@
 #include "common/geometry/mesh.h"
 #include "common/math/frame.h"
 #include "common/math/vec.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
-#include "common/scene/load/mitsuba/shapes.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 
 namespace pt::mitsuba {
 namespace {

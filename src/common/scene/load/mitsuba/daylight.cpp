@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/light/sky/sunsky.h"
-#include "common/scene/load/mitsuba/emitters.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 

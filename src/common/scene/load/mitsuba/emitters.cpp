@@ -1,5 +1,4 @@
-#include "common/scene/load/mitsuba/emitters.h"
-
+// <emitter>s that are not on a shape.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +6,7 @@
 #include <map>
 
 #include "common/scene/load/files/images/image_files.h"
-#include "common/scene/load/mitsuba/sensor.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/geometry/primitive_bounds.h"
-#include "common/scene/load/mitsuba/media.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 
 namespace pt::mitsuba {
 namespace {

@@ -1,13 +1,12 @@
-#include "common/scene/load/mitsuba/media.h"
-
+// <medium>s to ours, and which lie on the sides of a shape.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/bounds.h"
-#include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/files/volumes/vol_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/spectra.h"
 
 namespace pt::mitsuba {

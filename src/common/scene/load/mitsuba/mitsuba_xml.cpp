@@ -1,14 +1,10 @@
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/load/mitsuba/emitters.h"
-#include "common/scene/load/mitsuba/media.h"
-#include "common/scene/load/mitsuba/sensor.h"
-#include "common/scene/load/mitsuba/shapes.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 
 namespace pt {
 namespace {

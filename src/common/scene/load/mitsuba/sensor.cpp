@@ -1,5 +1,4 @@
-#include "common/scene/load/mitsuba/sensor.h"
-
+// <sensor>, with its film and sampler, and <integrator>: camera and defaults of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "common/scene/load/mitsuba/media.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 #include "common/scene/prepare/prepare_filter.h"
 

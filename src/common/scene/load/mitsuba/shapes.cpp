@@ -1,5 +1,4 @@
-#include "common/scene/load/mitsuba/shapes.h"
-
+// <shape>s to spheres, quads, meshes and instances.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +6,9 @@
 
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
-#include "common/scene/load/files/material_parts.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
-#include "common/scene/load/mitsuba/media.h"
+#include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 

@@ -12,8 +12,8 @@
 
 #include "common/math/vec.h"
 #include "common/scene/data/scene_data.h"
-#include "common/scene/load/files/counted_warnings.h"
 #include "common/scene/load/files/images/texture_store.h"
+#include "common/scene/load/files/text.h"
 
 namespace pt::obj {
 

@@ -7,7 +7,7 @@
 
 #include "common/error/error.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/obj/mtl.h"
 
 namespace pt::obj {

@@ -5,7 +5,7 @@
 
 #include "common/error/error.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/find_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/obj/mtl.h"
 #include "common/texture/sample_texture.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/scene/load/pbrt/media.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {

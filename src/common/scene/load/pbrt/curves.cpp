@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {

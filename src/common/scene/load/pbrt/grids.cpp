@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/load/pbrt/media.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 
 namespace pt::pbrt {

@@ -1,5 +1,4 @@
-#include "common/scene/load/pbrt/lights.h"
-
+// Lights that are not on a shape.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +10,8 @@
 #include "common/light/light_bounds.h"
 #include "common/light/spot_light.h"
 #include "common/math/frame.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 
 namespace pt::pbrt {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "common/error/error.h"
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {

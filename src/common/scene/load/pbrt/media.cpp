@@ -1,5 +1,4 @@
-#include "common/scene/load/pbrt/media.h"
-
+// Named media to ours: homogeneous ones, and grids of .nvdb files.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +8,8 @@
 #include <utility>
 
 #include "common/math/vec.h"
-#include "common/scene/load/files/volumes/nanovdb_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {

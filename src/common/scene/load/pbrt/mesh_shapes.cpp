@@ -3,8 +3,7 @@
 
 #include "common/error/host_memory.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "common/scene/load/files/meshes/mesh_finish.h"
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/tokens.h"
 
 namespace pt::pbrt {

@@ -1,19 +1,15 @@
-#include "common/scene/load/pbrt/pbrt.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/data/scene_data.h"
-#include "common/scene/load/files/studio.h"
 #include "common/scene/load/files/spectra.h"
-#include "common/scene/load/pbrt/lights.h"
-#include "common/scene/load/pbrt/media.h"
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/files/studio.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 #include "common/scene/load/pbrt/syntax/named_colors.h"
-#include "common/scene/load/pbrt/view.h"
 
 namespace pt::pbrt {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include "common/scene/load/files/images/image_files.h"
-#include "common/scene/load/pbrt/lights.h"
-#include "common/scene/load/pbrt/media.h"
-#include "common/scene/load/pbrt/shapes.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {

@@ -1,5 +1,4 @@
-#include "common/scene/load/pbrt/shapes.h"
-
+// Shapes to spheres and meshes, objects to groups and instances.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +7,8 @@
 
 #include "common/geometry/bounds.h"
 #include "common/geometry/mesh.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/context.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 

@@ -7,7 +7,7 @@
 
 #include "common/math/vec.h"
 #include "common/scene/load/files/images/image_files.h"
-#include "common/scene/load/pbrt/lights.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 
 namespace pt::pbrt {

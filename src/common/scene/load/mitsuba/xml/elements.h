@@ -12,8 +12,8 @@
 
 #include "common/math/transform.h"
 #include "common/math/vec.h"
-#include "common/scene/load/files/find_file.h"
 #include "common/scene/load/files/load_options.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt::mitsuba {
 

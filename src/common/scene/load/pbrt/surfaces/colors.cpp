@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/load/files/meshes/text_number.h"
 #include "common/scene/load/files/spectra.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/pbrt/syntax/named_colors.h"
 #include "common/scene/load/pbrt/syntax/tokens.h"
 
@@ -45,8 +45,7 @@ Color sampled(const Context& context, const Parameter& parameter,
     samples.emplace_back(numbers[i], numbers[i + 1]);
   }
   const bool emits = quantity == Quantity::illuminant;
-  const Color color = spectrum_to_rgb(
-      samples, emits ? Illuminant::equal_energy : Illuminant::d65);
+  const Color color = spectrum_to_rgb(samples, emits ? Illuminant::equal_energy : Illuminant::d65);
   if (!emits) return color;
   return context.description.is_earlier ? of_earlier_version(color)
                                         : of_luminance_one(parameter, color);

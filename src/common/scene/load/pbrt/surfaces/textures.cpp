@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 
 namespace pt::pbrt {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/load/files/find_file.h"
+#include "common/scene/load/files/whole_file.h"
 
 namespace pt::pbrt {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/scene/load/files/find_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
 

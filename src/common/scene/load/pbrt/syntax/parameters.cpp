@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/text.h"
 
 namespace pt::pbrt {
 namespace {

@@ -13,8 +13,7 @@
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/inflater.h"
-#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/files/whole_file.h"
 
 namespace pt::pbrt {

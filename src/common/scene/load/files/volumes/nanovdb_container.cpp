@@ -1,4 +1,4 @@
-#include "common/scene/load/files/volumes/nanovdb/container.h"
+#include "common/scene/load/files/volumes/nanovdb_container.h"
 
 #include <blosc.h>
 #include <fmt/format.h>

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "common/math/vec.h"
-#include "common/scene/load/files/volumes/nanovdb/container.h"
+#include "common/scene/load/files/volumes/nanovdb_container.h"
 
 namespace pt::nanovdb_files {
 

@@ -1,8 +1,10 @@
-// Words and numbers in text.
+// Words and numbers in text, and warnings of a kind as one.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <vector>
 
 namespace pt {
 
@@ -26,5 +28,27 @@ std::string_view next_word(std::string_view& text);
 /// All of `word` as a number; nan and inf are numbers, what is too large for a double is inf.
 /// Throws Error.
 double parse_number(std::string_view word);
+
+// Warnings of a kind as one: files repeat their faults, sometimes a hundred thousand times.
+
+class CountedWarnings {
+ public:
+  /// `message` names the place. Of each kind the first message is kept, how many followed, and of
+  /// these the first few names of what they are about. Kinds are few: their texts are ours.
+  void add(std::string_view kind, std::string_view message, std::string_view name = {});
+
+  /// A line for each kind, in the order in which they came first.
+  std::vector<std::string> lines() const;
+
+ private:
+  struct Kind {
+    std::string message;
+    std::size_t more = 0;
+    std::vector<std::string> names;  ///< the first one is in the message
+  };
+
+  std::unordered_map<std::string, std::size_t> index_of_;
+  std::vector<Kind> kinds_;
+};
 
 }  // namespace pt

@@ -1,5 +1,4 @@
-// Files of NanoVDB (.nvdb): sparse grids. A build without its headers has nanovdb_absent.cpp, and
-// refuses them.
+// Grids of voxels in files: NanoVDB (.nvdb), which a build may lack, and Mitsuba's .vol.
 #pragma once
 
 #include <filesystem>
@@ -24,5 +23,19 @@ bool has_nanovdb_grid(const std::filesystem::path& path, const std::string& grid
 
 /// As read_nanovdb, from memory; `name` is for errors.
 VolumeData decode_nanovdb(std::string_view bytes, const std::string& grid, const std::string& name);
+
+// Mitsuba's .vol: a grid of voxels.
+
+struct VolFile {
+  VolumeData grid;  ///< trilinear, in the cube [0, 1]^3
+  Vec3 low, high;   ///< the corners of the box in which the file puts it; any numbers
+};
+
+/// Reads a file of version 3 with 32-bit floats. Throws Error with the file's name where it is of
+/// another kind, ends too early, or has other values than a grid may have (VolumeData).
+VolFile read_vol(const std::filesystem::path& path);
+
+/// The same from memory; `name` is for errors.
+VolFile decode_vol(std::string_view bytes, const std::string& name);
 
 }  // namespace pt
