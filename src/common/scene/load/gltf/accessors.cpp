@@ -48,8 +48,8 @@ void check_index_type(const File& file, int component_type, const std::string& p
   if (component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
       component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       component_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
-    file.fail(place, fmt::format("componentType {}: expected indices of type 5121, 5123 or 5125",
-                                 component_type));
+    file.fail(place, "componentType {}: expected indices of type 5121, 5123 or 5125",
+              component_type);
   }
 }
 
@@ -80,8 +80,8 @@ Elements dense_elements(const File& file, const tinygltf::Accessor& accessor, in
                   accessor.componentType, components, place);
   }
   if (accessor.count > max_zeros - file.zeros) {
-    file.fail(place, fmt::format("{} elements without a bufferView: expected at most {} in a file",
-                                 accessor.count, max_zeros));
+    file.fail(place, "{} elements without a bufferView: expected at most {} in a file",
+              accessor.count, max_zeros);
   }
   file.zeros += accessor.count;
   component_size(file, accessor.componentType, place);
@@ -118,8 +118,8 @@ void for_each_replacement(const File& file, const tinygltf::Accessor& accessor, 
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t element = to_index(indices, i);
     if (element >= accessor.count) {
-      file.fail(sparse_place + ".indices",
-                fmt::format("entry {} is {}, there are {} elements", i, element, accessor.count));
+      file.fail(sparse_place + ".indices", "entry {} is {}, there are {} elements", i, element,
+                accessor.count);
     }
     replace(element, values, i);
   }

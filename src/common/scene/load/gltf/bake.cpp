@@ -80,7 +80,7 @@ std::vector<Affine> joint_matrices(File& file, int skin,
   for (std::size_t i = 0; i < result.size(); ++i) {
     const auto joint = places.find(source.joints[i]);
     if (joint == places.end()) {
-      file.report(skin_place, fmt::format("a joint that is not in the scene: {}", instead));
+      file.report(skin_place, "a joint that is not in the scene: {}", instead);
       return {};
     }
     result[i] = joint->second * result[i];
@@ -96,9 +96,8 @@ void apply_skin(File& file, const std::vector<Affine>& joints, const Influences&
     for (std::size_t i = v * influences.per_vertex; i < (v + 1) * influences.per_vertex; ++i) {
       if (influences.weights[i] == 0.0f) continue;
       if (influences.joints[i] >= joints.size()) {
-        file.report_value(place, "joint",
-                          fmt::format("joint {}, the skin has {}: it moves nothing",
-                                      influences.joints[i], joints.size()));
+        file.report_value(place, "joint", "joint {}, the skin has {}: it moves nothing",
+                          influences.joints[i], joints.size());
         continue;
       }
       for (int row = 0; row < 3; ++row) {

@@ -26,8 +26,8 @@ void set_perspective(File& file, const tinygltf::PerspectiveCamera& source,
     scene.camera.fov_degrees = to_degrees(source.yfov);
   } else {
     file.report(place + ".perspective.yfov",
-                fmt::format("{}: expected radians between 0 and pi: {} degrees are used",
-                            source.yfov, scene.camera.fov_degrees));
+                "{}: expected radians between 0 and pi: {} degrees are used", source.yfov,
+                scene.camera.fov_degrees);
   }
   set_image_shape(source.aspectRatio, scene);
 }
@@ -55,8 +55,8 @@ void set_orthographic(File& file, const tinygltf::OrthographicCamera& source,
     camera.far_clip = std::min(static_cast<float>(source.zfar), infinite_distance);
   } else {
     file.report(place + ".orthographic",
-                fmt::format("znear {}, zfar {}: expected 0 <= znear < zfar: nothing is cut off",
-                            source.znear, source.zfar));
+                "znear {}, zfar {}: expected 0 <= znear < zfar: nothing is cut off", source.znear,
+                source.zfar);
   }
 }
 
@@ -134,18 +134,16 @@ void set_cone(File& file, const tinygltf::SpotLight& spot, const std::string& pl
   double outer = spot.outerConeAngle, inner = spot.innerConeAngle;
   if (!(outer > 0.0 && outer < largest + 1e-4)) {
     outer = outer > 0.0 ? largest : 0.5 * largest;
-    file.report_value(
-        place + ".spot", "outerConeAngle",
-        fmt::format("outerConeAngle {}: expected 0 < outerConeAngle <= pi / 2: {:.6g} "
-                    "is used",
-                    spot.outerConeAngle, outer));
+    file.report_value(place + ".spot", "outerConeAngle",
+                      "outerConeAngle {}: expected 0 < outerConeAngle <= pi / 2: {:.6g} is used",
+                      spot.outerConeAngle, outer);
   }
   if (!(inner >= 0.0 && inner <= spot.outerConeAngle)) {
     inner = std::clamp(inner, 0.0, outer);
-    file.report_value(place + ".spot", "innerConeAngle",
-                      fmt::format("innerConeAngle {}: expected 0 <= innerConeAngle <= "
-                                  "outerConeAngle: {:.6g} is used",
-                                  spot.innerConeAngle, inner));
+    file.report_value(
+        place + ".spot", "innerConeAngle",
+        "innerConeAngle {}: expected 0 <= innerConeAngle <= outerConeAngle: {:.6g} is used",
+        spot.innerConeAngle, inner);
   }
   outer = std::min(outer, largest);
   inner = std::min(inner, outer);
@@ -173,8 +171,7 @@ std::optional<DeltaLight> make_light(File& file, const tinygltf::Light& source,
     light.kind = LightKind::directional;
   } else if (source.type != "point") {
     file.report(place + ".type",
-                fmt::format("'{:.40}': expected point, spot or directional: the lamp is left out",
-                            source.type));
+                "'{:.40}': expected point, spot or directional: the lamp is left out", source.type);
     return std::nullopt;
   }
   light.intensity = light_color(file, source, place);

@@ -18,8 +18,7 @@ std::size_t component_size(const File& file, int component_type, const std::stri
     case TINYGLTF_COMPONENT_TYPE_FLOAT:
       return 4;
     default:
-      file.fail(place, fmt::format("componentType {}: expected 5120 to 5123, 5125 or 5126",
-                                   component_type));
+      file.fail(place, "componentType {}: expected 5120 to 5123, 5125 or 5126", component_type);
   }
 }
 
@@ -31,9 +30,8 @@ Elements locate(const File& file, int view_index, std::size_t byte_offset, std::
       component_size(file, component_type, place) * static_cast<std::size_t>(components);
   const std::size_t stride = view.byteStride == 0 ? size : view.byteStride;
   if (stride < size) {
-    file.fail(place, fmt::format("byteStride {} of bufferViews[{}] is less than an element's {} "
-                                 "bytes",
-                                 stride, view_index, size));
+    file.fail(place, "byteStride {} of bufferViews[{}] is less than an element's {} bytes", stride,
+              view_index, size);
   }
   const std::size_t end = view.byteOffset > buffer.data.size()
                               ? 0
@@ -42,9 +40,9 @@ Elements locate(const File& file, int view_index, std::size_t byte_offset, std::
   const bool fits = count == 0 || (size <= end && byte_offset <= end - size &&
                                    (count - 1) <= (end - size - byte_offset) / stride);
   if (!fits) {
-    file.fail(place, fmt::format("{} elements of {} bytes from byte {} on exceed the {} bytes of "
-                                 "bufferViews[{}]",
-                                 count, size, byte_offset, end, view_index));
+    file.fail(place,
+              "{} elements of {} bytes from byte {} on exceed the {} bytes of bufferViews[{}]",
+              count, size, byte_offset, end, view_index);
   }
   return {buffer.data.data() + view.byteOffset + byte_offset, count, stride, component_type,
           components};
@@ -209,7 +207,7 @@ void mend_image(Json& image, std::size_t views, const std::string& place, Mended
 std::uint64_t size_of(const Json& object, const char* key, const std::string& file,
                       const std::string& place) {
   const auto found = object.find(key);
-  if (found == object.end()) fail(file, place, fmt::format("{} is missing", key));
+  if (found == object.end()) fail(file, place, "{} is missing", key);
   return found->get<std::uint64_t>();
 }
 
@@ -221,8 +219,7 @@ void check_buffer_views(const Json& root, const std::string& file) {
     const std::string place = fmt::format("bufferViews[{}]", i);
     const std::uint64_t buffer = size_of(views[i], "buffer", file, place);
     if (buffer >= buffers.size()) {
-      fail(file, place,
-           fmt::format("buffers[{}] does not exist, there are {}", buffer, buffers.size()));
+      fail(file, place, "buffers[{}] does not exist, there are {}", buffer, buffers.size());
     }
     const std::uint64_t size =
         size_of(buffers[buffer], "byteLength", file, fmt::format("buffers[{}]", buffer));
@@ -230,9 +227,8 @@ void check_buffer_views(const Json& root, const std::string& file) {
     const std::uint64_t length = size_of(views[i], "byteLength", file, place);
     // Integers are below 2^31, so the sum does not wrap.
     if (length == 0 || offset + length > size) {
-      fail(file, place,
-           fmt::format("bytes [{}, {}) are not within buffers[{}] of {} bytes", offset,
-                       offset + length, buffer, size));
+      fail(file, place, "bytes [{}, {}) are not within buffers[{}] of {} bytes", offset,
+           offset + length, buffer, size);
     }
   }
 }
@@ -274,15 +270,13 @@ void check_promises(const Json& root, const std::string& file, bool is_glb) {
   const bool has_version = asset != root.end() && asset->is_object() && asset->contains("version");
   if (has_version && !starts_with_2((*asset)["version"])) {
     const Json& version = (*asset)["version"];
-    fail(file, "asset.version",
-         fmt::format("{}: this version of glTF is not supported: expected 2.x",
-                     version.is_string() ? version.get_ref<const std::string&>() : "no text"));
+    fail(file, "asset.version", "{}: this version of glTF is not supported: expected 2.x",
+         version.is_string() ? version.get_ref<const std::string&>() : "no text");
   }
   const auto meshes = root.find("meshes");
   if (!has_version && meshes != root.end() && meshes->is_object()) {
     fail(file, "asset.version",
-         "missing, and meshes by name as in glTF 1.0, which is not "
-         "supported: expected 2.x");
+         "missing, and meshes by name as in glTF 1.0, which is not supported: expected 2.x");
   }
   const auto required = root.find("extensionsRequired");
   if (required != root.end() && required->is_array()) {
@@ -291,7 +285,7 @@ void check_promises(const Json& root, const std::string& file, bool is_glb) {
       const auto& text = name.get_ref<const std::string&>();
       if (!is_known_extension(text) &&
           std::ranges::find(image_extensions, text) == image_extensions.end()) {
-        fail(file, "extensionsRequired", fmt::format("{:.80} is not supported", text));
+        fail(file, "extensionsRequired", "{:.80} is not supported", text);
       }
     }
   }

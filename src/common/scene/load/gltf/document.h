@@ -47,6 +47,13 @@ inline constexpr std::size_t longest_message = 500;
       clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", message), longest_message)));
 }
 
+/// The same of a message with values in it.
+template <class First, class... Rest>
+[[noreturn]] void fail(const std::string& file, const std::string& place,
+                       fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest) {
+  fail(file, place, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+}
+
 class File {
  public:
   File(std::string name, tinygltf::Model objects, const LoadOptions& load_options)
@@ -60,6 +67,11 @@ class File {
   [[noreturn]] void fail(const std::string& place, const std::string& message) const {
     gltf::fail(name_, place, message);
   }
+  template <class First, class... Rest>
+  [[noreturn]] void fail(const std::string& place, fmt::format_string<First, Rest...> text,
+                         First&& first, Rest&&... rest) const {
+    fail(place, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
 
   /// Reports what is ignored or replaced, and by what; the same message once, with its first place.
   void report(const std::string& place, const std::string& message) {
@@ -69,15 +81,21 @@ class File {
         clipped(fmt::format("{}{}{}", place, place.empty() ? "" : ": ", text), longest_message);
     options_.report(fmt::format("{}: {}", name_, last_report_));
   }
+  template <class First, class... Rest>
+  void report(const std::string& place, fmt::format_string<First, Rest...> text, First&& first,
+              Rest&&... rest) {
+    report(place, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
   const std::string& last_report() const { return last_report_; }
 
   /// Reports that something is wrong at `place` and what is used instead: the same kind once,
   /// whatever its numbers. `kind` is what all its messages begin with.
-  void report_value(const std::string& place, const std::string& kind, const std::string& message) {
-    if (!kinds_.insert(kind).second) return;
-    report(place, message);
+  template <class... Values>
+  void report_value(const std::string& place, const std::string& kind,
+                    fmt::format_string<Values...> text, Values&&... values) {
+    if (kinds_.insert(kind).second)
+      report(place, fmt::format(text, std::forward<Values>(values)...));
   }
-
   /// A name for a part of the file.
   std::string describe(const std::string& place) const {
     return name_ + ": " + clipped(place, longest_message);
@@ -93,7 +111,7 @@ class File {
   const T& at(const std::vector<T>& objects, int index, const char* kind,
               const std::string& place) const {
     if (index < 0 || static_cast<std::size_t>(index) >= objects.size()) {
-      fail(place, fmt::format("{}[{}] does not exist, there are {}", kind, index, objects.size()));
+      fail(place, "{}[{}] does not exist, there are {}", kind, index, objects.size());
     }
     return objects[static_cast<std::size_t>(index)];
   }
@@ -104,8 +122,7 @@ class File {
   bool has(const std::vector<T>& objects, int index, const char* kind, const std::string& place,
            const char* instead) {
     if (index >= 0 && static_cast<std::size_t>(index) < objects.size()) return true;
-    report(place, fmt::format("{}[{}] does not exist, there are {}: {}", kind, index,
-                              objects.size(), instead));
+    report(place, "{}[{}] does not exist, there are {}: {}", kind, index, objects.size(), instead);
     return false;
   }
 

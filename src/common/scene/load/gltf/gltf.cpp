@@ -22,7 +22,7 @@ using namespace gltf;
 void report_ignored(File& file) {
   for (const std::string& name : file.model.extensionsUsed) {
     if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
-      file.report("extensionsUsed", fmt::format("{:.80} is ignored", name));
+      file.report("extensionsUsed", "{:.80} is ignored", name);
     }
   }
   if (!file.model.animations.empty()) {
@@ -116,8 +116,8 @@ class MeshAdder {
         apply_skin(file_, joints, primitive.influences, place, primitive.mesh);
       } else if (in_world) {
         file_.report(place,
-                     "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is "
-                     "placed by its node");
+                     "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is placed "
+                     "by its node");
         bake(file_, user.to_world, place, primitive.mesh);
       }
       const int material = primitive.material;

@@ -79,9 +79,9 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
   set_opacity(source, place, result);
   bool passes = false;
   if (find_extension(source.extensions, "KHR_materials_unlit")) {
-    file_.report(place,
-                 "KHR_materials_unlit: black that emits the base colour is used, and lights "
-                 "the scene");
+    file_.report(
+        place,
+        "KHR_materials_unlit: black that emits the base colour is used, and lights the scene");
     set_base(source, place, result);
     result.emission.radiance = result.color(0);
     result.emission.texture = result.parameters[color_parameter].texture;
@@ -129,10 +129,9 @@ bool Materials::shine_on_both_sides(const tinygltf::Material& source, const std:
       opacity = textured_opacity(1.0f, veil->opacity);
       emission = veil->emission;
     } else {
-      file_.report(
-          place,
-          "doubleSided, emissive and BLEND with different textures: two surfaces are used, "
-          "so that what is half transparent lets a quarter through");
+      file_.report(place,
+                   "doubleSided, emissive and BLEND with different textures: two surfaces are "
+                   "used, so that what is half transparent lets a quarter through");
     }
   }
   return true;
@@ -265,8 +264,7 @@ void Materials::set_volume(const tinygltf::Material& source, const std::string& 
   const float distance = number_or(*volume, "attenuationDistance", endless);
   if (!(distance > 0.0f)) {
     file_.report_value(place + ".extensions.KHR_materials_volume.attenuationDistance",
-                       "attenuationDistance",
-                       fmt::format("{}: expected > 0: nothing is absorbed", distance));
+                       "attenuationDistance", "{}: expected > 0: nothing is absorbed", distance);
     return;
   }
   constexpr float blackest = 1e-6f;  // of a colour; black would absorb everything at once
@@ -277,7 +275,7 @@ void Materials::set_volume(const tinygltf::Material& source, const std::string& 
   }
   if (is_black(medium.extinction)) return;
   if (scene_.media.size() >= no_medium) {
-    file_.fail(place, fmt::format("expected at most {} media", no_medium));
+    file_.fail(place, "expected at most {} media", no_medium);
   }
   result.is_boundary = true;
   result.media.inside = static_cast<std::uint16_t>(scene_.media.size());
@@ -291,7 +289,7 @@ Materials::Base Materials::base_of(const tinygltf::Material& source, const std::
   float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
   if (!std::isfinite(ior) || (ior < 1.0f && ior != 0.0f)) {
     file_.report_value(place + ".extensions.KHR_materials_ior.ior", "ior",
-                       fmt::format("{}: expected 0 or a number >= 1: 1.5 is used", ior));
+                       "{}: expected 0 or a number >= 1: 1.5 is used", ior);
     ior = 1.5f;
   }
   // With an index of 0 all is reflected, for materials that were specular-glossiness.
@@ -325,9 +323,9 @@ void Materials::set_sheen(const tinygltf::Material& source, const std::string& p
   if (!sheen) return;
   const Color color = clamped(vector_or(*sheen, "sheenColorFactor", Color(0.0f)));
   if (is_black(color)) return;
-  file_.report(place,
-               "KHR_materials_sheen: that of the principled BSDF is used, white and without "
-               "roughness");
+  file_.report(
+      place,
+      "KHR_materials_sheen: that of the principled BSDF is used, white and without roughness");
   result.parameters[Principled::Index::sheen] =
       number_of(max_abs(color), texture_use(member(*sheen, "sheenColorTexture")),
                 place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
@@ -375,9 +373,8 @@ void Materials::set_opacity(const tinygltf::Material& source, const std::string&
                             MaterialDescription& result) {
   if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") {
     if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
-      file_.report(place + ".alphaMode", fmt::format("'{:.40}': expected OPAQUE, MASK or BLEND: "
-                                                     "OPAQUE is used",
-                                                     source.alphaMode));
+      file_.report(place + ".alphaMode", "'{:.40}': expected OPAQUE, MASK or BLEND: OPAQUE is used",
+                   source.alphaMode);
     }
     return;
   }

@@ -11,7 +11,7 @@ using Numbers = std::vector<double>;
 bool are_numbers(File& file, const Numbers& values, std::size_t count, const std::string& place) {
   const auto is_finite = [](double x) { return std::isfinite(static_cast<float>(x)); };
   if (values.size() == count && std::all_of(values.begin(), values.end(), is_finite)) return true;
-  file.report(place, fmt::format("expected {} finite numbers: it is left out", count));
+  file.report(place, "expected {} finite numbers: it is left out", count);
   return false;
 }
 

@@ -42,12 +42,11 @@ std::string_view glb_json(std::string_view bytes, const std::string& file) {
   if (bytes.size() < 20) fail(file, "header", "truncated: expected 20 bytes or more");
   const std::uint64_t version = word_at(bytes, 4), length = word_at(bytes, 8);
   if (version != 2) {
-    fail(file, "header",
-         fmt::format("version {} of .glb, as in glTF {}.0, is not supported: expected 2", version,
-                     version));
+    fail(file, "header", "version {} of .glb, as in glTF {}.0, is not supported: expected 2",
+         version, version);
   }
   if (length > bytes.size()) {
-    fail(file, "header", fmt::format("truncated: {} bytes of {}", bytes.size(), length));
+    fail(file, "header", "truncated: {} bytes of {}", bytes.size(), length);
   }
   const std::uint64_t json_length = word_at(bytes, 12);
   if (word_at(bytes, 16) != json_chunk || 20 + json_length > length) {

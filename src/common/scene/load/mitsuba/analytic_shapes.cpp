@@ -177,10 +177,11 @@ SphereFrame frame_of(const Affine& to_world, float scale, bool inside_out) {
 std::optional<float> read_radius(Context& context, const Object& shape) {
   const float radius = shape.number("radius", 1.0f);
   if (radius != 0.0f) return radius;
-  context.leave_out(shape, shape.element(),
-                    fmt::format("radius of shape '{}' is 0; expected a length above 0, or below it "
-                                "to turn the normals",
-                                shape.type()));
+  context.leave_out(
+      shape, shape.element(),
+      fmt::format(
+          "radius of shape '{}' is 0; expected a length above 0, or below it to turn the normals",
+          shape.type()));
   return std::nullopt;
 }
 

@@ -145,9 +145,9 @@ void add_spot(Context& context, const Object& emitter) {
     const float given_beam = beam, given_cutoff = cutoff;
     cutoff = std::clamp(cutoff, 0.0f, 180.0f), beam = std::clamp(beam, 0.0f, cutoff);
     context.warn_once("spot angles", emitter.element(),
-                      fmt::format("spot: beam_width {} and cutoff_angle {}; expected degrees with "
-                                  "0 <= beam_width <= cutoff_angle <= 180: {} and {} are used",
-                                  given_beam, given_cutoff, beam, cutoff));
+                      "spot: beam_width {} and cutoff_angle {}; expected degrees with 0 <= "
+                      "beam_width <= cutoff_angle <= 180: {} and {} are used",
+                      given_beam, given_cutoff, beam, cutoff);
     if (cutoff == 0.0f) return;
   }
   light.cos_inner = cosine(beam);

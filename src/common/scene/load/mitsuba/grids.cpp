@@ -1,6 +1,4 @@
 // The grids of media become the scene's.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -123,8 +121,7 @@ class GridsOfScene {
     const float largest = *std::max_element(grid.values.begin(), grid.values.end());
     const float extinction = largest * max_abs(medium.extinction);
     if (!std::isfinite(extinction)) {
-      fail(object.element(),
-           fmt::format("an extinction of {} somewhere; expected a finite one", extinction));
+      fail(object.element(), "an extinction of {} somewhere; expected a finite one", extinction);
     }
   }
 

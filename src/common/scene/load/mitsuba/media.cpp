@@ -24,9 +24,10 @@ Affine file_box(const Element& at, const VolFile& file) {
   for (int axis = 0; axis < 3; ++axis) {
     const float length = file.high[axis] - file.low[axis];
     if (!(length > 0) || !std::isfinite(length)) {
-      fail(at, fmt::format("use_grid_bbox: the file's box goes from {} to {} along axis {}; "
-                           "expected a positive length",
-                           file.low[axis], file.high[axis], axis));
+      fail(at,
+           "use_grid_bbox: the file's box goes from {} to {} along axis {}; expected a positive "
+           "length",
+           file.low[axis], file.high[axis], axis);
     }
   }
   return translate(file.low) * scale(file.high - file.low);
@@ -36,15 +37,13 @@ void read_look(Context& context, const Object& volume, VolumeData& grid) {
   const std::string filter = volume.text("filter_type", "trilinear");
   grid.interpolates = filter != "nearest";
   if (filter != "nearest" && filter != "trilinear") {
-    context.warn_once(
-        "volume filter " + filter, volume.element(),
-        fmt::format("volume filter '{}' is not supported: trilinear is used", filter));
+    context.warn_once("volume filter " + filter, volume.element(),
+                      "volume filter '{}' is not supported: trilinear is used", filter);
   }
   const std::string wrap = volume.text("wrap_mode", "clamp");
   if (wrap != "clamp") {
-    context.warn_once(
-        "volume wrap " + wrap, volume.element(),
-        fmt::format("wrap mode '{}' of a volume is not supported: clamp is used", wrap));
+    context.warn_once("volume wrap " + wrap, volume.element(),
+                      "wrap mode '{}' of a volume is not supported: clamp is used", wrap);
   }
   volume.ignore({"raw", "accel"});  // three channels are linear RGB in either case
 }
@@ -118,7 +117,7 @@ void read_phase(Context& context, const Object& medium, Medium& result) {
   if (phase->type() == HenyeyGreenstein::name) {
     const float g = phase->number("g", 0.8f);
     if (!(std::abs(g) < 1)) {
-      fail(phase->element(), fmt::format("g {}; expected more than -1 and less than 1", g));
+      fail(phase->element(), "g {}; expected more than -1 and less than 1", g);
     }
     result.phase = phase_kind_of<HenyeyGreenstein>;
     result.phase_parameter = g;
@@ -126,9 +125,8 @@ void read_phase(Context& context, const Object& medium, Medium& result) {
     result.phase = phase_kind_of<Rayleigh>;
   } else if (phase->type() != Isotropic::name) {
     phase->ignore_all();
-    context.warn_once(
-        "phase " + phase->type(), phase->element(),
-        fmt::format("phase function '{}' is not supported: isotropic is used", phase->type()));
+    context.warn_once("phase " + phase->type(), phase->element(),
+                      "phase function '{}' is not supported: isotropic is used", phase->type());
   }
 }
 
@@ -137,9 +135,9 @@ void expect_coefficients(const Object& medium, const Medium& result) {
     const float t = result.extinction[c], albedo = result.albedo[c];
     if (!(t >= 0 && std::isfinite(t) && albedo >= 0 && albedo <= 1)) {
       fail(medium.element(),
-           fmt::format("extinction {} and albedo {} of a channel; expected a finite coefficient, "
-                       "at least 0, and an albedo in [0, 1]",
-                       t, albedo));
+           "extinction {} and albedo {} of a channel; expected a finite coefficient, at least 0, "
+           "and an albedo in [0, 1]",
+           t, albedo);
     }
   }
 }
@@ -212,7 +210,7 @@ std::optional<Medium> read_heterogeneous(Context& context, const Object& medium,
 void warn_unsupported(Context& context, const Object& medium, const std::string& what) {
   medium.ignore_all();
   context.warn_once("medium " + what, medium.element(),
-                    fmt::format("{} is not supported: there is no medium instead", what));
+                    "{} is not supported: there is no medium instead", what);
 }
 
 }  // namespace
@@ -239,7 +237,7 @@ std::optional<std::uint16_t> read_medium(Context& context, const Object& medium)
   if (!result) return std::nullopt;
   auto& media = context.scene.media;
   if (media.size() == media_max) {
-    fail(medium.element(), fmt::format("a scene of more than {} media", media_max));
+    fail(medium.element(), "a scene of more than {} media", media_max);
   }
   media.push_back(*result);
   const auto number = static_cast<std::uint16_t>(media.size() - 1);

@@ -1,6 +1,4 @@
 // <sensor>, with its film and sampler, and <integrator>: camera and defaults of a scene.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,8 +18,8 @@ constexpr int max_image_side = 65535;
 int image_side(const Object& film, std::string_view name, int fallback) {
   const int side = film.integer(name).value_or(fallback);
   if (side < 1 || side > max_image_side) {
-    fail(film.element(),
-         fmt::format("{} of the film is {}; expected 1 to {} pixels", name, side, max_image_side));
+    fail(film.element(), "{} of the film is {}; expected 1 to {} pixels", name, side,
+         max_image_side);
   }
   return side;
 }
@@ -37,9 +35,8 @@ void read_crop(Context& context, const Object& film) {
   const int height = film.integer("crop_height").value_or(whole.y1);
   if (crop.x0 < 0 || crop.y0 < 0 || width < 1 || height < 1 || width > whole.x1 - crop.x0 ||
       height > whole.y1 - crop.y0) {
-    fail(film.element(), fmt::format("a crop of {}x{} pixels at {},{}; expected a part of the film "
-                                     "of {}x{}",
-                                     width, height, crop.x0, crop.y0, whole.x1, whole.y1));
+    fail(film.element(), "a crop of {}x{} pixels at {},{}; expected a part of the film of {}x{}",
+         width, height, crop.x0, crop.y0, whole.x1, whole.y1);
   }
   crop.x1 = crop.x0 + width, crop.y1 = crop.y0 + height;
   if (!(crop == whole)) defaults.crop = crop;
@@ -67,15 +64,13 @@ void read_filter(Context& context, const Object& filter) {
     choice = default_filter(FilterKind::lanczos);
     choice.a = static_cast<float>(filter.integer("lobes").value_or(3));
   } else {
-    context.warn_once(
-        "rfilter", filter.element(),
-        fmt::format("reconstruction filter '{}' is not supported: box is used", type));
+    context.warn_once("rfilter", filter.element(),
+                      "reconstruction filter '{}' is not supported: box is used", type);
   }
   if (choice.kind != FilterKind::mitchell && !(choice.a > 0.0f)) {
     context.warn_once("filter size", filter.element(),
-                      fmt::format("filter '{}' of size {}; expected one above 0: its default is "
-                                  "used",
-                                  type, choice.a));
+                      "filter '{}' of size {}; expected one above 0: its default is used", type,
+                      choice.a);
     choice = default_filter(choice.kind);
   }
   context.scene.defaults.filter = choice;
@@ -97,9 +92,8 @@ void read_sampler(Context& context, const Object& sampler) {
   sampler.ignore({"seed", "scramble", "jitter", "dimension"});
   if (!count) return;
   if (*count < 1) {
-    return context.warn_once(
-        "sample_count", sampler.element(),
-        fmt::format("sample_count {}; expected 1 or more: it is ignored", *count));
+    return context.warn_once("sample_count", sampler.element(),
+                             "sample_count {}; expected 1 or more: it is ignored", *count);
   }
   context.scene.defaults.spp = count;
 }
@@ -113,8 +107,7 @@ FovAxis fov_axis_of(const Object& sensor) {
   const std::string name = sensor.text("fov_axis", "x");
   const auto axis = axes.find(name);
   if (axis != axes.end()) return axis->second;
-  fail(*sensor.find("fov_axis"),
-       fmt::format("fov_axis '{}'; expected x, y, diagonal, smaller or larger", name));
+  fail(*sensor.find("fov_axis"), "fov_axis '{}'; expected x, y, diagonal, smaller or larger", name);
 }
 
 /// Millimetres, of film 36 mm x 24 mm: "50mm".
@@ -124,8 +117,7 @@ double focal_length_mm(const Object& sensor) {
   if (text.size() > 2 && text.ends_with("mm")) text.resize(text.size() - 2);
   const std::optional<double> length = parse_number(text);
   if (!length || !(*length > 0)) {
-    fail(sensor.element(),
-         fmt::format("focal_length '{}'; expected a length above 0, such as 50mm", given));
+    fail(sensor.element(), "focal_length '{}'; expected a length above 0, such as 50mm", given);
   }
   return *length;
 }
@@ -150,9 +142,9 @@ void place_camera(Context& context, const Object& sensor, bool may_scale) {
     return std::abs(glm::dot(a, b)) > 1e-3f * glm::length(a) * glm::length(b);
   };
   if ((scales && !may_scale) || leans(left, forward) || leans(up, forward) || leans(left, up)) {
-    context.warn_once("camera scale", sensor.element(),
-                      "to_world of the sensor scales or shears: its view and up direction are "
-                      "used without that");
+    context.warn_once(
+        "camera scale", sensor.element(),
+        "to_world of the sensor scales or shears: its view and up direction are used without that");
   }
 }
 
@@ -170,8 +162,8 @@ void read_orthographic(Context& context, const Object& sensor) {
 void read_clips(const Object& sensor, CameraParameters& camera) {
   const float near = sensor.number("near_clip", 1e-2f), far = sensor.number("far_clip", 1e4f);
   if (!(near > 0.0f) || !(far > near)) {
-    fail(sensor.element(),
-         fmt::format("near_clip {}, far_clip {}; expected 0 < near_clip < far_clip", near, far));
+    fail(sensor.element(), "near_clip {}, far_clip {}; expected 0 < near_clip < far_clip", near,
+         far);
   }
   const float scale =
       camera.orthographic ? glm::length(sensor.transform("to_world").vector({0, 0, 1})) : 1.0f;
@@ -186,9 +178,8 @@ void read_lens(Context& context, const Object& sensor, CameraParameters& camera)
     camera.focus_distance = focus;
   } else if (camera.aperture > 0.0f) {
     camera.aperture = 0.0f;
-    context.warn_once(
-        "focus", sensor.element(),
-        fmt::format("focus_distance {}; expected one above 0: a pinhole is used", focus));
+    context.warn_once("focus", sensor.element(),
+                      "focus_distance {}; expected one above 0: a pinhole is used", focus);
   }
 }
 
@@ -198,8 +189,7 @@ void read_fov(const Object& sensor, CameraParameters& camera) {
   camera.fov_axis = fov_axis_of(sensor);
   if (const std::optional<double> fov = sensor.number("fov")) {
     if (!(*fov > 0 && *fov < 180)) {
-      fail(*sensor.find("fov"),
-           fmt::format("fov {}; expected degrees between 0 and 180, both excluded", *fov));
+      fail(*sensor.find("fov"), "fov {}; expected degrees between 0 and 180, both excluded", *fov);
     }
     camera.fov_degrees = static_cast<float>(*fov);
     return;
@@ -220,7 +210,7 @@ void read_sensor(Context& context, const Object& sensor) {
   const bool orthographic = type == "orthographic";
   if (type != "perspective" && type != "thinlens" && !orthographic) {
     context.warn_once("sensor " + type, sensor.element(),
-                      fmt::format("sensor '{}' is not supported: perspective is used", type));
+                      "sensor '{}' is not supported: perspective is used", type);
   }
   CameraParameters& camera = context.scene.camera;
   camera = {};
@@ -264,12 +254,11 @@ const std::set<std::string_view> ways_to_run = {"adaptive", "irrcache"};
 
 void read_max_depth(Context& context, const Object& integrator, int depth) {
   if (depth < -1) {
-    fail(integrator.element(), fmt::format("max_depth {}; expected -1 (any) or more", depth));
+    fail(integrator.element(), "max_depth {}; expected -1 (any) or more", depth);
   }
   if (depth == 0 || depth > max_depth_limit) {
     const int used = depth == 0 ? 1 : max_depth_limit;
-    context.warn_once("max_depth", integrator.element(),
-                      fmt::format("max_depth {}: {} is used", depth, used));
+    context.warn_once("max_depth", integrator.element(), "max_depth {}: {} is used", depth, used);
     depth = used;
   }
   // Mitsuba counts the edges of a path, the last one to the emitter included; ours counts its rays,
@@ -288,9 +277,9 @@ void let_panes_pass(SceneData& scene) {
 
 void read_around(Context& context, const Object& integrator, const Object& nested) {
   if (!ways_to_run.contains(integrator.type())) {
-    context.warn_once(
-        "integrator " + integrator.type(), integrator.element(),
-        fmt::format("integrator '{}' is not supported: the one inside is used", integrator.type()));
+    context.warn_once("integrator " + integrator.type(), integrator.element(),
+                      "integrator '{}' is not supported: the one inside is used",
+                      integrator.type());
   }
   integrator.ignore_all();
   read_integrator(context, nested);
@@ -306,9 +295,8 @@ void read_integrator(Context& context, const Object& integrator) {
   const bool direct = type == "direct";
   if (!direct && !light_transport.contains(type)) {
     context.warn_once("integrator " + type, integrator.element(),
-                      fmt::format("integrator '{}' is not supported: the scene is rendered by path "
-                                  "tracing",
-                                  type));
+                      "integrator '{}' is not supported: the scene is rendered by path tracing",
+                      type);
   }
   context.scene.camera.hides_emitters = integrator.boolean("hide_emitters", false);
   read_max_depth(context, integrator, integrator.integer("max_depth").value_or(-1));

@@ -1,6 +1,4 @@
 // <shape>s to spheres, quads, meshes and instances.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 
@@ -46,7 +44,7 @@ void add_mesh(Context& context, const Object& shape, const Target& target, Mesh 
 
 void add_file(Context& context, const Object& shape, const Target& target) {
   const Element* filename = shape.find("filename");
-  if (!filename) fail(shape.element(), fmt::format("shape '{}' has no filename", shape.type()));
+  if (!filename) fail(shape.element(), "shape '{}' has no filename", shape.type());
   const auto path = context.resolve(*filename, filename->required("value"));
   std::vector<std::string> warnings;
   MeshFileOptions options;
@@ -63,7 +61,7 @@ void add_file(Context& context, const Object& shape, const Target& target) {
     return context.leave_out(shape, *filename, error.what());
   }
   for (const std::string& warning : warnings) {
-    context.warn_once(warning, *filename, fmt::format("{}: {}", path.string(), warning));
+    context.warn_once(warning, *filename, "{}: {}", path.string(), warning);
   }
   add_mesh(context, shape, target, std::move(mesh), target.to_world);
 }
@@ -89,9 +87,8 @@ Surface default_surface(const Object* emitter) {
 
 void add_emission(Context& context, const Object& emitter, Surface& surface) {
   if (emitter.type() != "area") {
-    context.warn_once(
-        "shape emitter " + emitter.type(), emitter.element(),
-        fmt::format("emitter '{}' on a shape is not supported: it is left out", emitter.type()));
+    context.warn_once("shape emitter " + emitter.type(), emitter.element(),
+                      "emitter '{}' on a shape is not supported: it is left out", emitter.type());
     return context.add_left_out(emitter);
   }
   context.add_lit();
@@ -164,10 +161,10 @@ std::optional<std::uint32_t> material_of(Context& context, const Object& shape,
   return entry->second == invisible ? std::nullopt : std::optional(entry->second);
 }
 
-using Adder = void (*)(Context&, const Object&, const Target&);
+using ShapeAdder = void (*)(Context&, const Object&, const Target&);
 
-const std::map<std::string_view, Adder>& adders() {
-  static const std::map<std::string_view, Adder> table = {
+const std::map<std::string_view, ShapeAdder>& shape_adders() {
+  static const std::map<std::string_view, ShapeAdder> table = {
       {"obj", add_file},
       {"ply", add_file},
       {"serialized", add_file},
@@ -268,10 +265,10 @@ void add_shape(Context& context, const Object& shape, std::uint32_t group) {
     for (const Object* nested : shape.children("shape")) add_shape(context, *nested, group);
     return;
   }
-  const auto adder = adders().find(type);
-  if (adder == adders().end()) {
+  const auto adder = shape_adders().find(type);
+  if (adder == shape_adders().end()) {
     context.warn_once("shape " + type, shape.element(),
-                      fmt::format("shape '{}' is not supported: it is left out", type));
+                      "shape '{}' is not supported: it is left out", type);
     return;
   }
   const std::optional<std::uint32_t> material = material_of(context, shape, group);

@@ -1,6 +1,4 @@
 // Curves as tubes, and those that are flat with normals as ribbons.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,16 +43,14 @@ std::vector<Bezier> read_beziers(const Parameters& parameters) {
   const std::string basis = parameters.text("basis", "bezier");
   const std::vector<Vec3> p = parameters.points("P");
   if ((degree != 2 && degree != 3) || (basis != "bezier" && basis != "bspline")) {
-    fail(parameters.place(), fmt::format("curve: degree {}, basis '{}'; expected 2 or 3, and "
-                                         "bezier or bspline",
-                                         degree, basis));
+    fail(parameters.place(), "curve: degree {}, basis '{}'; expected 2 or 3, and bezier or bspline",
+         degree, basis);
   }
   const auto step = static_cast<std::size_t>(basis == "bezier" ? degree : 1);
   const auto own = static_cast<std::size_t>(degree) + 1;
   if (p.size() < own || (p.size() - own) % step != 0) {
-    fail(parameters.place(),
-         fmt::format("curve: {} points in 'P'; expected {} and a multiple of {}", p.size(), own,
-                     step));
+    fail(parameters.place(), "curve: {} points in 'P'; expected {} and a multiple of {}", p.size(),
+         own, step);
   }
   std::vector<Bezier> segments;
   for (std::size_t i = 0; i + own <= p.size(); i += step) {
@@ -72,7 +68,7 @@ std::vector<Bezier> read_beziers(const Parameters& parameters) {
 // Curves as tubes, and those that are flat with normals as ribbons.
 
 /// Points on the curve and what lies across it: two unit vectors, x and y.
-struct Frame {
+struct CurveFrame {
   Vec3 position, along, x, y;
 };
 
@@ -82,8 +78,8 @@ Vec3 unit_or(const Vec3& v, const Vec3& fallback) {
 }
 
 /// x stays as near to what it was before as the curve allows, so that tubes are not twisted.
-std::vector<Frame> frames_of(const std::vector<Bezier>& segments) {
-  std::vector<Frame> frames;
+std::vector<CurveFrame> frames_of(const std::vector<Bezier>& segments) {
+  std::vector<CurveFrame> frames;
   Vec3 along(0, 0, 1), x(0.0f);
   for (const Bezier& segment : segments) {
     for (int i = frames.empty() ? 0 : 1; i <= curve_steps; ++i) {
@@ -99,7 +95,7 @@ std::vector<Frame> frames_of(const std::vector<Bezier>& segments) {
 }
 
 /// A polygon around the curve that is as wide, in the mean of all directions, as the circle.
-SurfacePoint on_tube(const Frame& frame, float width, float v) {
+SurfacePoint on_tube(const CurveFrame& frame, float width, float v) {
   const double half = double{pi} / curve_sides,
                angle = v >= 1.0f ? 0.0 : 2 * double{pi} * double{v};
   const auto radius = static_cast<float>(0.5 * double{width} * half / std::sin(half));
@@ -123,19 +119,19 @@ std::vector<Vec3> read_normals(Context& context, const Parameters& parameters,
                                std::size_t segments) {
   const std::string type = parameters.text("type", "flat");
   if (type == "flat") {
-    context.reporter.warn_once("flat curve", parameters.place(),
-                               "a curve that is flat and turns to its viewer is not supported: a "
-                               "tube is used");
+    context.reporter.warn_once(
+        "flat curve", parameters.place(),
+        "a curve that is flat and turns to its viewer is not supported: a tube is used");
   } else if (type != "ribbon" && type != "cylinder") {
-    fail(parameters.place(), fmt::format("curve '{}'; expected flat, ribbon or cylinder", type));
+    fail(parameters.place(), "curve '{}'; expected flat, ribbon or cylinder", type);
   }
   std::vector<Vec3> normals = parameters.points("N");
   if (type != "ribbon") return {};
   const bool is_short =
       std::ranges::any_of(normals, [](const Vec3& n) { return !(glm::length(n) > 0.0f); });
   if (normals.size() != segments + 1 || is_short) {
-    fail(parameters.place(), fmt::format("curve: {} normals; expected {} that are not 0",
-                                         normals.size(), segments + 1));
+    fail(parameters.place(), "curve: {} normals; expected {} that are not 0", normals.size(),
+         segments + 1);
   }
   return normals;
 }
@@ -151,12 +147,12 @@ Mesh read_curve(Context& context, const Entity& entity, const ShapeMaterial&) {
   const float first = parameters.number("width0", both), last = parameters.number("width1", both);
   if (!(first >= 0.0f && last >= 0.0f)) fail(parameters.place(), "curve: a width below 0");
   parameters.ignore({"splitdepth"});
-  const std::vector<Frame> frames = frames_of(segments);
+  const std::vector<CurveFrame> frames = frames_of(segments);
   const int columns = static_cast<int>(frames.size()) - 1;
   Mesh mesh;
   tessellate(mesh, columns, normals.empty() ? curve_sides : 1, [&](float u, float v) {
     const auto column = static_cast<std::size_t>(std::lround(u * static_cast<float>(columns)));
-    const Frame& frame = frames[column];
+    const CurveFrame& frame = frames[column];
     const float width = (1.0f - u) * first + u * last;
     if (normals.empty()) return on_tube(frame, width, v);
     const Vec3 normal = ribbon_normal(normals, column, frame.along);

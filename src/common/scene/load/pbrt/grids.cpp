@@ -1,6 +1,4 @@
 // Media of regular samples.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -21,8 +19,8 @@ std::uint32_t read_side_of_grid(const Parameters& parameters, const char* name) 
   constexpr int most = 1 << 16;
   const int side = parameters.integer(name, 1);
   if (side >= 1 && side <= most) return static_cast<std::uint32_t>(side);
-  fail(parameters.find(name)->place,
-       fmt::format("'integer {}' of {}; expected 1 to {} samples", name, side, most));
+  fail(parameters.find(name)->place, "'integer {}' of {}; expected 1 to {} samples", name, side,
+       most);
 }
 
 }  // namespace
@@ -39,9 +37,9 @@ SampleBox read_box(const Entity& entity) {
   box.to_world = entity.to_world;
   if (!is_invertible(cube_to_world(box))) {
     fail(parameters.place(),
-         fmt::format("{}: a grid without volume; expected p0 and p1 that differ in all "
-                     "coordinates, and a transformation that has an inverse",
-                     parameters.what()));
+         "{}: a grid without volume; expected p0 and p1 that differ in all coordinates, and a "
+         "transformation that has an inverse",
+         parameters.what());
   }
   return box;
 }
@@ -90,13 +88,12 @@ std::vector<float> read_samples_of(const Parameters& parameters, const char* nam
   const Parameter* parameter = parameters.find(name);
   if (!parameter) return values;
   if (values.size() != box.voxels()) {
-    fail(parameter->place, fmt::format("'float {}' has {} values; expected nx * ny * nz = {}", name,
-                                       values.size(), box.voxels()));
+    fail(parameter->place, "'float {}' has {} values; expected nx * ny * nz = {}", name,
+         values.size(), box.voxels());
   }
   for (const float value : values) {
     if (value >= 0.0f && std::isfinite(value)) continue;
-    fail(parameter->place,
-         fmt::format("'float {}': {}; expected finite numbers, at least 0", name, value));
+    fail(parameter->place, "'float {}': {}; expected finite numbers, at least 0", name, value);
   }
   return values;
 }
@@ -156,9 +153,8 @@ Medium read_uniform_grid(Context& context, const Entity& entity) {
   const SampleBox box = read_sample_box(entity);
   const std::vector<float> density = read_samples_of(parameters, "density", box);
   if (density.empty()) {
-    fail(parameters.place(), fmt::format("{}: no 'float density'; expected nx * ny * nz = {} "
-                                         "values",
-                                         parameters.what(), box.voxels()));
+    fail(parameters.place(), "{}: no 'float density'; expected nx * ny * nz = {} values",
+         parameters.what(), box.voxels());
   }
   Medium medium = read_coefficients(context, parameters, read_factor(parameters, "scale", 1.0f));
   medium.density_grid = add_grid(context.scene, faded_volume(box, 1, density));
@@ -179,16 +175,15 @@ Colors read_colors(const Parameters& parameters, const char* name, const SampleB
   if (!parameter) return colors;
   const std::vector<double>& numbers = parameter->numbers;
   if (numbers.size() != 3 * box.voxels()) {
-    fail(parameter->place, fmt::format("'rgb {}' has {} numbers; expected 3 * nx * ny * nz = {}",
-                                       name, numbers.size(), 3 * box.voxels()));
+    fail(parameter->place, "'rgb {}' has {} numbers; expected 3 * nx * ny * nz = {}", name,
+         numbers.size(), 3 * box.voxels());
   }
   colors.reserve(box.voxels());
   for (std::size_t i = 0; i < numbers.size(); i += 3) {
     const Color color(numbers[i], numbers[i + 1], numbers[i + 2]);
     for (int c = 0; c < 3; ++c) {
       if (color[c] >= 0.0f && std::isfinite(color[c])) continue;
-      fail(parameter->place,
-           fmt::format("'rgb {}': {}; expected finite numbers, at least 0", name, color[c]));
+      fail(parameter->place, "'rgb {}': {}; expected finite numbers, at least 0", name, color[c]);
     }
     colors.push_back(to_srgb(color, parameter->space));
   }
@@ -257,8 +252,7 @@ Medium read_rgb_grid(Context& context, const Entity& entity) {
   Colors scattering = read_colors(parameters, "sigma_s", box);
   const Colors light = read_colors(parameters, "Le", box);
   if (absorption.empty() && scattering.empty()) {
-    fail(parameters.place(),
-         fmt::format("{}: expected 'rgb sigma_a' or 'rgb sigma_s'", parameters.what()));
+    fail(parameters.place(), "{}: expected 'rgb sigma_a' or 'rgb sigma_s'", parameters.what());
   }
   if (!light.empty() && absorption.empty()) {
     fail(parameters.find("Le")->place, "'rgb Le' without 'rgb sigma_a'");

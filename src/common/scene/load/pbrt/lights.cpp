@@ -1,6 +1,4 @@
 // Lights that are not on a shape.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -71,9 +69,9 @@ void stretch_spot(Context& context, const Entity& entity, const Vec3& axis, Delt
   if (!(angle < widest) || pictures >= most_spots) {
     return context.reporter.warn_once(
         "wide spot", entity.parameters.place(),
-        fmt::format("a spot wider than 80 degrees, or one of more than {}, in a space that is not "
-                    "scaled alike along all axes: its cone is round",
-                    most_spots));
+        "a spot wider than 80 degrees, or one of more than {}, in a space that is not scaled alike "
+        "along all axes: its cone is round",
+        most_spots);
   }
   const Affine to_light = inverse(entity.to_world);
   light.right = make_frame(light.direction).tangent;
@@ -112,8 +110,8 @@ Vec3 read_direction(const Entity& entity, const Vec3& from) {
   const Vec3 direction = entity.to_world.vector(to - from);
   const float length = glm::length(direction);
   if (length > 0.0f && std::isfinite(length)) return direction / length;
-  fail(entity.parameters.place(),
-       fmt::format("{}: expected two different points 'from' and 'to'", entity.parameters.what()));
+  fail(entity.parameters.place(), "{}: expected two different points 'from' and 'to'",
+       entity.parameters.what());
 }
 
 void add_spot(Context& context, const Entity& entity) {
@@ -121,15 +119,15 @@ void add_spot(Context& context, const Entity& entity) {
   const float cone = parameters.number("coneangle", 30.0f);
   const float delta = parameters.number("conedeltaangle", 5.0f);
   if (!(cone > 0.0f && cone <= 180.0f && delta >= 0.0f)) {
-    fail(parameters.place(), fmt::format("spot: coneangle {} and conedeltaangle {}; expected "
-                                         "degrees with 0 < coneangle <= 180 and 0 <= "
-                                         "conedeltaangle",
-                                         cone, delta));
+    fail(parameters.place(),
+         "spot: coneangle {} and conedeltaangle {}; expected degrees with 0 < coneangle <= 180 and "
+         "0 <= conedeltaangle",
+         cone, delta);
   }
   if (delta > 2.0f * cone) {
-    context.reporter.warn_once("narrow spot", parameters.place(),
-                               "a conedeltaangle of more than twice the coneangle: the spot falls "
-                               "off from its axis on");
+    context.reporter.warn_once(
+        "narrow spot", parameters.place(),
+        "a conedeltaangle of more than twice the coneangle: the spot falls off from its axis on");
   }
   DeltaLight light;
   light.kind = LightKind::spot;
@@ -182,7 +180,7 @@ Color read_light_scale(Context& context, const Parameters& parameters) {
                 : Color(parameters.number("scale", 1.0f)));
   for (int i = 0; i < 3; ++i) {
     if (scale[i] >= 0.0f && std::isfinite(scale[i])) continue;
-    fail(parameters.place(), fmt::format("{}: a scale below 0", parameters.what()));
+    fail(parameters.place(), "{}: a scale below 0", parameters.what());
   }
   return scale;
 }
@@ -194,10 +192,10 @@ void add_lights(Context& context) {
     const auto adder = adders().find(entity->type);
     const bool is_infinite = entity->type == "infinite";
     if (adder == adders().end() && !is_infinite) {
-      context.reporter.warn_once("light " + entity->type, parameters.place(),
-                                 fmt::format("light '{}' is not supported: it is left out; "
-                                             "expected point, spot, distant or infinite",
-                                             entity->type));
+      context.reporter.warn_once(
+          "light " + entity->type, parameters.place(),
+          "light '{}' is not supported: it is left out; expected point, spot, distant or infinite",
+          entity->type);
       continue;
     }
     context.reporter.attempt(parameters.what(), "is left out", [&] {

@@ -75,15 +75,14 @@ Color albedo_of(const Color& absorption, const Color& scattering) {
 float read_factor(const Parameters& parameters, std::string_view name, float fallback) {
   const float factor = parameters.number(name, fallback);
   if (factor >= 0.0f && std::isfinite(factor)) return factor;
-  fail(parameters.find(name)->place,
-       fmt::format("'float {}' of {}; expected a finite number, at least 0", name, factor));
+  fail(parameters.find(name)->place, "'float {}' of {}; expected a finite number, at least 0", name,
+       factor);
 }
 
 void read_phase(const Parameters& parameters, Medium& medium) {
   const float g = parameters.number("g", 0.0f);
   if (!(std::abs(g) < 1.0f)) {
-    fail(parameters.find("g")->place,
-         fmt::format("'float g' of {}; expected more than -1 and less than 1", g));
+    fail(parameters.find("g")->place, "'float g' of {}; expected more than -1 and less than 1", g);
   }
   medium.phase = g == 0.0f ? phase_kind_of<Isotropic> : phase_kind_of<HenyeyGreenstein>;
   medium.phase_parameter = g;
@@ -112,10 +111,10 @@ Medium read_homogeneous(Context& context, const Entity& entity) {
       const Medium of_name = medium_of(measured->absorption, measured->scattering, scale);
       medium.extinction = of_name.extinction, medium.albedo = of_name.albedo;
     } else if (!name.empty()) {
-      context.reporter.warn_once("preset " + name, preset->place,
-                                 fmt::format("preset '{}' is not supported: sigma_a and sigma_s "
-                                             "are used; expected {}",
-                                             name, measured_media_names()));
+      context.reporter.warn_once(
+          "preset " + name, preset->place,
+          "preset '{}' is not supported: sigma_a and sigma_s are used; expected {}", name,
+          measured_media_names());
     }
   }
   medium.emission = context.imaging_ratio * read_factor(parameters, "Lescale", 1.0f) *
@@ -170,7 +169,7 @@ Medium read_nanovdb_grids(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   const Parameter* filename = parameters.find("filename", {"string"});
   if (!filename) {
-    fail(parameters.place(), fmt::format("{}: no 'string filename'", parameters.what()));
+    fail(parameters.place(), "{}: no 'string filename'", parameters.what());
   }
   Medium medium = read_coefficients(context, parameters, read_factor(parameters, "scale", 1.0f));
   GasGrids grids = read_gas_grids(context, *filename);
@@ -202,16 +201,15 @@ const std::map<std::string_view, MediumReader>& medium_readers() {
 std::uint16_t add_medium(Context& context, const std::string& name, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   if (!parameters.find("type", {"string"})) {
-    fail(parameters.place(), fmt::format("medium '{}' has no 'string type'", name));
+    fail(parameters.place(), "medium '{}' has no 'string type'", name);
   }
   const std::string type = parameters.text("type", "");
   const auto reader = medium_readers().find(type);
   if (reader == medium_readers().end()) {
     context.reporter.warn_once("medium " + type, parameters.place(),
-                               fmt::format("medium '{}' is not supported: there is none instead; "
-                                           "expected homogeneous, uniformgrid, rgbgrid, cloud "
-                                           "or nanovdb",
-                                           type));
+                               "medium '{}' is not supported: there is none instead; expected "
+                               "homogeneous, uniformgrid, rgbgrid, cloud or nanovdb",
+                               type);
     return no_medium;
   }
   Medium medium = reader->second(context, entity);
@@ -219,7 +217,7 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
   parameters.report_unused(context.reporter);
   std::vector<Medium>& media = context.scene.media;
   if (media.size() == media_max) {
-    fail(parameters.place(), fmt::format("a scene of more than {} media", media_max));
+    fail(parameters.place(), "a scene of more than {} media", media_max);
   }
   media.push_back(medium);
   return static_cast<std::uint16_t>(media.size() - 1);
@@ -228,8 +226,7 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
 std::uint16_t read_medium(Context& context, const std::string& name, const Place& place) {
   const auto found = context.description.media.find(name);
   if (found == context.description.media.end()) {
-    fail(place,
-         fmt::format("there is no medium '{}'; expected one that MakeNamedMedium defines", name));
+    fail(place, "there is no medium '{}'; expected one that MakeNamedMedium defines", name);
   }
   return add_medium(context, name, *found->second);
 }

@@ -15,8 +15,8 @@ std::vector<T> of_each_vertex(Context& context, const Parameters& parameters, co
                               std::vector<T> values, std::size_t vertices) {
   if (values.empty() || values.size() == vertices) return values;
   context.reporter.warn_once(fmt::format("count of {}", name), parameters.place(),
-                             fmt::format("{} values in '{}' of {}: ignored; expected {}, as of 'P'",
-                                         values.size(), name, parameters.what(), vertices));
+                             "{} values in '{}' of {}: ignored; expected {}, as of 'P'",
+                             values.size(), name, parameters.what(), vertices);
   return {};
 }
 
@@ -26,23 +26,20 @@ std::vector<int> read_indices(Context& context, const Parameters& parameters, st
   std::vector<int> indices = parameters.integers("indices");
   if (indices.empty()) {
     if (vertices != size) {
-      fail(parameters.place(), fmt::format("{} has no 'integer indices'", parameters.what()));
+      fail(parameters.place(), "{} has no 'integer indices'", parameters.what());
     }
     for (std::size_t i = 0; i < size; ++i) indices.push_back(static_cast<int>(i));
   }
   for (const int index : indices) {
     if (index < 0 || static_cast<std::size_t>(index) >= vertices) {
-      fail(parameters.place(),
-           fmt::format("{}: the index {}; expected 0 to {}, for there are {} "
-                       "points in 'P'",
-                       parameters.what(), index, std::int64_t(vertices) - 1, vertices));
+      fail(parameters.place(), "{}: the index {}; expected 0 to {}, for there are {} points in 'P'",
+           parameters.what(), index, std::int64_t(vertices) - 1, vertices);
     }
   }
   if (indices.size() % size != 0) {
     context.reporter.warn_once("indices " + parameters.what(), parameters.place(),
-                               fmt::format("{} indices: the last {} are left out; expected a "
-                                           "multiple of {}",
-                                           indices.size(), indices.size() % size, size));
+                               "{} indices: the last {} are left out; expected a multiple of {}",
+                               indices.size(), indices.size() % size, size);
     indices.resize(indices.size() - indices.size() % size);
   }
   return indices;
@@ -53,7 +50,7 @@ Mesh read_vertices(Context& context, const Parameters& parameters) {
   Mesh mesh;
   mesh.positions = parameters.points("P");
   if (mesh.positions.empty()) {
-    fail(parameters.place(), fmt::format("{} has no 'point3 P'", parameters.what()));
+    fail(parameters.place(), "{} has no 'point3 P'", parameters.what());
   }
   const std::size_t count = mesh.positions.size();
   mesh.normals = of_each_vertex(context, parameters, "N", parameters.points("N"), count);
@@ -68,7 +65,7 @@ void finish(const Entity& entity, Mesh& mesh) {
   try {
     finish_mesh(mesh, {});
   } catch (const Error& error) {
-    fail(entity.parameters.place(), fmt::format("{}: {}", entity.parameters.what(), error.what()));
+    fail(entity.parameters.place(), "{}: {}", entity.parameters.what(), error.what());
   }
 }
 
@@ -114,8 +111,7 @@ Mesh read_ply_mesh(Context& context, const Entity& entity, const ShapeMaterial&)
     fail(filename->place, error.what());
   }
   for (const std::string& warning : warnings) {
-    context.reporter.warn_once(warning, filename->place,
-                               fmt::format("{}: {}", path.string(), warning));
+    context.reporter.warn_once(warning, filename->place, "{}: {}", path.string(), warning);
   }
   mesh.colors.clear(), mesh.face_colors.clear();
   return mesh;
@@ -131,9 +127,10 @@ Mesh read_loop_mesh(Context& context, const Entity& entity, const ShapeMaterial&
   const int levels = parameters.integer("levels", parameters.integer("nlevels", 3));  // of v3
   constexpr std::uint64_t most = 1u << 26;                                            // triangles
   if (levels < 0 || levels > 12 || (cage.triangles.size() << (2 * levels)) > most) {
-    fail(parameters.place(), fmt::format("loopsubdiv: {} levels of {} triangles; expected 0 to 12 "
-                                         "and at most {} triangles in the end",
-                                         levels, cage.triangles.size(), most));
+    fail(parameters.place(),
+         "loopsubdiv: {} levels of {} triangles; expected 0 to 12 and at most {} triangles in the "
+         "end",
+         levels, cage.triangles.size(), most);
   }
   try {
     // Of each triangle in the end: its vertices, and where its edges are found.

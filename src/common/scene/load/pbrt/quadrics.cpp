@@ -1,6 +1,4 @@
 // Spheres, disks and cylinders, whole and cut (pbrt-v4, sections 6.2 to 6.4), as triangles.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -54,8 +52,7 @@ namespace {
 float read_radius(const Parameters& parameters) {
   const float radius = parameters.number("radius", 1.0f);
   if (radius > 0.0f) return radius;
-  fail(parameters.place(),
-       fmt::format("{}: radius {}; expected a length above 0", parameters.what(), radius));
+  fail(parameters.place(), "{}: radius {}; expected a length above 0", parameters.what(), radius);
 }
 
 /// The angle that u covers, radians.

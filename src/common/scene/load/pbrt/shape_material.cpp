@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/pbrt/scene_parts.h"
@@ -79,9 +78,8 @@ ShapeMaterials::AreaLight ShapeMaterials::read_light(const Entity& entity) {
   AreaLight light;
   const Parameters& parameters = entity.parameters;
   if (entity.type != "diffuse" && entity.type != "area") {
-    context_.reporter.warn_once(
-        "area light " + entity.type, parameters.place(),
-        fmt::format("area light '{}' is not known: diffuse is used", entity.type));
+    context_.reporter.warn_once("area light " + entity.type, parameters.place(),
+                                "area light '{}' is not known: diffuse is used", entity.type);
   }
   const Color white = to_srgb(Color(1.0f), entity.space);
   const Parameter* filename = parameters.find("filename", {"string"});
@@ -140,9 +138,9 @@ void ShapeMaterials::set_media(const ShapeEntity& shape, ShapeMaterial& result) 
   result.material.media = media;
   result.invisible = false;
   if (result.material.passes && shape.area_light) {
-    context_.reporter.warn_once("light of a boundary", shape.shape.parameters.place(),
-                                "an area light of the material 'interface' between two media is "
-                                "ignored");
+    context_.reporter.warn_once(
+        "light of a boundary", shape.shape.parameters.place(),
+        "an area light of the material 'interface' between two media is ignored");
   }
 }
 

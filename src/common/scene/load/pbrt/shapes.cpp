@@ -1,6 +1,4 @@
 // Shapes to spheres and meshes, objects to groups and instances.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -198,19 +196,18 @@ void add_shape(Context& context, const ShapeEntity& entity, ShapeMaterials& mate
   if (kind == kinds().end()) {
     return context.reporter.warn_once(
         "shape " + type, parameters.place(),
-        fmt::format("shape '{}' is not supported: it is left out; expected trianglemesh, plymesh, "
-                    "bilinearmesh, loopsubdiv, sphere, disk, cylinder or curve",
-                    type));
+        "shape '{}' is not supported: it is left out; expected trianglemesh, plymesh, "
+        "bilinearmesh, loopsubdiv, sphere, disk, cylinder or curve",
+        type);
   }
   const ShapeMaterial material = materials.read(entity);
   if (material.invisible) {
-    return context.reporter.warn_once("invisible", parameters.place(),
-                                      "a shape that light passes (material 'interface', or an "
-                                      "alpha of 0) is left out");
+    return context.reporter.warn_once(
+        "invisible", parameters.place(),
+        "a shape that light passes (material 'interface', or an alpha of 0) is left out");
   }
   if (!is_invertible(entity.shape.to_world)) {
-    fail(parameters.place(),
-         fmt::format("{}: its transformation has no inverse", parameters.what()));
+    fail(parameters.place(), "{}: its transformation has no inverse", parameters.what());
   }
   const std::optional<float> radius =
       type == "sphere" ? whole_sphere(entity.shape) : std::optional<float>();
@@ -231,9 +228,8 @@ void add_instance(Context& context, const InstanceEntity& instance,
                   const std::set<std::uint32_t>& groups) {
   const auto group = context.description.groups.find(instance.name);
   if (group == context.description.groups.end()) {
-    fail(instance.place, fmt::format("there is no object '{}'; expected one that ObjectBegin "
-                                     "defines",
-                                     instance.name));
+    fail(instance.place, "there is no object '{}'; expected one that ObjectBegin defines",
+         instance.name);
   }
   if (!is_invertible(instance.to_world)) {
     fail(instance.place, "ObjectInstance: its transformation has no inverse");

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -44,10 +43,9 @@ SkyPicture read_picture(Context& context, const std::filesystem::path& path,
   picture.is_equal_area = image.width == image.height && filename.name == "filename";
   if (!picture.is_equal_area && image.width != 2 * image.height) {
     context.reporter.warn_once("sky shape", filename.place,
-                               fmt::format("{}: {}x{} pixels are taken for longitude and latitude; "
-                                           "expected a square, in pbrt's equal-area map, or twice "
-                                           "as wide as high",
-                                           path.string(), image.width, image.height));
+                               "{}: {}x{} pixels are taken for longitude and latitude; expected a "
+                               "square, in pbrt's equal-area map, or twice as wide as high",
+                               path.string(), image.width, image.height);
   }
   return picture;
 }
@@ -109,9 +107,9 @@ Color SkyPicture::at(const Vec3& d) const {
 void SkyLights::add(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   if (const Parameter* portal = parameters.find("portal")) {
-    context.reporter.warn_once("portal", portal->place,
-                               "'portal' of an infinite light is not supported: its light comes "
-                               "from all around");
+    context.reporter.warn_once(
+        "portal", portal->place,
+        "'portal' of an infinite light is not supported: its light comes from all around");
   }
   Color scale = read_light_scale(context, parameters);
   const float illuminance = parameters.number("illuminance", 0.0f);
@@ -127,8 +125,7 @@ void SkyLights::add(Context& context, const Entity& entity) {
   }
   if (filename) {
     if (pictures_.size() == most_pictures) {
-      fail(filename->place,
-           fmt::format("more than {} infinite lights with pictures", most_pictures));
+      fail(filename->place, "more than {} infinite lights with pictures", most_pictures);
     }
     if (!is_invertible(entity.to_world)) {
       fail(parameters.place(), "an infinite light whose transformation has no inverse");

@@ -1,6 +1,4 @@
 // Camera, film, filter, sampler and integrator.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -59,7 +57,7 @@ void read_perspective(Context& context, const Entity& entity) {
   const ScreenWindow window = read_window(context, parameters);
   const float fov = parameters.number("fov", 90.0f);
   if (!(fov > 0.0f && fov < 180.0f)) {
-    fail(parameters.place(), fmt::format("fov {}; expected degrees between 0 and 180", fov));
+    fail(parameters.place(), "fov {}; expected degrees between 0 and 180", fov);
   }
   CameraParameters& camera = context.scene.camera;
   camera.fov_degrees = fov;
@@ -109,10 +107,10 @@ void read_camera(Context& context, const Entity& entity) {
     read_orthographic(context, entity);
   } else {
     if (entity.type != "perspective") {
-      context.reporter.warn_once("camera " + entity.type, parameters.place(),
-                                 fmt::format("camera '{}' is not supported: perspective is used; "
-                                             "expected perspective or orthographic",
-                                             entity.type));
+      context.reporter.warn_once(
+          "camera " + entity.type, parameters.place(),
+          "camera '{}' is not supported: perspective is used; expected perspective or orthographic",
+          entity.type);
       parameters.ignore({"lensfile", "aperturediameter", "focusdistance", "mapping", "aperture"});
     }
     read_perspective(context, entity);
@@ -144,10 +142,10 @@ void read_filter(Context& context, const Entity& filter) {
   const auto kind = kinds.find(filter.type);
   if (kind == kinds.end()) {
     p.ignore_all();
-    return context.reporter.warn_once("filter " + filter.type, p.place(),
-                                      fmt::format("filter '{}' is not known: box is used; expected "
-                                                  "box, triangle, gaussian, mitchell or sinc",
-                                                  filter.type));
+    return context.reporter.warn_once(
+        "filter " + filter.type, p.place(),
+        "filter '{}' is not known: box is used; expected box, triangle, gaussian, mitchell or sinc",
+        filter.type);
   }
   FilterChoice choice = default_filter(kind->second);
   // pbrt-v3 calls them widths.
@@ -178,14 +176,12 @@ void read_filter(Context& context, const Entity& filter) {
       break;
   }
   if (!(radius > 0.0f) || (choice.kind != FilterKind::mitchell && !(choice.a > 0.0f))) {
-    fail(p.place(), fmt::format("{}: expected sizes above 0", p.what()));
+    fail(p.place(), "{}: expected sizes above 0", p.what());
   }
   const bool other_shape = choice.kind == FilterKind::mitchell && radius != 2.0f;
   if (other_shape || along("yradius", "ywidth", radius) != radius) {
     context.reporter.warn_once("filter radius", p.place(),
-                               fmt::format("{}: a radius of our own is used, the same along x and "
-                                           "y",
-                                           p.what()));
+                               "{}: a radius of our own is used, the same along x and y", p.what());
   }
   context.scene.defaults.filter = choice;
   p.report_unused(context.reporter);
@@ -199,7 +195,7 @@ void read_sampler(Context& context, const Entity& sampler) {
     count = static_cast<int>(std::clamp<std::int64_t>(product, -1, 1 << 30));
   }
   p.ignore({"seed", "randomization", "jitter", "dimensions"});
-  if (count < 1) fail(p.place(), fmt::format("{} samples a pixel; expected 1 or more", count));
+  if (count < 1) fail(p.place(), "{} samples a pixel; expected 1 or more", count);
   context.scene.defaults.spp = count;
   p.report_unused(context.reporter);
 }
@@ -208,14 +204,13 @@ void read_sampler(Context& context, const Entity& sampler) {
 void read_integrator(Context& context, const Entity& integrator) {
   const Parameters& p = integrator.parameters;
   if (!light_transport.contains(integrator.type) && integrator.type != "directlighting") {
-    context.reporter.warn_once("integrator " + integrator.type, p.place(),
-                               fmt::format("integrator '{}' is not supported: the scene is "
-                                           "rendered by path tracing",
-                                           integrator.type));
+    context.reporter.warn_once(
+        "integrator " + integrator.type, p.place(),
+        "integrator '{}' is not supported: the scene is rendered by path tracing", integrator.type);
   }
   // pbrt-v3's is path tracing of one bounce.
   const int depth = integrator.type == "directlighting" ? 1 : p.integer("maxdepth", 5);
-  if (depth < 0) fail(p.place(), fmt::format("maxdepth {}; expected 0 or more", depth));
+  if (depth < 0) fail(p.place(), "maxdepth {}; expected 0 or more", depth);
   context.scene.defaults.max_depth = std::min(depth, most_rays - 1) + 1;
   p.ignore_all();  // the rest is about the method
 }
@@ -227,7 +222,7 @@ constexpr int most_pixels = 65535;  // a side
 int read_side(const Parameters& parameters, const char* name, int fallback) {
   const int side = parameters.integer(name, fallback);
   if (side >= 1 && side <= most_pixels) return side;
-  fail(parameters.place(), fmt::format("{} {}; expected 1 to {} pixels", name, side, most_pixels));
+  fail(parameters.place(), "{} {}; expected 1 to {} pixels", name, side, most_pixels);
 }
 
 /// Both windows are x0 x1 y0 y1, the one in pixels, the other in parts of the image.
@@ -261,15 +256,14 @@ void read_crop(const Parameters& parameters, SceneDefaults& defaults) {
 void read_white(Context& context, const Parameters& parameters, float fallback) {
   const float kelvins = parameters.number("whitebalance", 0.0f);
   if (kelvins != 0.0f && !(kelvins >= 1000.0f && kelvins <= 25000.0f)) {
-    fail(parameters.place(),
-         fmt::format("whitebalance {}; expected 0, or kelvins from 1000 to 25000", kelvins));
+    fail(parameters.place(), "whitebalance {}; expected 0, or kelvins from 1000 to 25000", kelvins);
   }
   context.white_kelvins = kelvins != 0.0f ? kelvins : fallback;
   if (kelvins == 0.0f) return;
   context.reporter.warn_once("white balance", parameters.find("whitebalance")->place,
-                             fmt::format("whitebalance {} changes the colours of lights, not of "
-                                         "pixels: the same where surfaces are grey",
-                                         kelvins));
+                             "whitebalance {} changes the colours of lights, not of pixels: the "
+                             "same where surfaces are grey",
+                             kelvins);
 }
 
 /// pbrt's sensor multiplies by the time of exposure and ISO / 100.
@@ -279,7 +273,7 @@ void read_film(Context& context, const Entity& film) {
   if (film.type != "rgb" && film.type != "image") {
     parameters.ignore({"nbuckets", "lambdamin", "lambdamax", "coordinatesystem"});
     context.reporter.warn_once("film " + film.type, parameters.place(),
-                               fmt::format("film '{}' is not supported: rgb is used", film.type));
+                               "film '{}' is not supported: rgb is used", film.type);
   }
   defaults.width = read_side(parameters, "xresolution", 1280);
   defaults.height = read_side(parameters, "yresolution", 720);
@@ -293,9 +287,9 @@ void read_film(Context& context, const Entity& film) {
   const std::string sensor = parameters.text("sensor", "cie1931");
   if (sensor != "cie1931") {
     context.reporter.warn_once("sensor", parameters.find("sensor")->place,
-                               fmt::format("sensor '{}' is not supported: the observer of 1931 is "
-                                           "used, with the sensor's whitebalance",
-                                           sensor));
+                               "sensor '{}' is not supported: the observer of 1931 is used, with "
+                               "the sensor's whitebalance",
+                               sensor);
   }
   read_white(context, parameters, sensor == "cie1931" ? 0.0f : 6500.0f);
   // About the file that pbrt would write, and what it does about fireflies.

@@ -1,6 +1,4 @@
 // Glass, metals, plastics: indices of refraction, roughness, highlights.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 
@@ -37,8 +35,7 @@ double ior_of(const Object& bsdf, std::string_view name, double fallback) {
   }
   const std::optional<double> number = parse_number(text);
   if (!number || !(*number > 0)) {
-    fail(*at, fmt::format("{} is '{}'; expected a number above 0 or a name such as bk7 or air",
-                          name, text));
+    fail(*at, "{} is '{}'; expected a number above 0 or a name such as bk7 or air", name, text);
   }
   return *number;
 }
@@ -127,11 +124,10 @@ bool read_is_beckmann(Context& context, const Object& bsdf) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
   if (name == "beckmann" || name == "ggx") return name == "beckmann";
   if (context.modern) {
-    fail(*bsdf.find("distribution"),
-         fmt::format("distribution '{}'; expected beckmann or ggx", name));
+    fail(*bsdf.find("distribution"), "distribution '{}'; expected beckmann or ggx", name);
   }
   context.warn_once("distribution " + name, bsdf.element(),
-                    fmt::format("distribution '{}' is not supported: beckmann is used", name));
+                    "distribution '{}' is not supported: beckmann is used", name);
   return true;
 }
 
@@ -144,7 +140,7 @@ const ConductorIndex& read_named_metal(Context& context, const Object& bsdf) {
   const std::string name = bsdf.text("material", context.modern ? "none" : "Cu");
   if (const auto metal = find(name); metal != conductors.end()) return *metal;
   context.warn_once("metal " + name, bsdf.element(),
-                    fmt::format("the conductor '{}' is not known: aluminium is used", name));
+                    "the conductor '{}' is not known: aluminium is used", name);
   return *find("Al");
 }
 
@@ -237,11 +233,10 @@ Surface read_rough_plastic(Context& context, const Object& bsdf) {
   const Roughness roughness = read_roughness(context, bsdf);
   const ColorTexture& alpha = roughness.alpha_u;
   if (alpha.texture != no_texture) {
-    context.warn_once(
-        "textured coat", bsdf.element(),
-        fmt::format("a texture as alpha of bsdf 'roughplastic' changes its highlight: "
-                    "what the coat lets through is that of {}",
-                    alpha.color.x));
+    context.warn_once("textured coat", bsdf.element(),
+                      "a texture as alpha of bsdf 'roughplastic' changes its highlight: what the "
+                      "coat lets through is that of {}",
+                      alpha.color.x);
   }
   Surface surface = glossy_of(context, bsdf,
                               make_rough_plastic(Color(0.0f), Color(0.0f), read_coat(bsdf),
@@ -262,9 +257,8 @@ Surface read_phong(Context& context, const Object& bsdf) {
 Surface read_ward(Context& context, const Object& bsdf) {
   const std::string variant = bsdf.text("variant", "balanced");
   if (variant != "balanced") {
-    context.warn_once(
-        "ward " + variant, bsdf.element(),
-        fmt::format("variant '{}' of bsdf 'ward' is not supported: balanced is used", variant));
+    context.warn_once("ward " + variant, bsdf.element(),
+                      "variant '{}' of bsdf 'ward' is not supported: balanced is used", variant);
   }
   Surface surface = glossy_of(context, bsdf, describe_all<Ward>(), 0.2f);
   const auto alpha = [&](std::string_view axis) {

@@ -23,9 +23,9 @@ Samples sorted_samples(const Element& element, Samples samples) {
 
 Color samples_color(Context& context, const Element& element, const Samples& samples,
                     Quantity quantity) {
-  context.warn_once("spectrum", element,
-                    "<spectrum> of wavelengths: linear sRGB is used, as the CIE 1931 observer "
-                    "sees it");
+  context.warn_once(
+      "spectrum", element,
+      "<spectrum> of wavelengths: linear sRGB is used, as the CIE 1931 observer sees it");
   return spectrum_to_rgb(
       samples, quantity == Quantity::emission ? Illuminant::equal_energy : Illuminant::d65);
 }
@@ -46,7 +46,7 @@ Color hex_color(const Element& element, const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data() + 1, end, value, 16);
   if (text.size() != 7 || stop != end || error != std::errc()) {
-    fail(element, fmt::format("the colour '{}'; expected #rrggbb", text));
+    fail(element, "the colour '{}'; expected #rrggbb", text);
   }
   const Color bytes(value >> 16, value >> 8 & 255, value & 255);
   return decoded(bytes / 255.0f);
@@ -58,7 +58,7 @@ Color rgb_color(const Element& element) {
   if (!text.empty() && text[0] == '#') return hex_color(element, text);
   const std::vector<double> v = parse_numbers(element, text);
   if (v.size() != 1 && v.size() != 3) {
-    fail(element, fmt::format("the colour '{}'; expected one or three numbers", text));
+    fail(element, "the colour '{}'; expected one or three numbers", text);
   }
   const Color color = v.size() == 1 ? Color(static_cast<float>(v[0])) : Color(v[0], v[1], v[2]);
   return element.tag == "srgb" ? decoded(color) : color;
@@ -114,7 +114,7 @@ Color blackbody_color(const Element& element) {
   if (!text.empty() && (text.back() == 'K' || text.back() == 'k')) text.pop_back();
   const std::optional<double> kelvin = parse_number(text);
   if (!kelvin || !(*kelvin > 0)) {
-    fail(element, fmt::format("temperature '{}'; expected kelvins above 0", text));
+    fail(element, "temperature '{}'; expected kelvins above 0", text);
   }
   return blackbody_to_rgb(*kelvin) * static_cast<float>(number_attribute(element, "scale", 1.0));
 }
@@ -125,8 +125,7 @@ Color color_of(Context& context, const Element& element, Quantity quantity, cons
   if (element.tag == "spectrum") return spectrum_color(context, element, quantity, stand_in);
   if (element.tag == "blackbody") return blackbody_color(element);
   if (tags.contains(element.tag)) return rgb_color(element);
-  fail(element,
-       fmt::format("a <{}>; expected a colour: <rgb>, <spectrum> or <float>", element.tag));
+  fail(element, "a <{}>; expected a colour: <rgb>, <spectrum> or <float>", element.tag);
 }
 
 }  // namespace
@@ -136,15 +135,14 @@ Color bounded_color(Context& context, const Element& element, Color color, Quant
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(color[i]) ||
         (color[i] < 0.0f && is_rgb && quantity == Quantity::reflectance)) {
-      fail(element, fmt::format("a colour with the component {}; expected one that is finite and "
-                                "not negative",
-                                color[i]));
+      fail(element, "a colour with the component {}; expected one that is finite and not negative",
+           color[i]);
     }
     if (color[i] < 0.0f) {
       const bool is_index = quantity == Quantity::index_of_refraction;
       context.warn_once(is_index ? "negative index" : "negative color", element,
-                        fmt::format("a negative component of {}: 0 is used",
-                                    is_index ? "an index of refraction" : "a colour"));
+                        "a negative component of {}: 0 is used",
+                        is_index ? "an index of refraction" : "a colour");
       color[i] = 0.0f;
     }
     if (quantity == Quantity::reflectance && color[i] > 1.0f) {
@@ -169,8 +167,8 @@ namespace {
 Samples paired_samples(const Element& element, const std::vector<double>& wavelengths,
                        const std::vector<double>& values) {
   if (wavelengths.size() != values.size()) {
-    fail(element, fmt::format("{} wavelengths and {} values; expected as many of both",
-                              wavelengths.size(), values.size()));
+    fail(element, "{} wavelengths and {} values; expected as many of both", wavelengths.size(),
+         values.size());
   }
   Samples samples;
   for (std::size_t i = 0; i < values.size(); ++i) samples.emplace_back(wavelengths[i], values[i]);
@@ -214,8 +212,7 @@ Color sampled_color(Context& context, const Object& object, Quantity quantity,
   }
   const std::vector<double> values = numbers_of(object, "values");
   if (values.size() < 2) {
-    fail(object.element(),
-         fmt::format("spectrum '{}': expected two values or more", object.type()));
+    fail(object.element(), "spectrum '{}': expected two values or more", object.type());
   }
   const bool is_regular = object.type() == "regular";
   const std::vector<double> wavelengths =
@@ -248,7 +245,7 @@ Color spectrum_object_color(Context& context, const Object& object, Quantity qua
     return given("color", "value");
   }
   context.warn_once("spectrum " + type, object.element(),
-                    fmt::format("spectrum '{}' is not supported: {} is used", type, stand_in.x));
+                    "spectrum '{}' is not supported: {} is used", type, stand_in.x);
   return stand_in;
 }
 

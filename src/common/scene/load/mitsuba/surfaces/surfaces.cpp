@@ -1,7 +1,5 @@
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <map>
 
@@ -53,17 +51,17 @@ struct NumberReader {
 float read_eta(Context& context, const Object& bsdf) {
   float specular = read_plain_number(context, bsdf, "specular", 0.5f);
   if (!(specular < 12.5f)) {
-    context.warn_once("specular", bsdf.element(),
-                      fmt::format("bsdf '{}': specular {} is 12.5 or more, which no index of "
-                                  "refraction has: 0.5 is used",
-                                  bsdf.type(), specular));
+    context.warn_once(
+        "specular", bsdf.element(),
+        "bsdf '{}': specular {} is 12.5 or more, which no index of refraction has: 0.5 is used",
+        bsdf.type(), specular);
     specular = 0.5f;
   }
   const float by_specular = 2.0f / (1.0f - std::sqrt(0.08f * specular)) - 1.0f;
   const float eta = read_plain_number(context, bsdf, "eta", by_specular);
   if (!(eta > 0.0f) || !std::isfinite(eta)) {
-    fail(bsdf.element(), fmt::format("bsdf '{}': index of refraction {}; expected a number above 0",
-                                     bsdf.type(), eta));
+    fail(bsdf.element(), "bsdf '{}': index of refraction {}; expected a number above 0",
+         bsdf.type(), eta);
   }
   return eta;
 }
@@ -130,8 +128,8 @@ const std::map<std::string_view, Reader>& readers() {
 }  // namespace
 
 void report_replaced(Context& context, const Object& bsdf, std::string_view by) {
-  context.warn_once("bsdf " + bsdf.type(), bsdf.element(),
-                    fmt::format("bsdf '{}' is not supported: {}", bsdf.type(), by));
+  context.warn_once("bsdf " + bsdf.type(), bsdf.element(), "bsdf '{}' is not supported: {}",
+                    bsdf.type(), by);
 }
 
 // Each once, although others may hold it 2^n times.

@@ -21,7 +21,7 @@ const std::string* Element::attribute(std::string_view name) const {
 
 const std::string& Element::required(std::string_view name) const {
   if (const std::string* value = attribute(name)) return *value;
-  fail(*this, fmt::format("<{}> has no attribute '{}'", tag, name));
+  fail(*this, "<{}> has no attribute '{}'", tag, name);
 }
 
 std::string Element::place() const {
@@ -78,8 +78,7 @@ std::vector<double> parse_numbers(const Element& element, std::string_view text)
     while (end < text.size() && !is_separator(text[end])) ++end;
     const std::optional<double> number = parse_number(text.substr(at, end - at));
     if (!number) {
-      fail(element,
-           fmt::format("'{}' in <{}>; expected a number", text.substr(at, end - at), element.tag));
+      fail(element, "'{}' in <{}>; expected a number", text.substr(at, end - at), element.tag);
     }
     numbers.push_back(*number);
     at = end;
@@ -92,7 +91,7 @@ double number_attribute(const Element& element, std::string_view name, double fa
   if (!text) return fallback;
   const std::optional<double> number = parse_number(*text);
   if (!number) {
-    fail(element, fmt::format("{}=\"{}\" of <{}>; expected a number", name, *text, element.tag));
+    fail(element, "{}=\"{}\" of <{}>; expected a number", name, *text, element.tag);
   }
   return *number;
 }
@@ -102,8 +101,7 @@ Vec3 vector_attributes(const Element& element, double fallback) {
     const std::vector<double> v = parse_numbers(element, *value);
     if (v.size() == 1) return Vec3(static_cast<float>(v[0]));
     if (v.size() != 3) {
-      fail(element,
-           fmt::format("value=\"{}\" of <{}>; expected one or three numbers", *value, element.tag));
+      fail(element, "value=\"{}\" of <{}>; expected one or three numbers", *value, element.tag);
     }
     return {v[0], v[1], v[2]};
   }
@@ -115,8 +113,7 @@ Vec3 vector_attribute(const Element& element, std::string_view name) {
   const std::string& text = element.required(name);
   const std::vector<double> v = parse_numbers(element, text);
   if (v.size() != 3) {
-    fail(element,
-         fmt::format("{}=\"{}\" of <{}>; expected three numbers", name, text, element.tag));
+    fail(element, "{}=\"{}\" of <{}>; expected three numbers", name, text, element.tag);
   }
   return {v[0], v[1], v[2]};
 }
@@ -134,7 +131,7 @@ Map matrix_of(const Element& element) {
   const std::string& text = element.required("value");
   const std::vector<double> v = parse_numbers(element, text);
   if (v.size() != 16 && v.size() != 9) {
-    fail(element, fmt::format("<matrix> of {} numbers; expected 16 or 9", v.size()));
+    fail(element, "<matrix> of {} numbers; expected 16 or 9", v.size());
   }
   const std::size_t n = v.size() == 16 ? 4 : 3;
   Map map(1.0);
@@ -191,9 +188,8 @@ Map step_of(const Element& element) {
     const Vec3 by = vector_attributes(element, 1.0);
     for (int i = 0; i < 3; ++i) map[i][i] = by[i];
   } else {
-    fail(element, fmt::format("<{}> in <transform>; expected translate, rotate, scale, matrix or "
-                              "lookat",
-                              element.tag));
+    fail(element, "<{}> in <transform>; expected translate, rotate, scale, matrix or lookat",
+         element.tag);
   }
   return map;
 }

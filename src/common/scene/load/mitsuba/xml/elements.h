@@ -2,6 +2,8 @@
 // the numbers, transformations and files that they name.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -40,6 +42,12 @@ inline constexpr std::size_t max_reports = 200;
 
 /// Throws Error with the element's place before `message`, shortened.
 [[noreturn]] void fail(const Element& element, const std::string& message);
+/// The same of a message with values in it.
+template <class First, class... Rest>
+[[noreturn]] void fail(const Element& element, fmt::format_string<First, Rest...> text,
+                       First&& first, Rest&&... rest) {
+  fail(element, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+}
 
 /// Reads a scene and what it includes. Variables come from the options' definitions and from
 /// <default>, in this order of precedence. Throws Error with file and line for malformed XML,

@@ -53,7 +53,7 @@ std::optional<double> Object::number(std::string_view name) const {
   if (!at) return std::nullopt;
   const std::string& text = at->required("value");
   const std::optional<double> number = parse_number(text);
-  if (!number) fail(*at, fmt::format("{} is '{}'; expected a number", name, text));
+  if (!number) fail(*at, "{} is '{}'; expected a number", name, text);
   return number;
 }
 
@@ -66,7 +66,7 @@ std::optional<int> Object::integer(std::string_view name) const {
   const std::optional<double> value = number(name);
   if (!value) return std::nullopt;
   if (*value != std::trunc(*value) || !(std::abs(*value) <= 2147483647.0)) {
-    fail(*find(name), fmt::format("{} is {}; expected an integer", name, *value));
+    fail(*find(name), "{} is {}; expected an integer", name, *value);
   }
   return static_cast<int>(*value);
 }
@@ -78,7 +78,7 @@ bool Object::boolean(std::string_view name, bool fallback) const {
   std::string lower = text;
   std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
   if (lower != "true" && lower != "false") {
-    fail(*at, fmt::format("{} is '{}'; expected true or false", name, text));
+    fail(*at, "{} is '{}'; expected true or false", name, text);
   }
   return lower == "true";
 }
@@ -97,7 +97,7 @@ const Element* Object::find_transform(std::string_view name) const {
   const Element* at = find(name);
   if (at && at->tag == "animation" && !at->children.empty()) at = &at->children.front();
   if (at && at->tag != "transform")
-    fail(*at, fmt::format("{} is a <{}>; expected a <transform>", name, at->tag));
+    fail(*at, "{} is a <{}>; expected a <transform>", name, at->tag);
   return at;
 }
 
@@ -168,11 +168,10 @@ int height_of(const Object& object, std::map<const Object*, int>& heights, int d
   const auto [entry, is_new] = heights.try_emplace(&object, open);
   int height = is_new ? 0 : entry->second;
   if (height == open) {
-    fail(object.element(),
-         fmt::format("this <{}> contains itself through references", object.tag()));
+    fail(object.element(), "this <{}> contains itself through references", object.tag());
   }
   if (depth + height > max_object_depth) {
-    fail(object.element(), fmt::format("objects are nested deeper than {}", max_object_depth));
+    fail(object.element(), "objects are nested deeper than {}", max_object_depth);
   }
   if (!is_new) return height;
   for (const Object::Nested& nested : object.nested()) {
@@ -194,8 +193,7 @@ Object* ObjectGraph::add(const Element& element, const LoadOptions& options) {
   Object* object = objects_.emplace_back(std::make_unique<Object>(element)).get();
   if (const std::string* id = element.attribute("id")) {
     if (!by_id_.try_emplace(*id, object).second) {
-      fail(element,
-           fmt::format("the id '{}' is used twice, first at {}", *id, by_id_[*id]->place()));
+      fail(element, "the id '{}' is used twice, first at {}", *id, by_id_[*id]->place());
     }
   }
   for (const Element& child : element.children) add_child(*object, child, options);
@@ -246,10 +244,10 @@ void ObjectGraph::resolve_references() {
   for (const Element* alias : aliases_) {
     const auto object = by_id_.find(alias->required("id"));
     if (object == by_id_.end()) {
-      fail(*alias, fmt::format("there is no object with the id '{}'", alias->required("id")));
+      fail(*alias, "there is no object with the id '{}'", alias->required("id"));
     }
     if (!by_id_.try_emplace(alias->required("as"), object->second).second) {
-      fail(*alias, fmt::format("the id '{}' is used twice", alias->required("as")));
+      fail(*alias, "the id '{}' is used twice", alias->required("as"));
     }
   }
   for (const auto& object : objects_) {
@@ -257,7 +255,7 @@ void ObjectGraph::resolve_references() {
       if (nested.object) continue;
       const auto found = by_id_.find(nested.reference);
       if (found == by_id_.end()) {
-        fail(*nested.element, fmt::format("there is no object with the id '{}'", nested.reference));
+        fail(*nested.element, "there is no object with the id '{}'", nested.reference);
       }
       nested.object = found->second;
     }

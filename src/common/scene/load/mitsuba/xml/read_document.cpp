@@ -159,7 +159,7 @@ class DocumentReader {
 
   Element read(const std::filesystem::path& path) {
     Element root = read_file(path);
-    if (root.tag != "scene") fail(root, fmt::format("<{}>; expected <scene>", root.tag));
+    if (root.tag != "scene") fail(root, "<{}>; expected <scene>", root.tag);
     variables_.check_used(path.string());
     return root;
   }
@@ -195,10 +195,9 @@ class DocumentReader {
     if (files_.insert(file).second) return;
     ++repeats_, repeated_bytes_ += size_bytes;
     if (repeats_ > max_repeats || repeated_bytes_ > max_repeated_bytes) {
-      throw Error(
-          fmt::format("files are included again and again; expected at most {} times and "
-                      "{} bytes of them",
-                      max_repeats, max_repeated_bytes));
+      throw Error(fmt::format(
+          "files are included again and again; expected at most {} times and {} bytes of them",
+          max_repeats, max_repeated_bytes));
     }
   }
 
@@ -208,7 +207,7 @@ class DocumentReader {
     element.file = source.path();
     element.line = source.line(node.offset_debug());
     if (depth > max_element_depth) {
-      fail(element, fmt::format("elements are nested deeper than {}", max_element_depth));
+      fail(element, "elements are nested deeper than {}", max_element_depth);
     }
     for (const pugi::xml_attribute& attribute : node.attributes()) {
       element.attributes.emplace_back(attribute.name(), substitute(element, attribute.value()));
@@ -249,10 +248,10 @@ class DocumentReader {
     const std::filesystem::path path = included_path(element);
     const std::filesystem::path file = without_links(path);
     if (std::ranges::any_of(stack_, [&](const Open& open) { return open.canonical == file; })) {
-      fail(element, fmt::format("{} includes itself", path.string()));
+      fail(element, "{} includes itself", path.string());
     }
     if (stack_.size() >= max_include_depth) {
-      fail(element, fmt::format("files are included deeper than {}", max_include_depth));
+      fail(element, "files are included deeper than {}", max_include_depth);
     }
     try {
       return read_file(path);

@@ -26,16 +26,15 @@ Color of_earlier_version(const Color& color) {
 Color of_luminance_one(const Parameter& parameter, const Color& color) {
   const float y = luminance_of(color);
   if (y > 0.0f && std::isfinite(y)) return color / y;
-  fail(parameter.place,
-       fmt::format("'{} {}' has no light that can be seen", parameter.type, parameter.name));
+  fail(parameter.place, "'{} {}' has no light that can be seen", parameter.type, parameter.name);
 }
 
 Color sampled(const Context& context, const Parameter& parameter,
               const std::vector<double>& numbers, Quantity quantity) {
   if (numbers.size() % 2 != 0 || numbers.empty()) {
-    fail(parameter.place, fmt::format("'spectrum {}' has {} numbers; expected pairs of wavelength "
-                                      "(nm) and value",
-                                      parameter.name, numbers.size()));
+    fail(parameter.place,
+         "'spectrum {}' has {} numbers; expected pairs of wavelength (nm) and value",
+         parameter.name, numbers.size());
   }
   Samples samples;
   for (std::size_t i = 0; i < numbers.size(); i += 2) {
@@ -67,8 +66,8 @@ std::vector<double> read_samples(Context& context, const Parameter& parameter) {
       }
     }
   } catch (const Error& error) {
-    fail(parameter.place, fmt::format("'{}' is no spectrum that is known by name and no file: {}",
-                                      parameter.strings[0], error.what()));
+    fail(parameter.place, "'{}' is no spectrum that is known by name and no file: {}",
+         parameter.strings[0], error.what());
   }
   return numbers;
 }
@@ -96,7 +95,7 @@ Color spectrum_of(Context& context, const Parameter& parameter, Quantity quantit
 
 Color blackbody(const Context& context, const Parameter& p) {
   if (!(p.numbers[0] >= 100 && p.numbers[0] <= 1e6)) {
-    fail(p.place, fmt::format("blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]));
+    fail(p.place, "blackbody {}; expected kelvins from 100 to 1e6", p.numbers[0]);
   }
   if (context.description.is_earlier) {
     // Its spectrum over its largest value, times a scale.
@@ -109,8 +108,7 @@ Color blackbody(const Context& context, const Parameter& p) {
 Color color_of(Context& context, const Parameter& p, Quantity quantity) {
   const auto check_count = [&](std::size_t count) {
     if (p.numbers.size() == count) return;
-    fail(p.place, fmt::format("'{} {}' has {} numbers; expected {}", p.type, p.name,
-                              p.numbers.size(), count));
+    fail(p.place, "'{} {}' has {} numbers; expected {}", p.type, p.name, p.numbers.size(), count);
   };
   if (p.type == "spectrum") return spectrum_of(context, p, quantity);
   if (p.type == "blackbody") {
@@ -127,21 +125,19 @@ Color color_of(Context& context, const Parameter& p, Quantity quantity) {
     check_count(3);
     const Color color(p.numbers[0], p.numbers[1], p.numbers[2]);
     for (int i = 0; i < 3; ++i) {
-      if (!(color[i] >= 0.0f))
-        fail(p.place, fmt::format("'rgb {}' with a negative number", p.name));
+      if (!(color[i] >= 0.0f)) fail(p.place, "'rgb {}' with a negative number", p.name);
     }
     return to_srgb(color, p.space);
   }
   if (p.type == "float" || p.type == "integer") {
     check_count(1);
-    context.reporter.warn_once("grey " + p.name, p.place,
-                               fmt::format("'{} {}' as a colour: grey is used; expected rgb, "
-                                           "spectrum or blackbody",
-                                           p.type, p.name));
+    context.reporter.warn_once(
+        "grey " + p.name, p.place,
+        "'{} {}' as a colour: grey is used; expected rgb, spectrum or blackbody", p.type, p.name);
     return Color(static_cast<float>(p.numbers[0]));
   }
-  fail(p.place, fmt::format("parameter '{}' is of type '{}'; expected rgb, spectrum or blackbody",
-                            p.name, p.type));
+  fail(p.place, "parameter '{}' is of type '{}'; expected rgb, spectrum or blackbody", p.name,
+       p.type);
 }
 
 }  // namespace
@@ -150,15 +146,14 @@ Color read_color(Context& context, const Parameter& parameter, Quantity quantity
   Color color = color_of(context, parameter, quantity);
   for (int i = 0; i < 3; ++i) {
     if (!(color[i] >= 0.0f) || !std::isfinite(color[i])) {
-      fail(parameter.place, fmt::format("'{} {}' has the component {}; expected one that is "
-                                        "finite and not negative",
-                                        parameter.type, parameter.name, color[i]));
+      fail(parameter.place,
+           "'{} {}' has the component {}; expected one that is finite and not negative",
+           parameter.type, parameter.name, color[i]);
     }
     if (quantity == Quantity::albedo && color[i] > 1.0f) {
       context.reporter.warn_once("reflectance above 1", parameter.place,
-                                 fmt::format("'{} {}' above 1: 1 is used, for conservation of "
-                                             "energy",
-                                             parameter.type, parameter.name));
+                                 "'{} {}' above 1: 1 is used, for conservation of energy",
+                                 parameter.type, parameter.name);
       color[i] = 1.0f;
     }
   }
@@ -185,13 +180,12 @@ float read_index(Context& context, const Parameters& parameters, std::string_vie
           ? mean(read_color(context, parameters, name, Color(fallback), Quantity::unbounded))
           : parameters.number(name, fallback);
   if (p->type == "spectrum") {
-    context.reporter.warn_once("dispersion", p->place,
-                               fmt::format("'spectrum {}': the index of refraction {} is used for "
-                                           "all wavelengths",
-                                           name, index));
+    context.reporter.warn_once(
+        "dispersion", p->place,
+        "'spectrum {}': the index of refraction {} is used for all wavelengths", name, index);
   }
   if (index > 0.0f) return index;
-  fail(p->place, fmt::format("'{} {}' of {}; expected one above 0", p->type, name, index));
+  fail(p->place, "'{} {}' of {}; expected one above 0", p->type, name, index);
 }
 
 namespace {
@@ -242,7 +236,7 @@ std::vector<Color> read_gas_light(const Parameters& parameters, const Place& pla
   float hottest = 0.0f;
   for (const float temperature : temperatures) {
     const float t = kelvins(temperature);
-    if (!std::isfinite(t)) fail(place, fmt::format("a temperature of {} K", t));
+    if (!std::isfinite(t)) fail(place, "a temperature of {} K", t);
     hottest = std::max(hottest, t);
   }
   const GlowingGas gas(hottest);

@@ -85,8 +85,7 @@ float read_earlier_index(Context& context, const Parameters& parameters) {
   const char* name = parameters.find("eta") ? "eta" : "index";
   const float eta = read_plain_number(context, parameters, name, 1.5f);
   if (eta > 0.0f) return eta;
-  fail(parameters.place(),
-       fmt::format("{}: an '{}' of {}; expected one above 0", parameters.what(), name, eta));
+  fail(parameters.place(), "{}: an '{}' of {}; expected one above 0", parameters.what(), name, eta);
 }
 
 void add_diffuse(LobeSum& sum, const ColorTexture& kd) {
@@ -207,9 +206,8 @@ Surface read_translucent(Context& context, const Parameters& parameters) {
   const auto plain = [&](const char* name) {
     const ColorTexture value = read(name, 0.5f);
     if (value.is_constant()) return value.color;
-    context.reporter.warn_once(
-        fmt::format("textured {}", name), parameters.find(name)->place,
-        fmt::format("a texture as '{}' is not supported: 0.5 is used", name));
+    context.reporter.warn_once(fmt::format("textured {}", name), parameters.find(name)->place,
+                               "a texture as '{}' is not supported: 0.5 is used", name);
     return Color(0.5f);
   };
   const Color reflect = plain("reflect"), transmit = plain("transmit");

@@ -1,6 +1,4 @@
 // Materials of pbrt-v4: glass and blends; diffuse ones, bare and coated; metals.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -49,8 +47,7 @@ Surface read_mix_material(Context& context, const Parameters& parameters) {
     names = {parameters.text("namedmaterial2", ""), parameters.text("namedmaterial1", "")};
   }
   if (names.size() != 2) {
-    fail(parameters.place(),
-         fmt::format("mix: {} names in 'string materials'; expected 2", names.size()));
+    fail(parameters.place(), "mix: {} names in 'string materials'; expected 2", names.size());
   }
   const Parameter* given = parameters.find("amount");
   ColorTexture amount;
@@ -115,9 +112,9 @@ Surface read_diffuse(Context& context, const Parameters& parameters) {
 Surface read_coated_diffuse(Context& context, const Parameters& parameters) {
   const ColorTexture albedo = read_color_texture(context, parameters, "albedo", Color(0.0f));
   if (!albedo.is_constant() || !is_black(albedo.color)) {
-    context.reporter.warn_once("coat medium", parameters.place(),
-                               "a medium in a coat ('albedo', 'g') is not supported: the coat is "
-                               "clear");
+    context.reporter.warn_once(
+        "coat medium", parameters.place(),
+        "a medium in a coat ('albedo', 'g') is not supported: the coat is clear");
   }
   parameters.ignore({"maxdepth", "nsamples", "g"});
   const Roughness roughness = read_roughness(context, parameters);
@@ -213,9 +210,9 @@ MetalIndex read_metal_index(Context& context, const Parameters& parameters,
   const std::string eta_name = prefix + "eta", k_name = prefix + "k";
   if (parameters.find("reflectance")) {
     if (parameters.find(eta_name) || parameters.find(k_name)) {
-      fail(parameters.place(), fmt::format("{} has a 'reflectance' besides '{}' or '{}'; expected "
-                                           "the one or the others",
-                                           parameters.what(), eta_name, k_name));
+      fail(parameters.place(),
+           "{} has a 'reflectance' besides '{}' or '{}'; expected the one or the others",
+           parameters.what(), eta_name, k_name);
     }
     return index_of_reflectance(
         context, read_color_texture(context, parameters, "reflectance", Color(0.0f)), outside);
@@ -256,8 +253,8 @@ Roughness read_roughness(Context& context, const Parameters& parameters, const s
   const auto read = [&](const std::string& name) {
     const ColorTexture value = read_number_texture(context, parameters, name, fallback);
     if (value.is_constant() && !(value.color.x >= 0.0f)) {
-      fail(parameters.place(), fmt::format("{}: a '{}' of {}; expected one that is not negative",
-                                           parameters.what(), name, value.color.x));
+      fail(parameters.place(), "{}: a '{}' of {}; expected one that is not negative",
+           parameters.what(), name, value.color.x);
     }
     return remaps ? remapped(context, value, is_earlier ? polynomial : root) : value;
   };
@@ -271,7 +268,7 @@ Roughness read_roughness(Context& context, const Parameters& parameters, const s
 float read_thickness(Context& context, const Parameters& parameters) {
   const float thickness = read_plain_number(context, parameters, "thickness", 0.01f);
   if (thickness >= 0.0f) return thickness;
-  fail(parameters.place(), fmt::format("{}: a thickness below 0", parameters.what()));
+  fail(parameters.place(), "{}: a thickness below 0", parameters.what());
 }
 
 Surface read_conductor(Context& context, const Parameters& parameters) {
@@ -282,9 +279,9 @@ Surface read_conductor(Context& context, const Parameters& parameters) {
 /// A blend of the coat's reflection and the metal's below it. Along the normal the sum is right,
 /// also of what is reflected to and fro and absorbed on its way: F + (1 - F)^2 R / (1 - F R).
 Surface read_coated_conductor(Context& context, const Parameters& parameters) {
-  report_replaced(context, parameters,
-                  "a blend of its metal and a mirror that reflects as its coat along the normal is "
-                  "used");
+  report_replaced(
+      context, parameters,
+      "a blend of its metal and a mirror that reflects as its coat along the normal is used");
   parameters.ignore({"maxdepth", "nsamples", "g", "albedo"});
   const float eta = read_index(context, parameters, "interface.eta", 1.5f);
   const MetalIndex metal = read_metal_index(context, parameters, "conductor.", eta);

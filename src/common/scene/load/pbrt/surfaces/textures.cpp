@@ -12,10 +12,10 @@
 namespace pt::pbrt {
 namespace {
 
-using Reader = ColorTexture (*)(Context&, const Entity&, const TextureUse&);
+using TextureReader = ColorTexture (*)(Context&, const Entity&, const TextureUse&);
 
-const std::map<std::string_view, Reader>& readers() {
-  static const std::map<std::string_view, Reader> table = {
+const std::map<std::string_view, TextureReader>& texture_readers() {
+  static const std::map<std::string_view, TextureReader> table = {
       {"imagemap", read_image_map}, {"constant", read_constant},
       {"scale", read_scale},        {"mix", read_mix},
       {"directionmix", read_mix},   {"checkerboard", read_checkerboard}};
@@ -25,16 +25,16 @@ const std::map<std::string_view, Reader>& readers() {
 ColorTexture read_entity(Context& context, const Entity& entity, const TextureUse& use) {
   const OpenEntity open(context, entity);
   const Parameters& parameters = entity.parameters;
-  const auto reader = readers().find(entity.type);
-  if (reader != readers().end()) {
+  const auto reader = texture_readers().find(entity.type);
+  if (reader != texture_readers().end()) {
     const ColorTexture result = reader->second(context, entity, use);
     parameters.report_unused(context.reporter);
     return result;
   }
   context.reporter.warn_once("texture " + entity.type, parameters.place(),
-                             fmt::format("texture '{}' is not supported: 0.5 is used; expected "
-                                         "imagemap, constant, scale, mix or checkerboard",
-                                         entity.type));
+                             "texture '{}' is not supported: 0.5 is used; expected imagemap, "
+                             "constant, scale, mix or checkerboard",
+                             entity.type);
   return {Color(0.5f)};
 }
 
@@ -62,9 +62,8 @@ ColorTexture named_texture(Context& context, const Parameter& parameter, const T
   // Of the other type there may be a newer one of that name.
   if (found == textures.end()) found = textures.find(name.substr(0, name.find(newest_mark)));
   if (found != textures.end()) return read_once(context, *found->second, use);
-  fail(parameter.place,
-       fmt::format("there is no {} texture '{}'", use.is_number ? "float" : "spectrum",
-                   name.substr(0, name.find(newest_mark))));
+  fail(parameter.place, "there is no {} texture '{}'", use.is_number ? "float" : "spectrum",
+       name.substr(0, name.find(newest_mark)));
 }
 
 ColorTexture read(Context& context, const Parameters& parameters, std::string_view name,
@@ -106,9 +105,8 @@ float read_plain_number(Context& context, const Parameters& parameters, std::str
                         float fallback) {
   const ColorTexture value = read_number_texture(context, parameters, name, fallback);
   if (!value.is_constant()) {
-    context.reporter.warn_once(
-        fmt::format("textured {}", name), parameters.find(name)->place,
-        fmt::format("a texture as '{}' is not supported: {} is used", name, fallback));
+    context.reporter.warn_once(fmt::format("textured {}", name), parameters.find(name)->place,
+                               "a texture as '{}' is not supported: {} is used", name, fallback);
     return fallback;
   }
   return value.color.x;
@@ -125,8 +123,7 @@ TextureMapping mapping_by_points(const Entity& entity, MappingKind kind) {
   TextureMapping mapping;
   mapping.kind = kind;
   if (!is_invertible(entity.to_world)) {
-    fail(parameters.place(),
-         fmt::format("{}: its transformation has no inverse", parameters.what()));
+    fail(parameters.place(), "{}: its transformation has no inverse", parameters.what());
   }
   mapping.to_texture = inverse(entity.to_world);
   if (kind != MappingKind::planar) return mapping;
@@ -148,10 +145,10 @@ void read_mapping(Context& context, const Entity& entity, Texture& texture) {
   const std::string name = parameters.text("mapping", "uv");
   const auto kind = kinds.find(name);
   if (kind == kinds.end()) {
-    context.reporter.warn_once("mapping " + name, parameters.place(),
-                               fmt::format("mapping '{}' is not known: uv is used; expected uv, "
-                                           "planar, spherical or cylindrical",
-                                           name));
+    context.reporter.warn_once(
+        "mapping " + name, parameters.place(),
+        "mapping '{}' is not known: uv is used; expected uv, planar, spherical or cylindrical",
+        name);
   }
   if (kind != kinds.end() && kind->second != MappingKind::uv) {
     context.add_mapping(mapping_by_points(entity, kind->second));
@@ -203,9 +200,9 @@ ColorTexture read_mix(Context& context, const Entity& entity, const TextureUse& 
 ColorTexture read_checkerboard(Context& context, const Entity& entity, const TextureUse& use) {
   const Parameters& parameters = entity.parameters;
   if (parameters.integer("dimension", 2) != 2) {
-    context.reporter.warn_once("checkerboard 3", parameters.place(),
-                               "a checkerboard of dimension 3 is not supported: one of (u, v) is "
-                               "used");
+    context.reporter.warn_once(
+        "checkerboard 3", parameters.place(),
+        "a checkerboard of dimension 3 is not supported: one of (u, v) is used");
   }
   const ColorTexture first = read_part(context, parameters, "tex1", 1.0f, use);
   const ColorTexture second = read_part(context, parameters, "tex2", 0.0f, use);
@@ -229,7 +226,7 @@ TextureWrap read_wrap(Context& context, const Parameters& parameters) {
   if (wrap != "clamp") {
     context.reporter.warn_once(
         "wrap " + wrap, parameters.find("wrap")->place,
-        fmt::format("wrap '{}' is not supported: clamp is used; expected repeat or clamp", wrap));
+        "wrap '{}' is not supported: clamp is used; expected repeat or clamp", wrap);
   }
   return TextureWrap::clamp;
 }
@@ -240,10 +237,10 @@ void read_filter(Context& context, const Parameters& parameters, Texture& look) 
   // What the others do about aliasing, samples do.
   if (filter != "point" && filter != "bilinear" && filter != "trilinear" && filter != "EWA" &&
       filter != "ewa") {
-    context.reporter.warn_once("filter " + filter, parameters.find("filter")->place,
-                               fmt::format("filter '{}' is not known: bilinear is used; expected "
-                                           "point, bilinear, trilinear or EWA",
-                                           filter));
+    context.reporter.warn_once(
+        "filter " + filter, parameters.find("filter")->place,
+        "filter '{}' is not known: bilinear is used; expected point, bilinear, trilinear or EWA",
+        filter);
   }
   parameters.ignore({"maxanisotropy", "trilinear"});
 }
@@ -276,7 +273,7 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
     } catch (const Error&) {  // said below
     }
   }
-  fail(given->place, fmt::format("encoding '{}'; expected sRGB, linear or 'gamma 2.2'", name));
+  fail(given->place, "encoding '{}'; expected sRGB, linear or 'gamma 2.2'", name);
 }
 
 ColorTexture add_file(Context& context, const Parameter& filename, const std::string& name,

@@ -115,9 +115,8 @@ class OpenEntity {
   OpenEntity(Context& context, const Entity& entity) : context_(context), entity_(entity) {
     const Parameters& parameters = entity.parameters;
     if (context.open_entities.size() == most_open) {
-      fail(parameters.place(), fmt::format("{} is nested too deeply; expected at most {} in each "
-                                           "other",
-                                           parameters.what(), most_open));
+      fail(parameters.place(), "{} is nested too deeply; expected at most {} in each other",
+           parameters.what(), most_open);
     }
     if (!context.open_entities.insert(&entity).second) {
       fail(parameters.place(), parameters.what() + " refers to itself");

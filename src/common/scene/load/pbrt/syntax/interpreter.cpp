@@ -80,14 +80,12 @@ void Interpreter::run(TokenStream& tokens) {
   while (std::optional<Token> token = tokens.next()) {
     const auto found = directives().find(token->text);
     if (token->kind != TokenKind::word || found == directives().end()) {
-      fail(token->place,
-           fmt::format("'{}'; expected a directive, such as Shape or AttributeEnd", token->text));
+      fail(token->place, "'{}'; expected a directive, such as Shape or AttributeEnd", token->text);
     }
     const auto& [method, block] = found->second;
     if (block != Block::anywhere && (block == Block::world) != in_world_) {
-      fail(token->place,
-           fmt::format("{} {} WorldBegin; expected it {}", token->text,
-                       in_world_ ? "after" : "before", in_world_ ? "before" : "after that"));
+      fail(token->place, "{} {} WorldBegin; expected it {}", token->text,
+           in_world_ ? "after" : "before", in_world_ ? "before" : "after that");
     }
     (this->*method)({tokens, token->place, token->text});
     if (stack_.size() < depth) fail(token->place, token->text + " without its Begin in this file");
@@ -121,7 +119,7 @@ Entity Interpreter::read_entity(const Directive& directive, std::string_view tar
 
 std::filesystem::path Interpreter::find(const std::string& name, const Directive& directive) {
   if (++inclusions_ > most_inclusions) {
-    fail(directive.place, fmt::format("more than {} files are included", most_inclusions));
+    fail(directive.place, "more than {} files are included", most_inclusions);
   }
   std::error_code ignored;
   const std::filesystem::path folders[] = {description_.folder, directive.tokens.folder()};
@@ -133,9 +131,9 @@ std::filesystem::path Interpreter::find(const std::string& name, const Directive
   };
   const std::filesystem::path found = find_file(description_.folder, name, warn);
   if (!found.empty()) return found;
-  if (reporter_.options().strict) fail(directive.place, fmt::format("there is no file '{}'", name));
-  reporter_.warn_once("include " + name, directive.place,
-                      fmt::format("there is no file '{}': {} is left out", name, directive.name));
+  if (reporter_.options().strict) fail(directive.place, "there is no file '{}'", name);
+  reporter_.warn_once("include " + name, directive.place, "there is no file '{}': {} is left out",
+                      name, directive.name);
   return {};
 }
 

@@ -42,9 +42,11 @@ EntityPointer shared(Entity entity) { return std::make_shared<const Entity>(std:
 
 void Interpreter::note_earlier(const Place& place, const std::string& what) {
   if (std::exchange(description_.is_earlier, true)) return;
-  reporter_.note(place, fmt::format("{} is of pbrt-v3 or before: the file is read as one of that "
-                                    "version; `pbrt --upgrade` writes it for pbrt-v4",
-                                    what));
+  reporter_.note(
+      place,
+      fmt::format("{} is of pbrt-v3 or before: the file is read as one of that version; `pbrt "
+                  "--upgrade` writes it for pbrt-v4",
+                  what));
 }
 
 void Interpreter::note_earlier_parameters(const std::vector<Parameter>& parameters) {
@@ -58,9 +60,8 @@ std::string Interpreter::name_for(const Directive& directive, const char* what,
                                   const std::string& name, const Table& table) {
   if (!table.contains(name)) return name;
   const std::string key = fmt::format("{} {}", what, name);
-  reporter_.warn_once(
-      key, directive.place,
-      fmt::format("a {} '{}' was defined before: from here on the new one is used", what, name));
+  reporter_.warn_once(key, directive.place,
+                      "a {} '{}' was defined before: from here on the new one is used", what, name);
   return newest_[key] = fmt::format("{}{}{}", name, newest_mark, table.size());
 }
 
@@ -155,9 +156,8 @@ void Interpreter::shape(const Directive& directive) {
 void Interpreter::earlier(const Directive& directive) {
   const Entity entity = read_entity(directive);
   note_earlier(directive.place, directive.name);
-  reporter_.warn_once(
-      "earlier " + directive.name, directive.place,
-      fmt::format("{} '{}' is of pbrt-v2 and ignored", directive.name, entity.type));
+  reporter_.warn_once("earlier " + directive.name, directive.place,
+                      "{} '{}' is of pbrt-v2 and ignored", directive.name, entity.type);
 }
 
 void Interpreter::light(const Directive& directive) {
@@ -184,7 +184,7 @@ void Interpreter::medium(const Directive& directive) {
   const std::string name = entity->type;
   if (!description_.media.try_emplace(name, entity).second) {
     reporter_.warn_once("medium named " + name, directive.place,
-                        fmt::format("a medium '{}' was defined before: that holds", name));
+                        "a medium '{}' was defined before: that holds", name);
   }
 }
 
@@ -194,15 +194,15 @@ void Interpreter::render_option(const Directive& directive) {
   const std::string name = declaration.substr(declaration.find_last_of(' ') + 1);
   std::optional<Token> value = directive.tokens.next();
   if (!value || value->kind == TokenKind::close) {
-    fail(directive.place, fmt::format("Option '{}' has no value", declaration));
+    fail(directive.place, "Option '{}' has no value", declaration);
   }
   while (value && value->kind == TokenKind::open) {
     do value = directive.tokens.next();
     while (value && value->kind != TokenKind::close);
   }
   if (idle_options.contains(name)) return;
-  reporter_.warn_once("option " + name, directive.place,
-                      fmt::format("Option '{}' is not supported and ignored", name));
+  reporter_.warn_once("option " + name, directive.place, "Option '{}' is not supported and ignored",
+                      name);
 }
 
 }  // namespace pt::pbrt

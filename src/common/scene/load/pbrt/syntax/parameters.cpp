@@ -32,12 +32,13 @@ Parameter declared(const Token& token, ColorSpace space) {
   parameter.space = space;
   if (parameter.type == "int") parameter.type = "integer";
   if (parameter.name.empty() || !next_word(text).empty()) {
-    fail(token.place, fmt::format("'{}'; expected a parameter, \"type name\"", token.text));
+    fail(token.place, "'{}'; expected a parameter, \"type name\"", token.text);
   }
   if (std::ranges::find(known_types, parameter.type) == known_types.end()) {
-    fail(token.place, fmt::format("parameter '{}' has the unknown type '{}'; expected integer, "
-                                  "float, bool, string, rgb, spectrum, point3, ...",
-                                  parameter.name, parameter.type));
+    fail(token.place,
+         "parameter '{}' has the unknown type '{}'; expected integer, float, bool, string, rgb, "
+         "spectrum, point3, ...",
+         parameter.name, parameter.type);
   }
   return parameter;
 }
@@ -64,9 +65,8 @@ void add_value(Parameter& parameter, const Token& token) {
     return;
   }
   if (is_of_words(parameter.type) || is_string) {
-    fail(token.place,
-         fmt::format("'{}' as a value of '{} {}'; expected {}", token.text, parameter.type,
-                     parameter.name, is_of_words(parameter.type) ? "a \"string\"" : "a number"));
+    fail(token.place, "'{}' as a value of '{} {}'; expected {}", token.text, parameter.type,
+         parameter.name, is_of_words(parameter.type) ? "a \"string\"" : "a number");
   }
   parameter.numbers.push_back(is_not_finite(token) ? std::numeric_limits<double>::quiet_NaN()
                                                    : number_of(token));
@@ -98,9 +98,8 @@ std::vector<Parameter> read_parameters(TokenStream& tokens, ColorSpace space, Re
       list.push_back(std::move(parameter));
       continue;
     }
-    reporter.warn_once(
-        "twice " + parameter.name, parameter.place,
-        fmt::format("parameter '{}' is given twice: the last holds", parameter.name));
+    reporter.warn_once("twice " + parameter.name, parameter.place,
+                       "parameter '{}' is given twice: the last holds", parameter.name);
     list[entry->second] = std::move(parameter);
   }
   return list;
@@ -115,29 +114,26 @@ const Parameter* find_vector3(const Parameters& list, std::string_view name) {
 
 const Parameter& single(const Parameter& parameter, std::size_t count, std::size_t expected = 1) {
   if (count == expected) return parameter;
-  fail(parameter.place, fmt::format("'{} {}' has {} values; expected {}", parameter.type,
-                                    parameter.name, count, expected));
+  fail(parameter.place, "'{} {}' has {} values; expected {}", parameter.type, parameter.name, count,
+       expected);
 }
 
 void check_groups(const Parameter& parameter, std::size_t size) {
   if (parameter.numbers.size() % size == 0) return;
-  fail(parameter.place,
-       fmt::format("'{} {}' has {} numbers; expected a multiple of {}", parameter.type,
-                   parameter.name, parameter.numbers.size(), size));
+  fail(parameter.place, "'{} {}' has {} numbers; expected a multiple of {}", parameter.type,
+       parameter.name, parameter.numbers.size(), size);
 }
 
 void check_finite(const Parameter& parameter) {
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (std::ranges::all_of(parameter.numbers, is_finite)) return;
-  fail(parameter.place,
-       fmt::format("'{} {}' has a number that is not finite", parameter.type, parameter.name));
+  fail(parameter.place, "'{} {}' has a number that is not finite", parameter.type, parameter.name);
 }
 
 int whole(const Parameter& parameter, double number) {
   constexpr double most = std::numeric_limits<int>::max();
   if (number == std::floor(number) && std::abs(number) <= most) return static_cast<int>(number);
-  fail(parameter.place,
-       fmt::format("'{} {}': {}; expected an integer", parameter.type, parameter.name, number));
+  fail(parameter.place, "'{} {}': {}; expected an integer", parameter.type, parameter.name, number);
 }
 
 }  // namespace
@@ -165,8 +161,8 @@ const Parameter* Parameters::find(std::string_view name,
   const Parameter* parameter = find(name);
   if (parameter) check_finite(*parameter);
   if (!parameter || std::ranges::find(types, parameter->type) != types.end()) return parameter;
-  fail(parameter->place, fmt::format("parameter '{}' of {} is of type '{}'; expected {}", name,
-                                     what_, parameter->type, fmt::join(types, " or ")));
+  fail(parameter->place, "parameter '{}' of {} is of type '{}'; expected {}", name, what_,
+       parameter->type, fmt::join(types, " or "));
 }
 
 bool Parameters::has(std::string_view name, std::string_view type) const {
@@ -189,7 +185,7 @@ bool Parameters::boolean(std::string_view name, bool fallback) const {
   if (!p) return fallback;
   const std::string& word = single(*p, p->strings.size()).strings[0];
   if (word == "true" || word == "false") return word == "true";
-  fail(p->place, fmt::format("'bool {}': '{}'; expected true or false", name, word));
+  fail(p->place, "'bool {}': '{}'; expected true or false", name, word);
 }
 
 std::string Parameters::text(std::string_view name, std::string_view fallback) const {
@@ -257,9 +253,8 @@ void Parameters::report_unused(Reporter& reporter) const {
   for (const Parameter& p : own_) {
     if (asked_.contains(p.name)) continue;
     reporter.warn_once(fmt::format("unused {} {}", what_, p.name), p.place,
-                       fmt::format("parameter '{} {}' of {} is not supported and ignored; expected "
-                                   "one of {}",
-                                   p.type, p.name, what_, fmt::join(asked_, ", ")));
+                       "parameter '{} {}' of {} is not supported and ignored; expected one of {}",
+                       p.type, p.name, what_, fmt::join(asked_, ", "));
   }
 }
 

@@ -33,6 +33,14 @@ class Reporter {
                                               : std::string_view(message)));
   }
 
+  /// The same of a message with values in it.
+  template <class First, class... Rest>
+  void warn_once(const std::string& kind, const Place& place,
+                 fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest) {
+    warn_once(kind, place,
+              fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
+
   /// Does what makes a part of the scene. One that fails is left out, which a warning says, and
   /// false is returned; with --strict the Error goes on.
   template <class Action>

@@ -86,7 +86,7 @@ void check_map(const std::optional<Affine>& map, const Interpreter::Directive& d
       directive.name == "Rotate"   ? "an axis that is longer than 0"
       : directive.name == "LookAt" ? "two different points and an up direction across their line"
                                    : "0 0 0 1 in the last row of the matrix";
-  fail(directive.place, fmt::format("{}: expected {}", directive.name, expected));
+  fail(directive.place, "{}: expected {}", directive.name, expected);
 }
 
 void check_finite(const Affine& map, const Place& place) {
@@ -119,10 +119,9 @@ void Interpreter::coordinate_system(const Directive& directive) {
   }
   const auto found = coordinate_systems_.find(name);
   if (found == coordinate_systems_.end()) {
-    return reporter_.warn_once("coordinates " + name, directive.place,
-                               fmt::format("there is no coordinate system '{}': the "
-                                           "transformation stays as it is",
-                                           name));
+    return reporter_.warn_once(
+        "coordinates " + name, directive.place,
+        "there is no coordinate system '{}': the transformation stays as it is", name);
   }
   state_.to_world = found->second;
 }
@@ -130,9 +129,9 @@ void Interpreter::coordinate_system(const Directive& directive) {
 void Interpreter::attribute(const Directive& directive) {
   const std::string target = name_after(directive);
   if (std::ranges::find(attribute_targets, target) == attribute_targets.end()) {
-    report_bad(directive, fmt::format("Attribute '{}'; expected shape, light, material, medium or "
-                                      "texture",
-                                      target));
+    report_bad(
+        directive,
+        fmt::format("Attribute '{}'; expected shape, light, material, medium or texture", target));
     read_parameters(directive.tokens, state_.space, reporter_);
     return;
   }
@@ -143,8 +142,7 @@ void Interpreter::attribute(const Directive& directive) {
     // The last of a name holds.
     std::erase_if(*all, [&](const auto& other) { return other->name == own.name; });
     if (all->size() == most_attributes) {
-      fail(own.place,
-           fmt::format("more than {} parameters by Attribute '{}'", most_attributes, target));
+      fail(own.place, "more than {} parameters by Attribute '{}'", most_attributes, target);
     }
     all->push_back(std::make_shared<const Parameter>(std::move(own)));
   }
@@ -158,10 +156,9 @@ void Interpreter::push(const Directive& directive) {
     if (group_ != 0) fail(directive.place, "ObjectBegin inside of another object");
     group_ = ++groups_;
     if (!description_.groups.insert_or_assign(name, group_).second) {
-      reporter_.warn_once("object " + name, directive.place,
-                          fmt::format("an object '{}' was defined before: instances that follow "
-                                      "are of the new one",
-                                      name));
+      reporter_.warn_once(
+          "object " + name, directive.place,
+          "an object '{}' was defined before: instances that follow are of the new one", name);
     }
   }
   stack_.emplace_back(state_, object);
@@ -170,7 +167,7 @@ void Interpreter::push(const Directive& directive) {
 void Interpreter::pop(const Directive& directive) {
   const bool object = directive.name == "ObjectEnd";
   if (stack_.empty() || stack_.back().second != object) {
-    fail(directive.place, fmt::format("{} without its Begin", directive.name));
+    fail(directive.place, "{} without its Begin", directive.name);
   }
   state_ = std::move(stack_.back().first);
   stack_.pop_back();
@@ -209,8 +206,7 @@ void Interpreter::animation(const Directive& directive) {
   const std::string which =
       directive.tokens.expect(TokenKind::word, "All, StartTime or EndTime").text;
   if (which != "All" && which != "StartTime" && which != "EndTime") {
-    fail(directive.place,
-         fmt::format("ActiveTransform {}; expected All, StartTime or EndTime", which));
+    fail(directive.place, "ActiveTransform {}; expected All, StartTime or EndTime", which);
   }
   state_.moves_start = which != "EndTime";
   if (which != "All") {

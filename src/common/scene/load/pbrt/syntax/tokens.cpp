@@ -191,9 +191,7 @@ std::optional<Token> Tokenizer::next() {
 }
 
 double number_of(const Token& token) {
-  const auto wrong = [&] {
-    fail(token.place, fmt::format("'{}'; expected a finite number", token.text));
-  };
+  const auto wrong = [&] { fail(token.place, "'{}'; expected a finite number", token.text); };
   double value = 0;
   if (token.kind != TokenKind::word) wrong();
   try {
@@ -236,14 +234,13 @@ void TokenStream::check_new(const std::filesystem::path& path, const Place& plac
   for (const TokenStream* stream = this; stream; stream = stream->parent_) {
     for (const File& file : stream->files_) {
       if (file.canonical != own) continue;
-      fail(place, fmt::format("{} includes itself", path.string()));
+      fail(place, "{} includes itself", path.string());
     }
     count += stream->files_.size();
   }
   if (count >= most_files) {
-    fail(place, fmt::format("files include each other too deeply; expected at most {} in each "
-                            "other",
-                            most_files));
+    fail(place, "files include each other too deeply; expected at most {} in each other",
+         most_files);
   }
 }
 
@@ -281,9 +278,9 @@ const Token* TokenStream::peek() {
 
 Token TokenStream::expect(TokenKind kind, std::string_view what) {
   std::optional<Token> token = next();
-  if (!token) fail(last_, fmt::format("the file ends here; expected {}", what));
+  if (!token) fail(last_, "the file ends here; expected {}", what);
   if (token->kind != kind) {
-    fail(token->place, fmt::format("'{}'; expected {}", token->text, what));
+    fail(token->place, "'{}'; expected {}", token->text, what);
   }
   return std::move(*token);
 }

@@ -1,6 +1,8 @@
 // The words of pbrt files, with their places, and of the files that these include.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -30,6 +32,12 @@ std::string one_line(std::string text);
 
 /// Throws Error with the place.
 [[noreturn]] void fail(const Place& place, std::string_view message);
+/// The same of a message with values in it.
+template <class First, class... Rest>
+[[noreturn]] void fail(const Place& place, fmt::format_string<First, Rest...> text, First&& first,
+                       Rest&&... rest) {
+  fail(place, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+}
 
 // The content of a file, compressed or not.
 
