@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
@@ -307,8 +308,9 @@ Materials::Base Materials::base_of(const tinygltf::Material& source, const std::
                    "is used, without textures and not on what light passes");
     }
     const float factor = unit(number_or(*specular, "specularFactor", 1.0f)) * max_abs(tint);
-    const float root = std::sqrt(std::min(reflectance * factor, 0.99f));
-    if (!bends && reflectance <= mirror) ior = (1.0f + root) / (1.0f - root);
+    if (!bends && reflectance <= mirror) {
+      ior = index_of_reflectance(std::min(reflectance * factor, 0.99f));
+    }
     scale = factor;
     if (max_abs(tint) > 0.0f) hue = tint / max_abs(tint);
   }
@@ -331,7 +333,6 @@ void Materials::set_sheen(const tinygltf::Material& source, const std::string& p
                 place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
 }
 
-/// The gloss of the principled BSDF's coat goes from a roughness, alpha, of 0.1 to 0.001.
 void Materials::set_clearcoat(const tinygltf::Material& source, const std::string& place,
                               MaterialDescription& result) {
   const auto* coat = find_extension(source.extensions, "KHR_materials_clearcoat");
@@ -346,8 +347,7 @@ void Materials::set_clearcoat(const tinygltf::Material& source, const std::strin
   }
   result.parameters[Principled::Index::clearcoat] = number_of(
       factor, texture_use(member(*coat, "clearcoatTexture")), at + "clearcoatTexture", red);
-  result.parameters[Principled::Index::clearcoat_gloss].value =
-      Color(unit((0.1f - roughness * roughness) / 0.099f));
+  result.parameters[Principled::Index::clearcoat_gloss].value = Color(gloss_of_coat(roughness));
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,
@@ -402,14 +402,9 @@ std::uint32_t Materials::add(const tinygltf::Material& source, const std::string
   const auto scale = static_cast<float>(source.normalTexture.scale);
   const std::uint32_t map = textures_.add_normals(use, place + ".normalTexture");
   if (map == no_texture) return scene_.add_material(material);
-  MaterialDescription mapped =
-      make_mapped(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, 0);
-  std::swap(mapped.emission, material.emission);
-  std::swap(mapped.opacity, material.opacity);
-  std::swap(mapped.is_boundary, material.is_boundary);
-  std::swap(mapped.media, material.media);
-  mapped.children[0] = mapped.children[1] = scene_.add_material(material);
-  return scene_.add_material(mapped);
+  return scene_.add_material(
+      under_map(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, material,
+                [&](const MaterialDescription& inside) { return scene_.add_material(inside); }));
 }
 
 }  // namespace pt::gltf

@@ -7,6 +7,7 @@
 #include "common/geometry/mesh.h"
 #include "common/math/frame.h"
 #include "common/math/vec.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 
@@ -31,9 +32,6 @@ std::array<BoxFace, 6> cube_faces() {
            {{-1, -1, -1}, {0, 0, 2}, {0, 2, 0}, true},
            {{-1, 1, -1}, {2, 0, 0}, {0, -2, 0}, true}}};
 }
-
-constexpr int circle_segments = 256;    ///< a chord is within 7.5e-5 radii of its arc
-constexpr int meridian_segments = 128;  ///< of a sphere, pole to pole
 
 constexpr int disk_rings = 64;
 

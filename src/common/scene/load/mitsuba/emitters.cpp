@@ -6,6 +6,7 @@
 #include <map>
 
 #include "common/scene/load/files/images/image_files.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
@@ -129,8 +130,6 @@ void add_point(Context& context, const Object& emitter) {
   context.scene.delta_lights.push_back(light);
 }
 
-float cosine(float degrees) { return std::cos(degrees * pi / 180.0f); }
-
 void add_spot(Context& context, const Object& emitter) {
   DeltaLight light;
   light.kind = LightKind::spot;
@@ -150,8 +149,8 @@ void add_spot(Context& context, const Object& emitter) {
                       given_beam, given_cutoff, beam, cutoff);
     if (cutoff == 0.0f) return;
   }
-  light.cos_inner = cosine(beam);
-  light.cos_outer = cosine(cutoff);
+  light.cos_inner = cosine_of_degrees(beam);
+  light.cos_outer = cosine_of_degrees(cutoff);
   const ColorTexture picture =
       read_color_texture(context, emitter, "texture", Color(1.0f), Quantity::reflectance);
   light.intensity *= picture.color;

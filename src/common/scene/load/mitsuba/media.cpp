@@ -7,7 +7,7 @@
 #include "common/geometry/bounds.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
-#include "common/scene/load/mitsuba/surfaces/spectra.h"
+#include "common/scene/load/mitsuba/surfaces/textures.h"
 
 namespace pt::mitsuba {
 namespace {

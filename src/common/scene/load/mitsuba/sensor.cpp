@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 #include "common/scene/prepare/prepare_filter.h"
@@ -128,11 +129,7 @@ void place_camera(Context& context, const Object& sensor, bool may_scale) {
   const Vec3 left = map.vector({1, 0, 0}), up = map.vector({0, 1, 0});
   const Vec3 forward = map.vector({0, 0, 1});
   CameraParameters& camera = context.scene.camera;
-  camera.look_from = map.translation();
-  // Far enough that rounding does not turn the view.
-  const float distance = std::max(1.0f, max_abs(camera.look_from));
-  camera.look_at = camera.look_from + distance * glm::normalize(forward);
-  camera.up = up;
+  look_along_z(map, camera);
   camera.mirrored = map.determinant() < 0.0f;
   const float size = glm::length(forward);
   const auto differs = [&](float a, float b) { return std::abs(a - b) > 1e-3f * size; };

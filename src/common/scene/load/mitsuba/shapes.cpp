@@ -4,6 +4,7 @@
 
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
@@ -234,21 +235,6 @@ void add_instance(Context& context, const Object& shape, std::uint32_t group) {
   if (group_index != 0) context.scene.instances.push_back({group_index, to_world});
 }
 
-/// Whether shading asks where on the surface a point lies.
-bool is_textured(const SceneData& scene, std::uint32_t material) {
-  return any_part(scene, material, [](const MaterialDescription& part) {
-    return part.is_textured() || uses_tangent(part);
-  });
-}
-
-/// Whether it asks in which directions texture coordinates grow.
-bool needs_tangents(const SceneData& scene, std::uint32_t material) {
-  return any_part(scene, material, [](const MaterialDescription& part) {
-    return part.node == MaterialNode::none ? uses_tangent(part)
-                                           : part.node >= MaterialNode::normal_map;
-  });
-}
-
 bool needs_mesh(const Context& context, std::uint32_t material_index) {
   const MaterialDescription& material = context.scene.materials[material_index];
   return !material.opacity.is_opaque() || material.emission.texture != no_texture ||
@@ -275,9 +261,10 @@ void add_shape(Context& context, const Object& shape, std::uint32_t group) {
   if (!material) return shape.ignore_all();
   const std::optional<Affine> to_world = place_of(context, shape);
   if (!to_world) return;
+  const MaterialDescription& description = context.scene.materials[*material];
   adder->second(context, shape,
-                {*to_world, group, *material, is_textured(context.scene, *material),
-                 needs_tangents(context.scene, *material), needs_mesh(context, *material)});
+                {*to_world, group, *material, is_textured(context.scene, description),
+                 needs_tangents(context.scene, description), needs_mesh(context, *material)});
 }
 
 }  // namespace pt::mitsuba

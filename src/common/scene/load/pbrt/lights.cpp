@@ -8,6 +8,7 @@
 #include "common/light/light_bounds.h"
 #include "common/light/spot_light.h"
 #include "common/math/frame.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
@@ -84,8 +85,6 @@ void stretch_spot(Context& context, const Entity& entity, const Vec3& axis, Delt
 
 namespace {
 
-float cosine(float degrees) { return std::cos(degrees * pi / 180.0f); }
-
 /// scale * `name`; where a `power` is given, that over `sphere`, the integral of the light's share
 /// over all directions, replaces the scale's unit.
 Color read_intensity(Context& context, const Entity& entity, const char* name, const char* power,
@@ -133,8 +132,8 @@ void add_spot(Context& context, const Entity& entity) {
   light.kind = LightKind::spot;
   light.falloff = SpotFalloff::smooth;
   // As pbrt, the cosine of what is left, which the default of 5 makes negative in narrow cones.
-  light.cos_inner = cosine(delta > 2.0f * cone ? 0.0f : cone - delta);
-  light.cos_outer = cosine(cone);
+  light.cos_inner = cosine_of_degrees(delta > 2.0f * cone ? 0.0f : cone - delta);
+  light.cos_outer = cosine_of_degrees(cone);
   const float sphere =
       2.0f * pi * ((1.0f - light.cos_inner) + 0.5f * (light.cos_inner - light.cos_outer));
   light.intensity = read_intensity(context, entity, "I", "power", sphere);

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-#include "common/scene/data/frame_scene.h"
 #include "common/scene/data/scene_data.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/spectra.h"
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
-#include "common/scene/load/pbrt/syntax/named_colors.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 namespace {
@@ -89,10 +89,7 @@ void complete(Context& context, const LoadOptions& options) {
   SceneData& scene = context.scene;
   const Description& description = context.description;
   if (!description.camera) {
-    const Bounds bounds = scene_bounds(scene);
-    if (std::isfinite(glm::length(bounds.max - bounds.min)) && !bounds.is_empty()) {
-      scene.camera = frame_scene(scene);
-    }
+    frame_finite_scene(scene);
     context.reporter.note(description.place, "no Camera: one that frames the scene is used");
   }
   if (context.lit || options.default_lighting == DefaultLighting::off) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {

@@ -8,8 +8,8 @@
 #include "common/image/image.h"
 #include "common/math/vec.h"
 #include "common/scene/data/volume_data.h"
-#include "common/scene/load/pbrt/surfaces/colors.h"
 #include "common/scene/load/pbrt/surfaces/surfaces.h"
+#include "common/scene/load/pbrt/surfaces/textures.h"
 #include "common/scene/load/pbrt/syntax/context.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
@@ -199,12 +199,10 @@ std::optional<float> whole_sphere(const Entity& entity);
 
 // Curved surfaces, given by formulas of (u, v), as triangles.
 
-inline constexpr int circle_segments = 256;    ///< a chord is within 7.5e-5 radii of its arc
-inline constexpr int meridian_segments = 128;  ///< of a sphere, pole to pole
-inline constexpr int disk_rings = 32;          ///< where it is textured
-inline constexpr int patch_cells = 16;         ///< of a bilinear patch, along u and along v
-inline constexpr int curve_steps = 4;          ///< along a segment of a curve
-inline constexpr int curve_sides = 8;          ///< around it
+inline constexpr int disk_rings = 32;   ///< where it is textured
+inline constexpr int patch_cells = 16;  ///< of a bilinear patch, along u and along v
+inline constexpr int curve_steps = 4;   ///< along a segment of a curve
+inline constexpr int curve_sides = 8;   ///< around it
 
 struct SurfacePoint {
   Vec3 position, normal;  ///< the normal has unit length

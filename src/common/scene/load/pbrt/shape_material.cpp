@@ -1,45 +1,10 @@
 
 #include "common/scene/load/files/images/image_files.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 
 namespace pt::pbrt {
 namespace {
-
-/// Whether `test` holds of a material or of one that it is made of. Each is asked once, though
-/// blends of blends may name one in many ways.
-template <class Test>
-bool any_part(const SceneData& scene, const MaterialDescription& material, const Test& test) {
-  std::vector<const MaterialDescription*> open{&material};
-  std::vector<bool> seen;
-  while (!open.empty()) {
-    const MaterialDescription& part = *open.back();
-    open.pop_back();
-    if (test(part)) return true;
-    if (part.node == MaterialNode::none) continue;
-    seen.resize(scene.materials.size());
-    for (const std::uint32_t child : part.children) {
-      if (seen[child]) continue;
-      seen[child] = true;
-      open.push_back(&scene.materials[child]);
-    }
-  }
-  return false;
-}
-
-/// Whether shading asks in which directions texture coordinates grow.
-bool needs_tangents(const SceneData& scene, const MaterialDescription& material) {
-  return any_part(scene, material, [](const MaterialDescription& m) {
-    return m.node == MaterialNode::none ? uses_tangent(m) : m.node >= MaterialNode::normal_map;
-  });
-}
-
-/// Whether it asks where on the surface a point lies.
-bool is_textured(const SceneData& scene, const MaterialDescription& material) {
-  return any_part(scene, material, [](const MaterialDescription& m) {
-    return m.is_textured() || m.opacity.texture != no_texture ||
-           (m.node == MaterialNode::none && uses_tangent(m));
-  });
-}
 
 float mean_luminance(const Image& image) {
   double sum = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/prepare/prepare_filter.h"
 
@@ -43,12 +44,7 @@ ScreenWindow read_window(Context& context, const Parameters& parameters) {
 void place_camera(Context& context, const Entity& entity) {
   const Affine map = inverse(entity.to_world);
   CameraParameters& camera = context.scene.camera;
-  camera.look_from = map.translation();
-  const Vec3 forward = map.vector({0, 0, 1});
-  // Far enough that rounding does not turn the view.
-  const float distance = std::max(1.0f, max_abs(camera.look_from));
-  camera.look_at = camera.look_from + distance * glm::normalize(forward);
-  camera.up = map.vector({0, 1, 0});
+  look_along_z(map, camera);
   camera.mirrored = map.determinant() > 0.0f;
 }
 

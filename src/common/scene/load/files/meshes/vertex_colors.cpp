@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/mesh.h"
+#include "common/scene/load/files/importer.h"
 #include "common/texture/sample_texture.h"
 #include "common/texture/texture.h"
 
@@ -159,7 +160,7 @@ VertexColors::Use VertexColors::use_of(std::uint32_t material_index) const {
     if (texture == no_texture) return;
     (texture == vertex_ ? use.by_vertex : texture == face_ ? use.by_face : use.others) = true;
   };
-  for (const MaterialDescription* part : parts_of(scene_, material_index)) {
+  for (const MaterialDescription* part : parts_of(scene_, scene_.materials[material_index])) {
     for (const Parameter& p : part->parameters) note(p.texture);
     note(part->emission.texture), note(part->opacity.texture);
     const bool is_bsdf = part->node == MaterialNode::none;

@@ -6,14 +6,11 @@
 // since there is one pair of texture coordinates: then their mean is used.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
 #include <string>
-#include <unordered_set>
 #include <utility>
-#include <vector>
 
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/load_options.h"
@@ -72,29 +69,5 @@ class VertexColors {
   std::uint32_t vertex_ = none, face_ = none;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> tinted_;  ///< by material and `emits`
 };
-
-// What a material of a scene is made of.
-
-/// The material and all that it is made of, each once, although blends of blends may name one of
-/// them 2^n times. The pointers are good until the scene gets another material.
-inline std::vector<const MaterialDescription*> parts_of(const SceneData& scene,
-                                                        std::uint32_t material) {
-  std::vector<const MaterialDescription*> parts{&scene.materials[material]};
-  std::unordered_set<std::uint32_t> known{material};
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i]->node == MaterialNode::none) continue;
-    for (const std::uint32_t child : parts[i]->children) {
-      if (known.insert(child).second) parts.push_back(&scene.materials[child]);
-    }
-  }
-  return parts;
-}
-
-/// Whether `test` is true of one of them.
-template <class Test>
-bool any_part(const SceneData& scene, std::uint32_t material, Test&& test) {
-  const std::vector<const MaterialDescription*> parts = parts_of(scene, material);
-  return std::any_of(parts.begin(), parts.end(), [&](const auto* part) { return test(*part); });
-}
 
 }  // namespace pt

@@ -1,5 +1,3 @@
-#include "common/scene/load/files/volumes/nanovdb_container.h"
-
 #include <blosc.h>
 #include <fmt/format.h>
 #include <zlib.h>
@@ -10,6 +8,7 @@
 
 #include "common/error/host_memory.h"
 #include "common/error/quoted.h"
+#include "common/scene/load/files/volumes/nanovdb.h"
 
 namespace pt::nanovdb_files {
 namespace {

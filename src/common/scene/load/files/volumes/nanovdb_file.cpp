@@ -9,7 +9,7 @@
 
 #include "common/error/error_context.h"
 #include "common/error/host_memory.h"
-#include "common/scene/load/files/volumes/nanovdb_tree.h"
+#include "common/scene/load/files/volumes/nanovdb.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/files/whole_file.h"
 

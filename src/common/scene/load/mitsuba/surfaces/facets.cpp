@@ -63,8 +63,6 @@ bool is_plain(const ColorTexture& a, const ColorTexture& b) {
 
 }  // namespace
 
-Parameter parameter_of(const ColorTexture& value) { return {value.color, value.texture}; }
-
 /// Smooth glass of one tint, which most is, has a BSDF of its own.
 Surface read_dielectric(Context& context, const Object& bsdf) {
   const ColorTexture reflected = tint(context, bsdf, "specular_reflectance");

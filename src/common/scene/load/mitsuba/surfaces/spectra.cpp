@@ -1,5 +1,4 @@
-#include "common/scene/load/mitsuba/surfaces/spectra.h"
-
+// Colours and spectra, in elements and as plugins, to linear sRGB.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -8,6 +7,7 @@
 #include <sstream>
 
 #include "common/scene/load/files/whole_file.h"
+#include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {

@@ -30,8 +30,6 @@ std::vector<std::string> surface_types();
 /// Reports, once for its type, that a bsdf is replaced `by` something.
 void report_replaced(Context& context, const Object& bsdf, std::string_view by);
 
-Parameter parameter_of(const ColorTexture& value);
-
 /// Of microfacets.
 struct Roughness {
   ColorTexture alpha_u, alpha_v;

@@ -1,5 +1,4 @@
-#include "common/scene/load/pbrt/surfaces/colors.h"
-
+// Colours of all kinds to linear sRGB.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -8,7 +7,8 @@
 
 #include "common/scene/load/files/spectra.h"
 #include "common/scene/load/files/text.h"
-#include "common/scene/load/pbrt/syntax/named_colors.h"
+#include "common/scene/load/pbrt/surfaces/textures.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 #include "common/scene/load/pbrt/syntax/tokens.h"
 
 namespace pt::pbrt {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/scene/load/pbrt/surfaces/surfaces.h"
-#include "common/scene/load/pbrt/syntax/named_colors.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 namespace {
@@ -192,8 +192,8 @@ Surface read_substrate(Context& context, const Parameters& parameters) {
   LobeSum sum(context);
   add_diffuse(sum, scaled(kd, seen * (Color(1.0f) - glm::min(ks.color, Color(1.0f)))));
   if (along_normal > 0.0f) {
-    const float root = std::sqrt(along_normal), eta = (1.0f + root) / (1.0f - root);
-    add_highlight(sum, scaled(ks, 1.0f / along_normal), eta, roughness);
+    add_highlight(sum, scaled(ks, 1.0f / along_normal), index_of_reflectance(along_normal),
+                  roughness);
   }
   return sum.surface();
 }

@@ -5,7 +5,7 @@
 #include "common/scene/data/plastic_material.h"
 #include "common/scene/load/pbrt/surfaces/surfaces.h"
 #include "common/scene/load/pbrt/surfaces/textures.h"
-#include "common/scene/load/pbrt/syntax/named_colors.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 

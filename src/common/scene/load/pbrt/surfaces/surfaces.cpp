@@ -45,12 +45,12 @@ Surface default_surface() {
 
 /// A surface whose normal a map turns: neither shadowed nor flipped (see MaterialNode::normal_map).
 Surface mapped(Context& context, MaterialNode node, float scale, std::uint32_t map,
-               Surface inside) {
+               const Surface& inside) {
   Surface result;
-  result.material = make_mapped(node, {{scale, 1.0f, 1.0f}, map}, 0);
-  std::swap(result.material.opacity, inside.material.opacity);
+  result.material =
+      under_map(node, {{scale, 1.0f, 1.0f}, map}, inside.material,
+                [&](const MaterialDescription& under) { return context.add_material(under); });
   result.keeps_opacity = inside.keeps_opacity;
-  result.material.children[0] = result.material.children[1] = context.add_material(inside.material);
   return result;
 }
 

@@ -112,8 +112,6 @@ float read_plain_number(Context& context, const Parameters& parameters, std::str
   return value.color.x;
 }
 
-pt::Parameter parameter_of(const ColorTexture& value) { return {value.color, value.texture}; }
-
 namespace {
 
 // Textures made of others, and how all lie on surfaces.

@@ -1,7 +1,8 @@
-#include "common/scene/load/pbrt/syntax/named_colors.h"
-
+// Colour spaces and spectra that pbrt knows by name.
 #include <algorithm>
 #include <array>
+
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 namespace {
