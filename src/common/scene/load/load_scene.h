@@ -1,11 +1,12 @@
 // Scene files of all formats.
 //
 // A format is a folder: its syntax, and tables from the names of types to functions that read one.
-// What formats share is in `files`: importer.h (values with textures, maps, cameras), text.h (words,
-// numbers, warnings of a kind as one), whole_file.h (files by name), images/texture_store.h,
-// meshes/mesh_files.h, meshes/vertex_colors.h, volumes/volume_files.h, spectra.h and studio.h (light
-// for files without). In: a path and LoadOptions. Out: SceneData, and what was replaced or left out
-// as lines to LoadOptions::report. One bad element loses itself, not the file.
+// What formats share is in `files`: importer.h (values with textures, maps, cameras), text.h
+// (words, numbers, warnings of a kind as one), whole_file.h (files by name),
+// images/texture_store.h, meshes/mesh_files.h, meshes/vertex_colors.h, volumes/volume_files.h,
+// spectra.h and studio.h (light for files without). In: a path and LoadOptions. Out: SceneData, and
+// what was replaced or left out as lines to LoadOptions::report. One bad element loses itself, not
+// the file.
 #pragma once
 
 #include <filesystem>

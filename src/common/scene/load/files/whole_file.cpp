@@ -18,27 +18,23 @@
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/scene/load/files/scene_files.h"
+#include "common/scene/load/files/text.h"
 
 namespace pt {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower(std::string text) {
-  for (char& c : text) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 /// What is called `name` in `folder`, itself first.
 std::set<fs::path> alike(const fs::path& folder, const fs::path& name) {
-  const std::string wanted = lower(name.string());
+  const std::string wanted = lower_case(name.string());
   std::set<fs::path> found;
   std::error_code error;
   const fs::path place = folder.empty() ? fs::path(".") : folder;
   for (fs::directory_iterator entry(place, error), end; !error && entry != end;
        entry.increment(error)) {
     const fs::path candidate = entry->path().filename();
-    if (candidate != name && lower(candidate.string()) == wanted) found.insert(candidate);
+    if (candidate != name && lower_case(candidate.string()) == wanted) found.insert(candidate);
   }
   return found;
 }

@@ -102,17 +102,10 @@ std::optional<Color> weights_of(char channel) {
 TextureImage scaled(const TextureImage& image, float base, float gain, float most) {
   Texture look;
   look.format = image.format, look.width = image.width, look.height = image.height;
-  TextureImage result{TextureFormat::rgb32f, image.width, image.height, {}};
-  result.texels.resize(std::size_t{12} * image.width * image.height);
-  std::byte* out = result.texels.data();
-  for (std::uint32_t y = 0; y < image.height; ++y) {
-    for (std::uint32_t x = 0; x < image.width; ++x, out += 12) {
-      const Color texel = load_texel(look, image.texels.data(), x, y);
-      const Color value = glm::clamp(Color(base) + gain * texel, 0.0f, most);
-      std::memcpy(out, &value, 12);
-    }
-  }
-  return result;
+  return make_float_image(image.width, image.height, [&](auto x, auto y) {
+    const Color texel = load_texel(look, image.texels.data(), x, y);
+    return glm::clamp(Color(base) + gain * texel, 0.0f, most);
+  });
 }
 
 }  // namespace

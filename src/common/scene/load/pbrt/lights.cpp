@@ -1,7 +1,6 @@
 // Lights that are not on a shape.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "common/light/delta_light.h"
 #include "common/light/light.h"
@@ -40,23 +39,15 @@ float outer_angle(const Affine& to_world, const Vec3& axis, const DeltaLight& li
 /// The share of the intensity over the square around a cone of this angle (see SpotLight::uv).
 TextureImage picture_of(const Affine& to_light, const Vec3& axis, const DeltaLight& light,
                         float angle, const Vec3& right) {
-  TextureImage image{TextureFormat::rgb32f, picture_side, picture_side, {}};
-  image.texels.resize(std::size_t{12} * picture_side * picture_side);
-  std::byte* next = image.texels.data();
   const Vec3 up = glm::cross(right, light.direction);
   const float tangent = std::tan(angle);
   const auto place = [](std::uint32_t i) {
     return 2.0f * (static_cast<float>(i) + 0.5f) / float{picture_side} - 1.0f;
   };
-  for (std::uint32_t y = 0; y < picture_side; ++y) {
-    for (std::uint32_t x = 0; x < picture_side; ++x, next += 12) {
-      const Vec3 world = light.direction + tangent * (place(x) * right - place(y) * up);
-      const Vec3 own = glm::normalize(to_light.vector(world));
-      const Color share(spot_share(light, glm::dot(own, axis)));
-      std::memcpy(next, &share, sizeof share);
-    }
-  }
-  return image;
+  return make_float_image(picture_side, picture_side, [&](auto x, auto y) {
+    const Vec3 world = light.direction + tangent * (place(x) * right - place(y) * up);
+    return Color(spot_share(light, glm::dot(glm::normalize(to_light.vector(world)), axis)));
+  });
 }
 
 }  // namespace

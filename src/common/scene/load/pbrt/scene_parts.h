@@ -172,8 +172,6 @@ class ShapeMaterials {
   std::map<const Entity*, AreaLight> lights_;
 };
 
-// Shapes to spheres and meshes, objects to groups and instances.
-
 /// Adds all shapes and instances of the description. Whole spheres stay spheres where their
 /// transformation keeps angles; all else is triangles. Adding a kind of shape is adding a line to
 /// the table in shapes.cpp.

@@ -56,16 +56,10 @@ TextureImage grey_image(TextureImage image, const Color& weights) {
   }
   Texture look;
   look.format = image.format, look.width = image.width, look.height = image.height;
-  TextureImage result{TextureFormat::rgb32f, image.width, image.height, {}};
-  result.texels.resize(std::size_t{12} * image.width * image.height);
+  TextureImage result = make_float_image(image.width, image.height, [&](auto x, auto y) {
+    return Color(dot(weights, load_texel(look, image.texels.data(), x, y)));
+  });
   result.alpha = std::move(image.alpha);
-  for (std::uint32_t y = 0; y < image.height; ++y) {
-    for (std::uint32_t x = 0; x < image.width; ++x) {
-      const Color grey(dot(weights, load_texel(look, image.texels.data(), x, y)));
-      const std::size_t offset = std::size_t{12} * (std::size_t{y} * image.width + x);
-      std::memcpy(result.texels.data() + offset, &grey, sizeof grey);
-    }
-  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "common/material/microfacet.h"
 #include "common/scene/data/plastic_material.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 
@@ -28,11 +29,8 @@ double ior_of(const Object& bsdf, std::string_view name, double fallback) {
   const Element* at = bsdf.find(name);
   if (!at) return fallback;
   const std::string& text = at->required("value");
-  std::string lower;
-  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (const auto known = dielectrics().find(lower); known != dielectrics().end()) {
-    return known->second;
-  }
+  const auto known = dielectrics().find(lower_case(text));
+  if (known != dielectrics().end()) return known->second;
   const std::optional<double> number = parse_number(text);
   if (!number || !(*number > 0)) {
     fail(*at, "{} is '{}'; expected a number above 0 or a name such as bk7 or air", name, text);
@@ -118,8 +116,7 @@ ColorTexture read_alpha(Context& context, const Object& bsdf, std::string_view a
 }
 
 bool read_is_beckmann(Context& context, const Object& bsdf) {
-  std::string name = bsdf.text("distribution", "beckmann");
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string name = lower_case(bsdf.text("distribution", "beckmann"));
   if (name == "beckmann" || name == "ggx") return name == "beckmann";
   if (context.modern) {
     fail(*bsdf.find("distribution"), "distribution '{}'; expected beckmann or ggx", name);

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "common/image/codecs/tone_mapping.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
@@ -32,12 +33,8 @@ Color samples_color(Context& context, const Element& element, const Samples& sam
 
 namespace {
 
-float srgb_to_linear(float v) {  // IEC 61966-2-1
-  return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
-}
-
 Color decoded(const Color& c) {
-  return {srgb_to_linear(c.x), srgb_to_linear(c.y), srgb_to_linear(c.z)};
+  return {srgb_curve.decode(c.x), srgb_curve.decode(c.y), srgb_curve.decode(c.z)};
 }
 
 /// #rrggbb, in the sRGB curve as on the web.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
@@ -75,8 +76,7 @@ bool Object::boolean(std::string_view name, bool fallback) const {
   const Element* at = find(name);
   if (!at) return fallback;
   const std::string& text = at->required("value");
-  std::string lower = text;
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string lower = lower_case(text);
   if (lower != "true" && lower != "false") {
     fail(*at, "{} is '{}'; expected true or false", name, text);
   }

@@ -1,7 +1,6 @@
 // Textures computed from others, texel by texel.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "common/error/host_memory.h"
 #include "common/scene/load/pbrt/surfaces/textures.h"
@@ -87,20 +86,14 @@ ColorTexture bake(Context& context, const std::vector<ColorTexture>& parts,
   if (textures.empty()) return {function(values)};
   const Plan plan = plan_for(textures);
   check_size(context, plan);
-  TextureImage image{TextureFormat::rgb32f, plan.width, plan.height, {}};
-  image.texels.resize(std::size_t{12} * plan.width * plan.height);
-  std::byte* next = image.texels.data();
-  for (std::uint32_t y = 0; y < plan.height; ++y) {
-    for (std::uint32_t x = 0; x < plan.width; ++x, next += 12) {
-      const Vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(plan.width),
-                    1.0f - (static_cast<float>(y) + 0.5f) / static_cast<float>(plan.height));
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        values[i] = value_at(context, parts[i], plan, uv);
-      }
-      const Color color = function(values);
-      std::memcpy(next, &color, sizeof color);
+  const TextureImage image = make_float_image(plan.width, plan.height, [&](auto x, auto y) {
+    const Vec2 uv((static_cast<float>(x) + 0.5f) / static_cast<float>(plan.width),
+                  1.0f - (static_cast<float>(y) + 0.5f) / static_cast<float>(plan.height));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      values[i] = value_at(context, parts[i], plan, uv);
     }
-  }
+    return function(values);
+  });
   return {Color(1.0f), context.textures.add_image(image, plan.look)};
 }
 

@@ -257,8 +257,7 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
     return {false, parameters.number("gamma", 1.0f)};
   }
   const Parameter* given = parameters.find("encoding", {"string"});
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(path.extension().string());
   if (!given || ending != ".png") return {};
   const std::string name = parameters.text("encoding", "sRGB");
   if (name == "sRGB") return {};

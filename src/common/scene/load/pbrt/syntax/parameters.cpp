@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -48,8 +47,7 @@ bool is_not_finite(const Token& token) {
   std::string_view text = token.text;
   if (token.kind != TokenKind::word) return false;
   if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
-  std::string first(text.substr(0, 3));
-  std::ranges::transform(first, first.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string first = lower_case(text.substr(0, 3));
   return first == "nan" || first == "inf";
 }
 
