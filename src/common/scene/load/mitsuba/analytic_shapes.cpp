@@ -1,4 +1,7 @@
 // Shapes of formulas: rectangle, cube, sphere, disk, cylinder.
+//
+// (u, v) are Mitsuba's but for v, which Mesh counts from the image's foot. Triangles are
+// counterclockwise seen from where the normals point.
 #include <fmt/format.h>
 
 #include <array>
@@ -150,8 +153,6 @@ Mesh tessellate_cube() {
   for (const BoxFace& face : cube_faces()) add_face(mesh, face);
   return mesh;
 }
-
-// Shapes of formulas: rectangle, cube, sphere, disk, cylinder.
 
 void add_quad(Context& context, const BoxFace& face, const Affine& to_world, bool turned,
               std::uint32_t material) {

@@ -112,8 +112,6 @@ float cloud_density(const CloudShape& shape, const Vec3& p) {
 
 namespace {
 
-// Clouds made of noise.
-
 /// Voxels along the longest side: 32 for each cell of the first octave, in which the fourth has 4.
 constexpr float voxels_per_cell = 32.0f, most_voxels = 160.0f, least_voxels = 16.0f;
 

@@ -65,8 +65,6 @@ std::vector<Bezier> read_beziers(const Parameters& parameters) {
   return segments;
 }
 
-// Curves as tubes, and those that are flat with normals as ribbons.
-
 /// Points on the curve and what lies across it: two unit vectors, x and y.
 struct CurveFrame {
   Vec3 position, along, x, y;

@@ -69,8 +69,6 @@ void finish(const Entity& entity, Mesh& mesh) {
   }
 }
 
-// Shapes of triangles and of bilinear patches.
-
 void set_triangles(Mesh& mesh, const std::vector<int>& indices) {
   mesh.triangles.reserve(indices.size() / 3);
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {

@@ -48,8 +48,6 @@ void tessellate(Mesh& mesh, int columns, int rows,
 
 namespace {
 
-// Spheres, disks and cylinders, whole and cut (pbrt-v4, sections 6.2 to 6.4).
-
 float read_radius(const Parameters& parameters) {
   const float radius = parameters.number("radius", 1.0f);
   if (radius > 0.0f) return radius;

@@ -1,3 +1,5 @@
+// Light from infinitely far: a constant, or a picture of all directions that is resampled to our
+// map.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -12,9 +14,10 @@
 namespace pt::pbrt {
 namespace {
 
-/// The point of the unit square for a unit vector: the upper hemisphere, +z, is the square whose
-/// corners lie in the middle of the edges.
-inline Vec2 equal_area_square(const Vec3& direction) {
+/// pbrt's map of the sphere to a square that keeps areas (Clarberg 2008, 'Fast Equal-Area Mapping
+/// of the (Hemi)Sphere using SIMD'): the point of the unit square for a unit vector; the upper
+/// hemisphere, +z, is the square whose corners lie in the middle of the edges.
+Vec2 equal_area_square(const Vec3& direction) {
   const double x = std::abs(direction.x), y = std::abs(direction.y);
   const double r = std::sqrt(std::max(0.0, 1.0 - std::abs(double{direction.z})));
   const double turn = x == 0 && y == 0 ? 0 : std::atan2(y, x) * 2 / double{pi};  // of a quadrant
@@ -26,9 +29,6 @@ inline Vec2 equal_area_square(const Vec3& direction) {
   return {0.5 * (std::copysign(u, double{direction.x}) + 1),
           0.5 * (std::copysign(v, double{direction.y}) + 1)};
 }
-
-// Light from infinitely far: a constant, or a picture of all directions that is resampled to our
-// map.
 
 constexpr int most_columns = 4096;
 constexpr std::size_t most_pictures = 16;  // each is looked up for all of our map

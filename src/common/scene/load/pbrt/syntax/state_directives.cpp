@@ -62,8 +62,6 @@ std::optional<Affine> read_matrix(TokenStream& tokens) {
   return is_affine ? std::optional(map) : std::nullopt;
 }
 
-// Directives that change the graphics state.
-
 constexpr std::array<std::string_view, 5> attribute_targets = {"shape", "light", "material",
                                                                "medium", "texture"};
 
