@@ -9,9 +9,9 @@
 
 #include "app/warning_limit.h"
 #include "common/rays/ray_file.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
-#include "common/scene/load/mitsuba/xml/element.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 #include "python/arrays.h"
 #include "python/module.h"
 #include "python/scene_object.h"

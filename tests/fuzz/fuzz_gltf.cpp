@@ -1,5 +1,5 @@
 #include "check_scene.h"
-#include "common/scene/load/gltf/gltf.h"
+#include "common/scene/load/load_scene.h"
 #include "fuzz_folder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

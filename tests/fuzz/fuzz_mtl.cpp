@@ -1,4 +1,4 @@
-#include "common/scene/load/obj/mtl_materials.h"
+#include "common/scene/load/obj/mtl.h"
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

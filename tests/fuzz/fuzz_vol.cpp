@@ -1,4 +1,4 @@
-#include "common/scene/load/files/volumes/vol_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

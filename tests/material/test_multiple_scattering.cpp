@@ -2,7 +2,7 @@
 // albedo with and without compensation, and a random walk on a microsurface.
 #include <gtest/gtest.h>
 
-#include "common/scene/load/mitsuba/surfaces/conductors.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "material/bsdf_integral.h"
 #include "material/microsurface_walk.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "common/image/codecs/image_io.h"
-#include "common/scene/load/files/estimate_light.h"
 #include "common/scene/load/files/studio.h"
 #include "common/scene/load/load_scene.h"
 #include "load/gltf_files.h"

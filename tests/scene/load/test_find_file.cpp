@@ -1,5 +1,5 @@
 // Files whose names differ from what other files call them in case only, of all formats.
-#include "common/scene/load/files/find_file.h"
+#include "common/scene/load/files/whole_file.h"
 #include "load/gltf_files.h"
 #include "load/obj_files.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/load/gltf/gltf.h"
+#include "common/scene/load/load_scene.h"
 #include "temp_folder.h"
 
 namespace pt {

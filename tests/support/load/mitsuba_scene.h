@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/load_scene.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -22,7 +22,7 @@
 #include <cstring>
 #include <string>
 
-#include "common/scene/load/files/volumes/nanovdb_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "temp_folder.h"
 #include "test_data.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/scene/load/obj/obj_scene.h"
+#include "common/scene/load/load_scene.h"
 #include "common/texture/sample_texture.h"
 #include "temp_folder.h"
 

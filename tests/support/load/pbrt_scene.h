@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/scene/load/pbrt/pbrt.h"
+#include "common/scene/load/load_scene.h"
 #include "load/mitsuba_scene.h"
 #include "temp_folder.h"
 

@@ -4,19 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/gltf/gltf.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
-#include "common/scene/load/obj/obj_scene.h"
-#include "common/scene/load/pbrt/pbrt.h"
+#include "common/scene/load/files/text.h"
 
 namespace pt {
-
 namespace {
 
 /// What a file of meshes alone does not say.
@@ -80,9 +75,7 @@ constexpr std::array<Format, 6> formats = {{{".xml", load_lit<load_mitsuba_xml>}
 }  // namespace
 
 SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& options) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_case(path.extension().string());
   std::string known;
   for (const Format& format : formats) {
     if (ending == format.ending) return format.load(path, options);

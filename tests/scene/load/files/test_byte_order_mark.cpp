@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/load_scene.h"
 #include "load/gltf_files.h"
 #include "load/obj_files.h"
 #include "temp_folder.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/scene/load/files/volumes/nanovdb_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "load/expect_near.h"
 #include "load/nanovdb_bytes.h"
 

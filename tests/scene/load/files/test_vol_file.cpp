@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-#include "common/scene/load/files/volumes/vol_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "load/vol_bytes.h"
 #include "temp_folder.h"
 

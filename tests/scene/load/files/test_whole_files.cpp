@@ -8,10 +8,8 @@
 #include <thread>
 
 #include "common/scene/load/files/images/image_files.h"
-#include "common/scene/load/files/inflater.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/files/volumes/vol_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/load_scene.h"
 #include "load/mesh_bytes.h"

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "common/scene/data/camera.h"
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
+#include "common/scene/load/load_scene.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {

@@ -1,7 +1,7 @@
 // <volume>s of heterogeneous media: what is read from files, where it lies, and where it ends.
 #include <gtest/gtest.h>
 
-#include "common/scene/load/files/volumes/nanovdb_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 #include "load/nanovdb_bytes.h"

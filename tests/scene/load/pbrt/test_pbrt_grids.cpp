@@ -4,8 +4,7 @@
 
 #include <array>
 
-#include "common/scene/load/pbrt/colors/glowing_gas.h"
-#include "common/scene/load/pbrt/media/cloud_noise.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 #include "statistics.h"

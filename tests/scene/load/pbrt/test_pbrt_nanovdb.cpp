@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "common/scene/load/files/volumes/nanovdb_file.h"
-#include "common/scene/load/pbrt/colors/glowing_gas.h"
+#include "common/scene/load/files/volumes/volume_files.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
 #include "load/nanovdb_bytes.h"
 #include "load/pbrt_scene.h"

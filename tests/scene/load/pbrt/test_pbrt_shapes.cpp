@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "common/scene/load/pbrt/shapes/loop_subdivision.h"
+#include "common/scene/load/pbrt/scene_parts.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 

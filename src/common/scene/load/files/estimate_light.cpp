@@ -1,11 +1,10 @@
-#include "common/scene/load/files/estimate_light.h"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <numeric>
 
 #include "common/sampling/sampler_source.h"
+#include "common/scene/load/files/studio.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
 #include "common/transport/path_integrator.h"

@@ -10,7 +10,6 @@
 #include "common/image/measure_exposure.h"
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/load/files/estimate_light.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "common/scene/prepare/weigh_textures.h"
 

@@ -1,5 +1,3 @@
-#include "common/scene/load/gltf/gltf.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,21 +5,16 @@
 #include <utility>
 
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/load/files/meshes/move_mesh.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/gltf/bake.h"
-#include "common/scene/load/gltf/cameras.h"
-#include "common/scene/load/gltf/document/read_model.h"
-#include "common/scene/load/gltf/lights.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
-#include "common/scene/load/gltf/skins.h"
-#include "common/scene/load/gltf/uv_sets.h"
+#include "common/scene/load/gltf/read_model.h"
+#include "common/scene/load/load_scene.h"
 
 namespace pt {
-
 namespace {
 
 using namespace gltf;
@@ -29,7 +22,7 @@ using namespace gltf;
 void report_ignored(File& file) {
   for (const std::string& name : file.model.extensionsUsed) {
     if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
-      file.report("extensionsUsed", fmt::format("{:.80} is ignored", name));
+      file.report("extensionsUsed", "{:.80} is ignored", name);
     }
   }
   if (!file.model.animations.empty()) {
@@ -123,8 +116,8 @@ class MeshAdder {
         apply_skin(file_, joints, primitive.influences, place, primitive.mesh);
       } else if (in_world) {
         file_.report(place,
-                     "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is "
-                     "placed by its node");
+                     "a primitive of a skinned mesh without JOINTS_0 and WEIGHTS_0: it is placed "
+                     "by its node");
         bake(file_, user.to_world, place, primitive.mesh);
       }
       const int material = primitive.material;

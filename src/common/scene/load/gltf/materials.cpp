@@ -5,10 +5,10 @@
 #include <limits>
 #include <utility>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/files/importer.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
-
 namespace {
 
 /// As reflectance: within [0, 1]. NaN becomes 0.
@@ -80,9 +80,9 @@ MaterialDescription Materials::convert(const tinygltf::Material& source, const s
   set_opacity(source, place, result);
   bool passes = false;
   if (find_extension(source.extensions, "KHR_materials_unlit")) {
-    file_.report(place,
-                 "KHR_materials_unlit: black that emits the base colour is used, and lights "
-                 "the scene");
+    file_.report(
+        place,
+        "KHR_materials_unlit: black that emits the base colour is used, and lights the scene");
     set_base(source, place, result);
     result.emission.radiance = result.color(0);
     result.emission.texture = result.parameters[color_parameter].texture;
@@ -130,10 +130,9 @@ bool Materials::shine_on_both_sides(const tinygltf::Material& source, const std:
       opacity = textured_opacity(1.0f, veil->opacity);
       emission = veil->emission;
     } else {
-      file_.report(
-          place,
-          "doubleSided, emissive and BLEND with different textures: two surfaces are used, "
-          "so that what is half transparent lets a quarter through");
+      file_.report(place,
+                   "doubleSided, emissive and BLEND with different textures: two surfaces are "
+                   "used, so that what is half transparent lets a quarter through");
     }
   }
   return true;
@@ -266,8 +265,7 @@ void Materials::set_volume(const tinygltf::Material& source, const std::string& 
   const float distance = number_or(*volume, "attenuationDistance", endless);
   if (!(distance > 0.0f)) {
     file_.report_value(place + ".extensions.KHR_materials_volume.attenuationDistance",
-                       "attenuationDistance",
-                       fmt::format("{}: expected > 0: nothing is absorbed", distance));
+                       "attenuationDistance", "{}: expected > 0: nothing is absorbed", distance);
     return;
   }
   constexpr float blackest = 1e-6f;  // of a colour; black would absorb everything at once
@@ -278,7 +276,7 @@ void Materials::set_volume(const tinygltf::Material& source, const std::string& 
   }
   if (is_black(medium.extinction)) return;
   if (scene_.media.size() >= no_medium) {
-    file_.fail(place, fmt::format("expected at most {} media", no_medium));
+    file_.fail(place, "expected at most {} media", no_medium);
   }
   result.is_boundary = true;
   result.media.inside = static_cast<std::uint16_t>(scene_.media.size());
@@ -292,7 +290,7 @@ Materials::Base Materials::base_of(const tinygltf::Material& source, const std::
   float ior = extension_number(source, "KHR_materials_ior", "ior", 1.5f);
   if (!std::isfinite(ior) || (ior < 1.0f && ior != 0.0f)) {
     file_.report_value(place + ".extensions.KHR_materials_ior.ior", "ior",
-                       fmt::format("{}: expected 0 or a number >= 1: 1.5 is used", ior));
+                       "{}: expected 0 or a number >= 1: 1.5 is used", ior);
     ior = 1.5f;
   }
   // With an index of 0 all is reflected, for materials that were specular-glossiness.
@@ -310,8 +308,9 @@ Materials::Base Materials::base_of(const tinygltf::Material& source, const std::
                    "is used, without textures and not on what light passes");
     }
     const float factor = unit(number_or(*specular, "specularFactor", 1.0f)) * max_abs(tint);
-    const float root = std::sqrt(std::min(reflectance * factor, 0.99f));
-    if (!bends && reflectance <= mirror) ior = (1.0f + root) / (1.0f - root);
+    if (!bends && reflectance <= mirror) {
+      ior = index_of_reflectance(std::min(reflectance * factor, 0.99f));
+    }
     scale = factor;
     if (max_abs(tint) > 0.0f) hue = tint / max_abs(tint);
   }
@@ -326,15 +325,14 @@ void Materials::set_sheen(const tinygltf::Material& source, const std::string& p
   if (!sheen) return;
   const Color color = clamped(vector_or(*sheen, "sheenColorFactor", Color(0.0f)));
   if (is_black(color)) return;
-  file_.report(place,
-               "KHR_materials_sheen: that of the principled BSDF is used, white and without "
-               "roughness");
+  file_.report(
+      place,
+      "KHR_materials_sheen: that of the principled BSDF is used, white and without roughness");
   result.parameters[Principled::Index::sheen] =
       number_of(max_abs(color), texture_use(member(*sheen, "sheenColorTexture")),
                 place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
 }
 
-/// The gloss of the principled BSDF's coat goes from a roughness, alpha, of 0.1 to 0.001.
 void Materials::set_clearcoat(const tinygltf::Material& source, const std::string& place,
                               MaterialDescription& result) {
   const auto* coat = find_extension(source.extensions, "KHR_materials_clearcoat");
@@ -349,8 +347,7 @@ void Materials::set_clearcoat(const tinygltf::Material& source, const std::strin
   }
   result.parameters[Principled::Index::clearcoat] = number_of(
       factor, texture_use(member(*coat, "clearcoatTexture")), at + "clearcoatTexture", red);
-  result.parameters[Principled::Index::clearcoat_gloss].value =
-      Color(unit((0.1f - roughness * roughness) / 0.099f));
+  result.parameters[Principled::Index::clearcoat_gloss].value = Color(gloss_of_coat(roughness));
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,
@@ -376,9 +373,8 @@ void Materials::set_opacity(const tinygltf::Material& source, const std::string&
                             MaterialDescription& result) {
   if (source.alphaMode != "MASK" && source.alphaMode != "BLEND") {
     if (!source.alphaMode.empty() && source.alphaMode != "OPAQUE") {
-      file_.report(place + ".alphaMode", fmt::format("'{:.40}': expected OPAQUE, MASK or BLEND: "
-                                                     "OPAQUE is used",
-                                                     source.alphaMode));
+      file_.report(place + ".alphaMode", "'{:.40}': expected OPAQUE, MASK or BLEND: OPAQUE is used",
+                   source.alphaMode);
     }
     return;
   }
@@ -406,14 +402,9 @@ std::uint32_t Materials::add(const tinygltf::Material& source, const std::string
   const auto scale = static_cast<float>(source.normalTexture.scale);
   const std::uint32_t map = textures_.add_normals(use, place + ".normalTexture");
   if (map == no_texture) return scene_.add_material(material);
-  MaterialDescription mapped =
-      make_mapped(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, 0);
-  std::swap(mapped.emission, material.emission);
-  std::swap(mapped.opacity, material.opacity);
-  std::swap(mapped.is_boundary, material.is_boundary);
-  std::swap(mapped.media, material.media);
-  mapped.children[0] = mapped.children[1] = scene_.add_material(material);
-  return scene_.add_material(mapped);
+  return scene_.add_material(
+      under_map(MaterialNode::gltf_normal_map, {{scale, 0.0f, 0.0f}, map}, material,
+                [&](const MaterialDescription& inside) { return scene_.add_material(inside); }));
 }
 
 }  // namespace pt::gltf

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/scene/load/gltf/document/accessors.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
-
 namespace {
 
 std::vector<Vec3> read_vec3s(const File& file, int accessor, const std::string& place) {
@@ -28,7 +27,7 @@ std::string attribute_place(const std::string& place, const std::string& name) {
 
 void check_count(const File& file, std::size_t count, const Mesh& mesh, const std::string& place) {
   if (count != mesh.positions.size()) {
-    file.fail(place, fmt::format("{} elements, but POSITION has {}", count, mesh.positions.size()));
+    file.fail(place, "{} elements, but POSITION has {}", count, mesh.positions.size());
   }
 }
 
@@ -43,8 +42,7 @@ void add_morphs(const File& file, const tinygltf::Primitive& primitive,
     const std::string target_place = fmt::format("{}.targets[{}].{}", place, i, attribute);
     const std::vector<Vec3> moves = read_vec3s(file, found->second, target_place);
     if (moves.size() != values.size()) {
-      file.fail(target_place,
-                fmt::format("{} elements, but {} has {}", moves.size(), attribute, values.size()));
+      file.fail(target_place, "{} elements, but {} has {}", moves.size(), attribute, values.size());
     }
     for (std::size_t v = 0; v < values.size(); ++v) values[v] += weight * moves[v];
   }
@@ -148,15 +146,15 @@ void drop_bad_triangles(File& file, const std::string& place, Mesh& mesh) {
         triangle.v, [&](std::uint32_t v) { return v >= mesh.positions.size(); });
     if (beyond != std::end(triangle.v)) {
       file.report_value(place + ".indices", "index",
-                        fmt::format("index {}, there are {} vertices: its triangles are left out",
-                                    *beyond, mesh.positions.size()));
+                        "index {}, there are {} vertices: its triangles are left out", *beyond,
+                        mesh.positions.size());
       continue;
     }
     const auto bad = std::ranges::find_if(
         triangle.v, [&](std::uint32_t v) { return !is_finite(mesh.positions[v]); });
     if (bad != std::end(triangle.v)) {
       file.report_value(attribute_place(place, "POSITION"), "vertex",
-                        fmt::format("vertex {} is not finite: its triangles are left out", *bad));
+                        "vertex {} is not finite: its triangles are left out", *bad);
       continue;
     }
     kept.push_back(triangle);
@@ -176,9 +174,8 @@ std::vector<TriangleIndices> make_triangles(File& file, int mode,
   std::vector<TriangleIndices> triangles;
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     if (v.size() % 3 != 0) {
-      file.report(place, fmt::format("{} vertices: expected three for each triangle: the last are "
-                                     "left out",
-                                     v.size()));
+      file.report(place, "{} vertices: expected three for each triangle: the last are left out",
+                  v.size());
     }
     for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
       triangles.push_back({{v[i], v[i + 1], v[i + 2]}});
@@ -207,12 +204,12 @@ bool has_positions(File& file, const tinygltf::Primitive& primitive, const std::
                                  attribute_place(place, "POSITION"));
   if (accessor.bufferView >= 0 || accessor.sparse.isSparse) return true;
   const auto& extensions = primitive.extensions;
-  file.report(attribute_place(place, "POSITION"),
-              extensions.empty()
-                  ? "an accessor without a bufferView, all zeros: the primitive is ignored"
-                  : fmt::format("{:.80} is not supported: a primitive whose data is in it is left "
-                                "out",
-                                extensions.begin()->first));
+  file.report(
+      attribute_place(place, "POSITION"),
+      extensions.empty()
+          ? "an accessor without a bufferView, all zeros: the primitive is ignored"
+          : fmt::format("{:.80} is not supported: a primitive whose data is in it is left out",
+                        extensions.begin()->first));
   return false;
 }
 
@@ -263,8 +260,7 @@ std::vector<PrimitiveMesh> read_primitives(File& file, int mesh,
     const std::string place = fmt::format("meshes[{}].primitives[{}]", mesh, i);
     const int mode = primitives[i].mode;
     if (mode < TINYGLTF_MODE_POINTS || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-      file.report(place + ".mode",
-                  fmt::format("{}: expected 0 to 6: the primitive is left out", mode));
+      file.report(place + ".mode", "{}: expected 0 to 6: the primitive is left out", mode);
       continue;
     }
     if (mode < TINYGLTF_MODE_TRIANGLES) {

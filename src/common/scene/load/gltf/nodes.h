@@ -1,10 +1,12 @@
-// The hierarchy of nodes: where everything is.
+// The hierarchy of nodes: where everything is, cameras and lights (KHR_lights_punctual).
 #pragma once
 
 #include <vector>
 
+#include "common/geometry/bounds.h"
 #include "common/math/transform.h"
-#include "common/scene/load/gltf/document/file.h"
+#include "common/scene/data/scene_data.h"
+#include "common/scene/load/gltf/document.h"
 
 namespace pt::gltf {
 
@@ -21,5 +23,18 @@ std::string node_place(int node);
 /// cannot be used is left out, and a node that no number can place is lost with its children; each
 /// is reported.
 std::vector<PlacedNode> place_nodes(File& file);
+
+// Cameras.
+
+/// Sets the scene's camera and the image's shape from the first node with a camera; false if there
+/// is none. `bounds` are the scene's: the camera is focused on their middle.
+bool set_camera(File& file, const std::vector<PlacedNode>& nodes, const Bounds& bounds,
+                SceneData& scene);
+
+// KHR_lights_punctual.
+
+/// Adds the lights of the nodes to the scene. Their units are photometric, so that the exposure
+/// must be measured.
+void add_lights(File& file, const std::vector<PlacedNode>& nodes, SceneData& scene);
 
 }  // namespace pt::gltf

@@ -1,14 +1,12 @@
-#include "common/scene/load/gltf/textures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/materials.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt::gltf {
-
 namespace {
 
 TextureWrap to_wrap(File& file, int wrap, const std::string& place) {
@@ -20,7 +18,7 @@ TextureWrap to_wrap(File& file, int wrap, const std::string& place) {
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return TextureWrap::mirror;
     default:
-      file.report(place, fmt::format("{}: expected 10497, 33071 or 33648: repeat is used", wrap));
+      file.report(place, "{}: expected 10497, 33071 or 33648: repeat is used", wrap);
       return TextureWrap::repeat;
   }
 }
@@ -116,7 +114,7 @@ Textures::Encoded Textures::encoded_image(const TextureUse& use, const std::stri
     return {text(buffer.data.data() + view.byteOffset, view.byteLength), name};
   }
   if (image.image.empty()) {
-    file_.fail(image_place, fmt::format("cannot read '{:.200}'", image.uri));
+    file_.fail(image_place, "cannot read '{:.200}'", image.uri);
   }
   return {text(image.image.data(), image.image.size()), name};
 }
@@ -176,7 +174,7 @@ std::uint32_t Textures::add(const TextureUse& use, const std::string& place, Tex
   try {
     return decode(use, place, format, weights);
   } catch (const Error& error) {
-    file_.report(place, fmt::format("{}: {}", error.what(), instead));
+    file_.report(place, "{}: {}", error.what(), instead);
     return no_texture;
   }
 }
@@ -186,7 +184,7 @@ Color Textures::mean(const TextureUse& use, const std::string& place) {
   try {
     image = integers(use, place);
   } catch (const Error& error) {
-    file_.report(place, fmt::format("{}: the factor alone is used", error.what()));
+    file_.report(place, "{}: the factor alone is used", error.what());
     return Color(1.0f);
   }
   double sum[3] = {}, white = 255.0;

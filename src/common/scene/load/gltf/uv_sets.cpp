@@ -1,5 +1,3 @@
-#include "common/scene/load/gltf/uv_sets.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "common/scene/load/gltf/document/values.h"
+#include "common/scene/load/gltf/document.h"
+#include "common/scene/load/gltf/meshes.h"
 
 namespace pt::gltf {
-
 namespace {
 
 using Corners = std::array<Vec2, 3>;
@@ -239,11 +237,9 @@ std::vector<UvPart> split_by_uv_sets(File& file, PrimitiveMesh primitive, std::v
   if (sets.empty()) {
     sets.push_back(0);
   } else if (const auto missing = std::ranges::find_if(sets, is_missing); missing != sets.end()) {
-    file.report_value(
-        place, "TEXCOORD is missing",
-        fmt::format("TEXCOORD_{} is missing, which a texture of its material uses: "
-                    "{} used",
-                    *missing, primitive.uv_sets.empty() ? "none is" : "another set is"));
+    file.report_value(place, "TEXCOORD is missing",
+                      "TEXCOORD_{} is missing, which a texture of its material uses: {} used",
+                      *missing, primitive.uv_sets.empty() ? "none is" : "another set is");
   }
   std::erase_if(sets, is_missing);
   if (sets.empty() && !primitive.uv_sets.empty()) sets.push_back(primitive.uv_sets.begin()->first);
@@ -251,9 +247,10 @@ std::vector<UvPart> split_by_uv_sets(File& file, PrimitiveMesh primitive, std::v
   if (sets.size() > 1) {
     Splitter splitter(primitive, sets);
     if (splitter.run()) return splitter.parts();
-    file.report(place, fmt::format("textures with different texture coordinates in more than {} "
-                                   "pieces: TEXCOORD_{} is used for all",
-                                   parts_max, sets[0]));
+    file.report(place,
+                "textures with different texture coordinates in more than {} pieces: TEXCOORD_{} "
+                "is used for all",
+                parts_max, sets[0]);
   }
   primitive.mesh.uvs = std::move(primitive.uv_sets.at(sets[0]));
   return {{std::move(primitive.mesh), {}}};

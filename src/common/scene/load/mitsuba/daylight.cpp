@@ -1,12 +1,10 @@
 // `sunsky`, and 0.x's `sky` and `sun`: the sky becomes a map of all directions, the sun a light.
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "common/light/sky/sunsky.h"
-#include "common/scene/load/mitsuba/emitters.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
-#include "common/scene/load/mitsuba/xml/transforms.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -19,8 +17,8 @@ double number_between(const Object& emitter, const char* name, double fallback, 
                       double highest) {
   const double value = emitter.number(name).value_or(fallback);
   if (!(value >= lowest && value <= highest)) {
-    fail(emitter.element(), fmt::format("emitter '{}': {} {}; expected {} to {}", emitter.type(),
-                                        name, value, lowest, highest));
+    fail(emitter.element(), "emitter '{}': {} {}; expected {} to {}", emitter.type(), name, value,
+         lowest, highest);
   }
   return value;
 }

@@ -1,14 +1,8 @@
-#include "common/scene/load/mitsuba/mitsuba_xml.h"
-
-#include <fmt/format.h>
-
 #include <cmath>
 
-#include "common/scene/data/frame_scene.h"
-#include "common/scene/load/mitsuba/emitters.h"
-#include "common/scene/load/mitsuba/media/add_grids.h"
-#include "common/scene/load/mitsuba/sensor.h"
-#include "common/scene/load/mitsuba/shapes/shapes.h"
+#include "common/scene/load/files/importer.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/load/mitsuba/scene_parts.h"
 
 namespace pt {
 namespace {
@@ -16,21 +10,15 @@ namespace {
 using mitsuba::Context;
 using mitsuba::Object;
 
-/// A camera that frames what there is.
-void add_sensor(Context& context, const Object& root) {
-  const Bounds bounds = scene_bounds(context.scene);
-  context.note(root.element(), "no sensor: a camera that frames the scene is used");
-  if (std::isfinite(glm::length(bounds.max - bounds.min)) && !bounds.is_empty()) {
-    context.scene.camera = frame_scene(context.scene);
-  }
-}
-
 /// The sensor, in the name of 0.x's first versions or of today. After the shapes, for it may have
 /// to frame them.
 void load_sensor(Context& context, const Object& root) {
   std::vector<const Object*> sensors = root.children("sensor");
   for (const Object* camera : root.children("camera")) sensors.push_back(camera);
-  if (sensors.empty()) return add_sensor(context, root);
+  if (sensors.empty()) {
+    context.note(root.element(), "no sensor: a camera that frames the scene is used");
+    return frame_finite_scene(context.scene);
+  }
   if (sensors.size() > 1) {
     context.warn_once("sensors", sensors[1]->element(), "more than one sensor: the first is used");
   }

@@ -1,5 +1,3 @@
-#include "common/scene/load/obj/mtl_file.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,8 +9,8 @@
 
 #include "common/error/error.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/meshes/text_number.h"
-#include "common/scene/load/obj/mtl_map.h"
+#include "common/scene/load/files/text.h"
+#include "common/scene/load/obj/mtl.h"
 
 namespace pt::obj {
 namespace {

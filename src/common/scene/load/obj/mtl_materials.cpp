@@ -1,9 +1,10 @@
-#include "common/scene/load/obj/mtl_materials.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "common/scene/load/files/importer.h"
+#include "common/scene/load/obj/mtl.h"
 
 namespace pt::obj {
 namespace {
@@ -163,9 +164,8 @@ class Conversion {
   float index_of_highlight() const {
     float reflectance = normal_reflectance(index_of(m_));
     if (m_.Ks || m_.map_Ks) reflectance *= 2.0f * mean(specular());
-    const float root = std::sqrt(std::min(reflectance, 0.99f));
     // At 1 nothing would be reflected by metals, too.
-    return std::max((1.0f + root) / (1.0f - root), 1.001f);
+    return std::max(index_of_reflectance(std::min(reflectance, 0.99f)), 1.001f);
   }
 
   Parameter number(float value, const MtlMap& map, const char* key, float missing) {
@@ -190,10 +190,7 @@ class Conversion {
     p[I::sheen] =
         number(m_.Ps.value_or(m_.map_Ps ? 1.0f : 0.0f), m_.map_Ps, "map_Ps", m_.Ps.value_or(0.0f));
     p[I::clearcoat].value = Color(m_.Pc.value_or(0.0f));
-    const float coat_roughness = m_.Pcr.value_or(0.03f);
-    // The gloss of the coat goes from a roughness, alpha, of 0.1 to 0.001.
-    p[I::clearcoat_gloss].value =
-        Color(std::clamp((0.1f - coat_roughness * coat_roughness) / 0.099f, 0.0f, 1.0f));
+    p[I::clearcoat_gloss].value = Color(gloss_of_coat(m_.Pcr.value_or(0.03f)));
     return m_.map_Ks ? with_specular_map(result) : result;
   }
 
@@ -272,11 +269,8 @@ class Conversion {
 
   MaterialDescription mapped(MaterialNode node, float scale, std::uint32_t map,
                              MaterialDescription inside) {
-    MaterialDescription result = make_mapped(node, {{scale, 0.0f, 0.0f}, map}, 0);
-    std::swap(result.emission, inside.emission);
-    std::swap(result.opacity, inside.opacity);
-    result.children[0] = result.children[1] = scene_.add_material(inside);
-    return result;
+    return under_map(node, {{scale, 0.0f, 0.0f}, map}, std::move(inside),
+                     [&](const MaterialDescription& under) { return scene_.add_material(under); });
   }
 
   const MtlMaterial& m_;

@@ -1,5 +1,3 @@
-#include "common/scene/load/obj/obj_scene.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,14 +7,16 @@
 
 #include "common/error/error_context.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/meshes/mesh_finish.h"
-#include "common/scene/load/files/meshes/obj_parser.h"
-#include "common/scene/load/files/meshes/text_number.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/load/files/meshes/obj.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/files/whole_file.h"
-#include "common/scene/load/obj/mtl_materials.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/load/obj/mtl.h"
 
 namespace pt {
+
 namespace obj {
 namespace {
 
@@ -221,6 +221,7 @@ SceneData load(const fs::path& path, CountedWarnings& warnings) {
 }
 
 }  // namespace
+
 }  // namespace obj
 
 SceneData load_obj(const std::filesystem::path& path, const LoadOptions& options) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -35,6 +36,21 @@ TextureImage read_texture_image(const std::filesystem::path& path,
 /// The same of a file's content in memory; `name` stands for it in errors.
 TextureImage decode_texture_image(std::string_view bytes, const std::string& name,
                                   TextureFormat integers = TextureFormat::srgb8);
+
+/// A picture of floats; `color_at(x, y)` gives its texels, row by row.
+template <class ColorAt>
+TextureImage make_float_image(std::uint32_t width, std::uint32_t height, ColorAt&& color_at) {
+  TextureImage image{TextureFormat::rgb32f, width, height, {}};
+  image.texels.resize(sizeof(Color) * width * height);
+  std::byte* next = image.texels.data();
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x, next += sizeof(Color)) {
+      const Color color = color_at(x, y);
+      std::memcpy(next, &color, sizeof color);
+    }
+  }
+  return image;
+}
 
 /// The image with the weighted sum of its linear R, G and B in all of them; itself where that is
 /// the same. One component alone keeps its 8 bits. Alpha stays.

@@ -10,11 +10,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/geometry/mesh.h"
+#include "common/math/transform.h"
 
 namespace pt {
 
@@ -57,5 +59,32 @@ Mesh decode_serialized(std::string_view bytes, const std::string& name, int shap
 /// Normals by vertex, the mean of the triangles' weighted by their angles (Thuermer and Wuethrich
 /// 1998): what Mitsuba gives meshes that have none and do not ask for face_normals.
 void compute_vertex_normals(Mesh& mesh);
+
+// What every reader of meshes does at its end.
+
+/// Makes a mesh as mesh_files.h promises of what a file said: leaves out the triangles with an
+/// index that is out of range or a position that is not finite; drops normals where the options say
+/// so, scales the others to unit length, flips v. Normals and uvs have the size of the positions or
+/// none. Throws Error naming the first triangle (from 0) or vertex that is bad where most are.
+/// `warnings`: or null.
+void finish_mesh(Mesh& mesh, const MeshFileOptions& options,
+                 std::vector<std::string>* warnings = nullptr);
+
+// Meshes into other spaces, and inside out.
+
+/// Positions and normals; the winding stays as it is.
+void transform_mesh(Mesh& mesh, const Affine& map);
+
+/// Turns normals and winding.
+void turn_mesh(Mesh& mesh);
+
+/// Winds each triangle so that its geometric normal is on the side of its vertices' normals.
+void wind_by_normals(Mesh& mesh);
+
+/// The other side of a lamp that shines on both: a surface of its own, a little behind the first.
+Mesh back_of(const Mesh& mesh);
+
+/// The scale of a map that keeps angles, or none.
+std::optional<float> uniform_scale(const Affine& map);
 
 }  // namespace pt

@@ -6,7 +6,7 @@
 #include <array>
 #include <atomic>
 
-#include "common/scene/load/files/meshes/ply_elements.h"
+#include "common/scene/load/files/meshes/ply.h"
 
 namespace pt {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "common/error/host_memory.h"
 #include "common/error/quoted.h"
-#include "common/scene/load/files/meshes/ply_elements.h"
+#include "common/scene/load/files/meshes/ply.h"
 
 namespace pt {
 namespace {

@@ -6,9 +6,7 @@
 #include <cstring>
 
 #include "common/error/error_context.h"
-#include "common/scene/load/files/inflater.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
-#include "common/scene/load/files/meshes/mesh_finish.h"
 #include "common/scene/load/files/whole_file.h"
 
 namespace pt {

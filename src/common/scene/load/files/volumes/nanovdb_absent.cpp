@@ -1,5 +1,5 @@
 #include "common/error/error.h"
-#include "common/scene/load/files/volumes/nanovdb_file.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 
 namespace pt {
 namespace {

@@ -1,7 +1,5 @@
 // NanoVDB's own readers trust a file. Here its structures are only laid over bytes once these are
 // known to hold them.
-#include "common/scene/load/files/volumes/nanovdb_file.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -11,7 +9,8 @@
 
 #include "common/error/error_context.h"
 #include "common/error/host_memory.h"
-#include "common/scene/load/files/volumes/nanovdb/grid_tree.h"
+#include "common/scene/load/files/volumes/nanovdb.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/files/whole_file.h"
 
 namespace pt {

@@ -2,14 +2,13 @@
 // byte, then as 32-bit integers the encoding, the voxels along x, y and z and the channels, then
 // the box as six floats, its lower corner first. The values follow: channels side by side, x varies
 // fastest, then y.
-#include "common/scene/load/files/volumes/vol_file.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstring>
 
 #include "common/error/error_context.h"
+#include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/files/whole_file.h"
 
 namespace pt {

@@ -1,5 +1,5 @@
 // Written by scripts/mitsuba_conductors with Mitsuba 3.9.1: do not edit.
-#include "common/scene/load/mitsuba/surfaces/conductors.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
 
 namespace pt::mitsuba {
 

@@ -1,12 +1,119 @@
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
 
-#include <fmt/format.h>
-
+#include <cmath>
 #include <map>
 
-#include "common/scene/load/mitsuba/surfaces/surface_kinds.h"
-
 namespace pt::mitsuba {
+
+// Diffuse surfaces, smooth and rough.
+
+Surface diffuse_of(const ColorTexture& reflectance) {
+  Surface surface;
+  surface.material.parameters[Diffuse::Index::albedo] = {reflectance.color, reflectance.texture};
+  surface.material.one_sided = true;
+  return surface;
+}
+
+/// 0.x takes either name.
+Surface read_diffuse(Context& context, const Object& bsdf) {
+  const bool usual = bsdf.find("reflectance") || bsdf.child_named("reflectance");
+  const char* name = usual ? "reflectance" : "diffuse_reflectance";
+  return diffuse_of(read_color_texture(context, bsdf, name, Color(0.5f)));
+}
+
+/// Mitsuba 0.x alone has it. There alpha is the root mean square slope, as Beckmann's, of which the
+/// angle's deviation is 1 / sqrt(2).
+Surface read_rough_diffuse(Context& context, const Object& bsdf) {
+  Surface surface = read_diffuse(context, bsdf);
+  surface.material.kind = kind_of<OrenNayar>;
+  Parameter& sigma = surface.material.parameters[OrenNayar::Index::sigma];
+  sigma = parameter_of(read_number_texture(context, bsdf, "alpha", 0.2f));
+  sigma.value *= std::sqrt(0.5f);
+  bsdf.ignore({"use_fast_approx"});
+  return surface;
+}
+
+namespace {
+
+// principled and principledthin.
+
+/// Reads numbers, which may be textures, into the parameters that follow.
+struct NumberReader {
+  Context& context;
+  const Object& bsdf;
+
+  void operator()(Parameter& to, std::string_view name, float fallback = 0.0f) const {
+    to = parameter_of(read_number_texture(context, bsdf, name, fallback));
+  }
+};
+
+/// `eta`, or that of `specular`: 0.08 times it is the reflectance at normal incidence.
+float read_eta(Context& context, const Object& bsdf) {
+  float specular = read_plain_number(context, bsdf, "specular", 0.5f);
+  if (!(specular < 12.5f)) {
+    context.warn_once(
+        "specular", bsdf.element(),
+        "bsdf '{}': specular {} is 12.5 or more, which no index of refraction has: 0.5 is used",
+        bsdf.type(), specular);
+    specular = 0.5f;
+  }
+  const float by_specular = 2.0f / (1.0f - std::sqrt(0.08f * specular)) - 1.0f;
+  const float eta = read_plain_number(context, bsdf, "eta", by_specular);
+  if (!(eta > 0.0f) || !std::isfinite(eta)) {
+    fail(bsdf.element(), "bsdf '{}': index of refraction {}; expected a number above 0",
+         bsdf.type(), eta);
+  }
+  return eta;
+}
+
+void ignore_sampling_rates(const Object& bsdf) {
+  bsdf.ignore({"main_specular_sampling_rate", "clearcoat_sampling_rate",
+               "diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
+               "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate"});
+}
+
+bool is_zero(const Parameter& p) { return p.texture == no_texture && is_black(p.value); }
+
+}  // namespace
+
+Surface read_principled(Context& context, const Object& bsdf) {
+  const NumberReader read{context, bsdf};
+  Surface surface;
+  surface.material = describe_all<Principled>(0);
+  using Index = Principled::Index;
+  Parameter* p = surface.material.parameters;
+  p[Index::eta].value = Color(read_eta(context, bsdf));
+  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
+  read(p[Index::roughness], "roughness", 0.5f);
+  read(p[Index::metallic], "metallic"), read(p[Index::spec_trans], "spec_trans");
+  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
+  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
+  read(p[Index::flatness], "flatness");
+  read(p[Index::clearcoat], "clearcoat"), read(p[Index::clearcoat_gloss], "clearcoat_gloss");
+  ignore_sampling_rates(bsdf);
+  const bool opaque = is_zero(p[Index::spec_trans]);
+  surface.material.one_sided = opaque;
+  // As Mitsuba: light that passes must be bent.
+  if (!opaque && p[Index::eta].value.x == 1.0f) p[Index::eta].value = Color(1.001f);
+  return surface;
+}
+
+Surface read_principled_thin(Context& context, const Object& bsdf) {
+  const NumberReader read{context, bsdf};
+  Surface surface;
+  surface.material = describe_all<PrincipledThin>(0);
+  using Index = PrincipledThin::Index;
+  Parameter* p = surface.material.parameters;
+  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
+  read(p[Index::roughness], "roughness", 0.5f);
+  read(p[Index::spec_trans], "spec_trans"), read(p[Index::eta], "eta", 1.5f);
+  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
+  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
+  read(p[Index::flatness], "flatness"), read(p[Index::diff_trans], "diff_trans");
+  ignore_sampling_rates(bsdf);
+  return surface;
+}
+
 namespace {
 
 using Reader = Surface (*)(Context&, const Object&);
@@ -21,8 +128,8 @@ const std::map<std::string_view, Reader>& readers() {
 }  // namespace
 
 void report_replaced(Context& context, const Object& bsdf, std::string_view by) {
-  context.warn_once("bsdf " + bsdf.type(), bsdf.element(),
-                    fmt::format("bsdf '{}' is not supported: {}", bsdf.type(), by));
+  context.warn_once("bsdf " + bsdf.type(), bsdf.element(), "bsdf '{}' is not supported: {}",
+                    bsdf.type(), by);
 }
 
 // Each once, although others may hold it 2^n times.

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/scene/load/mitsuba/xml/transforms.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -49,7 +49,7 @@ TextureWrap wrap_of(Context& context, const Object& texture, const std::string& 
   if (mode == "mirror") return TextureWrap::mirror;
   if (mode != "clamp") {
     context.warn_once("wrap " + mode, texture.element(),
-                      fmt::format("wrap mode '{}' is not supported: clamp is used", mode));
+                      "wrap mode '{}' is not supported: clamp is used", mode);
   }
   return TextureWrap::clamp;
 }
@@ -59,9 +59,8 @@ void read_filter(Context& context, const Object& object, Texture& texture) {
   if (filter == "nearest") texture.filter = TextureFilter::nearest;
   // 0.x's `trilinear` and `ewa` are bilinear but for what they do about aliasing, which samples do.
   if (filter != "nearest" && filter != "bilinear" && filter != "trilinear" && filter != "ewa") {
-    context.warn_once(
-        "filter " + filter, object.element(),
-        fmt::format("texture filter '{}' is not supported: bilinear is used", filter));
+    context.warn_once("filter " + filter, object.element(),
+                      "texture filter '{}' is not supported: bilinear is used", filter);
   }
 }
 
@@ -70,7 +69,7 @@ bool is_linear(Context& context, const Object& object) {
   const float gamma = object.number("gamma", -1.0f);  // 0.x: -1 is what the file says, sRGB
   if (gamma != -1.0f && gamma != 1.0f && gamma != 2.2f) {
     context.warn_once("gamma", object.element(),
-                      fmt::format("gamma {} of a bitmap is not supported: sRGB is used", gamma));
+                      "gamma {} of a bitmap is not supported: sRGB is used", gamma);
   }
   return raw || gamma == 1.0f;
 }
@@ -162,9 +161,9 @@ ColorTexture read_mesh_attribute(Context& context, const Object& object, Quantit
   if (is_color && name == "vertex_color") return {scale, context.colors.by_vertex()};
   if (is_color && name == "face_color") return {scale, context.colors.by_face()};
   context.warn_once("mesh_attribute " + name, object.element(),
-                    fmt::format("mesh_attribute '{}' is not supported here, vertex_color and "
-                                "face_color are as colours: white is used",
-                                name));
+                    "mesh_attribute '{}' is not supported here, vertex_color and face_color are as "
+                    "colours: white is used",
+                    name);
   return {scale, no_texture};
 }
 
@@ -191,7 +190,7 @@ ColorTexture read_texture(Context& context, const Object& outer, Quantity quanti
     return {read_spectrum_object(context, object, quantity, stand_in), no_texture};
   }
   if (object.tag() != "texture") {
-    fail(object.element(), fmt::format("a <{}>; expected a <texture>", object.tag()));
+    fail(object.element(), "a <{}>; expected a <texture>", object.tag());
   }
   const std::string type = object.type();
   if (type == "bitmap" || type == "ldrtexture" || type == "exrtexture") {
@@ -201,7 +200,7 @@ ColorTexture read_texture(Context& context, const Object& outer, Quantity quanti
   if (type == "mesh_attribute") return read_mesh_attribute(context, object, quantity);
   if (type == "scale") return read_scale(context, object, quantity, stand_in);
   context.warn_once("texture " + type, object.element(),
-                    fmt::format("texture '{}' is not supported: {} is used", type, stand_in.x));
+                    "texture '{}' is not supported: {} is used", type, stand_in.x);
   return {stand_in, no_texture};
 }
 
@@ -239,8 +238,8 @@ Color read_plain_color(Context& context, const Object& owner, std::string_view n
   const Object& nested = without_d65(*outer);
   if (is_spectrum(nested)) return read_spectrum_object(context, nested, quantity, fallback);
   context.warn_once(fmt::format("textured {} {}", owner.type(), name), nested.element(),
-                    fmt::format("a texture as {} of {} '{}' is not supported: {} is used", name,
-                                owner.tag(), owner.type(), fallback.x));
+                    "a texture as {} of {} '{}' is not supported: {} is used", name, owner.tag(),
+                    owner.type(), fallback.x);
   return fallback;
 }
 

@@ -1,17 +1,15 @@
 // bsdfs around other ones.
-#include <fmt/format.h>
-
 #include <algorithm>
 
-#include "common/scene/load/mitsuba/surfaces/surface_kinds.h"
-#include "common/scene/load/mitsuba/xml/values.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {
 
 const Object& only_nested(const Object& bsdf) {
   const Object* nested = bsdf.child("bsdf");
-  if (!nested) fail(bsdf.element(), fmt::format("bsdf '{}' has no bsdf inside", bsdf.type()));
+  if (!nested) fail(bsdf.element(), "bsdf '{}' has no bsdf inside", bsdf.type());
   return *nested;
 }
 
@@ -32,9 +30,8 @@ Surface node_of(const MaterialDescription& node, const Opacity& opacity) {
 /// In Mitsuba a mask inside of both.
 void warn_of_masks(Context& context, const Object& bsdf) {
   context.warn_once("masks " + bsdf.type(), bsdf.element(),
-                    fmt::format("opacities that differ inside of bsdf '{}' are not supported: "
-                                "opaque is used",
-                                bsdf.type()));
+                    "opacities that differ inside of bsdf '{}' are not supported: opaque is used",
+                    bsdf.type());
 }
 
 /// The probability of a blend's second part among what is there, and how much is there.
@@ -89,9 +86,9 @@ std::vector<float> read_weights(const Object& bsdf, std::size_t count) {
       element ? parse_numbers(*element, element->required("value")) : std::vector<double>();
   if (numbers.size() != count || count == 0 ||
       std::ranges::any_of(numbers, [](double w) { return w < 0; })) {
-    fail(bsdf.element(), fmt::format("bsdf 'mixturebsdf' has {} weights for {} bsdfs; expected one "
-                                     "each, none below 0",
-                                     numbers.size(), count));
+    fail(bsdf.element(),
+         "bsdf 'mixturebsdf' has {} weights for {} bsdfs; expected one each, none below 0",
+         numbers.size(), count);
   }
   return {numbers.begin(), numbers.end()};
 }
@@ -162,7 +159,7 @@ Surface read_normal_map(Context& context, const Object& bsdf) {
 
 Surface read_bump_map(Context& context, const Object& bsdf) {
   const Object* texture = bsdf.child("texture");
-  if (!texture) fail(bsdf.element(), fmt::format("bsdf '{}' has no texture inside", bsdf.type()));
+  if (!texture) fail(bsdf.element(), "bsdf '{}' has no texture inside", bsdf.type());
   const ColorTexture map = read_texture(context, *texture, Quantity::plain, Color(1.0f));
   return read_map(context, bsdf, MaterialNode::bump_map, map,
                   bsdf.number("scale", 1.0f) * luminance(map.color));
@@ -171,8 +168,7 @@ Surface read_bump_map(Context& context, const Object& bsdf) {
 Surface read_blend(Context& context, const Object& bsdf) {
   const std::vector<const Object*> parts = bsdf.children("bsdf");
   if (parts.size() != 2) {
-    fail(bsdf.element(),
-         fmt::format("bsdf 'blendbsdf' has {} bsdfs inside; expected 2", parts.size()));
+    fail(bsdf.element(), "bsdf 'blendbsdf' has {} bsdfs inside; expected 2", parts.size());
   }
   const ColorTexture weight = read_number_texture(context, bsdf, "weight", 0.5f);
   return blend(context, bsdf, weight, read_surface(context, *parts[0]),

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/scene/load/files/studio.h"
-#include "common/scene/load/mitsuba/xml/values.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {
@@ -14,8 +14,7 @@ bool is_modern(const ObjectGraph& graph) {
   if (!version) return true;
   const std::optional<double> major = parse_number(version->substr(0, version->find('.')));
   if (!major) {
-    fail(graph.scene().element(),
-         fmt::format("version '{}' of the scene; expected one like 3.0.0", *version));
+    fail(graph.scene().element(), "version '{}' of the scene; expected one like 3.0.0", *version);
   }
   return *major >= 2;
 }
@@ -84,9 +83,12 @@ void Context::add_studio_if_dark() {
     names += fmt::format("{}'{}' of line {}", names.empty() ? "" : ", ", emitter->type(),
                          emitter->element().line);
   }
-  report(at, fmt::format("NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used "
-                         "instead, so brightness and colours are not the file's",
-                         names, studio_text));
+  report(
+      at,
+      fmt::format(
+          "NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used instead, so brightness and "
+          "colours are not the file's",
+          names, studio_text));
 }
 
 void Context::report_unused() {

@@ -34,6 +34,11 @@ class Context {
 
   /// Reports what is replaced or ignored, once for each `kind`.
   void warn_once(const std::string& kind, const Element& at, const std::string& message);
+  template <class First, class... Rest>
+  void warn_once(const std::string& kind, const Element& at,
+                 fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest) {
+    warn_once(kind, at, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
+  }
 
   /// Says what was chosen where the file leaves it open.
   void note(const Element& at, const std::string& message) const;

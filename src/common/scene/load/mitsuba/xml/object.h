@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/math/transform.h"
-#include "common/scene/load/mitsuba/xml/search_path.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 

@@ -1,17 +1,120 @@
-// XML files to elements: parsing, <include>, <default> and $variables.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <functional>
+#include <iterator>
+#include <map>
 #include <pugixml.hpp>
 #include <set>
+#include <string>
+#include <string_view>
 
+#include "common/error/error.h"
 #include "common/scene/load/files/whole_file.h"
-#include "common/scene/load/mitsuba/xml/element.h"
-#include "common/scene/load/mitsuba/xml/search_path.h"
-#include "common/scene/load/mitsuba/xml/variables.h"
+#include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
 namespace {
+
+/// The variables of a scene: those of the command line, then those of <default>.
+class Variables {
+ public:
+  explicit Variables(const std::map<std::string, std::string>& definitions)
+      : values_(definitions.begin(), definitions.end()), definitions_(definitions) {}
+
+  /// A <default>: it counts where nothing else defines the name.
+  void add_default(const std::string& name, const std::string& value) {
+    values_.try_emplace(name, value);
+    used_.insert(name);
+  }
+
+  /// `text` with the value of the longest name that fits in the place of every $name, and \$ for a
+  /// dollar. Throws Error (without a place) for a name that is not defined, and where all values
+  /// together become too long.
+  std::string substitute(const std::string& text);
+
+  /// Throws Error naming the definitions that the scene neither used nor declared.
+  void check_used(const std::string& file) const;
+
+ private:
+  using Values = std::map<std::string, std::string, std::less<>>;
+
+  Values::const_iterator longest_prefix_of(std::string_view name) const;
+
+  Values values_;
+  std::map<std::string, std::string> definitions_;
+  std::size_t expanded_ = 0;  ///< bytes of values put in so far
+  std::set<std::string> used_;
+};
+
+constexpr std::size_t max_expanded = std::size_t{64} << 20;
+
+bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+}  // namespace
+
+// Of all names up to `name` in alphabetical order, what begins with a prefix of `name` comes after
+// that prefix: the last of them either is the longest one or shares with `name` all that the
+// longest one has.
+Variables::Values::const_iterator Variables::longest_prefix_of(std::string_view name) const {
+  while (!name.empty()) {
+    const auto after = values_.upper_bound(name);
+    if (after == values_.begin()) break;
+    const auto candidate = std::prev(after);
+    const std::string_view found = candidate->first;
+    const auto [end, ignored] = std::mismatch(name.begin(), name.end(), found.begin(), found.end());
+    const auto common = static_cast<std::size_t>(end - name.begin());
+    if (common == found.size() && common > 0) return candidate;
+    name = name.substr(0, common);
+  }
+  return values_.end();
+}
+
+std::string Variables::substitute(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    if (text.compare(at, 2, "\\$") == 0) {
+      result += '$';
+      at += 2;
+      continue;
+    }
+    if (text[at] != '$') {
+      result += text[at++];
+      continue;
+    }
+    std::size_t end = at + 1;
+    while (end < text.size() && is_name_character(text[end])) ++end;
+    const auto name = std::string_view(text).substr(at + 1, end - at - 1);
+    const auto value = longest_prefix_of(name);
+    if (value == values_.end()) {
+      throw Error(fmt::format("${} is not defined; expected a <default> before it or -D {}=VALUE",
+                              name, name));
+    }
+    used_.insert(value->first);
+    expanded_ += value->second.size();
+    if (expanded_ > max_expanded) {
+      throw Error(fmt::format("variables expand to more than {} bytes", max_expanded));
+    }
+    result += value->second;
+    at += 1 + value->first.size();
+  }
+  return result;
+}
+
+void Variables::check_used(const std::string& file) const {
+  std::string names;
+  for (const auto& [name, value] : definitions_) {
+    if (!used_.count(name)) names += (names.empty() ? "" : ", ") + name;
+  }
+  if (!names.empty()) {
+    throw Error(fmt::format("-D {}: {} has no such variable", names, file));
+  }
+}
+
+namespace {
+
+// XML files to elements: parsing, <include>, <default> and $variables.
 
 constexpr int max_element_depth = 64;
 constexpr std::size_t max_include_depth = 16;
@@ -56,7 +159,7 @@ class DocumentReader {
 
   Element read(const std::filesystem::path& path) {
     Element root = read_file(path);
-    if (root.tag != "scene") fail(root, fmt::format("<{}>; expected <scene>", root.tag));
+    if (root.tag != "scene") fail(root, "<{}>; expected <scene>", root.tag);
     variables_.check_used(path.string());
     return root;
   }
@@ -92,10 +195,9 @@ class DocumentReader {
     if (files_.insert(file).second) return;
     ++repeats_, repeated_bytes_ += size_bytes;
     if (repeats_ > max_repeats || repeated_bytes_ > max_repeated_bytes) {
-      throw Error(
-          fmt::format("files are included again and again; expected at most {} times and "
-                      "{} bytes of them",
-                      max_repeats, max_repeated_bytes));
+      throw Error(fmt::format(
+          "files are included again and again; expected at most {} times and {} bytes of them",
+          max_repeats, max_repeated_bytes));
     }
   }
 
@@ -105,7 +207,7 @@ class DocumentReader {
     element.file = source.path();
     element.line = source.line(node.offset_debug());
     if (depth > max_element_depth) {
-      fail(element, fmt::format("elements are nested deeper than {}", max_element_depth));
+      fail(element, "elements are nested deeper than {}", max_element_depth);
     }
     for (const pugi::xml_attribute& attribute : node.attributes()) {
       element.attributes.emplace_back(attribute.name(), substitute(element, attribute.value()));
@@ -146,10 +248,10 @@ class DocumentReader {
     const std::filesystem::path path = included_path(element);
     const std::filesystem::path file = without_links(path);
     if (std::ranges::any_of(stack_, [&](const Open& open) { return open.canonical == file; })) {
-      fail(element, fmt::format("{} includes itself", path.string()));
+      fail(element, "{} includes itself", path.string());
     }
     if (stack_.size() >= max_include_depth) {
-      fail(element, fmt::format("files are included deeper than {}", max_include_depth));
+      fail(element, "files are included deeper than {}", max_include_depth);
     }
     try {
       return read_file(path);

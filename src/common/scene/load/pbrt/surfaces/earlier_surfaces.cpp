@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include "common/scene/load/pbrt/colors/named_spectra.h"
-#include "common/scene/load/pbrt/surfaces/surface_kinds.h"
+#include "common/scene/load/pbrt/surfaces/surfaces.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
 
 namespace pt::pbrt {
 namespace {
@@ -85,8 +85,7 @@ float read_earlier_index(Context& context, const Parameters& parameters) {
   const char* name = parameters.find("eta") ? "eta" : "index";
   const float eta = read_plain_number(context, parameters, name, 1.5f);
   if (eta > 0.0f) return eta;
-  fail(parameters.place(),
-       fmt::format("{}: an '{}' of {}; expected one above 0", parameters.what(), name, eta));
+  fail(parameters.place(), "{}: an '{}' of {}; expected one above 0", parameters.what(), name, eta);
 }
 
 void add_diffuse(LobeSum& sum, const ColorTexture& kd) {
@@ -193,8 +192,8 @@ Surface read_substrate(Context& context, const Parameters& parameters) {
   LobeSum sum(context);
   add_diffuse(sum, scaled(kd, seen * (Color(1.0f) - glm::min(ks.color, Color(1.0f)))));
   if (along_normal > 0.0f) {
-    const float root = std::sqrt(along_normal), eta = (1.0f + root) / (1.0f - root);
-    add_highlight(sum, scaled(ks, 1.0f / along_normal), eta, roughness);
+    add_highlight(sum, scaled(ks, 1.0f / along_normal), index_of_reflectance(along_normal),
+                  roughness);
   }
   return sum.surface();
 }
@@ -207,9 +206,8 @@ Surface read_translucent(Context& context, const Parameters& parameters) {
   const auto plain = [&](const char* name) {
     const ColorTexture value = read(name, 0.5f);
     if (value.is_constant()) return value.color;
-    context.reporter.warn_once(
-        fmt::format("textured {}", name), parameters.find(name)->place,
-        fmt::format("a texture as '{}' is not supported: 0.5 is used", name));
+    context.reporter.warn_once(fmt::format("textured {}", name), parameters.find(name)->place,
+                               "a texture as '{}' is not supported: 0.5 is used", name);
     return Color(0.5f);
   };
   const Color reflect = plain("reflect"), transmit = plain("transmit");

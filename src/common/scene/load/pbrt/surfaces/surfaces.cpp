@@ -4,8 +4,6 @@
 
 #include <utility>
 
-#include "common/scene/load/pbrt/surfaces/surface_kinds.h"
-
 namespace pt::pbrt {
 namespace {
 
@@ -47,12 +45,12 @@ Surface default_surface() {
 
 /// A surface whose normal a map turns: neither shadowed nor flipped (see MaterialNode::normal_map).
 Surface mapped(Context& context, MaterialNode node, float scale, std::uint32_t map,
-               Surface inside) {
+               const Surface& inside) {
   Surface result;
-  result.material = make_mapped(node, {{scale, 1.0f, 1.0f}, map}, 0);
-  std::swap(result.material.opacity, inside.material.opacity);
+  result.material =
+      under_map(node, {{scale, 1.0f, 1.0f}, map}, inside.material,
+                [&](const MaterialDescription& under) { return context.add_material(under); });
   result.keeps_opacity = inside.keeps_opacity;
-  result.material.children[0] = result.material.children[1] = context.add_material(inside.material);
   return result;
 }
 
@@ -66,9 +64,9 @@ Surface with_map(Context& context, const Parameters& parameters, const Surface& 
     if (context.scene.textures[value.texture].kind == TextureKind::image) {
       return mapped(context, MaterialNode::bump_map, value.color.x, value.texture, inside);
     }
-    context.reporter.warn_once("displacement", heights->place,
-                               "a 'displacement' of a material that is no picture is not supported "
-                               "and ignored");
+    context.reporter.warn_once(
+        "displacement", heights->place,
+        "a 'displacement' of a material that is no picture is not supported and ignored");
     return inside;
   }
   if (!filename || inside.invisible) return inside;
@@ -90,10 +88,9 @@ Surface make_surface(Context& context, const Entity& entity, const std::string& 
   if (reader == readers().end()) {
     parameters.ignore_all();
     context.reporter.warn_once("material " + type, parameters.place(),
-                               fmt::format("material '{}' is not known: diffuse grey is used; "
-                                           "expected diffuse, coateddiffuse, conductor, "
-                                           "dielectric, mix, ...",
-                                           type));
+                               "material '{}' is not known: diffuse grey is used; expected "
+                               "diffuse, coateddiffuse, conductor, dielectric, mix, ...",
+                               type);
     return default_surface();
   }
   Surface surface = reader->second(context, parameters);
@@ -121,7 +118,7 @@ Surface read_entity(Context& context, const Entity& entity, const std::string& t
 
 void report_replaced(Context& context, const Parameters& parameters, std::string_view by) {
   context.reporter.warn_once(fmt::format("replaced {}", by), parameters.place(),
-                             fmt::format("{} is not supported: {}", parameters.what(), by));
+                             "{} is not supported: {}", parameters.what(), by);
 }
 
 Surface read_surface(Context& context, const MaterialReference& reference, const Place& place) {
@@ -131,13 +128,11 @@ Surface read_surface(Context& context, const MaterialReference& reference, const
   const std::string& name = std::get<std::string>(reference);
   const auto found = context.description.materials.find(name);
   if (found == context.description.materials.end()) {
-    fail(place,
-         fmt::format("there is no material '{}'; expected one that MakeNamedMaterial defines",
-                     name));
+    fail(place, "there is no material '{}'; expected one that MakeNamedMaterial defines", name);
   }
   const Parameters& parameters = found->second->parameters;
   const Parameter* type = parameters.find("type", {"string"});
-  if (!type) fail(parameters.place(), fmt::format("material '{}' has no 'string type'", name));
+  if (!type) fail(parameters.place(), "material '{}' has no 'string type'", name);
   return read_entity(context, *found->second, parameters.text("type", ""));
 }
 

@@ -4,11 +4,105 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <utility>
 
+#include "common/scene/load/files/text.h"
+
 namespace pt::pbrt {
+namespace {
+
+constexpr std::array<std::string_view, 19> known_types = {
+    "integer", "float",    "point2",    "vector2", "point3", "vector3", "normal",
+    "normal3", "point",    "vector",    "bool",    "string", "texture", "rgb",
+    "color",   "spectrum", "blackbody", "xyz",     "int"};
+
+/// "type name" as two words.
+Parameter declared(const Token& token, ColorSpace space) {
+  Parameter parameter;
+  std::string_view text = token.text;
+  parameter.type = next_word(text);
+  parameter.name = next_word(text);
+  parameter.place = token.place;
+  parameter.space = space;
+  if (parameter.type == "int") parameter.type = "integer";
+  if (parameter.name.empty() || !next_word(text).empty()) {
+    fail(token.place, "'{}'; expected a parameter, \"type name\"", token.text);
+  }
+  if (std::ranges::find(known_types, parameter.type) == known_types.end()) {
+    fail(token.place,
+         "parameter '{}' has the unknown type '{}'; expected integer, float, bool, string, rgb, "
+         "spectrum, point3, ...",
+         parameter.name, parameter.type);
+  }
+  return parameter;
+}
+
+/// What C writes for numbers that are none; the element that has such a value is left out.
+bool is_not_finite(const Token& token) {
+  std::string_view text = token.text;
+  if (token.kind != TokenKind::word) return false;
+  if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+  const std::string first = lower_case(text.substr(0, 3));
+  return first == "nan" || first == "inf";
+}
+
+bool is_of_words(const std::string& type) {
+  return type == "string" || type == "texture" || type == "bool";
+}
+
+void add_value(Parameter& parameter, const Token& token) {
+  const bool is_string = token.kind == TokenKind::string;
+  const bool truth = parameter.type == "bool" && token.kind == TokenKind::word;
+  if (truth || (is_string && (is_of_words(parameter.type) || parameter.type == "spectrum"))) {
+    parameter.strings.push_back(token.text);
+    return;
+  }
+  if (is_of_words(parameter.type) || is_string) {
+    fail(token.place, "'{}' as a value of '{} {}'; expected {}", token.text, parameter.type,
+         parameter.name, is_of_words(parameter.type) ? "a \"string\"" : "a number");
+  }
+  parameter.numbers.push_back(is_not_finite(token) ? std::numeric_limits<double>::quiet_NaN()
+                                                   : number_of(token));
+}
+
+void read_values(TokenStream& tokens, Parameter& parameter) {
+  const auto next = [&] {
+    const std::string what = fmt::format("a value of '{}'", parameter.name);
+    std::optional<Token> token = tokens.next();
+    if (!token) fail(parameter.place, "the file ends here; expected " + what);
+    return std::move(*token);
+  };
+  Token token = next();
+  if (token.kind != TokenKind::open) return add_value(parameter, token);
+  for (token = next(); token.kind != TokenKind::close; token = next()) add_value(parameter, token);
+}
+
+}  // namespace
+
+std::vector<Parameter> read_parameters(TokenStream& tokens, ColorSpace space, Reporter& reporter) {
+  std::vector<Parameter> list;
+  std::map<std::string, std::size_t, std::less<>> places;
+  while (const Token* token = tokens.peek()) {
+    if (token->kind != TokenKind::string) break;
+    Parameter parameter = declared(*tokens.next(), space);
+    read_values(tokens, parameter);
+    const auto [entry, is_new] = places.try_emplace(parameter.name, list.size());
+    if (is_new) {
+      list.push_back(std::move(parameter));
+      continue;
+    }
+    reporter.warn_once("twice " + parameter.name, parameter.place,
+                       "parameter '{}' is given twice: the last holds", parameter.name);
+    list[entry->second] = std::move(parameter);
+  }
+  return list;
+}
+
 namespace {
 
 // Old files say point for point3, and so on.
@@ -18,29 +112,26 @@ const Parameter* find_vector3(const Parameters& list, std::string_view name) {
 
 const Parameter& single(const Parameter& parameter, std::size_t count, std::size_t expected = 1) {
   if (count == expected) return parameter;
-  fail(parameter.place, fmt::format("'{} {}' has {} values; expected {}", parameter.type,
-                                    parameter.name, count, expected));
+  fail(parameter.place, "'{} {}' has {} values; expected {}", parameter.type, parameter.name, count,
+       expected);
 }
 
 void check_groups(const Parameter& parameter, std::size_t size) {
   if (parameter.numbers.size() % size == 0) return;
-  fail(parameter.place,
-       fmt::format("'{} {}' has {} numbers; expected a multiple of {}", parameter.type,
-                   parameter.name, parameter.numbers.size(), size));
+  fail(parameter.place, "'{} {}' has {} numbers; expected a multiple of {}", parameter.type,
+       parameter.name, parameter.numbers.size(), size);
 }
 
 void check_finite(const Parameter& parameter) {
   const auto is_finite = [](double number) { return std::isfinite(number); };
   if (std::ranges::all_of(parameter.numbers, is_finite)) return;
-  fail(parameter.place,
-       fmt::format("'{} {}' has a number that is not finite", parameter.type, parameter.name));
+  fail(parameter.place, "'{} {}' has a number that is not finite", parameter.type, parameter.name);
 }
 
 int whole(const Parameter& parameter, double number) {
   constexpr double most = std::numeric_limits<int>::max();
   if (number == std::floor(number) && std::abs(number) <= most) return static_cast<int>(number);
-  fail(parameter.place,
-       fmt::format("'{} {}': {}; expected an integer", parameter.type, parameter.name, number));
+  fail(parameter.place, "'{} {}': {}; expected an integer", parameter.type, parameter.name, number);
 }
 
 }  // namespace
@@ -68,8 +159,8 @@ const Parameter* Parameters::find(std::string_view name,
   const Parameter* parameter = find(name);
   if (parameter) check_finite(*parameter);
   if (!parameter || std::ranges::find(types, parameter->type) != types.end()) return parameter;
-  fail(parameter->place, fmt::format("parameter '{}' of {} is of type '{}'; expected {}", name,
-                                     what_, parameter->type, fmt::join(types, " or ")));
+  fail(parameter->place, "parameter '{}' of {} is of type '{}'; expected {}", name, what_,
+       parameter->type, fmt::join(types, " or "));
 }
 
 bool Parameters::has(std::string_view name, std::string_view type) const {
@@ -92,7 +183,7 @@ bool Parameters::boolean(std::string_view name, bool fallback) const {
   if (!p) return fallback;
   const std::string& word = single(*p, p->strings.size()).strings[0];
   if (word == "true" || word == "false") return word == "true";
-  fail(p->place, fmt::format("'bool {}': '{}'; expected true or false", name, word));
+  fail(p->place, "'bool {}': '{}'; expected true or false", name, word);
 }
 
 std::string Parameters::text(std::string_view name, std::string_view fallback) const {
@@ -160,9 +251,8 @@ void Parameters::report_unused(Reporter& reporter) const {
   for (const Parameter& p : own_) {
     if (asked_.contains(p.name)) continue;
     reporter.warn_once(fmt::format("unused {} {}", what_, p.name), p.place,
-                       fmt::format("parameter '{} {}' of {} is not supported and ignored; expected "
-                                   "one of {}",
-                                   p.type, p.name, what_, fmt::join(asked_, ", ")));
+                       "parameter '{} {}' of {} is not supported and ignored; expected one of {}",
+                       p.type, p.name, what_, fmt::join(asked_, ", "));
   }
 }
 

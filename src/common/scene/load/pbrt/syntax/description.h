@@ -1,0 +1,77 @@
+// What a pbrt file says, before it is made a scene: things may be named before they are defined.
+#pragma once
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "common/math/transform.h"
+#include "common/scene/load/pbrt/syntax/parameters.h"
+
+namespace pt::pbrt {
+
+inline bool is_invertible(const Affine& map) {
+  const float determinant = map.determinant();
+  return std::isfinite(determinant) && determinant != 0.0f;
+}
+
+/// A directive with a type and parameters: a material, a texture, a light, ...
+struct Entity {
+  std::string type;
+  Parameters parameters;
+  Affine to_world;                      ///< the current transformation
+  ColorSpace space = ColorSpace::srgb;  ///< the current one
+};
+using EntityPointer = std::shared_ptr<const Entity>;
+
+/// Ends a name that was defined again; what follows it tells which definition is meant.
+inline constexpr char newest_mark = '\x1f';
+
+/// One of its own, or by name; a null pointer is pbrt's default, diffuse.
+using MaterialReference = std::variant<EntityPointer, std::string>;
+
+/// By name; an empty one is a vacuum.
+struct MediumNames {
+  std::string inside, outside;
+};
+
+struct ShapeEntity {
+  Entity shape;
+  MaterialReference material;
+  EntityPointer area_light;  ///< null: it is dark
+  bool reverse = false;      ///< ReverseOrientation
+  MediumNames media;
+  std::uint32_t group = 0;  ///< 0: the world; else of an object
+};
+
+struct InstanceEntity {
+  std::string name;
+  Place place;
+  Affine to_world;
+  std::uint32_t group = 0;  ///< 0: it may be defined later
+};
+
+struct Description {
+  std::filesystem::path folder;  ///< of the scene's own file
+  Place place;                   ///< its beginning
+  bool is_earlier = false;       ///< of pbrt-v3 or before, as what it uses shows
+  // Null: the file has none.
+  EntityPointer camera, film, sampler, integrator, filter;
+  std::string camera_medium;  ///< by name; empty: a vacuum
+  std::vector<EntityPointer> lights;
+  // By name:
+  std::map<std::string, EntityPointer> materials, media, float_textures, spectrum_textures;
+  std::vector<ShapeEntity> shapes;
+  std::map<std::string, std::uint32_t> groups;  ///< of objects, from 1
+  std::vector<InstanceEntity> instances;
+};
+
+// Reading a pbrt file and those that it includes.
+
+/// Throws Error for bad syntax, with file, line and column.
+Description read_description(const std::filesystem::path& path, Reporter& reporter);
+
+}  // namespace pt::pbrt
