@@ -145,7 +145,7 @@ TEST(GltfShapes, WeightsOfAllKinds) {
     expect_near(mesh.positions[2], {0, 12, 0});  // no weight at all: the first joint
   }
   maker.set("WEIGHTS_0", maker.floats({1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4"));
-  maker.set("WEIGHTS_1", maker.floats({2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0}, "VEC4"));
+  maker.set("WEIGHTS_1", maker.floats({2, 0, 0, 0, -0.5f, 0, 0, 0, 3, 0, 0, 0}, "VEC4"));
   const Mesh mesh = Loaded(maker).scene.meshes.at(0);
   expect_near(mesh.positions[0], {0, 10, 3.75f});
   expect_near(mesh.positions[1], {1, 10, 0});

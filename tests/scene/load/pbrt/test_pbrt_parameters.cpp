@@ -773,6 +773,18 @@ TEST(PbrtParameters, CropsAreRoundedUp) {
   EXPECT_EQ(crop("[-1 .5 .5 2]"), (CropWindow{0, 10, 5, 20}));
 }
 
+// Everything is where it begins: what moves the end alone moves nothing.
+TEST(PbrtParameters, TransformationsOfTheStartCount) {
+  const auto center = [](const std::string& text) {
+    return load_pbrt_text(world(text + ball)).scene.spheres.at(0).center;
+  };
+  expect_near(center("ActiveTransform All Translate 1 2 3"), {1, 2, 3});
+  expect_near(center("ActiveTransform StartTime Translate 1 2 3"), {1, 2, 3});
+  expect_near(center("ActiveTransform EndTime Translate 1 2 3"), {0, 0, 0});
+  expect_near(center("ActiveTransform EndTime Translate 1 2 3 ActiveTransform All Translate 0 5 0"),
+              {0, 5, 0});
+}
+
 // A material that is all of the second, or of the first, is that one.
 TEST(PbrtParameters, MixesOfAllOrNothing) {
   const auto material = [](const char* amount) {
