@@ -246,6 +246,21 @@ TEST(MitsubaWarnings, DefaultsOfScales) {
   }
 }
 
+// p0 is the origin, p1 (0, 0, 1), the radius 1 (Mitsuba's documentation of `cylinder`).
+TEST(MitsubaWarnings, ACylinderIsOneHigh) {
+  const auto bounds = [](const std::string& inside) {
+    const Mesh mesh = load_xml(object("shape", "cylinder", inside)).scene.meshes.at(0);
+    Bounds box;
+    for (const Vec3& p : mesh.positions) box.grow(p);
+    return box;
+  };
+  expect_near(bounds("").min, {-1, -1, 0}, 1e-3f);
+  expect_near(bounds("").max, {1, 1, 1}, 1e-3f);
+  const Bounds other = bounds(number("radius", 2) + "<point name='p0' x='0' y='0' z='-3'/>");
+  expect_near(other.min, {-2, -2, -3}, 1e-3f);
+  expect_near(other.max, {2, 2, 1}, 1e-3f);
+}
+
 // Half of what is seen of a sky's lowest row lies below the horizon, and nothing further down.
 TEST(MitsubaWarnings, TheSkyEndsAtTheHorizon) {
   const EnvironmentData map = load_xml(object("emitter", "sky") + square).scene.environment;
