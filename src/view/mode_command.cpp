@@ -18,7 +18,7 @@ RenderCommand mode_command(const std::vector<Setting>& settings, Mode mode) {
   std::vector<Setting> chosen;
   for (const Setting& setting : settings) {
     const OptionEntry& entry = *setting.entry;
-    const bool is_kept = entry.name != "mode" && entry.group != "Camera" &&
+    const bool is_kept = entry.name != "mode" && !entry.group.starts_with("Camera") &&
                          has_effect(entry, value_of(setting), mode);
     if (is_kept) chosen.push_back(setting);
   }

@@ -1,5 +1,6 @@
 // Whatever the structure and the builder: rays meet what testing every triangle meets, and what
 // Embree says.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include "accel/triangle_rays.h"
 #include "common/accel/build/refit_triangle_tree.h"
 #include "common/accel/embree/embree_tree.h"
+#include "temp_folder.h"
 
 namespace pt {
 namespace {
@@ -286,6 +288,18 @@ TEST_P(TreeTraversal, RefittedTreesMeetWhatHasMoved) {
     }
   }
   EXPECT_GT(hits, 500);
+}
+
+TEST_P(TreeTraversal, RefittingNeedsAllTriangles) {
+  Mesh mesh = make_closed_sphere(20);
+  const auto count = mesh.triangles.size();
+  TriangleTreeData tree = GetParam().build({mesh});
+  mesh.triangles.pop_back();  // the last one is in the tree
+  expect_error(
+      [&] {
+        refit_triangle_tree(tree, {&mesh, 1}, {});
+      },
+      fmt::format("refit: meshes of {} triangles, expected at least {}", count - 1, count));
 }
 
 TEST_P(TreeTraversal, RefittingToTheSamePlaceChangesNoHit) {

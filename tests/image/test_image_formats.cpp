@@ -216,6 +216,33 @@ TEST(ExrFormats, AnyLosslessCompressionAndTiles) {
   }
 }
 
+// Tiles that are much higher than wide, or wider than high: 64 of them, well packed.
+TEST(ExrFormats, TilesOfAnyShape) {
+  for (const auto& [width, height] : {std::pair{1u, 64u}, {64u, 1u}}) {
+    const TempFolder folder;
+    const std::string path = folder.file("a.exr");
+    Imf::Header header(64, 64);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    header.setTileDescription({width, height});
+    const std::vector<float> half(64 * 64, 0.5f);
+    Imf::FrameBuffer buffer;
+    for (const char* channel : {"R", "G", "B"}) {
+      header.channels().insert(channel, float_channel);
+      buffer.insert(
+          channel,
+          Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(const_cast<float*>(half.data())), 4, 256));
+    }
+    {
+      Imf::TiledOutputFile file(path.c_str(), header);
+      file.setFrameBuffer(buffer);
+      file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+    }
+    const Image image = read_image(path);
+    EXPECT_EQ(image.width, 64);
+    EXPECT_EQ(image.rgb, std::vector<float>(3 * 64 * 64, 0.5f));
+  }
+}
+
 TEST(ExrFormats, ChannelsThatAreNotPlainRgb) {
   expect_counting(read_exr({{"Y", half_channel}}));
   expect_counting(read_exr({{"A", half_channel}, {"Y", float_channel}}));

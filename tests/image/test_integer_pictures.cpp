@@ -208,6 +208,14 @@ TEST(PictureLimits, HoldForEveryFormat) {
   expect_error([&] { decode_texture_image(tga.text, "x"); }, "20000x20000 pixels");
 }
 
+// A PFM of one number for each pixel, from its foot.
+TEST(IntegerPictures, GreyPfm) {
+  std::string bytes = "Pf\n1 2\n-1\n";
+  for (const float v : {0.25f, 2.0f}) bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+  EXPECT_EQ(decode_radiance_image(bytes, "x").rgb,
+            (std::vector<float>{2, 2, 2, 0.25f, 0.25f, 0.25f}));
+}
+
 // OpenEXR allocates a table of all tiles before it reads one.
 TEST(PictureLimits, HoldForTheTilesOfAnExr) {
   const TempFolder folder;

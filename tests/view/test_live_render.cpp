@@ -8,6 +8,7 @@
 
 #include "app/progress.h"
 #include "common/image/compare/compare.h"
+#include "common/scene/prepare/prepare_camera.h"
 #include "view/live_render.h"
 
 namespace {
@@ -111,6 +112,24 @@ TEST(LiveRender, KeepsTheCamerasOptions) {
   WatchedRender live(settings_of(words), {});
   live.set_watched(true);
   expect_same(*wait_until(live, is_done).views.front().image, rendered(words));
+}
+
+// The page moves the camera that the options place.
+TEST(LiveRender, MovesACameraOfOptions) {
+  const Words words{{"look-from", "250,250,-700"}, {"fov", "50"}};
+  WatchedRender live(settings_of(words), {});
+  const LiveSettings moved{live.state().settings.modes, {20, 5, 0.9}};
+  live.change(moved);
+  live.set_watched(true);
+  const RenderCommand plain = make_render_command(settings_of());
+  RenderSession session(plain, {});
+  CameraParameters camera = session.scene().camera;
+  override_camera(camera, make_render_command(settings_of(words)).options.camera);
+  session.change_camera() = orbit_camera(camera, moved.orbit);
+  MeasureHooks hooks;
+  hooks.stop = [] { return false; };
+  expect_same(*wait_until(live, is_done).views.front().image,
+              session.render(plain, hooks, {}).image);
 }
 
 TEST(LiveRender, BeginsAnewWhereTheCameraMoves) {

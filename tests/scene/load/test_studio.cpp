@@ -59,6 +59,24 @@ TEST(Studio, WhiteAndBlackStandOutFromEverySide) {
   }
 }
 
+// Towards the horizon a grey, above it the same and the key light, and straight below half of it.
+TEST(Studio, TheGroundIsDarker) {
+  SceneData scene = ball(0.5f, {0, 0, 3});  // seen along -z: the map's axes are the world's
+  const EnvironmentData& map = scene.environment;
+  const auto at = [&](double row, double column) {
+    const auto y = std::min(static_cast<int>(row * map.height), map.height - 1);
+    const auto x = std::min(static_cast<int>(column * map.width), map.width - 1);
+    return map.pixels.at(static_cast<std::size_t>(y * map.width + x)).y;
+  };
+  // The key light is left of, above and beside the camera: to the right and behind are without it.
+  const double right = 0.75;
+  const float grey = at(0.5, right);
+  EXPECT_NEAR(at(1, right) / grey, 0.5f, 0.01f);
+  EXPECT_NEAR(at(0.75, right) / grey, 1 - 0.5 * std::sqrt(0.5), 0.01);  // 45 degrees down
+  EXPECT_GE(at(0, right), grey);
+  EXPECT_GT(at(0.25, 0.1), 4 * grey);
+}
+
 TEST(Studio, LightsFilesThatBringNoLight) {
   const TempFolder folder;
   write_text(folder.file("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -124,6 +124,32 @@ TEST(Obj, VerticesBetweenColouredOnesAreWhite) {
   EXPECT_EQ(mesh.colors, (std::vector<Color>{Color(1), Color(1, 0, 0), Color(1)}));
 }
 
+// Also where the first corners come before all that has a colour.
+TEST(Obj, VerticesBeforeColouredOnesAreWhite) {
+  const Mesh mesh = decode_obj("v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 1\n", "a.obj");
+  EXPECT_EQ(mesh.positions, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 0}}));
+  EXPECT_EQ(mesh.colors, (std::vector<Color>{Color(1), Color(1), Color(1, 0, 0)}));
+}
+
+// What a double cannot hold is 0 or infinite, which is no position.
+TEST(Obj, NumbersBeyondADouble) {
+  std::vector<std::string> warnings;
+  MeshFileOptions options;
+  options.warnings = &warnings;
+  const std::string rest = "v 1 0 0\nv 0 1 0\nv 1 1 0\nf 2 4 3\nf 1 2 3\n";
+  for (const char* tiny : {"1e-400", "-1e-999", "1E-400", "0.1e-310"}) {
+    const Mesh mesh = decode_obj(std::string("v 0 ") + tiny + " 0\n" + rest, "a.obj", options);
+    EXPECT_EQ(mesh.triangles.size(), 2u) << tiny;
+    EXPECT_TRUE(warnings.empty()) << tiny;
+  }
+  for (const char* huge : {"1e400", "-1e999", "1e39"}) {
+    const Mesh mesh = decode_obj(std::string("v 0 ") + huge + " 0\n" + rest, "a.obj", options);
+    EXPECT_EQ(mesh.triangles.size(), 1u) << huge;
+    EXPECT_EQ(warnings.size(), 2u) << huge;  // the vertex, and its face
+    warnings.clear();
+  }
+}
+
 TEST(Obj, BadLinesAreCounted) {
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (int i = 0; i < 1000; ++i) text += "f 1 2\nf 1 2 9\nf 1//7 2 3\n";

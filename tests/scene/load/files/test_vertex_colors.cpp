@@ -11,6 +11,7 @@
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
 #include "load/mesh_bytes.h"
+#include "load/obj_files.h"
 
 namespace pt {
 namespace {
@@ -308,6 +309,21 @@ TEST(VertexColors, AreFoundAsMitsubaWritesThem) {
                     "property float r\nproperty float g\nproperty float b\n", "0.2 0.4 0.8")));
   expect_near(reflectance(faces.scene, 1, corners[2]), {0.1f, 0.2f, 0.4f});
   EXPECT_EQ(faces.count("attribute"), 0u);
+}
+
+// Texture coordinates of colours would turn the directions in which a surface is brushed.
+TEST(VertexColors, BesideAnisotropyTheMeanIsUsed) {
+  const ObjFolder folder;
+  folder.write("a.mtl", "newmtl m\nKd 1 1 1\nPr 0.5\naniso 0.5\nnewmtl n\nKd 1 1 1\nPr 0.5\n");
+  const std::string vertices = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 0 0\nv 0 1 0 0.5 0.5 1\n";
+  const LoadedObj brushed = folder.load(vertices + "usemtl m\nf 1 2 3\n");
+  EXPECT_EQ(brushed.count("in an anisotropic material are not supported: their mean is used"), 1);
+  const MaterialDescription& m = brushed.scene.materials.at(brushed.scene.meshes.at(0).material);
+  EXPECT_FALSE(m.is_textured());
+  expect_near(m.color(0), {(1 + linear(127.5)) / 3, linear(127.5) / 3, 1.0f / 3.0f});
+  const LoadedObj plain = folder.load(vertices + "usemtl n\nf 1 2 3\n");
+  EXPECT_TRUE(plain.warnings.empty());
+  EXPECT_TRUE(plain.scene.materials.at(plain.scene.meshes.at(0).material).is_textured());
 }
 
 TEST(VertexColors, OfAnObjAreWhiteWhereTheFileHasNone) {

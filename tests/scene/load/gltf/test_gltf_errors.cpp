@@ -204,6 +204,35 @@ TEST(GltfErrors, AMeshLosesWhatCannotBeDrawn) {
   EXPECT_EQ(Loaded(other).count("primitives[1].mode: 7: expected 0 to 6"), 1u);
 }
 
+// A mesh and what is said of it, once.
+TEST(GltfErrors, WhatAMeshLacksIsSaid) {
+  const auto with = [](const char* name, std::initializer_list<float> values) {
+    GltfMaker maker = triangle_file();
+    maker.root["meshes"][0]["primitives"][0]["attributes"][name] =
+        maker.floats(values, values.size() == 12 ? "VEC4" : "VEC3");
+    return maker;
+  };
+  GltfMaker nowhere = triangle_file();
+  nowhere.root["meshes"][0]["primitives"].push_back({{"attributes", Json::object()}});
+  GltfMaker without_number = triangle_file();
+  without_number.root["nodes"][0]["extensions"] = {{"KHR_lights_punctual", Json::object()}};
+  without_number.root["extensions"] = {
+      {"KHR_lights_punctual", {{"lights", {{{"type", "point"}}}}}}};
+  const std::tuple<GltfMaker, const char*, std::size_t> cases[] = {
+      {with("NORMAL", {0, 0, 1, 0, 0, 0, 0, 0, 1}), "normals without a direction: the mesh is flat",
+       1},
+      {with("NORMAL", {0, 0, 1, 0, 0, 1e-3f, 0, 0, 9}), "normals", 0},
+      {with("COLOR_0", {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}), "alpha of vertices", 0},
+      {with("COLOR_0", {1, 1, 1, 1, 1, 1, 1, 0.99f, 1, 1, 1, 1}),
+       "the alpha of vertices is ignored", 1},
+      {nowhere, "meshes[0].primitives[1]: a primitive without POSITION is ignored", 1},
+      {without_number, "nodes[0]: extensions.KHR_lights_punctual.lights[-1] does not exist", 1}};
+  for (const auto& [maker, message, count] : cases) {
+    const Loaded loaded(maker);
+    EXPECT_EQ(loaded.count(message), count) << message << testing::PrintToString(loaded.messages);
+  }
+}
+
 TEST(GltfErrors, NumbersAndFlagsOfTheWrongFormAreLeftOut) {
   expect_warning_with("/materials/0/doubleSided", 1, "materials[0].doubleSided: expected true or");
   expect_warning_with("/materials/0/alphaCutoff", "x",

@@ -81,6 +81,72 @@ TEST(GltfMaterials, SpecularGlossinessIsDiffuse) {
   expect_near(material.color(0), {0.2f, 0.4f, 0.6f});
 }
 
+TEST(GltfMaterials, ABackIsSeenWhereTheFileSaysSo) {
+  for (const bool both : {false, true}) {
+    const Json plain = {{"doubleSided", both}};
+    Json glossy = plain;
+    glossy["extensions"] = {{"KHR_materials_pbrSpecularGlossiness", Json::object()}};
+    EXPECT_EQ(material_of(with_material(plain)).one_sided, !both);
+    EXPECT_EQ(material_of(with_material(glossy)).one_sided, !both);
+  }
+}
+
+// A material and what is said of it, once, and of what is beside it nothing.
+TEST(GltfMaterials, WhatIsApproximatedIsSaid) {
+  const auto extension = [](const char* name, const Json& members) {
+    return Json{{"extensions", {{name, members}}}};
+  };
+  const Json picture = {{"index", 0}},
+             lamp = {{"emissiveFactor", {1, 1, 1}}, {"doubleSided", true}};
+  const auto with = [](Json all, const Json& more) {
+    all.update(more);
+    return all;
+  };
+  const char* specular = "KHR_materials_specular: its factor times the largest component";
+  const Json transmission = extension("KHR_materials_transmission", {{"transmissionFactor", 1}});
+  const std::tuple<Json, const char*, std::size_t> cases[] = {
+      {extension("KHR_materials_unlit", Json::object()), "KHR_materials_unlit: black that emits",
+       1},
+      {Json::object(), "KHR_materials", 0},
+      {extension("KHR_materials_pbrSpecularGlossiness", Json::object()),
+       "KHR_materials_pbrSpecularGlossiness: diffuse in the diffuse colour is used", 1},
+      {extension("KHR_materials_sheen", {{"sheenColorFactor", {1, 0, 0}}}),
+       "KHR_materials_sheen: that of the principled BSDF", 1},
+      {extension("KHR_materials_sheen", Json::object()), "KHR_materials_sheen", 0},
+      {extension("KHR_materials_clearcoat", {{"clearcoatFactor", 1}}),
+       "KHR_materials_clearcoat: the coat of the principled BSDF", 1},
+      {extension("KHR_materials_clearcoat", Json::object()), "KHR_materials_clearcoat", 0},
+      {extension("KHR_materials_specular", {{"specularFactor", 0.5}}), specular, 0},
+      {extension("KHR_materials_specular", {{"specularColorFactor", {0.5, 0.5, 0.5}}}), specular,
+       0},
+      {extension("KHR_materials_specular", {{"specularColorFactor", {0.5, 0.5, 0.6}}}), specular,
+       1},
+      {extension("KHR_materials_specular", {{"specularTexture", picture}}), specular, 1},
+      {extension("KHR_materials_specular", {{"specularColorTexture", picture}}), specular, 1},
+      {lamp, "doubleSided", 0},
+      {with(lamp, transmission),
+       "doubleSided, emissive and transmissive: light from the front side only", 1},
+      {with({{"doubleSided", true}}, transmission), "doubleSided", 0},
+      {with(lamp, {{"alphaMode", "BLEND"},
+                   {"emissiveTexture", {{"index", 1}}},
+                   {"pbrMetallicRoughness", {{"baseColorTexture", picture}}}}),
+       "doubleSided, emissive and BLEND with different textures", 1},
+      {with(lamp, {{"alphaMode", "BLEND"},
+                   {"emissiveTexture", picture},
+                   {"pbrMetallicRoughness", {{"baseColorTexture", picture}}}}),
+       "doubleSided", 0}};
+  for (const auto& [material, message, count] : cases) {
+    GltfMaker maker = with_material(material);
+    std::string tga(18, '\0');  // 32 bits, one texel
+    tga[2] = 2, tga[12] = 1, tga[14] = 1, tga[16] = 32, tga[17] = 8;
+    maker.root["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    maker.root["images"] = {
+        {{"uri", "data:image/png;base64," + base64(tga + std::string(4, '\x80'))}},
+        {{"uri", "data:image/png;base64," + base64(tga + std::string(4, '\x40'))}}};
+    EXPECT_EQ(Loaded(maker).count(message), count) << material << message;
+  }
+}
+
 TEST(GltfMaterials, UnlitEmitsItsColour) {
   const Loaded loaded(
       with_material({{"pbrMetallicRoughness", {{"baseColorFactor", {0.2, 0.4, 0.6, 1}}}},

@@ -131,8 +131,8 @@ TEST(GltfShapes, InverseBindMatricesUndoTheJointsAsTheyWereBound) {
 // Integers of which 255 is 1, weights whose sum is not 1, and a second set of joints.
 TEST(GltfShapes, WeightsOfAllKinds) {
   SkinMaker maker;
-  maker.set_joints({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
-  maker.set_joints({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "JOINTS_1");
+  maker.set_joints({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1});
+  maker.set_joints({1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}, "JOINTS_1");
   const int bytes =
       maker.accessor(maker.view(bytes_of<std::uint8_t>({51, 204, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0})),
                      5121, 3, "VEC4");
@@ -145,7 +145,7 @@ TEST(GltfShapes, WeightsOfAllKinds) {
     expect_near(mesh.positions[2], {0, 12, 0});  // no weight at all: the first joint
   }
   maker.set("WEIGHTS_0", maker.floats({1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4"));
-  maker.set("WEIGHTS_1", maker.floats({2, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0}, "VEC4"));
+  maker.set("WEIGHTS_1", maker.floats({2, 0, 0, 0, -0.5f, 0, 0, 0, 3, 0, 0, 0}, "VEC4"));
   const Mesh mesh = Loaded(maker).scene.meshes.at(0);
   expect_near(mesh.positions[0], {0, 10, 3.75f});
   expect_near(mesh.positions[1], {1, 10, 0});
@@ -187,6 +187,8 @@ TEST(GltfShapes, WhatASkinLacksIsReported) {
   maker.set_joints({0, 9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
   maker.set("WEIGHTS_0", maker.floats({1, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4"));
   EXPECT_EQ(Loaded(maker).count("joint 9, the skin has 2"), 1u);
+  maker.set_joints({0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});  // as many as there are: one too far
+  EXPECT_EQ(Loaded(maker).count("joint 2, the skin has 2: it moves nothing"), 1u);
   maker.root["skins"][0]["joints"] = {1, 77};
   EXPECT_EQ(Loaded(maker).count("a joint that is not in the scene"), 1u);
   expect_near(Loaded(maker).scene.meshes.at(0).positions[0], {50, 0, 0});

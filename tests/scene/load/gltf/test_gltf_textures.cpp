@@ -3,6 +3,7 @@
 
 #include "common/texture/sample_texture.h"
 #include "load/gltf_files.h"
+#include "load/png_bytes.h"
 
 namespace pt {
 namespace {
@@ -274,6 +275,52 @@ TEST(GltfTextures, RotationsComeAfterScales) {
   const Vec2 mapped = map_coordinates(base_texture(loaded.scene), Vec2(u, 1 - v));
   EXPECT_NEAR(mapped.x, c * x + s * y + 0.1, 1e-6);
   EXPECT_NEAR(1 - mapped.y, -s * x + c * y + 0.2, 1e-6);
+}
+
+/// The value of a parameter's texture in the middles of the texels, row by row from the head.
+std::vector<float> values_of(const SceneData& scene, const Parameter& parameter) {
+  std::vector<float> values;
+  for (const Vec2 uv :
+       {Vec2(0.25f, 0.75f), Vec2(0.75f, 0.75f), Vec2(0.25f, 0.25f), Vec2(0.75f, 0.25f)}) {
+    const Texture& texture = scene.textures.at(parameter.texture);
+    values.push_back(sample_texture(texture, scene.texels.data(), uv).x);
+  }
+  return values;
+}
+
+// Red, green, blue, white: a coat is as strong as its texture is red (KHR_materials_clearcoat). The
+// sheen's three colours are one number, their mean.
+TEST(GltfTextures, CoatsAreRedAndSheenIsTheMean) {
+  using Index = Principled::Index;
+  GltfMaker maker = with_texture();
+  maker.root["materials"][0]["extensions"] = {
+      {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}},
+      {"KHR_materials_sheen",
+       {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", {{"index", 0}}}}}};
+  const SceneData scene = Loaded(maker).scene;
+  const MaterialDescription& material = scene.materials.at(0);
+  EXPECT_EQ(values_of(scene, material.parameters[Index::clearcoat]),
+            (std::vector<float>{1, 0, 0, 1}));
+  const std::vector<float> sheen = values_of(scene, material.parameters[Index::sheen]);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(sheen[i], i == 3 ? 1.0f : 1.0f / 3.0f, 1e-6f) << i;
+}
+
+// A roughness whose texture has the mean 1/2 (its green), in 8 and in 16 bits.
+TEST(GltfTextures, TheMeanOfACoatsRoughness) {
+  for (const int bits : {8, 16}) {
+    GltfMaker maker = with_texture();
+    const std::string half = bits == 8 ? "\x80" : std::string("\x80\0", 2), none(bits / 8, '\0');
+    const std::string png = png_file(1, 1, bits, 2, none + half + none);
+    maker.root["images"][0]["uri"] = "data:image/png;base64," + base64(png);
+    maker.root["materials"][0]["extensions"] = {{"KHR_materials_clearcoat",
+                                                 {{"clearcoatFactor", 1},
+                                                  {"clearcoatRoughnessFactor", 0.4},
+                                                  {"clearcoatRoughnessTexture", {{"index", 0}}}}}};
+    // The gloss of alpha = 0.2^2.
+    EXPECT_NEAR(Loaded(maker).scene.materials.at(0).scalar(Principled::Index::clearcoat_gloss),
+                (0.1 - 0.04) / 0.099, 4e-3)
+        << bits;
+  }
 }
 
 // The texels' red is 1, 0, 0, 1; their green 0, 1, 0, 1; their blue 0, 0, 1, 1.

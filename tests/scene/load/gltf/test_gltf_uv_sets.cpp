@@ -66,7 +66,11 @@ const std::vector<Vec2> square_uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 TEST(GltfUvSets, AllTexturesInTheSecond) {
   for (const Json& use :
        {texture_1,
-        Json{{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 1}}}}}}}) {
+        Json{{"index", 0}, {"extensions", {{"KHR_texture_transform", {{"texCoord", 1}}}}}},
+        // A transform that names no set leaves the textureInfo's.
+        Json{{"index", 0},
+             {"texCoord", 1},
+             {"extensions", {{"KHR_texture_transform", {{"scale", {1, 1}}}}}}}}) {
     const Loaded loaded(with_sets({{"pbrMetallicRoughness", {{"baseColorTexture", use}}}}, square,
                                   {0.5f, 0.25f, 2, 0, 3, 1, 0.75f, 9}));
     EXPECT_EQ(loaded.scene.meshes.size(), 1u);
@@ -157,6 +161,36 @@ TEST(GltfUvSets, TheNormalMapsSetIsTheMeshs) {
   const Loaded by_transform(
       with_sets({{"normalTexture", turned}}, square, {0, 0, 0, 1, 1, 1, 1, 0}));
   EXPECT_EQ(by_transform.scene.meshes.at(0).uvs[1], Vec2(0, 0));
+}
+
+// Charts without number: the base colour's set for all of them, which is said.
+TEST(GltfUvSets, ThousandsOfChartsAreTooMany) {
+  const auto load = [](int triangles) {
+    GltfMaker maker = with_sets({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                                 {"emissiveFactor", {1, 1, 1}},
+                                 {"emissiveTexture", texture_1}},
+                                square, square);
+    std::string positions, first, second;
+    for (int i = 0; i < triangles; ++i) {
+      const auto n = static_cast<float>(i);
+      positions += bytes_of({n, 0.0f, 0.0f, n + 1, 0.0f, 0.0f, n, 1.0f, 0.0f});
+      first += bytes_of({0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 1.0f});
+      second += bytes_of({n, 0.0f, n + 2, 0.0f, n, 2.0f});
+    }
+    const auto count = static_cast<std::size_t>(3 * triangles);
+    Json& primitive = maker.root["meshes"][0]["primitives"][0];
+    primitive.erase("indices");
+    primitive["attributes"] = {
+        {"POSITION", maker.accessor(maker.view(positions), 5126, count, "VEC3")},
+        {"TEXCOORD_0", maker.accessor(maker.view(first), 5126, count, "VEC2")},
+        {"TEXCOORD_1", maker.accessor(maker.view(second), 5126, count, "VEC2")}};
+    return Loaded(maker);
+  };
+  const Loaded most = load(4096), more = load(4097);
+  EXPECT_EQ(most.scene.meshes.size(), 4096u);
+  EXPECT_EQ(most.count("in more than 4096 pieces"), 0u);
+  EXPECT_EQ(more.scene.meshes.size(), 1u);
+  EXPECT_EQ(more.count("in more than 4096 pieces: TEXCOORD_0 is used for all"), 1u);
 }
 
 TEST(GltfUvSets, AMissingSetIsReported) {

@@ -154,6 +154,21 @@ TEST(GltfCameras, Perspective) {
   EXPECT_EQ(loaded.count("no camera"), 0u);
 }
 
+// A scene behind the camera has no distance that could be focused on.
+TEST(GltfCameras, FocusOnWhatIsInFront) {
+  const float h = std::sqrt(0.5f);
+  const std::tuple<Json, Vec3, float> cases[] = {{{0, h, 0, h}, {-1, 0, 0}, 9.5f},
+                                                 {{0, -h, 0, h}, {1, 0, 0}, 1.0f},
+                                                 {{0, 0, 0, 1}, {0, 0, -1}, 1.0f}};
+  for (const auto& [rotation, direction, distance] : cases) {
+    GltfMaker maker = with_camera({{"type", "perspective"}, {"perspective", {{"yfov", 0.5}}}});
+    maker.root["nodes"][1]["rotation"] = rotation;
+    const CameraParameters camera = Loaded(maker).scene.camera;
+    EXPECT_NEAR(camera.focus_distance, distance, 1e-5f) << rotation;
+    expect_near(camera.look_at - camera.look_from, distance * direction);
+  }
+}
+
 TEST(GltfCameras, OrthographicHasItsSizeAndPlanes) {
   const Loaded loaded(
       with_camera({{"type", "orthographic"},

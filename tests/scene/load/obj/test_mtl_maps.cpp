@@ -257,6 +257,8 @@ TEST(MtlLibraries, WhatIsMissing) {
   LoadOptions strict;
   strict.strict = true;
   expect_error([&] { load_obj(folder.file("a.obj"), strict); }, "(--strict)");
+  const LoadedObj device = folder.load("mtllib /dev/null\n" + triangle);
+  EXPECT_EQ(device.count("/dev/null: not a regular file"), 1);
 }
 
 // Pictures lie beside the MTL file, or else beside the OBJ file.

@@ -50,6 +50,14 @@ TEST(Mtl, Colors) {
   });
 }
 
+// White is CIE XYZ of more than 1 (IEC 61966-2-1), which is no number out of range.
+TEST(Mtl, WhiteInXyz) {
+  const ObjFolder folder;
+  const LoadedObj file = folder.load_m("Kd xyz 0.9505 1.0 1.0890\nillum 1");
+  EXPECT_TRUE(file.warnings.empty());
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(file.material("m").color(0)[i], 1.0f, 1e-3f);
+}
+
 TEST(Mtl, Emission) {
   expect_materials({
       {"Kd 0 0 0\nKe 4 5 6", "diffuse 0 emits 4,5,6"},
@@ -108,6 +116,8 @@ TEST(Mtl, Glass) {
       {"illum 9\nNi 1.33", "dielectric 1 1.33"},
       {"illum 7\nNi 1", "dielectric 1 1.5"},
       {"illum 7\nNi 5", "dielectric 1 1.5"},
+      {"illum 7\nNi 4.99", "dielectric 1 4.99"},
+      {"illum 7\nNi 1.001", "dielectric 1 1.001"},
       {"illum 6\nNi 1.4\nTf 0.2 0.9 0.3", "rough dielectric 1 0.2,0.9,0.3 1.4 0 0 0"},
       {"illum 6\nTf 1 1 1", "dielectric 1 1.5"},
       {"illum 6\nTf 0 0 0", "dielectric 1 1.5"},
@@ -211,6 +221,12 @@ TEST(Mtl, PhysicalExtension) {
       {"map_roughness t.ppm\nmap_metallic t.ppm", "principled 0.5 1* 1* 0 1.5 0 0 0 0 0 0 1"},
       {"map_Pr no.ppm", "principled 0.5 0.5 0 0 1.5 0 0 0 0 0 0 1", "the number alone is used"},
       {"map_Pm no.ppm", "principled 0.5 0.5 0 0 1.5 0 0 0 0 0 0 1", "the number alone is used"},
+      {"Kd 0.8 0.8 0.8\nPr 1\nmap_Ps no.ppm", "principled 0.8 1 0 0 1.5 0 0 0 0 0 0 1",
+       "the number alone is used"},
+      {"Kd 0.8 0.8 0.8\nPr 1\nPs 0.25\nmap_Ps no.ppm", "principled 0.8 1 0 0 1.5 0 0 0.25 0 0 0 1",
+       "the number alone is used"},
+      {"Kd 0.8 0.8 0.8\nPr 0.5\nPm 1\nKs 0.5 0.5 0.5\nmap_Ks t.ppm",
+       "principled 0.8 0.5 1 0 1.5 0 0 0 0 0 0 1", "map_Ks of a metal is ignored"},
   });
 }
 

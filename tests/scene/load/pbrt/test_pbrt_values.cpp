@@ -464,6 +464,7 @@ TEST(PbrtValues, AreasOfShapes) {
        {"\"disk\"", circle},
        {"\"disk\" \"float radius\" 3 \"float height\" 2", 9 * circle},
        {"\"disk\" \"float innerradius\" .5", 0.75 * circle},
+       {"\"disk\" \"float radius\" 3 \"float innerradius\" 2", 5 * circle},
        {"\"disk\" \"float phimax\" 180", 0.5 * circle},
        {"\"cylinder\"", 4 * circle},
        {"\"cylinder\" \"float radius\" 2 \"float zmin\" .5", 2 * circle},

@@ -175,7 +175,8 @@ void read_filter(Context& context, const Entity& filter) {
     fail(p.place(), "{}: expected sizes above 0", p.what());
   }
   const bool other_shape = choice.kind == FilterKind::mitchell && radius != 2.0f;
-  if (other_shape || along("yradius", "ywidth", radius) != radius) {
+  const bool differs = along("yradius", "ywidth", radius) != radius;
+  if (other_shape || differs) {
     context.reporter.warn_once("filter radius", p.place(),
                                "{}: a radius of our own is used, the same along x and y", p.what());
   }
