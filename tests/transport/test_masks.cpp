@@ -191,8 +191,9 @@ TEST(Masks, AreNotForEmbreeNorSpheres) {
     }
     return "";
   };
-  EXPECT_NE(problem(rich_scene(), {{"accel", "embree"}}).find("expected brute, bvh2 or cwbvh"),
-            std::string::npos);
+  EXPECT_NE(
+      problem(rich_scene(), {{"accel", "embree"}}).find("expected --accel brute or bvh2 or cwbvh"),
+      std::string::npos);
   SceneData scene = mixed_scene();
   scene.materials[0].opacity = constant_opacity(0.5f);
   EXPECT_NE(problem(scene, {}).find("a sphere of material 0, which is masked"), std::string::npos);

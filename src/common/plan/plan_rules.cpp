@@ -203,8 +203,8 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
 
 void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
                 const DeviceProperties& device) {
-  check_kernels(plan, options, scene, device.is_cuda);
   check_builder(options.builder, accel_kind_of(plan.accel), device.is_cuda);
+  check_kernels(plan, options, scene, device.is_cuda);
   if (!device.is_cuda) return;
   check_scene_memory(plan, scene, device);
   if (plan.mode == Mode::megakernel) check_megakernel(plan, options, device);

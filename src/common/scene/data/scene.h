@@ -65,7 +65,8 @@ struct Scene {
 
 struct PathIntegrator;  // transport/path_integrator.h
 
-/// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is refused by nvcc's host pass.)
+/// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is
+/// refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
           bool has_masks_value = false, bool has_media_value = false,
           class IntegratorType = PathIntegrator>
