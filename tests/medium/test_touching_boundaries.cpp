@@ -274,17 +274,17 @@ TEST(TouchingMedia, BoundariesDecideBeforeOtherSurfaces) {
 // Two boundaries of a ball, of which the first one's normals point inwards: medium 0 within the
 // second, 1 between the two, nothing outside. The first becomes larger, the second smaller.
 TEST(TouchingMedia, BallsPartAsTheirNormalsSay) {
-  for (const bool turned : {true, false}) {
+  for (const bool is_turned : {true, false}) {
     for (const bool swapped : {false, true}) {
       SceneData scene;
       scene.media = {make_medium(red, Color(0.0f)), make_medium(blue, Color(0.0f))};
       const std::uint32_t outer =
-          scene.add_material(turned ? make_boundary(1, no_medium) : make_boundary(no_medium, 1));
+          scene.add_material(is_turned ? make_boundary(1, no_medium) : make_boundary(no_medium, 1));
       const std::uint32_t inner = scene.add_material(make_boundary(1, 0));
       SphereFrame in, out;
       in.side = -1.0f;
       if (swapped) scene.add_sphere(Vec3(0.0f), 2, inner, out);
-      scene.add_sphere(Vec3(0.0f), 2, outer, turned ? in : out);
+      scene.add_sphere(Vec3(0.0f), 2, outer, is_turned ? in : out);
       if (!swapped) scene.add_sphere(Vec3(0.0f), 2, inner, out);
       scene.sky = {Color(1.0f), Color(1.0f)};
       scene.camera = distant_camera();
@@ -292,7 +292,7 @@ TEST(TouchingMedia, BallsPartAsTheirNormalsSay) {
       float radius[2] = {};
       for (std::size_t i = 0; i < 2; ++i)
         radius[scene.sphere_material[i] == inner] = scene.spheres[i].radius();
-      EXPECT_GT(radius[0], radius[1]) << turned << swapped;
+      EXPECT_GT(radius[0], radius[1]) << is_turned << swapped;
       for (const float r : radius) EXPECT_NEAR(r, 2, 1e-3f);
     }
   }
