@@ -68,8 +68,6 @@ std::string names_of(EnumSet<E> set, int count, Name&& name, const char* separat
   return text;
 }
 
-constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
-
 std::string structures_of(const KernelRow& row, const char* separator) {
   return names_of(row.accels, accel_count, accel_name, separator);
 }

@@ -46,12 +46,13 @@ class EnumSet {
   }
   constexpr bool contains(E value) const { return (bits_ & bit(value)) != 0; }
   constexpr bool intersects(EnumSet other) const { return (bits_ & other.bits_) != 0; }
-  constexpr bool is_empty() const { return bits_ == 0; }
 
  private:
   static constexpr std::uint32_t bit(E value) { return 1u << static_cast<int>(value); }
   std::uint32_t bits_ = 0;
 };
+
+inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
 
 /// What a kernel knows of a scene besides its geometry; `with_media`: and masks.
 enum class Extras { plain, with_masks, with_media };
@@ -116,12 +117,12 @@ inline constexpr KernelRow table[] = {
 }  // namespace kernel_rows
 inline constexpr auto& kernel_table = kernel_rows::table;
 
-/// What a kernel is asked for. An empty set, or no branching, asks for any.
+/// What a kernel is asked for.
 struct KernelNeed {
   bool on_cuda = false;
   EnumSet<KernelBody> bodies;  ///< one of them
   SceneTraits scene;
-  EnumSet<NumberSource> sources;
+  EnumSet<NumberSource> sources;  ///< one of them
   SceneMemory memory = SceneMemory::global;
   Branching branching = Branching::divergent;
   EnumSet<Content> contents = {};

@@ -41,7 +41,6 @@ struct CpuKernels {
 
 namespace detail {
 
-inline constexpr int accel_count = static_cast<int>(Accel::cwbvh_avx2) + 1;
 inline constexpr int traits_count = accel_count * 3 * 3 * 2 * 2;
 
 /// All combinations, by number.

@@ -131,9 +131,8 @@ WaveFlow flow_of(const WaveCounters& counters) {
 PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
                              const WaveLayout& layout) {
   const Predictor predict(flow, layout);
-  const std::string stage = kernel.substr(0, kernel.find('/'));
   for (const PredictedKernel& one : predicted_kernels) {
-    if (one.name == stage) return (predict.*one.bytes)();
+    if (one.name == kernel) return (predict.*one.bytes)();
   }
   return {};
 }
