@@ -35,19 +35,17 @@ bool needs_group(const Options& options, const std::vector<DeviceInfo>& devices)
          is_divided;
 }
 
-std::vector<std::unique_ptr<Worker>> make_workers(const Options& options, const SceneData& scene,
+std::vector<std::unique_ptr<Worker>> make_workers(const std::vector<ExecutionPlan>& plans,
+                                                  const SceneData& scene,
                                                   const std::vector<DeviceInfo>& devices,
                                                   ResultBell& bell) {
   std::vector<std::unique_ptr<Worker>> workers;
   std::vector<LocalWorker*> locals;
-  for (const DeviceInfo& device : devices) {
-    const auto make = [options, &scene, device, count = devices.size()](int halvings) {
-      Options own = options;
-      own.device = device.choice;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const DeviceInfo& device = devices[i];
+    const auto make = [plan = plans[i], &scene, device](int halvings) {
+      ExecutionPlan own = plan;
       own.memory_halvings = halvings;
-      if (count > 1 && device.choice.kind == DeviceChoice::Kind::cpu) {
-        own.threads = device.properties.threads;
-      }
       return make_renderer(own, scene, device);
     };
     auto worker = std::make_unique<LocalWorker>(name_of(device), least_paths(device), make, bell);

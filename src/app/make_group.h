@@ -6,6 +6,7 @@
 
 #include "common/device/devices.h"
 #include "common/distribute/group_renderer.h"
+#include "common/plan/execution_plan.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {
@@ -13,9 +14,10 @@ namespace pt {
 /// Whether the options ask for what one device's renderer alone cannot do.
 bool needs_group(const Options& options, const std::vector<DeviceInfo>& devices);
 
-/// A worker for each device, set up at the same time. `scene` must live as long and is prepared.
-/// Throws what a device's renderer throws.
-std::vector<std::unique_ptr<Worker>> make_workers(const Options& options, const SceneData& scene,
+/// A worker for each device and its plan, set up at the same time. `scene` must live as long and is
+/// prepared. Throws what a device's renderer throws.
+std::vector<std::unique_ptr<Worker>> make_workers(const std::vector<ExecutionPlan>& plans,
+                                                  const SceneData& scene,
                                                   const std::vector<DeviceInfo>& devices,
                                                   ResultBell& bell);
 

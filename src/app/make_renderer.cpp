@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "app/warning_limit.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
+#include "common/render/film_renderer.h"
 #include "common/render/memory_share.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/load/files/scene_files.h"
@@ -31,11 +33,12 @@ bool is_scene_file(const std::string& scene) {
   return !built_in && scene.find_first_of("./") != std::string::npos;
 }
 
-/// What renders on it, where it is not a thread of the host.
-DeviceProperties properties_for(const Options& options, const DeviceInfo& device) {
+/// What renders for `device`: in serial mode a thread of the host.
+DeviceProperties properties_for(const Options& options, const DeviceInfo& device, bool is_one) {
   const bool is_on_gpu =
       device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
-  return is_on_gpu ? device.properties : cpu_properties(options.threads);
+  if (is_on_gpu || !is_one) return device.properties;
+  return cpu_properties(cpu_threads(options.threads));
 }
 
 }  // namespace
@@ -71,40 +74,43 @@ SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& 
   throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
 }
 
-void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device) {
-  prepare_scene(scene, options, properties_for(options, device));
+std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& scene,
+                                       const std::vector<DeviceInfo>& devices) {
+  check_film(options, scene.properties, scene.filter);
+  SceneProperties properties = scene.properties;
+  std::vector<ExecutionPlan> plans;
+  for (const DeviceInfo& device : devices) {
+    plans.push_back(
+        plan_execution(options, properties, properties_for(options, device, devices.size() == 1)));
+    properties.structure = plans.front().accel;
+    properties.why_structure = plans.front().why_accel;
+  }
+  return plans;
 }
 
-SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn) {
-  SceneData scene = load_scene(options, device, warn);
-  prepare_scene_for(scene, options, device);
-  return scene;
-}
-
-std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
+std::unique_ptr<Renderer> make_renderer(const ExecutionPlan& plan, const SceneData& scene,
                                         [[maybe_unused]] const DeviceInfo& device) {
-  const Mode mode = plan_execution(options, scene.properties, properties_for(options, device)).mode;
 #ifdef PTEXP_CUDA
-  if (device.choice.kind == DeviceChoice::Kind::cuda && mode != Mode::serial) {
-    return mode == Mode::megakernel ? make_megakernel_cuda(options, scene, device.choice.index)
-                                    : make_wavefront_cuda(options, scene, device.choice.index);
+  if (device.choice.kind == DeviceChoice::Kind::cuda && plan.mode != Mode::serial) {
+    return plan.mode == Mode::megakernel ? make_megakernel_cuda(plan, scene, device.choice.index)
+                                         : make_wavefront_cuda(plan, scene, device.choice.index);
   }
 #endif
-  switch (mode) {
+  switch (plan.mode) {
     case Mode::serial:
-      return make_serial_renderer(options, scene);
+      return make_serial_renderer(plan, scene);
     case Mode::megakernel:
-      return make_megakernel_cpu(options, scene);
+      return make_megakernel_cpu(plan, scene);
     default:
-      return make_wavefront_cpu(options, scene);
+      return make_wavefront_cpu(plan, scene);
   }
 }
 
-std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
+std::unique_ptr<Renderer> make_fitting_renderer(const ExecutionPlan& plan, const SceneData& scene,
                                                 const DeviceInfo& device, const Warn& warn) {
   MemoryShare share;
   auto renderer = make_fitting(share, [&](int halvings) {
-    Options own = options;
+    ExecutionPlan own = plan;
     own.memory_halvings = halvings;
     return make_renderer(own, scene, device);
   });

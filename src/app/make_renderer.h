@@ -1,11 +1,14 @@
-// Picks the renderer: the only place that knows all modes and devices.
+// From options to a renderer: load_scene, resolve_scene (scene/prepare), plan_render,
+// prepare_scene, make_renderer. The only place that knows all modes and devices.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/device/devices.h"
+#include "common/plan/execution_plan.h"
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
 
@@ -18,20 +21,19 @@ using Warn = std::function<void(const std::string&)>;
 /// Error.
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
-/// Prepares a scene for rendering by these options, which no longer leave anything to the scene's
-/// defaults (scene_defaults.h). Throws Error.
-void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device);
+/// A plan for each device to render this resolved scene; all of them have the structure of the
+/// first. The options no longer leave anything to the scene's defaults (scene_defaults.h).
+/// Throws Error when they ask for something that the scene, a device or the mode cannot do.
+std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& scene,
+                                       const std::vector<DeviceInfo>& devices);
 
-/// Both, for options that say all themselves.
-SceneData make_scene_for(const Options& options, const DeviceInfo& device, const Warn& warn = {});
-
-/// `scene` must outlive the renderer. Throws Error when the options ask for something that the
-/// device or the mode cannot do, or that does not fit into memory.
-std::unique_ptr<Renderer> make_renderer(const Options& options, const SceneData& scene,
+/// `scene` is prepared for a plan of this structure and must outlive the renderer. Throws Error for
+/// what does not fit into memory.
+std::unique_ptr<Renderer> make_renderer(const ExecutionPlan& plan, const SceneData& scene,
                                         const DeviceInfo& device);
 
 /// The same with less memory where the device runs out of it, which `warn` is told (empty: nobody).
-std::unique_ptr<Renderer> make_fitting_renderer(const Options& options, const SceneData& scene,
+std::unique_ptr<Renderer> make_fitting_renderer(const ExecutionPlan& plan, const SceneData& scene,
                                                 const DeviceInfo& device, const Warn& warn);
 
 }  // namespace pt

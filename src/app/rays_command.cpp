@@ -42,7 +42,7 @@ int rays_command(const RaysCommand& command) {
   SceneData scene = load_traced_scene(command.scene);
   if (command.scene.ends_with(".mesh")) scene.camera = default_camera(scene_bounds(scene));
   override_camera(scene.camera, command.camera);
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const RaySet rays = generate_rays(command.kind, scene, command.size, command.bounces);
   write_rays(command.output, rays);
   print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));

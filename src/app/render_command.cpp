@@ -20,6 +20,7 @@
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
 #include "common/scene/data/scene_facts.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {
@@ -110,10 +111,10 @@ void say_interrupted(const Options& options, const Measurement& measurement, boo
 }
 
 /// Of a rank but the first: its devices work for that one until it needs them no more.
-void serve(Ranks& ranks, const Options& options, const SceneData& scene,
+void serve(Ranks& ranks, const std::vector<ExecutionPlan>& plans, const SceneData& scene,
            const std::vector<DeviceInfo>& devices) {
   ResultBell bell;
-  const auto workers = make_workers(options, scene, devices, bell);
+  const auto workers = make_workers(plans, scene, devices, bell);
   ranks.announce(names_of(workers));
   serve_units(ranks, workers);
 }
@@ -144,15 +145,22 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
 
   RenderReport report;
   SceneData scene;
+  std::vector<ExecutionPlan> plans;
   report.scene_ms = timed_ms([&] {
     const bool warns = is_first && !options.quiet;
     scene =
         load_shared_scene(ranks, options, devices.front(), warns ? Warn(print_warning) : Warn());
     apply_defaults(scene.defaults, command.given, options);
-    prepare_scene_for(scene, options, devices.front());
+    resolve_scene(scene, options);
+    plans = plan_render(options, scene, devices);
+    if (!options.explain) prepare_scene(scene, plans.front());
   });
+  if (options.explain) {
+    if (is_first) print("{}", plan_text(plans.front().decisions));
+    return 0;
+  }
   if (!is_first) {
-    if (!options.explain) serve(ranks, options, scene, devices);
+    serve(ranks, plans, scene, devices);
     return 0;
   }
   check_not_of_scene(options, scene.source_files);
@@ -163,14 +171,8 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
     print("{}", scene_text(report.scene));
     flush_printed();
   }
-  Rendering rendering(options, scene, devices, {&ranks, resumption, print_warning});
+  Rendering rendering(options, plans, scene, devices, {&ranks, resumption, print_warning});
   Renderer& renderer = rendering.renderer();
-
-  if (options.explain) {
-    renderer.describe(report);
-    print("{}", plan_text(report.plan));
-    return 0;
-  }
 
   note_signals(!options.checkpoint.file.empty());
   const Measurement measurement = measure_and_show(rendering, options);

@@ -53,6 +53,7 @@ struct RenderSession::Prepared {
   Keys keys;
   std::vector<DeviceInfo> devices;
   SceneData scene;
+  std::vector<ExecutionPlan> plans;  ///< one for each device
   SceneFacts facts;
   double scene_ms = 0;
   Warn warn;  ///< of the render at work
@@ -62,7 +63,7 @@ struct RenderSession::Prepared {
   void make_rendering() {
     rendering.reset();  // its memory is needed
     rendering = std::make_unique<Rendering>(
-        options, scene, devices,
+        options, plans, scene, devices,
         Rendering::Surroundings{nullptr, nullptr, [this](const std::string& text) {
                                   if (warn) warn(text);
                                 }});
@@ -109,8 +110,12 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
       !move_camera(next->scene, source_.camera, options)) {
     next = std::make_unique<Prepared>();
     next->scene = source_;
-    prepare_scene_for(next->scene, options, devices.front());
+    resolve_scene(next->scene, options);
+    next->plans = plan_render(options, next->scene, devices);
+    prepare_scene(next->scene, next->plans.front());
     describe_scene(next->scene, next->facts);  // goes through the tree
+  } else if (!next->rendering) {
+    next->plans = plan_render(options, next->scene, devices);
   }
   next->scene_ms = 1e3 * (Progress::steady_seconds() - begin_s);
   next->warn = warn;
@@ -175,9 +180,12 @@ RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
 }
 
 std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
-  RenderReport report;
-  prepare(command, {}).rendering->renderer().describe(report);
-  return report.plan;
+  Options options = command.options;
+  const std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  apply_defaults(source_.defaults, command.given, options);
+  SceneData scene = source_;
+  resolve_scene(scene, options);
+  return plan_render(options, scene, devices).front().decisions;
 }
 
 }  // namespace pt

@@ -20,19 +20,21 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& wo
   return names;
 }
 
-Rendering::Rendering(const Options& options, const SceneData& scene,
-                     const std::vector<DeviceInfo>& devices, const Surroundings& surroundings)
+Rendering::Rendering(const Options& options, const std::vector<ExecutionPlan>& plans,
+                     const SceneData& scene, const std::vector<DeviceInfo>& devices,
+                     const Surroundings& surroundings)
     : options_(options), warn_(surroundings.warn) {
   const Ranks* const ranks = surroundings.ranks;
-  const bool has_ranks = ranks != nullptr && ranks->count() > 1 && !options.explain;
+  const bool has_ranks = ranks != nullptr && ranks->count() > 1;
   if (needs_group(options, devices) || has_ranks) {
-    make_group(scene, devices, surroundings);
+    make_group(plans, scene, devices, surroundings);
   } else {
-    single_ = make_fitting_renderer(options, scene, devices.front(), surroundings.warn);
+    single_ = make_fitting_renderer(plans.front(), scene, devices.front(), surroundings.warn);
   }
 }
 
-void Rendering::make_group(const SceneData& scene, const std::vector<DeviceInfo>& devices,
+void Rendering::make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+                           const std::vector<DeviceInfo>& devices,
                            const Surroundings& surroundings) {
   filter_ = scene.filter;
   header_ = film_header(options_, scene.source_hash, to_string(devices.front().choice.kind));
@@ -48,9 +50,9 @@ void Rendering::make_group(const SceneData& scene, const std::vector<DeviceInfo>
   GroupHooks hooks;
   hooks.warn = warn;
   if (keeper_) hooks.film_grew = [this](const ImageFilm& film) { keeper_->film_grew(film); };
-  auto workers = make_workers(options_, scene, devices, *bell_);
+  auto workers = make_workers(plans, scene, devices, *bell_);
   Ranks* const ranks = surroundings.ranks;
-  const bool has_ranks = ranks != nullptr && ranks->count() > 1 && !options_.explain;
+  const bool has_ranks = ranks != nullptr && ranks->count() > 1;
   if (has_ranks) {
     ranks->announce(names_of(workers));
     const std::uint64_t least_paths = workers.front()->least_paths();

@@ -30,9 +30,10 @@ class Rendering {
     std::function<void(const std::string&)> warn{};
   };
 
-  /// `scene` is prepared, and must outlive it. Throws Error.
-  Rendering(const Options& options, const SceneData& scene, const std::vector<DeviceInfo>& devices,
-            const Surroundings& surroundings);
+  /// `plans`: one for each device, see plan_render. `scene` is prepared for them, and must outlive
+  /// the rendering. Throws Error.
+  Rendering(const Options& options, const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+            const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
 
   Renderer& renderer() { return group_ ? *group_ : *single_; }
 
@@ -44,8 +45,8 @@ class Rendering {
   const std::string& checkpoint_problem() const { return checkpoint_problem_; }
 
  private:
-  void make_group(const SceneData& scene, const std::vector<DeviceInfo>& devices,
-                  const Surroundings& surroundings);
+  void make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+                  const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
   /// In a viewer, too.
   Measurement measure_shown(const MeasureHooks& hooks);
   void save(const ImageFilm& film) const;

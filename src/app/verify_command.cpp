@@ -14,6 +14,7 @@
 #include "common/film/develop.h"
 #include "common/options/option_names.h"
 #include "common/render/batches.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {
@@ -94,11 +95,14 @@ int verify_command(const VerifyCommand& command) {
                             image.height, whole.width, whole.height));
   }
   const DeviceInfo device = choose_device(options.device);
-  const SceneData scene = make_scene_for(options, device);
+  SceneData scene = load_scene(options, device);
+  resolve_scene(scene, options);
+  const ExecutionPlan plan = plan_render(options, scene, {device}).front();
+  prepare_scene(scene, plan);
   check_same_render(header, file,
                     film_header(options, scene.source_hash, to_string(device.choice.kind)),
                     "this render");
-  const std::unique_ptr<Renderer> renderer = make_renderer(options, scene, device);
+  const std::unique_ptr<Renderer> renderer = make_renderer(plan, scene, device);
   Difference difference;
   std::uint64_t pixels = 0;
   for (const Window& window : choose_windows(whole, command.share)) {

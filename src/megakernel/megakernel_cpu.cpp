@@ -57,8 +57,7 @@ class PathRange {
 
 class MegakernelCpu : public CpuRenderer {
  public:
-  MegakernelCpu(const Options& options, const SceneData& scene)
-      : CpuRenderer(options, scene, options.threads) {}
+  MegakernelCpu(const ExecutionPlan& plan, const SceneData& scene) : CpuRenderer(plan, scene) {}
 
  private:
   void trace_batch(const SampleBuffer& batch) override {
@@ -67,7 +66,7 @@ class MegakernelCpu : public CpuRenderer {
       using Source = std::remove_cvref_t<decltype(source)>;
       dispatch_traits(CpuKindsWith<Source>{}, traits_, [&](auto traits) {
         dispatch_branching<false, decltype(traits), Source, SceneMemory::global, KernelBody::loop>(
-            options_.branching, [&](auto branching) {
+            plan_.branching, [&](auto branching) {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
                   PathRange work(supply(), batch, first, end, step, cancelled);
@@ -84,10 +83,10 @@ class MegakernelCpu : public CpuRenderer {
   template <class Trace>
   void divide(const SampleBuffer& batch, Trace&& trace) {
     const std::uint32_t pixels = batch.pixel_count.divisor();
-    if (options_.work == Work::pixel) {
+    if (plan_.work == Work::pixel) {
       tbb::parallel_for(std::uint32_t{0}, pixels,
                         [&](std::uint32_t i) { trace(i, batch.path_count, pixels); });
-    } else if (options_.work == Work::sample) {
+    } else if (plan_.work == Work::sample) {
       tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, batch.path_count),
                         [&](const auto& range) { trace(range.begin(), range.end(), 1); });
     } else {
@@ -106,8 +105,8 @@ class MegakernelCpu : public CpuRenderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_megakernel_cpu(const Options& options, const SceneData& scene) {
-  return std::make_unique<MegakernelCpu>(options, scene);
+std::unique_ptr<Renderer> make_megakernel_cpu(const ExecutionPlan& plan, const SceneData& scene) {
+  return std::make_unique<MegakernelCpu>(plan, scene);
 }
 
 }  // namespace pt

@@ -4,10 +4,10 @@
 
 namespace pt {
 
-MegakernelCuda::MegakernelCuda(const Options& options, const SceneData& scene, int device)
-    : CudaRenderer(options, scene, device) {
+MegakernelCuda::MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene, int device)
+    : CudaRenderer(plan, scene, device) {
   next_path_ = memory_.allocate<std::uint32_t>("counters", 1);
-  if (execution_.megakernel == MegakernelKind::sort) {
+  if (plan_.megakernel == MegakernelKind::sort) {
     CudaLauncher& launcher = *this;
     blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_);
   }
@@ -19,7 +19,7 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     using Source = std::remove_cvref_t<decltype(source)>;
     const SceneStorage<SceneMemory::global> in_global{scene_};
     if constexpr (std::is_same_v<Source, SamplerSource>) {
-      if (execution_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
+      if (plan_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
       if (blocks_ != nullptr)
         return blocks_->trace(scene_, batch, source, limits_, StageId::megakernel);
       launch_megakernel(in_global, 0, source, batch);
@@ -36,9 +36,9 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
   });
 }
 
-std::unique_ptr<Renderer> make_megakernel_cuda(const Options& options, const SceneData& scene,
+std::unique_ptr<Renderer> make_megakernel_cuda(const ExecutionPlan& plan, const SceneData& scene,
                                                int device) {
-  return std::make_unique<MegakernelCuda>(options, scene, device);
+  return std::make_unique<MegakernelCuda>(plan, scene, device);
 }
 
 }  // namespace pt

@@ -10,7 +10,7 @@ namespace pt {
 
 class MegakernelCuda : public CudaRenderer {
  public:
-  MegakernelCuda(const Options& options, const SceneData& scene, int device);
+  MegakernelCuda(const ExecutionPlan& plan, const SceneData& scene, int device);
 
   /// Launches the kernel for this storage of the scene and this source of random numbers.
   template <SceneMemory memory, class Source>

@@ -10,26 +10,26 @@ namespace pt {
 template <class Kernel>
 dim3 MegakernelCuda::grid_size(Kernel kernel, dim3 block, std::size_t shared_bytes,
                                const SampleBuffer& batch) {
-  if (options_.work == Work::persistent) {
+  if (plan_.work == Work::persistent) {
     return dim3(resident_blocks(reinterpret_cast<const void*>(kernel),
                                 static_cast<int>(block.x * block.y), shared_bytes));
   }
   return dim3((batch.width.divisor() + block.x - 1) / block.x,
               (batch.height() + block.y - 1) / block.y,
-              options_.work == Work::sample ? batch.sample_count : 1);
+              plan_.work == Work::sample ? batch.sample_count : 1);
 }
 
 template <SceneMemory memory, class Source>
 void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
                                        std::size_t shared_bytes, const Source& source,
                                        const SampleBuffer& batch) {
-  const dim3 block(options_.block.x, options_.block.y);
-  const WorkDivision division{options_.work, batch.width.divisor(), batch.height(), next_path_};
+  const dim3 block(plan_.block.x, plan_.block.y);
+  const WorkDivision division{plan_.work, batch.width.divisor(), batch.height(), next_path_};
   using Kernels = KernelSelection<true, number_source<Source>, memory, KernelBody::loop>;
   dispatch_traits(TraitsOf<Kernels>{}, traits_, [&](auto traits) {
     using Kind = decltype(traits);
     dispatch_branching<true, Kind, Source, memory, KernelBody::loop>(
-        options_.branching, [&](auto branching) {
+        plan_.branching, [&](auto branching) {
           constexpr auto kernel = megakernel<Kind, decltype(branching)::value, memory, Source>;
           launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,
                  shared_bytes, storage, batch, division, source, limits_, clock());

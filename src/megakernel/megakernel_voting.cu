@@ -39,7 +39,7 @@ __global__ void __launch_bounds__(phase_voting_threads_max, blocks_least)
 }  // namespace
 
 void MegakernelCuda::launch_phase_voting(const SamplerSource& source, const SampleBuffer& batch) {
-  const int threads = options_.block.x * options_.block.y;
+  const int threads = plan_.block.x * plan_.block.y;
   const std::size_t shared_bytes = shared_bytes_of(threads);
   const WorkDivision division{Work::persistent, batch.width.divisor(), batch.height(), next_path_};
   const std::uint32_t blocks = resident_blocks(

@@ -8,7 +8,7 @@ namespace {
 
 class SerialRenderer : public CpuRenderer {
  public:
-  SerialRenderer(const Options& options, const SceneData& scene) : CpuRenderer(options, scene, 1) {}
+  SerialRenderer(const ExecutionPlan& plan, const SceneData& scene) : CpuRenderer(plan, scene) {}
 
  private:
   bool can_repeat_paths() const override { return false; }  // the plain reference
@@ -38,8 +38,8 @@ class SerialRenderer : public CpuRenderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_serial_renderer(const Options& options, const SceneData& scene) {
-  return std::make_unique<SerialRenderer>(options, scene);
+std::unique_ptr<Renderer> make_serial_renderer(const ExecutionPlan& plan, const SceneData& scene) {
+  return std::make_unique<SerialRenderer>(plan, scene);
 }
 
 }  // namespace pt

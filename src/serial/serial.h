@@ -3,11 +3,12 @@
 
 #include <memory>
 
+#include "common/plan/execution_plan.h"
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {
 
-std::unique_ptr<Renderer> make_serial_renderer(const Options& options, const SceneData& scene);
+std::unique_ptr<Renderer> make_serial_renderer(const ExecutionPlan& plan, const SceneData& scene);
 
 }  // namespace pt

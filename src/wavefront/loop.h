@@ -15,9 +15,9 @@ void run_wave(Executor& execute, const WaveBuffers& b, const StageContext<Source
   repeat_paths(execute, b, context);
   execute.compact(b.request<StageId::generate, StageId::intersect>(b.pool.tag));
   execute.begin_wave();
-  const bool all_new = b.fused && starts_paths && !b.reuses_slots;
+  const bool all_new = b.policy.fused && starts_paths && !b.reuses_slots;
   if (starts_paths && !all_new) generate_paths<Traits>(execute, b, context);
-  if (b.fused) return bounce_paths<Traits>(execute, b, context, all_new);
+  if (b.policy.fused) return bounce_paths<Traits>(execute, b, context, all_new);
 
   trace_rays<Traits>(execute, b, context.samples, branching == Branching::divergent);
   sample_media<Traits>(execute, b, context.samples);

@@ -1,6 +1,8 @@
-// The memory of a wavefront: the pool of paths, its queues and counters.
+// What the waves of a render follow: the plan's policy, and the memory of the pool of paths, its
+// queues and counters.
 #pragma once
 
+#include "common/plan/execution_plan.h"
 #include "wavefront/compaction/compaction.h"
 #include "wavefront/stages.h"
 
@@ -29,46 +31,75 @@ struct StageQueues {
   PT_HD const std::uint32_t* begin() const { return slots + (first != nullptr ? *first : 0); }
 };
 
+/// What the plan and the scene decide of the waves, the same on every device.
+struct WavePolicy {
+  CompactionInfo compaction;
+  bool fused = false;                          ///< --stages
+  bool orders_surfaces = false;                ///< the queue of surfaces is sorted
+  std::uint32_t wave_rays = 1;                 ///< fused: rays of a path in a wave
+  std::uint32_t wave_collisions = to_the_end;  ///< null collisions of a flight in a wave
+  bool only_triangles = false;                 ///< no instances, no spheres
+  bool has_media = false;
+  bool has_volumes = false;    ///< media with grids of densities
+  PathPool::Parts parts = {};  ///< what a path's slot stores
+
+  WavePolicy() = default;
+  WavePolicy(const ExecutionPlan& plan, const SceneTraits& traits, const Scene& scene,
+             bool has_volumes)
+      : compaction(compaction_info(plan.compaction)),
+        fused(plan.fused),
+        orders_surfaces(plan.orders_surfaces),
+        wave_rays(static_cast<std::uint32_t>(plan.wave_rays)),
+        only_triangles(scene.has_only_triangles()),
+        has_media(traits.has_media),
+        has_volumes(has_volumes),
+        parts{.lights = traits.has_lights() && !plan.fused,
+              .instances = traits.geometry == Geometry::mixed,
+              .tags = !compaction.appends,
+              .receivers = scene.light_selector.has_tree(),
+              .layout = plan.layout,
+              .hits = !plan.fused,
+              .media = traits.has_media,
+              .flights = traits.has_media && plan.wave_collisions > 0} {
+    if (plan.wave_collisions > 0)
+      wave_collisions = static_cast<std::uint32_t>(plan.wave_collisions);
+  }
+};
+
 /// The buffers of a wavefront, allocated by the device's renderer.
 struct WaveBuffers {
-  CompactionInfo compaction;
+  WavePolicy policy;
   PathPool pool;
   WaveCounters* counters = nullptr;
   const std::uint32_t* slot_count = nullptr;  ///< the pool's, in the device's memory
   std::uint32_t* queues[queue_count] = {};    ///< [slot_count] each; null: not needed
-  bool reuses_slots = true;     ///< false: the pool holds the whole batch, a free slot stays free
-  bool only_triangles = false;  ///< no instances, no spheres
-  bool fused = false;           ///< --stages
-  bool has_media = false;       ///< the scene has
-  bool has_volumes = false;     ///< media with grids of densities
-  std::uint32_t wave_collisions = to_the_end;  ///< null ones that a flight has in a wave
-  std::uint32_t wave_rays = 1;  ///< where they are fused: rays that a path gets in a wave
+  std::uint32_t* ordered = nullptr;  ///< [slot_count] the queue of surfaces, in order; null: as is
+  bool reuses_slots = true;  ///< false: the pool holds the whole batch, a free slot stays free
   // Pools that share a batch whose paths repeat divide its indices among all of their slots:
   std::uint32_t first_slot = 0;  ///< this pool's, counted through all of them
   std::uint32_t all_slots = 0;
-  // The order of surfaces:
-  bool orders_surfaces = false;
-  std::uint32_t* ordered = nullptr;  ///< [slot_count] the queue of surfaces, in order
 
-  /// Of all queues, at most.
+  /// Upper bound on the bytes of all queues per slot.
   std::size_t queue_bytes_per_slot() const {
-    return queue_count * sizeof(std::uint32_t) + (orders_surfaces ? sizeof *ordered : 0);
+    return queue_count * sizeof(std::uint32_t) + (policy.orders_surfaces ? sizeof *ordered : 0);
   }
 
   /// Fused stages send paths on while they read the queue of rays: they fill one half of it while
   /// they read the other, alternately. Where the second begins; 0: there is one.
-  std::uint32_t half_ring() const { return fused && compaction.appends ? pool.slot_count : 0; }
+  std::uint32_t half_ring() const {
+    return policy.fused && policy.compaction.appends ? pool.slot_count : 0;
+  }
 
   /// Calls function(queue, capacity) for each that this render needs.
   template <class Function>
-  void for_each_queue(bool has_lights, Function&& function) {
+  void for_each_queue(Function&& function) {
     for (const StageInfo& stage : stage_table) {
-      if (!compaction.has_queues || !stage.has_own_queue()) continue;
-      if (is_unused(stage.id, has_lights)) continue;
+      if (!policy.compaction.has_queues || !stage.has_own_queue()) continue;
+      if (is_unused(stage.id)) continue;
       const bool twice = stage.id == StageId::intersect && half_ring() > 0;
       function(queues[queue_index(stage.id)], std::uint64_t{pool.slot_count} * (twice ? 2 : 1));
     }
-    if (orders_surfaces) function(ordered, pool.slot_count);
+    if (policy.orders_surfaces) function(ordered, pool.slot_count);
   }
 
   std::uint32_t* queue(StageId id) const { return queues[queue_index(id)]; }
@@ -91,7 +122,7 @@ struct WaveBuffers {
   }
 
   StageInput input_of(StageId id) const {
-    if (!compaction.has_queues) return StageInput::tags;
+    if (!policy.compaction.has_queues) return StageInput::tags;
     const bool all = id == StageId::generate && !reuses_slots;
     return all ? StageInput::every_slot : StageInput::queue;
   }
@@ -100,7 +131,7 @@ struct WaveBuffers {
   StageQueues stage_queues(StageId id, const std::uint32_t* count, StageId* tags) const {
     StageQueues result;
     result.input = input_of(id);
-    result.appends = compaction.appends;
+    result.appends = policy.compaction.appends;
     result.slots = queue(id);
     if (half_ring() > 0 && queue_index(id) == queue_of<StageId::intersect>) {
       result.first = &counters->first_ray;
@@ -114,27 +145,21 @@ struct WaveBuffers {
   }
 
  private:
-  bool is_unused(StageId id, bool has_lights) const {
+  bool is_unused(StageId id) const {
     switch (id) {
       case StageId::generate:
         return !reuses_slots;
       case StageId::intersect:
         return false;
       case StageId::shadow:
-        return fused || !has_lights;
+        return !policy.parts.lights;
       case StageId::sample_medium:
       case StageId::shade_medium:
-        return fused || !has_media;
+        return policy.fused || !policy.has_media;
       default:
-        return fused;
+        return policy.fused;
     }
   }
 };
-
-/// WaveBuffers::wave_collisions.
-inline std::uint32_t wave_collisions(const Options& options) {
-  return options.wave_collisions == 0 ? to_the_end
-                                      : static_cast<std::uint32_t>(options.wave_collisions);
-}
 
 }  // namespace pt

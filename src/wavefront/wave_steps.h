@@ -65,13 +65,13 @@ void fly(Executor& execute, const WaveBuffers& b, const SampleBuffer& samples) {
   constexpr StageId id = StageId::sample_medium;
   const StageQueues flights = b.stage_queues(id, b.waiting(id), b.pool.tag);
   if constexpr (Executor::flies_queues) {
-    if (flights.appends && b.has_volumes && b.wave_collisions == to_the_end) {
+    if (flights.appends && b.policy.has_volumes && b.policy.wave_collisions == to_the_end) {
       execute.fly_queue(flights, samples);
       execute.run(RouteFlights{b.pool}, flights);
       return;
     }
   }
-  execute.run(SampleMedium{b.pool, samples, b.wave_collisions}, flights);
+  execute.run(SampleMedium{b.pool, samples, b.policy.wave_collisions}, flights);
 }
 
 /// Paths in media take their free flights first. All paths then wait for their next event: a miss,
@@ -106,7 +106,7 @@ void shade_all_surfaces(Executor& execute, const WaveBuffers& b,
                         const StageContext<Source>& context) {
   constexpr StageId id = StageId::shade_surface;
   StageQueues surfaces = b.stage_queues(id, b.waiting(id), b.pool.tag);
-  if (b.orders_surfaces) {
+  if (b.policy.orders_surfaces) {
     execute.order_surfaces(SurfaceOrder{b.pool, surfaces.slots, surfaces.count, b.ordered});
     surfaces.slots = b.ordered;
   }
@@ -119,7 +119,7 @@ template <class Traits, Branching branching, class Source, class Executor>
 void shade_surfaces(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   using Shading = ShadingTraits<Traits>;
   if constexpr (Traits::has_masks) {
-    if (b.only_triangles)
+    if (b.policy.only_triangles)
       return shade_all_surfaces<TrianglesAlone<Shading>, branching>(execute, b, context);
   }
   shade_all_surfaces<Shading, branching>(execute, b, context);
@@ -159,8 +159,9 @@ void bounce_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
                   bool starts_paths) {
   StageQueues paths = b.stage_queues(StageId::bounce, &b.counters->intersect, b.pool.tag);
   if (starts_paths) paths.input = StageInput::every_slot;
-  execute.run(FollowPaths<Traits, Source>{context, StageId::bounce, b.wave_rays, starts_paths},
-              paths);
+  execute.run(
+      FollowPaths<Traits, Source>{context, StageId::bounce, b.policy.wave_rays, starts_paths},
+      paths);
 }
 
 /// Follows the paths that begin_wave left over to their ends.

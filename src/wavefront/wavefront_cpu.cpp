@@ -57,15 +57,14 @@ struct PoolPart {
   // Of one thread: what runs in it waits for nobody, and takes no work of others meanwhile.
   tbb::task_arena arena{1};
 
-  PoolPart(const WaveBuffers& common, const PathPool::Parts& parts, std::uint32_t slots)
-      : slot_count(slots), buffers(common) {
+  PoolPart(const WaveBuffers& common, std::uint32_t slots) : slot_count(slots), buffers(common) {
     buffers.slot_count = &slot_count;
     buffers.counters = &counters;
     buffers.pool.slot_count = slot_count;
-    buffers.pool.allocate_arrays(parts, [&](auto* p, std::uint64_t count) {
+    buffers.pool.allocate_arrays(buffers.policy.parts, [&](auto* p, std::uint64_t count) {
       return array<std::remove_pointer_t<decltype(p)>>(count);
     });
-    buffers.for_each_queue(parts.lights, [&](auto*& queue, std::uint64_t capacity) {
+    buffers.for_each_queue([&](auto*& queue, std::uint64_t capacity) {
       queue = array<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(capacity);
     });
   }
@@ -73,7 +72,7 @@ struct PoolPart {
   /// Before a batch: every slot is free, as the tags are after the one before.
   void reset() {
     counters = {};
-    if (!buffers.compaction.appends) return;
+    if (!buffers.policy.compaction.appends) return;
     std::uint32_t* const free = buffers.queue(free_slot);
     std::iota(free, free + slot_count, 0u);
     *buffers.waiting(free_slot) = slot_count;
@@ -91,10 +90,10 @@ struct PoolPart {
 
 class CpuExecutor {
  public:
-  CpuExecutor(const Scene& scene, const Options& options, PoolPart& part, PathRuns& runs,
+  CpuExecutor(const Scene& scene, const ExecutionPlan& plan, PoolPart& part, PathRuns& runs,
               bool repeats, std::uint32_t finish_paths, bool has_open_boundaries)
       : scene_(scene),
-        options_(options),
+        plan_(plan),
         part_(part),
         runs_(runs),
         repeats_(repeats),
@@ -102,7 +101,7 @@ class CpuExecutor {
         has_open_boundaries_(has_open_boundaries) {}
 
   void compact(const CompactionRequest& request) {
-    const TagPass pass = compaction_info(options_.compaction).pass;
+    const TagPass pass = part_.buffers.policy.compaction.pass;
     if (pass == TagPass::none) return;
     part_.timer.time(to_string(StageId::compact), [&] { compact_cpu(pass, request); });
   }
@@ -110,7 +109,7 @@ class CpuExecutor {
   void begin_wave() {
     WaveCounters& c = part_.counters;
     const bool is_empty = c.waiting[queue_of<StageId::intersect>] == c.next_first_ray;
-    const bool starts_paths = options_.regenerate || is_empty;
+    const bool starts_paths = plan_.regenerate || is_empty;
     const std::uint32_t free = starts_paths ? c.waiting[queue_of<free_slot>] : 0;
     std::uint32_t left = 0;
     if (!repeats_) {
@@ -157,7 +156,7 @@ class CpuExecutor {
 
  private:
   const Scene& scene_;
-  const Options& options_;
+  const ExecutionPlan& plan_;
   PoolPart& part_;
   PathRuns& runs_;
   bool repeats_;  ///< the stages start paths themselves
@@ -168,42 +167,24 @@ class CpuExecutor {
 
 class WavefrontCpu : public CpuRenderer {
  public:
-  WavefrontCpu(const Options& options, const SceneData& scene)
-      : CpuRenderer(options, scene, options.threads),
-        has_open_boundaries_(scene.properties.has_open_boundaries) {
-    const std::uint64_t image_paths = std::uint64_t(options.width) * std::uint64_t(options.height) *
-                                      static_cast<std::uint64_t>(options.spp);
+  WavefrontCpu(const ExecutionPlan& plan, const SceneData& scene)
+      : CpuRenderer(plan, scene), has_open_boundaries_(scene.properties.has_open_boundaries) {
+    const std::uint64_t image_paths = std::uint64_t(plan.width) * std::uint64_t(plan.height) *
+                                      static_cast<std::uint64_t>(plan.spp);
     const auto threads = static_cast<std::uint64_t>(this->threads());
-    pool_size_ = options.pool_size > 0 ? options.pool_size
-                                       : std::min(execution_.pool_paths_max, image_paths);
-    const bool fused = execution_.fused;
+    pool_size_ = plan.pool_size > 0 ? plan.pool_size : std::min(plan.pool_paths_max, image_paths);
     WaveBuffers common;
-    common.compaction = compaction_info(options.compaction);
-    common.fused = fused;
-    common.wave_rays = static_cast<std::uint32_t>(options.wave_rays);
-    common.wave_collisions = wave_collisions(options);
-    common.orders_surfaces = execution_.orders_surfaces;
-    common.has_media = traits_.has_media;
-    common.only_triangles = scene_.has_only_triangles();
+    common.policy = WavePolicy(plan, traits_, scene_, false);  // a thread takes no queue of flights
     common.all_slots = static_cast<std::uint32_t>(pool_size_);
-    const PathPool::Parts parts = {traits_.has_lights() && !fused,
-                                   traits_.geometry == Geometry::mixed,
-                                   !common.compaction.appends,
-                                   scene_.light_selector.has_tree(),
-                                   options.layout,
-                                   !fused,
-                                   traits_.has_media,
-                                   traits_.has_media && options.wave_collisions > 0};
-    const std::uint64_t size_bytes =
-        pool_size_ * (PathPool::bytes_per_slot(parts) + common.queue_bytes_per_slot());
+    const std::uint64_t size_bytes = pool_size_ * (PathPool::bytes_per_slot(common.policy.parts) +
+                                                   common.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);
     const std::uint64_t count = std::min(threads, pool_size_);
     for (std::uint64_t i = 0; i < count; ++i) {
       common.first_slot = static_cast<std::uint32_t>(pool_size_ * i / count);
       const std::uint64_t slots = pool_size_ * (i + 1) / count - common.first_slot;
-      parts_.push_back(
-          std::make_unique<PoolPart>(common, parts, static_cast<std::uint32_t>(slots)));
+      parts_.push_back(std::make_unique<PoolPart>(common, static_cast<std::uint32_t>(slots)));
     }
   }
 
@@ -213,7 +194,7 @@ class WavefrontCpu : public CpuRenderer {
       using Source = std::remove_cvref_t<decltype(source)>;
       dispatch_traits(CpuKindsWith<Source>{}, traits_, [&](auto traits) {
         dispatch_branching<false, decltype(traits), Source, SceneMemory::global,
-                           KernelBody::stages>(options_.branching, [&](auto branching) {
+                           KernelBody::stages>(plan_.branching, [&](auto branching) {
           run_parts<decltype(traits), branching()>(source, batch);
         });
       });
@@ -243,10 +224,9 @@ class WavefrontCpu : public CpuRenderer {
     const StageContext<Source> context{
         buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
         this->limits_, this->supply()};
-    const std::uint64_t most_left =
-        repeats ? 0 : std::uint64_t{execution_.finish_paths} / parts_.size();
-    CpuExecutor execute(scene_, options_, part, runs, repeats,
-                        static_cast<std::uint32_t>(most_left), has_open_boundaries_);
+    const std::uint64_t most_left = repeats ? 0 : std::uint64_t{plan_.finish_paths} / parts_.size();
+    CpuExecutor execute(scene_, plan_, part, runs, repeats, static_cast<std::uint32_t>(most_left),
+                        has_open_boundaries_);
     const auto wave = [&](bool starts_paths) {
       run_wave<Traits, branching>(execute, buffers, context, starts_paths);
       if (is_cancelled()) runs.end();
@@ -261,8 +241,8 @@ class WavefrontCpu : public CpuRenderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_wavefront_cpu(const Options& options, const SceneData& scene) {
-  return std::make_unique<WavefrontCpu>(options, scene);
+std::unique_ptr<Renderer> make_wavefront_cpu(const ExecutionPlan& plan, const SceneData& scene) {
+  return std::make_unique<WavefrontCpu>(plan, scene);
 }
 
 }  // namespace pt

@@ -20,12 +20,12 @@ constexpr double mib = 1024.0 * 1024.0;
 
 }  // namespace
 
-WavefrontCuda::WavefrontCuda(const Options& options, const SceneData& scene, int device)
-    : CudaRenderer(options, scene, device),
+WavefrontCuda::WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, int device)
+    : CudaRenderer(plan, scene, device),
       has_masks_(scene.properties.has_masks),
-      finish_paths_(execution_.finish_paths) {
+      finish_paths_(plan_.finish_paths) {
   allocate_pool(scene);
-  if (execution_.finishes_in_blocks) {
+  if (plan_.finishes_in_blocks) {
     const std::uint64_t most = std::min<std::uint64_t>(batch_paths(), finish_paths_);
     CudaLauncher& launcher = *this;
     blocks_ = std::make_unique<BlockWavefronts>(launcher, memory_, traits_,
@@ -42,34 +42,21 @@ WavefrontCuda::~WavefrontCuda() {
 }
 
 void WavefrontCuda::allocate_pool(const SceneData& scene) {
-  buffers_.compaction = compaction_info(options_.compaction);
-  const bool appends = buffers_.compaction.appends;
-  buffers_.has_media = traits_.has_media;
-  buffers_.has_volumes = std::ranges::any_of(
+  const bool has_volumes = std::ranges::any_of(
       scene.media, [](const Medium& medium) { return !medium.is_homogeneous(); });
-  buffers_.only_triangles = scene_.has_only_triangles();
-  buffers_.fused = execution_.fused;
-  buffers_.wave_rays = static_cast<std::uint32_t>(options_.wave_rays);
-  buffers_.wave_collisions = wave_collisions(options_);
-  buffers_.orders_surfaces = execution_.orders_surfaces;
-  parts_ = {traits_.has_lights() && !buffers_.fused,
-            traits_.geometry == Geometry::mixed,
-            !appends,
-            scene_.light_selector.has_tree(),
-            options_.layout,
-            !buffers_.fused,
-            traits_.has_media,
-            traits_.has_media && options_.wave_collisions > 0};
-  const std::uint64_t bytes_per_slot =
-      PathPool::bytes_per_slot(parts_) + buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
-  const int halvings = options_.pool_size == 0 ? options_.memory_halvings : 0;
+  const WavePolicy policy(plan_, traits_, scene_, has_volumes);
+  const bool appends = policy.compaction.appends;
+  buffers_.policy = policy;
+  const std::uint64_t bytes_per_slot = PathPool::bytes_per_slot(policy.parts) +
+                                       buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
+  const int halvings = plan_.pool_size == 0 ? plan_.memory_halvings : 0;
   const std::uint64_t free = CudaMemory::free_bytes() >> halvings;
-  if (options_.pool_size == 0) {
-    const std::uint64_t most = execution_.pool_paths_max;
+  if (plan_.pool_size == 0) {
+    const std::uint64_t most = plan_.pool_paths_max;
     const std::uint64_t wanted = most == 0 ? batch_paths() : std::min(most, batch_paths());
     pool_size_ = std::min(wanted, free / 2 / bytes_per_slot);
   } else {
-    pool_size_ = options_.pool_size;
+    pool_size_ = plan_.pool_size;
   }
   buffers_.reuses_slots = !appends || pool_size_ < batch_paths() || paths_repeat();
   if (pool_size_ == 0 || pool_size_ * bytes_per_slot > free) {
@@ -82,10 +69,10 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = buffers_.all_slots = static_cast<std::uint32_t>(n);
-  pool.allocate_arrays(parts_, [&](auto* array, std::uint64_t count) {
+  pool.allocate_arrays(policy.parts, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
-  buffers_.for_each_queue(parts_.lights, [&](auto*& queue, std::uint64_t capacity) {
+  buffers_.for_each_queue([&](auto*& queue, std::uint64_t capacity) {
     queue = memory_.allocate<std::remove_pointer_t<std::remove_reference_t<decltype(queue)>>>(
         "queues", capacity);
   });
@@ -94,9 +81,8 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
     std::iota(all.begin(), all.end(), 0u);
     all_slots_ = memory_.upload("queues", all);
   }
-  if (buffers_.compaction.pass != TagPass::none) {
-    compactor_ =
-        std::make_unique<CudaCompactor>(buffers_.compaction.pass, pool.slot_count, memory_);
+  if (policy.compaction.pass != TagPass::none) {
+    compactor_ = std::make_unique<CudaCompactor>(policy.compaction.pass, pool.slot_count, memory_);
   }
   buffers_.counters = memory_.allocate<WaveCounters>("counters", 1);
   buffers_.slot_count =
@@ -121,7 +107,7 @@ void WavefrontCuda::start_queues() {
              "cudaMemsetAsync");
   fill(pool.tag);
   fill(pool.shadow_tag);
-  if (!buffers_.compaction.appends) return;
+  if (!buffers_.policy.compaction.appends) return;
   const auto copy = [&](std::uint32_t* to, const std::uint32_t* from, std::size_t count) {
     check_cuda(cudaMemcpyAsync(to, from, count * sizeof *to, cudaMemcpyDeviceToDevice, stream()),
                "cudaMemcpyAsync");
@@ -170,7 +156,7 @@ bool WavefrontCuda::has_few_paths(const SampleBuffer& batch) const {
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
-  if (!execution_.uses_graph || is_counting() || has_few_paths(batch)) return;
+  if (!plan_.uses_graph || is_counting() || has_few_paths(batch)) return;
   if (graph_exec_ != nullptr && batch == graph_batch_ && supply() == graph_supply_) return;
   destroy_graph();
   build_graph(batch);
@@ -248,7 +234,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   flows_.clear();
   if (has_few_paths(batch)) {
     set_wave(-1);
-    return blocks_->trace(scene_, batch, sampler_source_of(options_), limits_, StageId::finish);
+    return blocks_->trace(scene_, batch, sampler_source_of(plan_), limits_, StageId::finish);
   }
   start_queues();
   int number = 0;
@@ -272,12 +258,12 @@ void WavefrontCuda::note_flow() {
 void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
   if (traits_.has_media) return;  // cells, voxels and pauses of flights are not foreseen
   WaveLayout layout;
-  layout.parts = parts_;
+  layout.parts = buffers_.policy.parts;
   layout.parts.lights = traits_.has_lights();
-  layout.fused = buffers_.fused;
+  layout.fused = plan_.fused;
   layout.slots = buffers_.pool.slot_count;
-  layout.has_queues = buffers_.compaction.has_queues;
-  layout.appends = buffers_.compaction.appends;
+  layout.has_queues = buffers_.policy.compaction.has_queues;
+  layout.appends = buffers_.policy.compaction.appends;
   layout.queues_free = buffers_.queue(free_slot) != nullptr;
   layout.all_lights = traits_.lighting == Lighting::full;
   layout.persistent = traces_queues_here();
@@ -290,9 +276,9 @@ void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
 
 std::uint64_t WavefrontCuda::take_wave_count() { return std::exchange(waves_, 0); }
 
-std::unique_ptr<Renderer> make_wavefront_cuda(const Options& options, const SceneData& scene,
+std::unique_ptr<Renderer> make_wavefront_cuda(const ExecutionPlan& plan, const SceneData& scene,
                                               int device) {
-  return std::make_unique<WavefrontCuda>(options, scene, device);
+  return std::make_unique<WavefrontCuda>(plan, scene, device);
 }
 
 }  // namespace pt

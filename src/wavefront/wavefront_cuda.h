@@ -25,7 +25,7 @@ using WaveKinds = TraitsOf<WaveKernels<Source, has_media>>;
 
 class WavefrontCuda : public CudaRenderer {
  public:
-  WavefrontCuda(const Options& options, const SceneData& scene, int device);
+  WavefrontCuda(const ExecutionPlan& plan, const SceneData& scene, int device);
   ~WavefrontCuda() override;
   bool set_camera(const Camera& camera) override;
 
@@ -45,7 +45,7 @@ class WavefrontCuda : public CudaRenderer {
   template <class Traits>
   static constexpr bool traces_queues = has_kernel({true, KernelBody::warps, Traits::value(),
                                                     NumberSource::sampler});
-  bool traces_queues_here() const { return execution_.persistent_warps; }
+  bool traces_queues_here() const { return plan_.persistent_warps; }
   void trace_queue(const StageQueues& queues, const SampleBuffer& samples);
   void trace_shadow_queue(const StageQueues& queues, const SampleBuffer& samples);
   static constexpr bool flies_queues = true;
@@ -85,7 +85,6 @@ class WavefrontCuda : public CudaRenderer {
   void start_queues();
   void note_flow();
 
-  PathPool::Parts parts_{};
   WaveBuffers buffers_;
   std::uint32_t* all_slots_ = nullptr;  ///< 0, 1, 2, ...: the first queue of free slots
   std::unique_ptr<CudaCompactor> compactor_;

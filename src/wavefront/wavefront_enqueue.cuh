@@ -29,7 +29,7 @@ inline constexpr bool is_in_table<FollowPaths<T, Source>, memory> =
 
 template <class Stage>
 void WavefrontCuda::run(const Stage& stage, const StageQueues& queues) {
-  const int block = options_.stage_block[static_cast<int>(id_of(stage))];
+  const int block = plan_.stage_block[static_cast<int>(id_of(stage))];
   const auto launch_with = [&](const auto& storage, std::size_t shared_bytes) {
     using Storage = std::remove_cvref_t<decltype(storage)>;
     if constexpr (is_in_table<Stage, Storage::memory>) {
@@ -57,7 +57,7 @@ void WavefrontCuda::enqueue_wave_of(const StageContext<Source>& context, bool st
   dispatch_traits(Kinds{}, traits_, [&](auto traits) {
     using Kind = decltype(traits);
     dispatch_branching<true, Kind, Source, SceneMemory::global, KernelBody::stages>(
-        options_.branching, [&](auto branching) {
+        plan_.branching, [&](auto branching) {
           run_wave<Kind, decltype(branching)::value>(*this, buffers_, context, starts_paths);
         });
   });

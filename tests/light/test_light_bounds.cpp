@@ -75,7 +75,7 @@ TEST(LightBounds, BoundsOfASphere) {
   scene.add_sphere({1, -2, 3}, 0.5f, scene.add_material(make_diffuse(Color(0.0f), radiance)));
   scene.meshes.push_back(parallelogram({}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0},
                                        scene.add_material(make_diffuse(Color(0.5f)))));
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const LightBounds bounds = bounds_of(scene.light_list.lights.at(0)).value();
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(bounds.box.min[i], (Vec3(1, -2, 3) - 0.5f)[i], 1e-6);
@@ -99,7 +99,7 @@ TEST(LightBounds, BoundsOfAProjector) {
       scene.delta_lights = {projector};
       scene.meshes.push_back(parallelogram({}, {9, 9, 9}, {1, 0, 0}, {0, 1, 0},
                                            scene.add_material(make_diffuse(Color(0.5f)))));
-      prepare_scene(scene, {});
+      prepare_scene(scene);
       const Light& light = scene.light_list.lights.at(0);
       const LightBounds bounds = bounds_of(light).value();
       EXPECT_EQ(bounds.box.min, projector.position);

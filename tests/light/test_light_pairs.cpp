@@ -80,7 +80,7 @@ ChannelMeans sampled(const SceneData& scene, bool nee, int size = 96, int depth 
 /// With light sampling and without. `precision`: the standard error that the scene must allow.
 void expect_irradiance(SceneData scene, const LightsAround& lights, double precision = 6e-3,
                        int depth = 2) {
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const glm::dvec3 expected = glm::dvec3(floor_albedo) / pi_double * floor_irradiance(lights);
   for (const bool nee : {true, false}) {
     const ChannelMeans means = sampled(scene, nee, 96, depth);
@@ -269,7 +269,7 @@ TEST(LightPairs, LampsAreHiddenByWhatLiesBetween) {
           (occluder.positions[0] + occluder.positions[1] + occluder.positions[2]) / 3.0f;
       for (Vec3& p : occluder.positions) p = middle + 1.02f * (p - middle);
       scene.meshes.push_back(occluder);
-      prepare_scene(scene, {});
+      prepare_scene(scene);
       for (const bool nee : {true, false}) {
         const ChannelMeans means = sampled(scene, nee, 16);
         EXPECT_EQ(means.of[0].mean(), 0) << "kind " << kind << " at " << along << ", nee " << nee;
@@ -285,7 +285,7 @@ TEST(LightPairs, LampsAreHiddenBySpheres) {
   add_lamp(scene, lights, {{-0.1f, 2, -0.1f}, {0.1f, 2, -0.1f}, {0, 2, 0.1f}}, {1, 2, 3});
   scene.add_sphere({0, 1.5f, 0}, 0.4f, scene.add_material(make_diffuse(Color(0.0f))));
   scene.camera.look_from = 0.01f * scene.camera.look_from;
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   for (const bool nee : {true, false}) {
     EXPECT_EQ(sampled(scene, nee, 16).of[1].mean(), 0) << "nee " << nee;
   }

@@ -136,7 +136,7 @@ TEST(LightTree, FindsEachOfManyLights) {
   mesh.triangles.assign(20'000, {{0, 1, 2}});
   mesh.material = glow;
   scene.meshes.push_back(mesh);
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const LightSelector& selector = host_view(scene, 8, 8).light_selector;
   std::set<std::uint32_t> found;
   TestRandom random(8);

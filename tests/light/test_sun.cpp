@@ -107,7 +107,7 @@ TEST(Sun, IsSeen) {
   const Sun sun = make_sun({0.0f, 0.6f, 0.8f}, 0.1, {3, 2, 1});
   SceneData scene = floor_in_the_sun(sun, false);
   scene.camera = {{0, 1, 0}, {0, 1.6f, 0.8f}, {0, 1, 0}, 1.0f, 0.0f, 1.0f};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   EXPECT_EQ(render(scene, image_options(4, 4, 4)).image.rgb[4], 2.0f);
   scene.camera.look_at = {0.3f, 1.6f, 0.8f};
   EXPECT_EQ(render(scene, image_options(4, 4, 4)).image.rgb[4], 0.0f);

@@ -21,7 +21,7 @@ Render render_wall(SceneData scene, std::uint32_t material, float z = 5.0f, int 
   scene.meshes.push_back(wall_mesh(material));
   scene.sky = {Color(1.0f), Color(1.0f)};
   look_at_wall(scene, z);
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   return render(scene, image_options(16, 16, spp, 2));
 }
 
@@ -72,7 +72,7 @@ TEST(NestedMaterials, ABlendMayBeATexture) {
   scene.meshes.push_back(wall_mesh(all));
   scene.sky = {Color(1.0f), Color(1.0f)};
   scene.camera = {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40.0f, 0.0f, 5.0f};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const Image image = render(scene, image_options(16, 16, 4, 2)).image;
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 16; ++x) {
@@ -89,7 +89,7 @@ TEST(NestedMaterials, TheRestOfTheRandomNumberIsUniformAgain) {
   const std::uint32_t inner = data.add_material(make_blend({Color(0.25f)}, a, b));
   const std::uint32_t outer = data.add_material(make_blend({Color(0.6f)}, inner, b));
   data.meshes.push_back(wall_mesh(outer));
-  prepare_scene(data, {});
+  prepare_scene(data);
   const Scene scene = host_view(data, 8, 8);
   MeanEstimate share, rest[2], square[2];
   for (int i = 0; i < 100'000; ++i) {
@@ -117,7 +117,7 @@ TEST(NestedMaterials, APartIsAnEarlierMaterial) {
   scene.meshes.push_back(wall_mesh(self));
   look_at_wall(scene);
   try {
-    prepare_scene(scene, {});
+    prepare_scene(scene);
     ADD_FAILURE() << "not refused";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("material 0 is made of material 0"),
@@ -134,7 +134,7 @@ Color lit_wall(SceneData scene, std::uint32_t material, const Vec3& to_light) {
   sun.intensity = Color(pi);
   scene.delta_lights.push_back(sun);
   look_at_wall(scene);
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   return mean_of(render(scene, image_options(8, 8, 4, 2)).image);
 }
 
@@ -177,7 +177,7 @@ TEST(Maps, GltfNormalMapsAreScaledAndHanded) {
     sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
     scene.delta_lights.push_back(sun);
     look_at_wall(scene);
-    prepare_scene(scene, {});
+    prepare_scene(scene);
     const Vec3 normal = glm::normalize(Vec3(0.15f, mirrored ? -0.2f : 0.2f, slope.z));
     expect_color(mean_of(render(scene, image_options(8, 8, 4, 2)).image),
                  glm::dot(normal, to_light) * red, 1e-5f);

@@ -51,7 +51,7 @@ TEST(Roulette, EndsPathsAsOftenAsItSays) {
   scene.add_sphere({0, 0, 0}, 3, scene.add_material(make_diffuse(Color(0.5f, 0.25f, 0))));
   scene.sky = {Color(1.0f), Color(1.0f)};
   scene.camera = {{0.5f, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60, 0, 1};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   for (const int depth : {1, 2, 4}) {
     Options options = image_options(64, 64, 16, 200);
     options.rr_depth = depth;

@@ -121,7 +121,7 @@ TEST(TraceRays, InstancesGiveTheRaysOfTheirTriangles) {
 TEST(TraceRays, SpheresStopPaths) {
   SceneData scene = terrain_scene({generate_terrain(3000)});
   scene.add_sphere({0, 10, 0}, 400, 0);
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const RaySet rays = generate_rays(RayKind::ao, scene, 32);
   std::size_t outside = 0;
   for (const RayRecord& ray : rays.rays) {

@@ -161,7 +161,7 @@ TEST(Caustic, LightSamplingAloneLeavesTheShadowDark) {
   const Vec3d ball(scene.spheres[0].center), lamp(lamp_of(scene).corner);
   const Vec3d focus = ball - ball.y / (lamp.y - ball.y) * (lamp - ball);  // on the floor
   scene.camera = {Vec3(focus) + Vec3(-0.8f, 0.5f, 0.5f), Vec3(focus), {0, 1, 0}, 12, 0, 1};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const Camera camera = make_camera(scene.camera, size, size);
   for (const float x : {0.0f, float{size}}) {
     for (const float y : {0.0f, float{size}}) {
@@ -199,7 +199,7 @@ TEST(Caustic, MirrorsAddLightWithinTheRing) {
   const Vec3d to_lamp = Vec3d(lamp_of(scene).corner) - center;
   const Vec3d seen = center - 0.4 * glm::normalize(Vec3d(to_lamp.x, 0, to_lamp.z));
   scene.camera = {Vec3(seen) + Vec3(0.01f, 0.6f, 0), Vec3(seen), {0, 0, 1}, 12, 0, 1};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const auto mean_of = [&](int max_depth) {
     double sum = 0;
     const Image image = render(scene, image_options(size, size, 64, max_depth)).image;

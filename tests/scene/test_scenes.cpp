@@ -184,7 +184,7 @@ TEST(Scenes, Errors) {
                "spheres, rtow, cornell, furnace, ajar, caustic");
   SceneData empty;
   empty.name = "void";
-  expect_error([&] { prepare_scene(empty, {}); }, "scene 'void' is empty");
+  expect_error([&] { prepare_scene(empty); }, "scene 'void' is empty");
   const SphereWorldCreator creator = [](SphereWorld&, SphereWorldKind, std::uint32_t) {};
   expect_error([&] { make_scene(scene_options("cornell"), creator); }, "--create-world");
   expect_error([&] { make_scene(scene_options("spheres"), creator); }, "is empty");

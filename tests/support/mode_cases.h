@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "app/make_renderer.h"
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
 #include "common/error/error.h"
@@ -20,6 +19,7 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/scene_properties.h"
+#include "make_render.h"
 #include "statistics.h"
 
 namespace pt {
@@ -56,8 +56,8 @@ inline Options cuda_options(const std::string& mode, const Settings& settings = 
 inline bool has_plan(const Options& options, SceneData scene) {
   const DeviceInfo device = choose_device(options.device);
   try {
-    prepare_materials(scene, options.multiple_scattering);
-    plan_execution(options, properties_of(scene), device.properties);
+    resolve_scene(scene, options);
+    plan_execution(options, scene.properties, device.properties);
   } catch (const Error&) {
     return false;
   }

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "serial/serial.h"
+#include "make_render.h"
 
 namespace pt {
 
@@ -14,7 +14,9 @@ struct Render {
 
 /// Also checks that every path was taken and that all samples are finite.
 inline Render render(const SceneData& scene, const Options& options) {
-  const auto renderer = make_serial_renderer(options, scene);
+  Options own = options;
+  own.mode = Mode::serial;
+  const auto renderer = make_renderer(own, scene, choose_device({DeviceChoice::Kind::cpu, 0}));
   renderer->render({});
   RenderReport report;
   renderer->describe(report);

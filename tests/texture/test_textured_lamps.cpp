@@ -61,7 +61,7 @@ SceneData two_screens() {
 
 TEST(TexturedLamps, TheirWeightTakesTheTexturesMeanIntoAccount) {
   SceneData scene = two_screens();
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   const double dim = (15 * (0.2126 * 0.005 + 0.7152 * 0.02 + 0.0722 * 0.01) +
                       (0.2126 * 0.5 + 0.7152 * 0.5 + 0.0722 * 0.2)) /
                      16;

@@ -55,7 +55,7 @@ SceneData floor_and_wall() {
   scene.camera.look_at = {0, 0, 0};
   scene.camera.up = {0, 0, 1};
   scene.camera.fov_degrees = 0.5f;
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   return scene;
 }
 
@@ -134,11 +134,11 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
   const SampleBuffer batch = buffer(result);
   WaveCounters counters{};
   WaveBuffers b;
-  b.compaction = compaction_info(Compaction::atomic);
+  b.policy.compaction = compaction_info(Compaction::atomic);
   b.counters = &counters;
   b.pool.slot_count = slots;
   b.slot_count = &b.pool.slot_count;
-  b.fused = fused_rays > 0, b.wave_rays = fused_rays;
+  b.policy.fused = fused_rays > 0, b.policy.wave_rays = fused_rays;
   b.reuses_slots = slots < batch.path_count;
   std::vector<std::shared_ptr<void>> arrays;
   const auto array = [&](auto* p, std::uint64_t count) {
@@ -147,9 +147,9 @@ Integrators::Samples Integrators::wavefront(std::uint32_t finish_paths, std::uin
     arrays.push_back(memory);
     return memory->data();
   };
-  b.pool.allocate_arrays({!b.fused, false, false, false, PoolLayout::soa, !b.fused}, array);
-  b.for_each_queue(true,
-                   [&](auto*& queue, std::uint64_t capacity) { queue = array(queue, capacity); });
+  b.policy.parts = {.lights = !b.policy.fused, .hits = !b.policy.fused};
+  b.pool.allocate_arrays(b.policy.parts, array);
+  b.for_each_queue([&](auto*& queue, std::uint64_t capacity) { queue = array(queue, capacity); });
   if (b.reuses_slots) std::iota(b.queue(free_slot), b.queue(free_slot) + slots, 0u);
   *b.waiting(free_slot) = slots;
 

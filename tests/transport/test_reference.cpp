@@ -92,7 +92,7 @@ TEST(LightSampling, TwoLightsMetalAndASky) {
   scene.add_sphere({0, 0.4f, 1.5f}, 0.4f, diffuse);
   scene.sky = {Color(0.1f), {0.2f, 0.3f, 0.5f}};
   scene.camera = {{1, 2, 6}, {0, 0.8f, 0}, {0, 1, 0}, 45, 0, 6};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   expect_equals_reference(scene, 6, 400'000, 0.002);
 }
 

@@ -31,7 +31,7 @@ SceneData lone_sphere(const MaterialDescription& material,
   scene.add_sphere({0, 0, 0}, 1, scene.add_material(material));
   scene.sky = sky;
   scene.camera = {{3, 4, 12}, {0, 0, 0}, {0, 1, 0}, 0.5f, 0, 13};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   return scene;
 }
 
@@ -112,7 +112,7 @@ TEST(DirectLight, FollowsTheFormFactors) {
 TEST(DirectLight, ComesFromTheSideOfTheNormalAlone) {
   SceneData scene = lit_floor();
   scene.add_quad({-1, 2, -1}, {0, 0, 2}, {2, 0, 0}, 1);  // faces up
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   expect_all(render(scene, image_options(8, 8, 16)).image, Color(0.0f), 0);
   scene.camera = {{0, 5, 0}, {0, 2, 0}, {0, 0, 1}, 5, 0, 3};
   expect_all(render(scene, image_options(8, 8, 4)).image, {3, 2, 1}, 1e-5);
@@ -127,7 +127,7 @@ TEST(DirectLight, IsStoppedByWhatLiesBetweenAndByNothingElse) {
     const float half = 0.6f * height;                      // just enough to hide the lamp
     scene.add_quad({-half, height, -half}, {2 * half, 0, 0}, {0, 0, 2 * half},
                    scene.add_material(make_diffuse(Color(0.0f))));
-    prepare_scene(scene, {});
+    prepare_scene(scene);
     const double mean = channel(render(scene, image_options(8, 8, 16)).image, 0).mean();
     const bool between = height > 0 && height < 2;
     EXPECT_EQ(mean == 0, between) << "at height " << height;

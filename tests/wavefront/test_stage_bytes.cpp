@@ -4,8 +4,8 @@
 #include <cstring>
 #include <set>
 
-#include "app/make_renderer.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "make_render.h"
 #include "wavefront/pool/stage_bytes.h"
 #include "wavefront/run_stage_cpu.h"
 

@@ -76,11 +76,11 @@ Notes<persistent> notes_of(const CompactionInfo& strategy, bool reuses_slots = t
   WaveCounters counters{};
   std::uint32_t slot_count = 0;
   WaveBuffers buffers;
-  buffers.compaction = strategy, buffers.orders_surfaces = orders;
+  buffers.policy.compaction = strategy, buffers.policy.orders_surfaces = orders;
   buffers.counters = &counters;
   buffers.slot_count = &slot_count;
   buffers.reuses_slots = reuses_slots;
-  buffers.fused = fused;
+  buffers.policy.fused = fused;
   buffers.pool.slot_count = few_slots;
   const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}, {}};
   Notes<persistent> notes;
@@ -106,10 +106,10 @@ struct OrderedWave {
 
   void run(bool orders) {
     WaveBuffers buffers;
-    buffers.compaction = compaction_info(Compaction::atomic);
+    buffers.policy.compaction = compaction_info(Compaction::atomic);
     buffers.counters = &counters, buffers.slot_count = &slot_count;
     buffers.queues[queue_index(StageId::shade_surface)] = queue;
-    buffers.orders_surfaces = orders;
+    buffers.policy.orders_surfaces = orders;
     buffers.ordered = ordered;
     const StageContext<PhiloxSource> context{{}, {}, {1}, &counters, nullptr, {}, {}};
     run_wave<TriangleScene, Branching::divergent>(notes, buffers, context);
@@ -165,10 +165,10 @@ TEST(WaveOrder, PersistentWarpsTakeFlightsToTheirEnds) {
         WaveCounters counters{};
         std::uint32_t slot_count = 0;
         WaveBuffers buffers;
-        buffers.compaction = strategy;
+        buffers.policy.compaction = strategy;
         buffers.counters = &counters, buffers.slot_count = &slot_count;
-        buffers.has_media = true, buffers.has_volumes = has_volumes;
-        buffers.wave_collisions = collisions;
+        buffers.policy.has_media = true, buffers.policy.has_volumes = has_volumes;
+        buffers.policy.wave_collisions = collisions;
         const StageContext<SamplerSource> context{{}, {}, {}, &counters, nullptr, {}, {}};
         Notes<true> notes;
         notes.here = false;
@@ -250,12 +250,13 @@ TEST(WaveOrder, TheLastPathsAreSentNowhere) {
 
 TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
   WaveBuffers buffers;
-  buffers.compaction = compaction_info(Compaction::atomic);
+  buffers.policy.compaction = compaction_info(Compaction::atomic);
   buffers.pool.slot_count = few_slots;
   const auto places_of = [&](bool fused, bool reuses_slots) {
-    buffers.fused = fused, buffers.reuses_slots = reuses_slots;
+    buffers.policy.fused = fused, buffers.reuses_slots = reuses_slots;
+    buffers.policy.parts.lights = !fused;
     std::uint64_t all = 0;
-    buffers.for_each_queue(true, [&](auto*&, std::uint64_t capacity) { all += capacity; });
+    buffers.for_each_queue([&](auto*&, std::uint64_t capacity) { all += capacity; });
     return all / few_slots;
   };
   EXPECT_EQ(places_of(false, true), 5u);
@@ -281,9 +282,9 @@ TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
 Notes<false> repeat_notes(bool fused) {
   WaveCounters counters{};
   WaveBuffers buffers;
-  buffers.compaction = compaction_info(Compaction::atomic);
+  buffers.policy.compaction = compaction_info(Compaction::atomic);
   buffers.counters = &counters;
-  buffers.fused = fused;
+  buffers.policy.fused = fused;
   const ChainRun chains{};
   const StageContext<SamplerSource> context{{}, {}, {}, &counters, nullptr, {}, {&chains}};
   Notes<false> notes;

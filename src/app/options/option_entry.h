@@ -29,8 +29,9 @@ OptionEntry number(std::string name, std::string placeholder, float Options::*fi
 OptionEntry custom(std::string name, OptionForm form, std::string placeholder, Set set,
                    Text get_text);
 
-template <typename E>
-OptionEntry choice(std::string name, E Options::*field) {
+/// `Settings`: Options, or the part of them that has the field.
+template <typename E, typename Settings>
+OptionEntry choice(std::string name, E Settings::*field) {
   OptionEntry entry{.name = name, .placeholder = joined_names<E>("|")};
   entry.set = [=](Options& options, const std::string& text) {
     options.*field = parse_name<E>(name, text);

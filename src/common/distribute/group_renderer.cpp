@@ -46,17 +46,17 @@ void add_stages(std::vector<StageTime>& stages, const std::vector<StageTime>& mo
 
 }  // namespace
 
-GroupRenderer::GroupRenderer(const Options& options, const PixelFilter& filter, Workers workers,
-                             std::shared_ptr<ResultBell> bell, GroupHooks hooks)
-    : options_(options),
-      plan_(film_plan_of(options, filter)),
+GroupRenderer::GroupRenderer(const ImageSettings& settings, const PixelFilter& filter,
+                             Workers workers, std::shared_ptr<ResultBell> bell, GroupHooks hooks)
+    : settings_(settings),
+      film_plan_(film_plan_of(settings, filter)),
       filter_(filter),
       bell_(std::move(bell)),
       hooks_(std::move(hooks)),
-      windows_{window_of(options)},
-      start_(window_of(options), plan_),
+      windows_{window_of(settings)},
+      start_(window_of(settings), film_plan_),
       film_(start_) {
-  if (options.integrator == IntegratorKind::mlt) {
+  if (settings.integrator == IntegratorKind::mlt) {
     throw Error(
         "--integrator mlt: its chains walk over the whole image, which is not divided; "
         "expected one device, without --checkpoint and --part");
@@ -79,12 +79,12 @@ RenderRun GroupRenderer::render(const RenderHooks& hooks) {
   } else {
     film_ = start_;
   }
-  return add_samples(static_cast<std::uint32_t>(options_.spp), hooks);
+  return add_samples(static_cast<std::uint32_t>(settings_.spp), hooks);
 }
 
 RenderRun GroupRenderer::render(Film& film, int samples, const RenderHooks& hooks) {
   const std::vector<Window> windows = std::exchange(windows_, {film.window});
-  film_ = ImageFilm(window_of(options_), plan_);
+  film_ = ImageFilm(window_of(settings_), film_plan_);
   film_.put(film);
   const RenderRun run = add_samples(film.next_sample + static_cast<std::uint32_t>(samples), hooks);
   film = film_.take(film.window);
@@ -271,14 +271,15 @@ void GroupRenderer::fail(Member& member, const std::string& error, UnitQueue& qu
 Image GroupRenderer::image() {
   const Window& window = film_.window;
   Image image = develop(film_, filter_);
-  image.place = {static_cast<int>(window.x), static_cast<int>(window.y), options_.width,
-                 options_.height};
+  image.place = {static_cast<int>(window.x), static_cast<int>(window.y), settings_.width,
+                 settings_.height};
   return image;
 }
 
 double GroupRenderer::estimate_error() const {
   const std::uint64_t pixels = film_.window.pixel_count();
-  return relative_error(PixelReader(film_, plan_, filter_, pixels), pixels, film_.least_samples());
+  return relative_error(PixelReader(film_, film_plan_, filter_, pixels), pixels,
+                        film_.least_samples());
 }
 
 // Memory is the sum over all devices, as are kernels' times; what else there is to tell is the

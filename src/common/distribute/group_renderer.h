@@ -32,7 +32,7 @@ class GroupRenderer : public Renderer {
 
   /// `scene` is prepared; its filter is needed alone. `bell` rings at results; null: workers are
   /// asked often.
-  GroupRenderer(const Options& options, const PixelFilter& filter, Workers workers,
+  GroupRenderer(const ImageSettings& settings, const PixelFilter& filter, Workers workers,
                 std::shared_ptr<ResultBell> bell, GroupHooks hooks = {});
 
   /// Renders begin with the samples of this film instead of none, and add the rest of
@@ -70,8 +70,8 @@ class GroupRenderer : public Renderer {
   double paths_per_s() const;
   double estimate_error() const;
 
-  const Options options_;
-  const FilmPlan plan_;
+  const ImageSettings settings_;
+  const FilmPlan film_plan_;
   const PixelFilter filter_;
   std::shared_ptr<ResultBell> bell_;
   GroupHooks hooks_;

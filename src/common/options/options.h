@@ -114,8 +114,8 @@ struct CropWindow {
   bool operator==(const CropWindow&) const = default;
 };
 
-struct Options {
-  // Image
+/// What is computed: with the scene, these settings determine the image.
+struct ImageSettings {
   int width = 600;   ///< pixels, 1..65535
   int height = 300;  ///< pixels, 1..65535
   IntegratorKind integrator = IntegratorKind::path;
@@ -123,36 +123,61 @@ struct Options {
   int max_depth = 50;  ///< rays per path, camera ray included, 1..65535
   int rr_depth = 0;    ///< rays after which Russian roulette begins, 0: never
   bool nee = true;     ///< next-event estimation: light sampling
-  LightSelection light_selection = LightSelection::automatic;
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
-  // Of IntegratorKind::mlt (docs/design/metropolis.md)
-  std::uint64_t chains = 0;              ///< Markov chains, 0: automatic
-  float large_step_probability = 0.05f;  ///< in (0, 1]
-  float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]
-  std::uint64_t bootstrap = 0;           ///< paths before the chains, 0: automatic
-  bool multiple_scattering = false;      ///< of rough conductors, between their facets
+  RngKind rng = RngKind::philox;
   std::uint64_t seed = 1;
-  std::string output = "image.exr";    ///< .exr, .png or .ppm
-  ExposureChoice exposure;             ///< for PNG and PPM only
-  std::optional<CropWindow> crop;      ///< none: the scene file's, or the whole image
-  std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel
-  std::uint32_t aovs = 0;              ///< a bit for each layer of aov.h, in its order
+  std::optional<CropWindow> crop;  ///< none: the scene file's, or the whole image
+  std::uint32_t aovs = 0;          ///< a bit for each layer of aov.h, in its order
 
   // Stops: the render ends with the first of them that is reached
   float time_limit = 0.0f;    ///< seconds of rendering, 0: none
   float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
 
-  /// Pools and samples take no more than the free memory / 2^this allows. No option of the command
+  // Only for IntegratorKind::mlt (docs/design/metropolis.md)
+  std::uint64_t chains = 0;              ///< Markov chains, 0: automatic
+  float large_step_probability = 0.05f;  ///< in (0, 1]
+  float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]
+  std::uint64_t bootstrap = 0;           ///< paths before the chains, 0: automatic
+};
+
+/// How it is executed, as far as the user alone decides: the plan takes these settings over. They
+/// do not change the image.
+struct ExecutionSettings {
+  int threads = 0;                               ///< CPU threads, 0: all
+  TreeBuilder builder = TreeBuilder::automatic;  ///< builds trees over triangles
+  Work work = Work::persistent;                  ///< megakernel
+  BlockSize block;                               ///< megakernel, threads per block
+  Branching branching = Branching::divergent;
+  Compaction compaction = Compaction::atomic;
+  std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
+  PoolLayout layout = PoolLayout::sectors;  ///< wavefront: layout of the paths' state
+  bool regenerate = true;
+  int wave_collisions = 0;  ///< Stages::split: null collisions of a flight in a wave, 0: all
+  int wave_rays = 2;        ///< Stages::fused: rays of a path in a wave, 1..65535
+  StageBlocks stage_block = default_stage_blocks();
+  /// Pools and samples take no more than the free memory / 2^this. Not an option of the command
   /// line: a device that has run out of memory is tried again with less.
   int memory_halvings = 0;
+};
 
-  DisplayAddress display;
-
-  // What is kept, and what is left to others
-  CheckpointChoice checkpoint;
-  PartChoice part;
+/// Everything that a user chooses.
+struct Options : ImageSettings, ExecutionSettings {
+  // Left to the plan where automatic (plan/execution_plan.h)
+  Mode mode = Mode::automatic;
+  DeviceChoice device;
+  AccelKind accel = AccelKind::automatic;
+  KernelSet kernel_set = KernelSet::automatic;        ///< those of the paper's scenes, or of all
+  MegakernelKind kernel = MegakernelKind::automatic;  ///< megakernel on CUDA
+  SceneMemory scene_memory = SceneMemory::automatic;  ///< constant for few spheres
+  LightSelection light_selection = LightSelection::automatic;
+  Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
+  SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
+  bool persistent = true;  ///< warps trace queues where they can (CUDA)
+  /// The last paths, so many, are followed to their ends at once, 0: none; absent: automatic.
+  std::optional<std::uint32_t> finish_paths;
+  Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
 
   // Scene
   std::string scene = "spheres";
@@ -163,35 +188,15 @@ struct Options {
   DefaultLighting default_lighting = DefaultLighting::automatic;  ///< of scene files
   bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
+  std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel
+  bool multiple_scattering = false;    ///< of rough conductors, between their facets
 
-  // Execution
-  Mode mode = Mode::automatic;
-  DeviceChoice device;
-  int threads = 0;  ///< CPU threads, 0: all
-  AccelKind accel = AccelKind::automatic;
-  TreeBuilder builder = TreeBuilder::automatic;       ///< of trees over triangles
-  KernelSet kernel_set = KernelSet::automatic;        ///< those of the paper's scenes, or of all
-  Work work = Work::persistent;                       ///< megakernel
-  MegakernelKind kernel = MegakernelKind::automatic;  ///< megakernel on CUDA
-  BlockSize block;                                    ///< megakernel, threads per block
-  Compaction compaction = Compaction::atomic;
-  std::uint64_t pool_size = 0;              ///< paths in flight, 0: automatic
-  PoolLayout layout = PoolLayout::sectors;  ///< wavefront: of the paths' state
-  bool regenerate = true;
-  bool persistent = true;  ///< warps trace queues where they can (CUDA)
-  SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
-  Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
-  int wave_collisions = 0;            ///< Stages::split: null ones of a flight in a wave, 0: all
-  int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
-  /// So many paths left are followed to their ends at once, 0: none; absent: automatic.
-  std::optional<std::uint32_t> finish_paths;
-  Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
-  StageBlocks stage_block = default_stage_blocks();
-
-  // The paper's toggles
-  SceneMemory scene_memory = SceneMemory::automatic;  ///< constant for few spheres
-  Branching branching = Branching::divergent;
-  RngKind rng = RngKind::philox;
+  // Output
+  std::string output = "image.exr";  ///< .exr, .png or .ppm
+  ExposureChoice exposure;           ///< for PNG and PPM only
+  DisplayAddress display;
+  CheckpointChoice checkpoint;
+  PartChoice part;  ///< what is rendered; the rest is left to others
 
   // Measurement
   int repeat = 1;          ///< measured renders, >= 1
@@ -199,7 +204,7 @@ struct Options {
   bool counters = false;   ///< read the hardware's counters, in renders of their own
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
-  bool explain = false;    ///< say how it would be rendered, and do not
+  bool explain = false;    ///< print the plan and exit
   bool quiet = false;
 };
 

@@ -39,7 +39,11 @@ constexpr const char* asked = "asked for";
 class Planner {
  public:
   Planner(const Options& options, const SceneProperties& scene, const DeviceProperties& device)
-      : o_(options), scene_(scene), device_(device) {}
+      : o_(options), scene_(scene), device_(device) {
+    static_cast<ImageSettings&>(plan_) = options;
+    static_cast<ExecutionSettings&>(plan_) = options;
+    if (!device.is_cuda) plan_.threads = device.threads;
+  }
 
   ExecutionPlan plan() {
     check_options_for_scene(o_, scene_);
@@ -50,7 +54,7 @@ class Planner {
     if (plan_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
     if (plan_.mode == Mode::wavefront) choose_waves();
-    if (!is_specialized() && scene_.emitters && o_.nee) choose_lights();
+    if (!is_specialized()) choose_lights();
     check_plan(plan_, o_, scene_, device_);
     return std::move(plan_);
   }
@@ -139,16 +143,14 @@ class Planner {
 
   void choose_structure() {
     if (scene_.structure) {
-      plan_.accel = *scene_.structure;
-      decide("accel", accel_name(plan_.accel), scene_.why_structure);
+      plan_.accel = *scene_.structure, plan_.why_accel = scene_.why_structure;
     } else if (o_.accel != AccelKind::automatic) {
-      plan_.accel = *known_structure();
-      decide("accel", accel_name(plan_.accel), asked);
+      plan_.accel = *known_structure(), plan_.why_accel = asked;
     } else {
-      std::string reason;
-      std::tie(plan_.accel, reason) = is_specialized() ? automatic_scan() : automatic_tree();
-      decide("accel", accel_name(plan_.accel), reason);
+      std::tie(plan_.accel, plan_.why_accel) =
+          is_specialized() ? automatic_scan() : automatic_tree();
     }
+    decide("accel", accel_name(plan_.accel), plan_.why_accel);
     // Masks have no code by vectors.
     const bool by_vectors = !device_.is_cuda && device_.has_avx2 && !scene_.has_masked_kernels();
     plan_.traversal = plan_.accel == Accel::cwbvh && by_vectors ? Accel::cwbvh_avx2 : plan_.accel;
@@ -324,12 +326,15 @@ class Planner {
   }
 
   void choose_lights() {
-    const LightSelection selection = choose_light_selection(o_.light_selection, *scene_.emitters);
-    decide("light-selection", to_string(selection),
-           o_.light_selection != LightSelection::automatic
-               ? asked
-               : fmt::format("{} of at least {} lights that a tree pays for", *scene_.emitters,
-                             few_emitters + 1));
+    using enum LightSelection;
+    const bool is_given = o_.light_selection != automatic;
+    const std::size_t emitters = scene_.emitters;
+    plan_.light_selection = is_given ? o_.light_selection : emitters > few_emitters ? tree : power;
+    if (!o_.nee) return;
+    decide("light-selection", to_string(plan_.light_selection),
+           is_given ? asked
+                    : fmt::format("{} light{}; a light tree pays off from {} lights on", emitters,
+                                  emitters == 1 ? "" : "s", few_emitters + 1));
   }
 
   const Options& o_;
@@ -339,11 +344,6 @@ class Planner {
 };
 
 }  // namespace
-
-LightSelection choose_light_selection(LightSelection wanted, std::size_t emitters) {
-  if (wanted != LightSelection::automatic) return wanted;
-  return emitters > few_emitters ? LightSelection::tree : LightSelection::power;
-}
 
 bool order_pays_for(std::uint32_t bsdf_kinds) {
   constexpr int few = 5;

@@ -1,5 +1,6 @@
-// How a render is executed: every choice that options leave open, made in one place by a pure
-// function of the options, the scene and the device. Renderers obey it, --explain prints it.
+// What is computed and how: every choice that options leave open, made in one place by a pure
+// function of the options, the scene and the device. Preparation and renderers obey the plan and
+// see no options; --explain prints it.
 #pragma once
 
 #include <string>
@@ -11,11 +12,14 @@
 
 namespace pt {
 
-struct ExecutionPlan {
+/// Nothing here is automatic but what ExecutionSettings leave to builder and memory.
+struct ExecutionPlan : ImageSettings, ExecutionSettings {
   Mode mode = Mode::wavefront;
-  KernelSet kernel_set = KernelSet::general;  ///< never automatic, like all others here
-  Accel accel = Accel::brute;                 ///< what the scene is built as
-  Accel traversal = Accel::brute;             ///< the code that traces it
+  KernelSet kernel_set = KernelSet::general;
+  Accel accel = Accel::brute;      ///< what the scene is built as
+  Accel traversal = Accel::brute;  ///< the code that traces it
+  std::string why_accel;
+  LightSelection light_selection = LightSelection::uniform;
   MegakernelKind megakernel = MegakernelKind::loop;
   SceneMemory scene_memory = SceneMemory::global;
   bool fused = false;             ///< wavefront: Stages::fused
@@ -28,13 +32,11 @@ struct ExecutionPlan {
   std::vector<Decision> decisions;   ///< in the order in which they were made
 };
 
-/// Throws Error where the scene or the device cannot have what the options ask for. What
-/// `scene.structure` says is built is not chosen again.
+/// Made before the scene's acceleration structure is built; for a scene that has one
+/// (SceneProperties::structure) that one is kept. Throws Error where the scene or the device cannot
+/// have what the options ask for.
 ExecutionPlan plan_execution(const Options& options, const SceneProperties& scene,
                              const DeviceProperties& device);
-
-/// How lights are chosen where there are so many emitters.
-LightSelection choose_light_selection(LightSelection wanted, std::size_t emitters);
 
 /// Whether the surfaces of scenes with these kinds of BSDFs (SceneProperties) are shaded faster in
 /// order: where warps would meet many, or one that is much longer than the others. Kernels for each

@@ -193,6 +193,9 @@ void check_options_for_scene(const Options& options, const SceneProperties& scen
   const std::string why = why_general(options, scene);
   if (options.kernel_set == KernelSet::specialized && !why.empty())
     throw Error(fmt::format("--kernel-set lean: not here, {}; expected auto or general", why));
+  if (options.counters && options.integrator == IntegratorKind::mlt)
+    throw Error(
+        "--counters with --integrator mlt: they are read of a path tracer's batch; expected path");
   for (const SceneRule& rule : rules) {
     const std::string value = rule.limited(options);
     if (value.empty() || rule.suits(scene, options)) continue;

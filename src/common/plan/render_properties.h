@@ -22,11 +22,11 @@ struct SceneProperties {
   bool has_emitters = false;         ///< surfaces that shine
   bool has_rough_conductors = false;
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
-  // Known when the scene has been prepared:
-  std::optional<Accel> structure;       ///< what was built
-  std::string why_structure;            ///< as its plan said
-  std::size_t scan_bytes = 0;           ///< of the spheres that CUDA scans
-  std::optional<std::size_t> emitters;  ///< lights that can be sampled
+  std::size_t emitters = 0;      ///< lights that can be sampled
+  std::size_t scan_bytes = 0;    ///< size of the spheres that CUDA scans
+  // Of a scene that has been built:
+  std::optional<Accel> structure;
+  std::string why_structure;  ///< as the plan said
 
   bool has_masked_kernels() const { return has_masks || has_media; }
   bool has_only_triangles() const { return spheres == 0 && instances == 0; }

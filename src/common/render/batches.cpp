@@ -15,15 +15,15 @@ constexpr double watched_batch_s = 0.2;
 
 }  // namespace
 
-Window window_of(const Options& options) {
-  const CropWindow crop = options.crop.value_or(CropWindow{0, 0, options.width, options.height});
+Window window_of(const ImageSettings& settings) {
+  const CropWindow crop = settings.crop.value_or(CropWindow{0, 0, settings.width, settings.height});
   return {static_cast<std::uint32_t>(crop.x0), static_cast<std::uint32_t>(crop.y0),
           static_cast<std::uint32_t>(crop.x1 - crop.x0),
           static_cast<std::uint32_t>(crop.y1 - crop.y0)};
 }
 
-std::uint64_t plan_batches(const Options& options, const FilmMemory& memory) {
-  const Window window = window_of(options);
+std::uint64_t plan_batches(const ImageSettings& settings, const FilmMemory& memory) {
+  const Window window = window_of(settings);
   const std::uint64_t pixels = window.pixel_count();
   const std::uint64_t film_bytes = pixels * memory.bytes_per_pixel;
   const std::uint64_t least = film_bytes + pixels * memory.bytes_per_path;
@@ -34,11 +34,11 @@ std::uint64_t plan_batches(const Options& options, const FilmMemory& memory) {
   }
   if (pixels >= paths_end) {
     throw Error(fmt::format("--width {} --height {}: expected fewer than 2^31 pixels",
-                            options.width, options.height));
+                            settings.width, settings.height));
   }
   const std::uint64_t room = std::max(memory.free_bytes / 2, least) - film_bytes;
   const std::uint64_t paths_max = std::min(memory.batch_paths_max, room / memory.bytes_per_path);
-  return pixels * static_cast<std::uint64_t>(batch_samples(options.spp, pixels, paths_max));
+  return pixels * static_cast<std::uint64_t>(batch_samples(settings.spp, pixels, paths_max));
 }
 
 int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max) {

@@ -42,10 +42,10 @@ class BatchPace {
 /// Paths of the largest batch, for which a sample buffer is made: half of the free memory is left
 /// to the path pool and to others. Throws Error when one sample per pixel does not fit, and for an
 /// image of 2^31 pixels or more.
-std::uint64_t plan_batches(const Options& options, const FilmMemory& memory);
+std::uint64_t plan_batches(const ImageSettings& settings, const FilmMemory& memory);
 
 /// The pixels that the options ask for: the crop window, or the whole image.
-Window window_of(const Options& options);
+Window window_of(const ImageSettings& settings);
 
 /// Samples per pixel of one batch: as many of `spp` as fit into `paths_max` paths, at least one.
 /// Batches are of equal size but for the last, and never exceed 2^31 - 1 paths.

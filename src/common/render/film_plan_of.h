@@ -7,8 +7,8 @@
 
 namespace pt {
 
-inline FilmPlan film_plan_of(const Options& options, const PixelFilter& filter) {
-  return {options.aovs, needs_moments(options.aovs) || options.target_error > 0.0f,
+inline FilmPlan film_plan_of(const ImageSettings& settings, const PixelFilter& filter) {
+  return {settings.aovs, needs_moments(settings.aovs) || settings.target_error > 0.0f,
           filter.has_negative()};
 }
 

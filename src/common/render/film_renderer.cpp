@@ -9,48 +9,43 @@
 #include "common/render/film_plan_of.h"
 
 namespace pt {
-namespace {
 
 // Features and signs are found from the numbers that begin a path, drawn a second time.
-void check_random(const Options& options, const FilmPlan& plan) {
-  if (options.rng == RngKind::philox) return;
-  if (plan.feature_planes() == 0 && !plan.two_signs) return;
+void check_film(const ImageSettings& settings, const SceneProperties& scene,
+                const PixelFilter& filter) {
+  check_metropolis(settings, scene, filter);
+  if (settings.rng == RngKind::philox) return;
+  const FilmPlan film = film_plan_of(settings, filter);
+  if (film.feature_planes() == 0 && !film.two_signs) return;
   throw Error(fmt::format(
       "--rng {}: its numbers cannot be drawn twice, which {} needs; expected "
       "--rng philox",
-      to_string(options.rng), plan.two_signs ? "a --filter with negative parts" : "--aov"));
+      to_string(settings.rng), film.two_signs ? "a --filter with negative parts" : "--aov"));
 }
 
-}  // namespace
-
-FilmRenderer::FilmRenderer(const Options& options, const SceneData& scene,
-                           const DeviceProperties& device)
-    : options_(options),
-      execution_(plan_execution(options, scene.properties, device)),
-      limits_(path_limits_of(options)),
-      plan_(film_plan_of(options, scene.filter)),
+FilmRenderer::FilmRenderer(const ExecutionPlan& plan, const SceneData& scene)
+    : plan_(plan),
+      limits_(path_limits_of(plan)),
+      film_plan_(film_plan_of(plan, scene.filter)),
       filter_(scene.filter),
-      image_window_(window_of(options)),
-      window_(image_window_) {
-  check_metropolis(options, scene.traits, filter_);
-  check_random(options, plan_);
-}
+      image_window_(window_of(plan)),
+      window_(image_window_) {}
 
 void FilmRenderer::describe_plan(RenderReport& report) const {
-  report.plan = execution_.decisions;
-  report.mode = to_string(execution_.mode);
-  if (execution_.mode != Mode::wavefront) return;
-  report.stages = to_string(execution_.fused ? Stages::fused : Stages::split);
-  report.finish_paths = execution_.finish_paths;
+  report.plan = plan_.decisions;
+  report.mode = to_string(plan_.mode);
+  if (plan_.mode != Mode::wavefront) return;
+  report.stages = to_string(plan_.fused ? Stages::fused : Stages::split);
+  report.finish_paths = plan_.finish_paths;
   if (report.device_kind == "cuda") {
-    report.schedule = to_string(execution_.uses_graph ? Schedule::graph : Schedule::host);
+    report.schedule = to_string(plan_.uses_graph ? Schedule::graph : Schedule::host);
   }
 }
 
 RenderRun FilmRenderer::render(const RenderHooks& hooks) {
   Film film;
   film.window = image_window_;
-  return start(film, options_.spp, hooks);
+  return start(film, plan_.spp, hooks);
 }
 
 RenderRun FilmRenderer::render(Film& film, int samples, const RenderHooks& hooks) {
@@ -83,8 +78,8 @@ void FilmRenderer::check(const Film& film, int samples) const {
     throw Error(
         fmt::format("a film of {}x{} pixels at {},{}: expected a part of the image of "
                     "{}x{} pixels{}",
-                    w.width, w.height, w.x, w.y, options_.width, options_.height,
-                    options_.crop ? ", within --crop" : ""));
+                    w.width, w.height, w.x, w.y, plan_.width, plan_.height,
+                    plan_.crop ? ", within --crop" : ""));
   }
   if (!film.is_empty() && !film.is_complete()) {
     throw Error(
@@ -92,7 +87,7 @@ void FilmRenderer::check(const Film& film, int samples) const {
                     "have them",
                     w.width, w.height));
   }
-  if (!film.is_empty() && !film.have(plan_, w.pixel_count())) {
+  if (!film.is_empty() && !film.have(film_plan_, w.pixel_count())) {
     throw Error(
         fmt::format("a film of {}x{} pixels: expected the planes that --aov, --filter and "
                     "--target-error ask for",
@@ -146,8 +141,7 @@ RenderRun FilmRenderer::add_mutations(const Film& film, int samples, const Rende
   begin_render(&film);
   Film result;
   result.window = film.window;
-  RenderRun run =
-      render_chains(chain_device(), chain_plan_, options_, samples, hooks, result, &pace_);
+  RenderRun run = render_chains(chain_device(), chain_plan_, plan_, samples, hooks, result, &pace_);
   end_render(run);
   Film traced;
   traced.window = film.window;
@@ -173,14 +167,13 @@ Image FilmRenderer::blank_image() const {
 }
 
 Image FilmRenderer::develop_window(const FilmSums& sums) const {
-  Image image = develop(sums, plan_, filter_, window_, pixel_samples_);
+  Image image = develop(sums, film_plan_, filter_, window_, pixel_samples_);
   image.place = place_of_window();
   return image;
 }
 
 ImagePlace FilmRenderer::place_of_window() const {
-  return {static_cast<int>(window_.x), static_cast<int>(window_.y), options_.width,
-          options_.height};
+  return {static_cast<int>(window_.x), static_cast<int>(window_.y), plan_.width, plan_.height};
 }
 
 Image FilmRenderer::image() {
@@ -195,7 +188,7 @@ double FilmRenderer::estimate_error() {
   film.window = window_;
   read_film(film);
   const std::uint64_t pixels = window_.pixel_count();
-  return relative_error(PixelReader(film, plan_, filter_, pixels), pixels, pixel_samples_);
+  return relative_error(PixelReader(film, film_plan_, filter_, pixels), pixels, pixel_samples_);
 }
 
 }  // namespace pt

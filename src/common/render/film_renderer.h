@@ -12,6 +12,11 @@
 
 namespace pt {
 
+/// Throws Error where the film's planes, its filter or the integrator need what the settings or the
+/// scene do not allow.
+void check_film(const ImageSettings& settings, const SceneProperties& scene,
+                const PixelFilter& filter);
+
 /// A device holds the film's pixels and counts while it renders, and after: `film` is the rest.
 class FilmRenderer : public Renderer {
  public:
@@ -21,25 +26,25 @@ class FilmRenderer : public Renderer {
   Image image() override;
 
  protected:
-  FilmRenderer(const Options& options, const SceneData& scene, const DeviceProperties& device);
+  FilmRenderer(const ExecutionPlan& plan, const SceneData& scene);
 
   /// To be called once, before a render: `make(paths)` makes a sample buffer for the largest batch.
   template <class Make>
   void make_samples(const FilmMemory& memory, const ChainDefaults& defaults, Make&& make) {
     if (has_chains()) {
-      chain_plan_ = plan_chains(options_, defaults, memory);
+      chain_plan_ = plan_chains(plan_, defaults, memory);
       batch_paths_ = chain_plan_.batch_paths();
     } else {
-      batch_paths_ = plan_batches(options_, memory);
+      batch_paths_ = plan_batches(plan_, memory);
     }
     pace_ = BatchPace(memory.first_paths);
     samples_ = make(batch_paths_);
   }
 
-  bool has_chains() const { return options_.integrator == IntegratorKind::mlt; }
+  bool has_chains() const { return plan_.integrator == IntegratorKind::mlt; }
   ChainLayout chain_layout() const {
-    return {chain_plan_, image_window_.pixel_count(), samples_, options_.seed,
-            mutation_size(options_.mutation_size)};
+    return {chain_plan_, image_window_.pixel_count(), samples_, plan_.seed,
+            mutation_size(plan_.mutation_size)};
   }
   /// With has_chains().
   virtual ChainDevice& chain_device() = 0;
@@ -82,10 +87,9 @@ class FilmRenderer : public Renderer {
   /// Fills in what the plan decided.
   void describe_plan(RenderReport& report) const;
 
-  const Options options_;
-  const ExecutionPlan execution_;
+  const ExecutionPlan plan_;
   const PathLimits limits_;
-  const FilmPlan plan_;       ///< what is summed
+  const FilmPlan film_plan_;  ///< what is summed
   const PixelFilter filter_;  ///< without its table
 
  private:

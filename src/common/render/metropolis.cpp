@@ -133,7 +133,7 @@ MetropolisStats statistics_of(const ChainStarts& starts, const ChainTally& tally
 
 /// Twice as many as mutations, within bounds. Where light is hard to find chains seldom leave the
 /// path at which they begin, so that many beginnings are worth more than many steps (results/).
-std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& defaults,
+std::uint64_t automatic_bootstrap(const ImageSettings& o, const ChainDefaults& defaults,
                                   std::uint64_t pixels, std::uint64_t free_bytes) {
   const std::uint64_t least = defaults.bootstrap;
   const std::uint64_t fitting =
@@ -145,7 +145,8 @@ std::uint64_t automatic_bootstrap(const Options& o, const ChainDefaults& default
 
 }  // namespace
 
-void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFilter& filter) {
+void check_metropolis(const ImageSettings& o, const SceneProperties& scene,
+                      const PixelFilter& filter) {
   if (o.integrator != IntegratorKind::mlt) return;
   if (o.rng != RngKind::philox) {
     refuse("--rng " + to_string(o.rng), "a chain's numbers have no state; expected --rng philox");
@@ -162,23 +163,23 @@ void check_metropolis(const Options& o, const SceneTraits& traits, const PixelFi
   if (o.aovs != 0) {
     refuse("--aov", "chains visit pixels by their light; render the layers with --integrator path");
   }
-  if (o.counters) refuse("--counters", "they are read of a path tracer's batch; expected path");
   if (filter.has_negative()) {
     refuse("--filter",
            "a filter with negative parts is no density; expected box, tent or gaussian");
   }
-  if (traits.has_media) {
+  if (scene.has_media) {
     refuse("a scene with media",
            "where a flight ends is no random number that a chain could keep; expected path");
   }
-  if (traits.has_masks) {
+  if (scene.has_masks) {
     refuse("a scene with masks, a far plane or hidden emitters",
            "whether a mask hides is no random number that a chain could keep; "
            "expected materials without an opacity between 0 and 1");
   }
 }
 
-ChainPlan plan_chains(const Options& o, const ChainDefaults& defaults, const FilmMemory& memory) {
+ChainPlan plan_chains(const ImageSettings& o, const ChainDefaults& defaults,
+                      const FilmMemory& memory) {
   const std::uint64_t pixels = window_of(o).pixel_count();
   ChainPlan plan;
   plan.blocks = std::min(used_blocks(static_cast<std::uint32_t>(o.max_depth)), stored_blocks_max);
@@ -239,7 +240,7 @@ ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t pa
   return starts;
 }
 
-RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Options& options,
+RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const ImageSettings& settings,
                         int samples, const RenderHooks& hooks, Film& film, BatchPace* pace) {
   const Window& w = film.window;
   const std::uint64_t pixels = w.pixel_count();
@@ -250,7 +251,7 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
 
   RenderRun run;
   MutationWeights weights;
-  weights.large_step_probability = static_cast<double>(options.large_step_probability);
+  weights.large_step_probability = static_cast<double>(settings.large_step_probability);
   weights.bootstrap_share =
       plan.bootstrap_is_timed
           ? timed_bootstrap_share
@@ -277,7 +278,7 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Option
   }
 
   Chains names;
-  names.seed = options.seed;
+  names.seed = settings.seed;
   const ChainStarts starts =
       choose_starts(device.sum_targets(bootstrap.paths(), run), bootstrap.paths(), chains,
                     names.decide(0, bootstrap_iteration).x);

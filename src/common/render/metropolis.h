@@ -4,6 +4,7 @@
 
 #include "common/film/film_data.h"
 #include "common/film/markov_chains.h"
+#include "common/plan/render_properties.h"
 #include "common/render/batches.h"
 
 namespace pt {
@@ -30,11 +31,12 @@ struct ChainDefaults {
 };
 
 /// Throws Error when the memory cannot hold what the options ask for.
-ChainPlan plan_chains(const Options& options, const ChainDefaults& defaults,
+ChainPlan plan_chains(const ImageSettings& settings, const ChainDefaults& defaults,
                       const FilmMemory& memory);
 
-/// Throws Error when the options ask for what chains cannot do, or the scene has masks.
-void check_metropolis(const Options& options, const SceneTraits& traits, const PixelFilter& filter);
+/// Throws Error when the settings ask for what chains cannot do, or the scene has masks or media.
+void check_metropolis(const ImageSettings& settings, const SceneProperties& scene,
+                      const PixelFilter& filter);
 
 /// What the chains added up.
 struct ChainSums {
@@ -91,7 +93,7 @@ class ChainDevice {
 /// which the device counts as it does all others. An interruption ends the bootstrap, and the
 /// chains take a step from what was found; where nothing was, the film is black and has no samples.
 /// `pace` limits turns.
-RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const Options& options,
+RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const ImageSettings& settings,
                         int samples, const RenderHooks& hooks, Film& film,
                         BatchPace* pace = nullptr);
 

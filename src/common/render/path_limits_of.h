@@ -6,9 +6,10 @@
 
 namespace pt {
 
-inline PathLimits path_limits_of(const Options& options) {
-  return {static_cast<std::uint32_t>(options.max_depth),
-          static_cast<std::uint32_t>(options.rr_depth), options.nee, options.sampling, options.mis};
+inline PathLimits path_limits_of(const ImageSettings& settings) {
+  return {static_cast<std::uint32_t>(settings.max_depth),
+          static_cast<std::uint32_t>(settings.rr_depth), settings.nee, settings.sampling,
+          settings.mis};
 }
 
 }  // namespace pt

@@ -61,7 +61,7 @@ struct PathPool {
 
   /// What a pool for these scenes has: `tags` for compaction over tags.
   struct Parts {
-    bool lights, instances, tags, receivers;
+    bool lights = false, instances = false, tags = false, receivers = false;
     PoolLayout layout = PoolLayout::soa;
     bool hits = true;  ///< false: none is stored
     bool media = false;

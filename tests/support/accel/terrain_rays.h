@@ -15,7 +15,7 @@ inline SceneData terrain_scene(std::vector<Mesh> meshes, std::vector<Instance> i
   scene.add_material(MaterialDescription());
   scene.camera.look_from = {-490, 175, 490};
   scene.camera.look_at = {0, 10, 0};
-  prepare_scene(scene, {});
+  prepare_scene(scene);
   return scene;
 }
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "app/make_renderer.h"
 #include "common/film/pixel_statistics.h"
 #include "common/image/codecs/image_io.h"
 #include "common/render/batches.h"
 #include "estimates.h"
+#include "make_render.h"
 #include "serial/serial.h"
 
 namespace pt {
@@ -77,7 +77,8 @@ inline Estimates render_estimates(const std::string& path,
   options.width = *defaults.width, options.height = *defaults.height, options.spp = *defaults.spp;
   options.max_depth = *defaults.max_depth, options.crop = defaults.crop, options.rr_depth = 0;
   options.filter = defaults.filter;
-  const auto renderer = make_serial_renderer(options, scene);
+  options.mode = Mode::serial;
+  const auto renderer = make_renderer(options, scene, choose_device(options.device));
 
   Film film;
   film.window = window_of(options);

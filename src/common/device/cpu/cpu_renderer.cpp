@@ -53,9 +53,9 @@ void StageTimer::add(const StageTimer& other, double share) {
 
 namespace {
 
-Scene seeded_view(const SceneData& scene, const Options& options) {
-  Scene view = host_view(scene, options.width, options.height);
-  view.mask_seed = mask_seed(options.seed);
+Scene seeded_view(const SceneData& scene, const ImageSettings& settings) {
+  Scene view = host_view(scene, settings.width, settings.height);
+  view.mask_seed = mask_seed(settings.seed);
   return view;
 }
 
@@ -66,19 +66,19 @@ SceneTraits traits_by(SceneTraits traits, const ExecutionPlan& plan) {
 
 }  // namespace
 
-CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int threads)
-    : FilmRenderer(options, scene, cpu_properties(cpu_threads(threads))),
-      traits_(traits_by(scene.traits, execution_)),
-      scene_(seeded_view(scene, options)),
-      threads_(cpu_threads(threads)),
+CpuRenderer::CpuRenderer(const ExecutionPlan& plan, const SceneData& scene)
+    : FilmRenderer(plan, scene),
+      traits_(traits_by(scene.traits, plan)),
+      scene_(seeded_view(scene, plan)),
+      threads_(cpu_threads(plan.mode == Mode::serial ? 1 : plan.threads)),
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
   use_huge_pages(scene);
-  const std::uint64_t state_bytes = options.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
+  const std::uint64_t state_bytes = plan.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);
-  make_samples({"memory", free_host_memory(), plan_.bytes_per_pixel() + image_bytes,
+  make_samples({"memory", free_host_memory(), film_plan_.bytes_per_pixel() + image_bytes,
                 sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
                {}, [&](std::uint64_t paths) {
                  sample_memory_.resize(paths);
@@ -86,8 +86,8 @@ CpuRenderer::CpuRenderer(const Options& options, const SceneData& scene, int thr
                  return sample_memory_.data();
                });
   const std::uint64_t pixels = image_window().pixel_count();
-  sums_.reset(plan_, pixels);
-  note_memory("film", pixels * plan_.bytes_per_pixel());
+  sums_.reset(film_plan_, pixels);
+  note_memory("film", pixels * film_plan_.bytes_per_pixel());
   note_memory("samples", sample_memory_.size() * sizeof(Sample));
   if (state_bytes > 0) note_memory("random states", states_.size() * state_bytes);
   if (has_chains()) {
@@ -112,7 +112,7 @@ bool CpuRenderer::set_camera(const Camera& camera) {
 
 void CpuRenderer::store_film(const Film& film) {
   if (film.is_empty()) {
-    sums_.reset(plan_, film.window.pixel_count());
+    sums_.reset(film_plan_, film.window.pixel_count());
   } else {
     sums_ = film;
   }
@@ -141,7 +141,7 @@ bool CpuRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
   time_in_arena(run, [&] {
     is_whole = trace_whole(batch, cancel);
     if (!is_whole) return;
-    if (plan_.feature_planes() > 0) {
+    if (film_plan_.feature_planes() > 0) {
       timer_.time(to_string(StageId::features), [&] { accumulate_features(batch); });
     }
     timer_.time("accumulate", [&] { accumulate(batch); });
@@ -161,7 +161,7 @@ void CpuRenderer::read_film(Film& film) {
 
 void CpuRenderer::init_random_states(const SampleBuffer& batch) {
   tbb::parallel_for(std::uint32_t{0}, batch.path_count, [&](std::uint32_t i) {
-    xorwow_init(xorwow_seed(options_.seed, batch.id_of(i)), states_[i]);
+    xorwow_init(xorwow_seed(plan_.seed, batch.id_of(i)), states_[i]);
   });
 }
 
@@ -180,19 +180,22 @@ void CpuRenderer::count_paths(const SampleBuffer& batch) {
 }
 
 FilmView CpuRenderer::film_view() {
-  return {sums_.pixels.data(),    plan_.moments ? sums_.moments.data() : nullptr,
-          sums_.features.data(),  plan_.aovs,
-          plan_.feature_planes(), plan_.two_signs,
+  return {sums_.pixels.data(),
+          film_plan_.moments ? sums_.moments.data() : nullptr,
+          sums_.features.data(),
+          film_plan_.aovs,
+          film_plan_.feature_planes(),
+          film_plan_.two_signs,
           first_sample_};
 }
 
 void CpuRenderer::accumulate(const SampleBuffer& batch) {
   const FilmView film = film_view();
-  if (plan_.is_radiance_alone()) {
+  if (film_plan_.is_radiance_alone()) {
     accumulate_with(batch, [&](std::uint32_t i) { return RadianceSum(film.pixels, i); });
     return;
   }
-  const SamplerSource source = sampler_source_of(options_);
+  const SamplerSource source = sampler_source_of(plan_);
   accumulate_with(batch, [&](std::uint32_t i) {
     return PixelPlanes<SamplerSource>(film, batch, scene_.filter, source, i);
   });
@@ -215,7 +218,7 @@ void CpuRenderer::accumulate_with(const SampleBuffer& batch, MakeSum&& make_sum)
 
 void CpuRenderer::accumulate_features(const SampleBuffer& batch) {
   const FilmView film = film_view();
-  const SamplerSource source = sampler_source_of(options_);
+  const SamplerSource source = sampler_source_of(plan_);
   dispatch_traits(CpuSceneKinds{}, traits_, [&](auto traits) {
     tbb::parallel_for(std::uint32_t{0}, batch.pixel_count.divisor(), [&](std::uint32_t i) {
       pt::accumulate_features<decltype(traits)>(film, batch, scene_, source, i);

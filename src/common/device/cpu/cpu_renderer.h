@@ -37,9 +37,9 @@ class StageTimer {
 
 class CpuRenderer : public FilmRenderer {
  public:
-  /// `threads`: 0 for all. `scene` must outlive the renderer. Throws Error when the machine's
-  /// memory cannot hold the film.
-  CpuRenderer(const Options& options, const SceneData& scene, int threads);
+  /// `scene` must outlive the renderer. Throws Error when the machine's memory cannot hold the
+  /// film.
+  CpuRenderer(const ExecutionPlan& plan, const SceneData& scene);
 
   Image image() override;  ///< without a copy of the film
   bool set_camera(const Camera& camera) override;
@@ -52,11 +52,11 @@ class CpuRenderer : public FilmRenderer {
   /// Calls function(source) with the options' random source, its states initialised for `batch`.
   template <class Function>
   void with_random_source(const SampleBuffer& batch, Function&& function) {
-    if (options_.rng == RngKind::xorwow) {
+    if (plan_.rng == RngKind::xorwow) {
       timer_.time("render_init", [&] { init_random_states(batch); });
     }
     const Chains* const chains = chains_ == nullptr ? nullptr : chains_->numbers();
-    pt::with_random_source(options_, traits_, states_.data(), chains, function);
+    pt::with_random_source(plan_, traits_, states_.data(), chains, function);
   }
 
   /// Whether the batch is to be abandoned: no path more needs to be traced.

@@ -26,7 +26,7 @@ struct CurandState;
 class CudaRenderer : public FilmRenderer, protected CudaLauncher {
  public:
   /// Throws Error when the scene, the film or the options do not fit the device.
-  CudaRenderer(const Options& options, const SceneData& scene, int device);
+  CudaRenderer(const ExecutionPlan& plan, const SceneData& scene, int device);
   ~CudaRenderer() override;
 
   Image image() override;
@@ -48,10 +48,10 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   /// Calls function(storage, shared_bytes) with the scene where --scene-memory wants its spheres.
   template <class Function>
   void with_scene_storage(Function&& function) const {
-    if (execution_.scene_memory == SceneMemory::shared) {
+    if (plan_.scene_memory == SceneMemory::shared) {
       function(SceneStorage<SceneMemory::shared>{scene_},
                half_spheres_.size() * sizeof(HalfSpheres));
-    } else if (execution_.scene_memory == SceneMemory::constant) {
+    } else if (plan_.scene_memory == SceneMemory::constant) {
       SceneStorage<SceneMemory::constant> storage{scene_, {}};
       std::copy(half_spheres_.begin(), half_spheres_.end(), storage.spheres);
       function(storage, std::size_t{0});
@@ -64,7 +64,7 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   template <class Function>
   void with_random_source(Function&& function) const {
     const Chains* const chains = chains_ == nullptr ? nullptr : chains_->numbers();
-    pt::with_random_source(options_, traits_, states_, chains, function);
+    pt::with_random_source(plan_, traits_, states_, chains, function);
   }
 
   const SceneTraits traits_;
@@ -90,7 +90,9 @@ class CudaRenderer : public FilmRenderer, protected CudaLauncher {
   void for_each_film_array(SomeFilm& film, Function&& function) const;
   void accumulate(const SampleBuffer& batch);
   /// Whether the image is nothing but the film's means, so that the device can make it.
-  bool develops_here() const { return plan_.aovs == 0 && !plan_.two_signs && !has_chains(); }
+  bool develops_here() const {
+    return film_plan_.aovs == 0 && !film_plan_.two_signs && !has_chains();
+  }
   void develop_into(float* rgb);
   PathTally read_tally() const;
   std::vector<LaneHistogram> read_lane_counts() const;

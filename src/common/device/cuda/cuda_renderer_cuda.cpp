@@ -30,8 +30,8 @@ constexpr std::uint64_t first_paths = std::uint64_t{1} << 24;  // of a scene of 
 
 }  // namespace
 
-CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int device)
-    : FilmRenderer(options, scene, plan_properties(read_properties(device))),
+CudaRenderer::CudaRenderer(const ExecutionPlan& plan, const SceneData& scene, int device)
+    : FilmRenderer(plan, scene),
       CudaLauncher(device),
       traits_(scene.traits),
       primitive_count_(scene.primitive_count()),
@@ -56,8 +56,8 @@ CudaRenderer::CudaRenderer(const Options& options, const SceneData& scene, int d
 CudaRenderer::~CudaRenderer() = default;
 
 void CudaRenderer::upload(const SceneData& scene) {
-  scene_ = host_view(scene, options_.width, options_.height);
-  scene_.mask_seed = mask_seed(options_.seed);
+  scene_ = host_view(scene, plan_.width, plan_.height);
+  scene_.mask_seed = mask_seed(plan_.seed);
   if constexpr (counts_lanes) {
     lane_counts_ = memory_.allocate<LaneCounts>("lane counts", 1);
     set_lanes(scene_, LaneCounter(lane_counts_));
@@ -66,9 +66,9 @@ void CudaRenderer::upload(const SceneData& scene) {
     pointer = memory_.upload(kind, values);
   };
   for_each_array(scene, scene_, upload_array);
-  if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(options_.builder)) {
+  if (traits_.geometry != Geometry::spheres_and_quads && is_device_builder(plan_.builder)) {
     const DeviceTriangleTree built = build_device_triangle_tree(
-        scene.meshes, scene.instances, tree_options(traits_.accel, options_.builder), memory_);
+        scene.meshes, scene.instances, tree_options(traits_.accel, plan_.builder), memory_);
     scene_.triangles = built.view;
     tree_facts_ = tree_facts(built.summary, scene.triangle_count());
   } else {
@@ -77,21 +77,21 @@ void CudaRenderer::upload(const SceneData& scene) {
 }
 
 void CudaRenderer::allocate_planes(std::uint64_t pixels) {
-  const std::uint64_t count = plan_.signs() * pixels;
-  film_.aovs = plan_.aovs;
-  film_.planes = plan_.feature_planes();
-  film_.two_signs = plan_.two_signs;
+  const std::uint64_t count = film_plan_.signs() * pixels;
+  film_.aovs = film_plan_.aovs;
+  film_.planes = film_plan_.feature_planes();
+  film_.two_signs = film_plan_.two_signs;
   film_.pixels = memory_.allocate<FilmPixel>("film", count);
-  if (plan_.moments) film_.moments = memory_.allocate<PixelMoments>("film", count);
+  if (film_plan_.moments) film_.moments = memory_.allocate<PixelMoments>("film", count);
   if (film_.planes > 0) film_.features = memory_.allocate<double>("film", count * film_.planes);
 }
 
 void CudaRenderer::allocate_film() {
   const std::uint64_t pixels = image_window().pixel_count();
-  const std::uint64_t state_bytes = options_.rng == RngKind::xorwow ? random_state_bytes() : 0;
+  const std::uint64_t state_bytes = plan_.rng == RngKind::xorwow ? random_state_bytes() : 0;
   make_samples(
-      {"device memory", CudaMemory::free_bytes() >> options_.memory_halvings,
-       plan_.bytes_per_pixel(), sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
+      {"device memory", CudaMemory::free_bytes() >> plan_.memory_halvings,
+       film_plan_.bytes_per_pixel(), sizeof(Sample) + state_bytes, batch_paths_max, first_paths},
       CudaChains::defaults(properties_), [&](std::uint64_t paths) {
         allocate_planes(pixels);
         Sample* samples = memory_.allocate<Sample>("samples", paths);
@@ -110,7 +110,7 @@ void CudaRenderer::allocate_film() {
 HardwareCounters CudaRenderer::count_hardware() {
   check_cuda(cudaSetDevice(device()), "cudaSetDevice");
   const std::uint64_t pixels = image_window().pixel_count();
-  const int count = batch_samples(options_.spp, pixels, batch_paths());
+  const int count = batch_samples(plan_.spp, pixels, batch_paths());
   const SampleBuffer batch{samples(), image_window(), 0, static_cast<std::uint32_t>(count)};
   Film film;
   film.window = image_window();
@@ -134,9 +134,9 @@ bool CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
   const ProfilerRange range(fmt::format("batch of {} paths", batch.path_count));
   prepare_batch(batch);
   time_batch(run, [&] {
-    if (options_.rng == RngKind::xorwow) {
+    if (plan_.rng == RngKind::xorwow) {
       launch("render_init", render_init, (batch.path_count + block - 1) / block, block, 0, states_,
-             batch, options_.seed, clock());
+             batch, plan_.seed, clock());
     }
     trace_batch(batch);
     set_wave(-1);
@@ -146,9 +146,9 @@ bool CudaRenderer::render_batch(const SampleBuffer& batch, RenderRun& run,
 }
 
 void CudaRenderer::accumulate(const SampleBuffer& batch) {
-  const int block = options_.stage_block[static_cast<int>(StageId::accumulate)];
+  const int block = plan_.stage_block[static_cast<int>(StageId::accumulate)];
   const int grid = (batch.pixel_count.divisor() + block - 1) / block;
-  const SamplerSource source = sampler_source_of(options_);
+  const SamplerSource source = sampler_source_of(plan_);
   if (film_.features != nullptr) {
     constexpr int feature_block = 128;
     Scene scene = scene_;
@@ -157,7 +157,7 @@ void CudaRenderer::accumulate(const SampleBuffer& batch) {
            (batch.pixel_count.divisor() + feature_block - 1) / feature_block, feature_block, 0,
            scene, film_, batch, source, clock());
   }
-  if (plan_.is_radiance_alone()) {
+  if (film_plan_.is_radiance_alone()) {
     launch("accumulate", accumulate_film, grid, block, 0, film_.pixels, batch, tally_, clock());
   } else {
     launch("accumulate", accumulate_planes, grid, block, 0, film_, batch, scene_.filter, source,
@@ -190,9 +190,9 @@ void CudaRenderer::load_kernels() {
 /// function(device's array, film's array, planes of both) for those that the film has.
 template <class SomeFilm, class Function>
 void CudaRenderer::for_each_film_array(SomeFilm& film, Function&& function) const {
-  const std::uint64_t signs = plan_.signs();
+  const std::uint64_t signs = film_plan_.signs();
   function(film_.pixels, film.pixels, signs);
-  if (plan_.moments) function(film_.moments, film.moments, signs);
+  if (film_plan_.moments) function(film_.moments, film.moments, signs);
   if (film_.planes > 0) function(film_.features, film.features, signs * film_.planes);
 }
 

@@ -52,7 +52,6 @@ struct LightListData {
   std::vector<Light> lights;
   std::vector<AliasEntry> selection;
   LightTreeData tree;                               ///< empty unless lights are chosen by it
-  std::size_t emitters = 0;                         ///< that give any light
   std::uint32_t sun = 0;                            ///< its index
   std::uint32_t table_first = 0;                    ///< see LightSelector
   std::vector<std::uint32_t> first, rank, spheres;  ///< see LightMap

@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "common/error/error.h"
 #include "common/light/lights.h"
-#include "common/plan/execution_plan.h"
 #include "common/scene/prepare/light_errors.h"
 
 namespace pt {
@@ -35,8 +36,6 @@ class Lister {
       if (!has_position(light.kind)) add_delta(light);
     }
     if (scene_.sun.one_minus_cos > 0.0f) add_sun();
-    data_.emitters = emitter_count_;
-    selection_ = choose_light_selection(selection_, emitter_count_);
     if (selection_ == LightSelection::tree) data_.tree = build_light_tree(data_.lights);
     if (data_.tree.pairs.empty()) {
       make_table(0);
@@ -206,6 +205,37 @@ class Lister {
 
 LightListData list_lights(const SceneData& scene, const Bounds& bounds, LightSelection selection) {
   return Lister(scene, bounds, selection).list();
+}
+
+std::size_t emitter_count(const SceneData& scene) {
+  const auto emits = [&](std::uint32_t material, float area) {
+    const MaterialDescription& m = scene.materials[material];
+    return m.opacity.is_opaque() &&
+           emitter_weight(m.emission.radiance, area, m.emission.texture_mean) > 0;
+  };
+  std::map<std::uint32_t, std::size_t> meshes;  // that emit, by group
+  for (const Mesh& mesh : scene.meshes) {
+    if (!emits(mesh.material, 1)) continue;
+    meshes[mesh.group] += std::ranges::any_of(mesh.triangles, [&](const TriangleIndices& t) {
+      const Vec3& a = mesh.positions[t.v[0]];
+      const Vec3 normal = glm::cross(mesh.positions[t.v[1]] - a, mesh.positions[t.v[2]] - a);
+      return emits(mesh.material, 0.5f * glm::length(normal));
+    });
+  }
+  std::size_t count = meshes[0];
+  for (const Instance& instance : scene.instances) count += meshes[instance.group];
+  std::set<std::uint32_t> quads;  // those of a material become one mesh
+  for (std::size_t i = 0; i < scene.quads.size(); ++i) {
+    const Quad& quad = scene.quads[i];
+    if (emits(scene.quad_material[i], glm::length(glm::cross(quad.edge_a, quad.edge_b))))
+      quads.insert(scene.quad_material[i]);
+  }
+  count += quads.size();
+  for (std::size_t i = 0; i < scene.spheres.size(); ++i)
+    count += !is_black(scene.materials[scene.sphere_material[i]].emission.radiance) &&
+             scene.spheres[i].radius_squared > 0;
+  for (const DeltaLight& light : scene.delta_lights) count += make_light(light, 1.0f).weight > 0;
+  return count + (scene.sun.one_minus_cos > 0.0f && luminance(scene.sun.radiance) > 0);
 }
 
 }  // namespace pt

@@ -38,7 +38,7 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
   return scene.camera.orthographic == was_orthographic && is_limited(scene.camera) == was_limited;
 }
 
-void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device) {
+void resolve_scene(SceneData& scene, const Options& options) {
   if (scene.primitive_count() == 0 && scene.triangle_count() == 0) {
     throw Error(fmt::format("scene '{}' is empty: expected at least one primitive", scene.name));
   }
@@ -47,25 +47,24 @@ void prepare_scene(SceneData& scene, const Options& options, const DevicePropert
   prepare_media(scene);
   prepare_filter(scene, filter_of(options, scene));
   scene.properties = properties_of(scene);
-  const ExecutionPlan plan = plan_execution(options, scene.properties, device);
+}
+
+void prepare_scene(SceneData& scene, const ExecutionPlan& plan) {
   if (plan.kernel_set == KernelSet::specialized) {
     prepare_primitives_only(scene, plan.accel);
   } else {
-    prepare_triangles(scene, options, plan.accel);
-    scene.properties.emitters = scene.light_list.emitters;
+    prepare_triangles(scene, plan);
   }
   scene.properties.structure = plan.accel;
-  for (const Decision& d : plan.decisions) {
-    if (d.option == "accel") scene.properties.why_structure = d.reason;
-  }
-  scene.properties.scan_bytes = scene.half_spheres.size() * sizeof(HalfSpheres);
+  scene.properties.why_structure = plan.why_accel;
 }
 
 void prepare_scene(SceneData& scene, const Options& options) {
   DeviceProperties device = cpu_properties(options.threads);
   device.is_cuda = is_on_cuda(options);
   device.has_ray_blocks = device.has_ray_blocks && !device.is_cuda;
-  prepare_scene(scene, options, device);
+  resolve_scene(scene, options);
+  prepare_scene(scene, plan_execution(options, scene.properties, device));
 }
 
 Scene host_view(const SceneData& scene, int width, int height) {

@@ -1,4 +1,5 @@
-// From what a loader or generator made to what a renderer takes.
+// From what a loader or generator made to what a renderer takes: resolve_scene, then a plan
+// (plan/execution_plan.h), then prepare_scene.
 #pragma once
 
 #include "common/plan/execution_plan.h"
@@ -6,19 +7,22 @@
 
 namespace pt {
 
-/// Applies the options' camera overrides, chooses the kind of scene and its acceleration structure,
-/// builds it (unless --builder leaves the triangles' tree to the device), lists the lights. Throws
-/// Error for a camera or a scene that cannot be rendered and for options that it cannot have.
-/// Its structure is what a plan for this device says (plan/execution_plan.h).
-void prepare_scene(SceneData& scene, const Options& options, const DeviceProperties& device);
+/// Applies what the options say of the scene (camera, filter, multiple scattering), packs materials
+/// and media, and fills in SceneData::properties, on which a plan depends. Throws Error for an
+/// empty scene and for a camera, a medium or a material that cannot be rendered.
+void resolve_scene(SceneData& scene, const Options& options);
 
-/// Of a scene that is prepared: gives it this camera, by these options. False: the scene has to be
-/// prepared anew, since its structure was chosen for cameras of another kind; it is of no use then.
-/// Throws Error as prepare_scene does.
+/// Builds a resolved scene's acceleration structure (unless the plan's builder runs on the device)
+/// and lists its lights. Throws Error for what cannot be built.
+void prepare_scene(SceneData& scene, const ExecutionPlan& plan);
+
+/// Both, with a plan for the kind of device that the options name, of the usual properties.
+void prepare_scene(SceneData& scene, const Options& options = {});
+
+/// Gives a prepared scene this camera, by these options. Returns false where the scene has to be
+/// resolved and prepared anew, since its structure was chosen for cameras of another kind; it is of
+/// no use then. Throws Error as resolve_scene does.
 bool move_camera(SceneData& scene, const CameraParameters& camera, const Options& options);
-
-/// For the kind of device that the options name, of the usual properties.
-void prepare_scene(SceneData& scene, const Options& options);
 
 /// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
 Scene host_view(const SceneData& scene, int width, int height);

@@ -52,7 +52,8 @@ TreeOptions tree_options(Accel accel, TreeBuilder builder) {
   return options;
 }
 
-void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
+void prepare_triangles(SceneData& scene, const ExecutionPlan& plan) {
+  const Accel accel = plan.accel;
   convert_quads(scene);
   if (!scene.media.empty()) separate_boundaries(scene);
   const Bounds bounds = scene_bounds(scene);
@@ -63,8 +64,8 @@ void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
                      accel == Accel::brute || accel == Accel::embree;
   scene.traits = {accel, mixed ? Geometry::mixed : Geometry::triangles, Lighting::full, masked,
                   needs_media(scene)};
-  const TreeOptions tree = tree_options(accel, options.builder);
-  if (is_device_builder(options.builder)) {
+  const TreeOptions tree = tree_options(accel, plan.builder);
+  if (is_device_builder(plan.builder)) {
     check_geometry(scene.meshes, scene.instances);
   } else {
     scene.tree = build_triangle_tree(scene.meshes, scene.instances, tree);
@@ -72,7 +73,7 @@ void prepare_triangles(SceneData& scene, const Options& options, Accel accel) {
   }
   scene.corners = list_corners(scene.meshes);
   if (!scene.instances.empty()) scene.to_world = instance_transforms(scene);
-  scene.light_list = list_lights(scene, bounds, options.light_selection);
+  scene.light_list = list_lights(scene, bounds, plan.light_selection);
   if (scene.environment.width > 0) {
     scene.environment_map = make_environment(scene.environment.width, scene.environment.height,
                                              scene.environment.pixels, scene.environment.to_world);

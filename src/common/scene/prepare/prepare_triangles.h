@@ -2,15 +2,15 @@
 #pragma once
 
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/options/options.h"
+#include "common/plan/execution_plan.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {
 
-/// Turns quads into triangles, builds the structure `accel` over them, collects the vertices'
+/// Turns quads into triangles, builds the plan's structure over them, collects the vertices'
 /// attributes, the lights, the environment, and sets the traits. Throws Error for what cannot be
 /// built.
-void prepare_triangles(SceneData& scene, const Options& options, Accel accel);
+void prepare_triangles(SceneData& scene, const ExecutionPlan& plan);
 
 /// What tree is to be built for a structure, on either device. Embree, which builds its own, wants
 /// the triangles alone.

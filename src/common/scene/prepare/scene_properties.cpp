@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/geometry/half_spheres.h"
+#include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
@@ -42,6 +44,9 @@ SceneProperties properties_of(const SceneData& scene) {
       scene.material_records, [](const Material& m) { return m.emission != no_emission; });
   properties.has_rough_conductors = std::ranges::any_of(scene.materials, is_rough_conductor);
   properties.bsdf_kinds = kinds_of(scene);
+  properties.emitters = emitter_count(scene);
+  constexpr std::size_t group = HalfSpheres::count;
+  properties.scan_bytes = (scene.spheres.size() + group - 1) / group * sizeof(HalfSpheres);
   return properties;
 }
 

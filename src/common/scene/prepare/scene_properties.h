@@ -5,8 +5,8 @@
 
 namespace pt {
 
-/// Of a scene whose materials are prepared (prepare_materials.h). `structure`, `scan_bytes` and
-/// `emitters` are for prepare_scene() to fill in.
+/// The properties of a scene whose materials and media are prepared. `structure` is for
+/// prepare_scene() to fill in.
 SceneProperties properties_of(const SceneData& scene);
 
 /// Whether the scene has nothing that the paper's have not.
