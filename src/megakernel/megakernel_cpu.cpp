@@ -31,7 +31,7 @@ class PathRange {
     if (!wanted) return true;
     for (; next_ < end_; advance()) {
       path_index = next_;
-      if (!supply_.repeats()) {
+      if (!supply_.has_chains()) {
         if (cancelled_()) return false;
         advance();
         return true;
@@ -70,7 +70,8 @@ class MegakernelCpu : public CpuRenderer {
               timer_.time("megakernel", [&] {
                 divide(batch, [&](std::uint32_t first, std::uint32_t end, std::uint32_t step) {
                   PathRange work(supply(), batch, first, end, step, cancelled);
-                  trace_paths<decltype(traits), branching()>(scene_, source, batch, limits_, work);
+                  trace_paths<decltype(traits), branching()>(scene_, source, batch, path_settings_,
+                                                             work);
                 });
               });
             });

@@ -21,7 +21,7 @@ void MegakernelCuda::trace_batch(const SampleBuffer& batch) {
     if constexpr (std::is_same_v<Source, SamplerSource>) {
       if (plan_.megakernel == MegakernelKind::vote) return launch_phase_voting(source, batch);
       if (blocks_ != nullptr)
-        return blocks_->trace(scene_, batch, source, limits_, StageId::megakernel);
+        return blocks_->trace(scene_, batch, source, path_settings_, StageId::megakernel);
       launch_megakernel(in_global, 0, source, batch);
     } else {
       if constexpr (std::is_same_v<Source, PhiloxSource>) {

@@ -81,11 +81,11 @@ __global__ void __launch_bounds__(1024)
     megakernel(const __grid_constant__ SceneStorage<memory> storage,
                const __grid_constant__ SampleBuffer batch,
                const __grid_constant__ WorkDivision division, Source source,
-               const __grid_constant__ PathLimits limits, StageClock* clock) {
+               const __grid_constant__ PathSettings settings, StageClock* clock) {
   stamp_first_thread(clock, StageId::megakernel);
   const Scene& scene = storage.bind();
   ThreadWork work(division, batch);
-  trace_paths<Traits, branching>(scene, source, batch, limits, work);
+  trace_paths<Traits, branching>(scene, source, batch, settings, work);
 }
 
 }  // namespace pt

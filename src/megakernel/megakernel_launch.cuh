@@ -32,7 +32,7 @@ void MegakernelCuda::launch_megakernel(const SceneStorage<memory>& storage,
         plan_.branching, [&](auto branching) {
           constexpr auto kernel = megakernel<Kind, decltype(branching)::value, memory, Source>;
           launch("megakernel", kernel, grid_size(kernel, block, shared_bytes, batch), block,
-                 shared_bytes, storage, batch, division, source, limits_, clock());
+                 shared_bytes, storage, batch, division, source, path_settings_, clock());
         });
   });
 }

@@ -10,7 +10,7 @@ using PhaseVotingTraits = Traits<Accel::cwbvh, Geometry::triangles, Lighting::fu
 
 constexpr int blocks_least = 3;  // 80 registers for a thread
 
-/// Of a block with so many threads.
+/// The shared memory of a block with this many threads.
 constexpr std::size_t shared_bytes_of(int threads) {
   return sizeof(SlotOrder) + static_cast<std::size_t>(threads) / 32 * sizeof(PhaseVotingWarp);
 }
@@ -20,7 +20,7 @@ __global__ void __launch_bounds__(phase_voting_threads_max, blocks_least)
                             const __grid_constant__ SampleBuffer batch,
                             const __grid_constant__ WorkDivision division,
                             const __grid_constant__ SamplerSource source,
-                            const __grid_constant__ PathLimits limits, StageClock* clock) {
+                            const __grid_constant__ PathSettings settings, StageClock* clock) {
   extern __shared__ uint4 phase_voting_memory[];
   static_assert(sizeof(SlotOrder) % sizeof(uint4) == 0);
   SlotOrder& order = *reinterpret_cast<SlotOrder*>(phase_voting_memory);
@@ -32,7 +32,8 @@ __global__ void __launch_bounds__(phase_voting_threads_max, blocks_least)
   ThreadWork work(division, batch);
   uint2 stack[phase_voting_stack_size];
   PhaseVotingTracer<PhaseVotingTraits, SamplerSource, ThreadWork> tracer(
-      scene, source, batch, limits, work, order, warps[threadIdx.x / 32], threadIdx.x % 32, stack);
+      scene, source, batch, settings, work, order, warps[threadIdx.x / 32], threadIdx.x % 32,
+      stack);
   tracer.run();
 }
 
@@ -45,7 +46,7 @@ void MegakernelCuda::launch_phase_voting(const SamplerSource& source, const Samp
   const std::uint32_t blocks = resident_blocks(
       reinterpret_cast<const void*>(phase_voting_megakernel), threads, shared_bytes);
   launch("megakernel", phase_voting_megakernel, blocks, threads, shared_bytes, scene_, batch,
-         division, source, limits_, clock());
+         division, source, path_settings_, clock());
 }
 
 }  // namespace pt

@@ -17,9 +17,8 @@ namespace pt {
 /// returns true. `bool any(bool)` is true when the argument is true for any thread of the warp.
 template <class Traits, Branching branching, class Source, class Work>
 PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
-                                 const SampleBuffer& samples, const PathLimits& limits,
+                                 const SampleBuffer& samples, const PathSettings& settings,
                                  Work& work) {
-  using Integrator = typename Traits::Integrator;
   PathState path;
   bool working = work.next(path.index, true);
   PathId id = samples.id_of(path.index);
@@ -37,11 +36,11 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
       if (path.rays == 0) {
         ray = generate_camera_path(scene, random, id.pixel, u);
       } else {
-        const DrawnSteps steps = draw_steps<Traits>(u, random, path);
+        const EagerShading policy = eager_shading<Traits>(u, random, path);
         if constexpr (branching == Branching::reduced) {
-          meet_anything<Traits>(scene, ray, hit, path, limits, steps, registers);
+          shade_without_branches<Traits>(scene, ray, hit, path, settings, policy, registers);
         } else {
-          meet<Traits>(scene, ray, hit, path, limits, steps, registers);
+          shade_vertex<Traits>(scene, ray, hit, path, settings, policy, registers);
         }
         ended = !registers.alive;
       }
@@ -49,7 +48,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
         hit = next_hit<Traits>(scene, ray, path_key(), path);
         ++path.rays;
         if (branching == Branching::divergent && hit.is_miss()) {
-          leave_scene<Integrator, Traits::lighting>(scene, ray.direction, path, limits, registers);
+          shade_miss<Traits::lighting>(scene, ray.direction, path, settings, registers);
           ended = true;
         }
       }

@@ -44,13 +44,13 @@ template <class Traits, class Source, class Work>
 class PhaseVotingTracer {
  public:
   __device__ PhaseVotingTracer(const Scene& scene, const Source& source,
-                               const SampleBuffer& samples, const PathLimits& limits, Work& work,
-                               const SlotOrder& order, PhaseVotingWarp& warp, unsigned lane,
-                               uint2* stack)
+                               const SampleBuffer& samples, const PathSettings& settings,
+                               Work& work, const SlotOrder& order, PhaseVotingWarp& warp,
+                               unsigned lane, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
-        limits_(limits),
+        path_settings_(settings),
         work_(work),
         warp_(warp),
         lane_(lane),
@@ -174,8 +174,7 @@ class PhaseVotingTracer {
       ++path.rays;
       if (hit.is_miss()) {
         PathSample sample{samples_, radiance};
-        leave_scene<typename Traits::Integrator, Traits::lighting>(scene_, ray.direction, path,
-                                                                   limits_, sample);
+        shade_miss<Traits::lighting>(scene_, ray.direction, path, path_settings_, sample);
         ended = true;
       }
     }
@@ -208,8 +207,8 @@ class PhaseVotingTracer {
     if (path.rays == 0) {
       sink.continue_path(path, generate_camera_path(scene_, random, id.pixel, u));
     } else {
-      meet_surface<Traits>(scene_, ray, hit, path, limits_, draw_steps<Traits>(u, random, path),
-                           sink);
+      shade_surface<Traits>(scene_, ray, hit, path, path_settings_,
+                            eager_shading<Traits>(u, random, path), sink);
     }
     store(path, radiance, ray.direction);
     state_ = sink.state;
@@ -255,7 +254,7 @@ class PhaseVotingTracer {
   const Scene& scene_;
   const Source& source_;
   const SampleBuffer& samples_;
-  const PathLimits& limits_;
+  const PathSettings& path_settings_;
   Work& work_;
   PhaseVotingWarp& warp_;
   unsigned lane_;

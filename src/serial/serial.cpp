@@ -30,7 +30,7 @@ class SerialRenderer : public CpuRenderer {
       PathState path;
       path.index = i;
       const Ray ray = begin_path(scene_, id, random);
-      batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
+      batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), path_settings_, random,
                                             mask_key<Traits>(scene_, id)));
     }
   }

@@ -15,9 +15,9 @@ namespace pt {
 struct LaneFlight {
   Ray ray;
   float t_max = 0.0f;
-  std::uint32_t key = 0;     ///< flight_key
-  std::uint32_t around = 0;  ///< see Media
-  std::uint32_t index = 0;   ///< in the queue
+  std::uint32_t key = 0;        ///< flight_key
+  std::uint32_t medium_id = 0;  ///< see Media
+  std::uint32_t index = 0;      ///< in the queue
   std::uint32_t collisions = 0;
   ChannelDensities densities;
   Color beta = Color(1.0f);

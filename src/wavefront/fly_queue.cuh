@@ -22,7 +22,7 @@ struct QueuedFlights {
   }
 
   __device__ const Medium& medium(const LaneFlight& flight) const {
-    return *scene.media.at(flight.around);
+    return *scene.media.at(flight.medium_id);
   }
 
   /// One in a homogeneous medium is a single step.
@@ -32,7 +32,7 @@ struct QueuedFlights {
     set_lanes(flight.ray, pool.path_lanes(lanes_of(scene), slot));
     flight.t_max = pool.load_hit(slot).t;
     flight.key = flight_key(media_key(scene, samples, path.index), path.rays);
-    flight.around = path.medium.around;
+    flight.medium_id = path.medium.id;
     flight.index = index;
     const Medium& around = medium(flight);
     if (around.is_homogeneous()) {

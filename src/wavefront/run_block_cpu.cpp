@@ -54,7 +54,8 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleB
   const std::uint32_t occluded = intersect_shadow_block(traits, scene, rays);
   for (std::uint32_t i = 0; i < count; ++i) {
     const bool is_occluded = (occluded >> i & 1u) != 0;
-    if (traits.has_media && !is_occluded) DimShadowRays{stage.pool, samples}(scene, slots[i], i);
+    if (traits.has_media && !is_occluded)
+      AttenuateShadowRays{stage.pool, samples}(scene, slots[i], i);
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
     send(slots[i], stage.finish(path_index, shadow, is_occluded));
   }

@@ -71,7 +71,7 @@ void shade_blocks_cpu(const ShadeSurface<Traits, branching, Source>& stage, cons
   for_each_range<Stage>(queues, [&](std::uint32_t begin, std::uint32_t end, auto&& send) {
     DrawnBlock scatter{}, light{};
     Stage drawn{
-        {c.pool, c.samples, {&scatter, &light}, c.counters, c.ray_queue, c.limits, c.supply}};
+        {c.pool, c.samples, {&scatter, &light}, c.counters, c.ray_queue, c.settings, c.supply}};
     for_each_block<Stage, DrawNames::size_max>(
         queues, begin, end, [&](const auto& slots, std::uint32_t count) {
           draw_for_surfaces<Traits::has_lights>(c, slots, count, scatter, light);

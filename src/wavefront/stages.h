@@ -68,7 +68,7 @@ struct StageContext {
   Source source;
   WaveCounters* counters;
   std::uint32_t* ray_queue;  ///< null: there are no queues
-  PathLimits limits;
+  PathSettings settings;
   PathSupply supply;
 };
 
@@ -83,7 +83,7 @@ PT_HD void start_path(const Scene& scene, const StageContext<Source>& context, s
   context.pool.store_new_path(slot, ray, path_index);
   if (context.pool.medium != nullptr) {
     PathState path;
-    path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
+    path.medium.id = static_cast<std::uint16_t>(scene.camera_medium_id);
     context.pool.store_medium(slot, path);
     context.pool.store_flight(slot, {});
   }
@@ -98,7 +98,7 @@ PT_HD void add_radiance(const SampleBuffer& samples, std::uint32_t path_index,
 
 /// The sink (transport/path_step.h) of all stages: keeps a path in its slot of the pool, and its
 /// radiance in its sample. Without lights nothing is added before a path ends, and its sample need
-/// not be read. `streams`: takes results as shading finds them (StreamedSteps), to shorten live
+/// not be read. `streams`: takes results as shading finds them (StreamingShading), to shorten live
 /// ranges.
 template <bool streams = false, bool has_media = false>
 struct PoolSink {
@@ -322,15 +322,16 @@ struct RouteHits {
   }
 };
 
-/// Of Lighting::full, or of the others, which differ only in whether lights have added to a sample.
-template <class Integrator, Lighting lighting>
+/// `lighting`: full or sky; the others differ from sky only in whether lights have added to a
+/// sample.
+template <Lighting lighting>
 struct ShadeMiss {
   static constexpr StageId id = StageId::shade_miss;
   static constexpr SphereAccess spheres = SphereAccess::once;
   static constexpr StageOutcomes outcomes = {{free_slot, free_slot}, true, false};
   PathPool pool;
   SampleBuffer samples;
-  PathLimits limits;
+  PathSettings settings;
   bool has_lights;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
@@ -339,7 +340,7 @@ struct ShadeMiss {
                                                 : pool.load_path(slot, ray.direction);
     ++path.rays;
     PoolSink<> sink{pool, samples, slot, has_lights};
-    leave_scene<Integrator, lighting>(scene, ray.direction, path, limits, sink);
+    shade_miss<lighting>(scene, ray.direction, path, settings, sink);
     return sink.next;
   }
 };
@@ -355,7 +356,7 @@ struct ShadeSurface {
   StageContext<Source> context;
 
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
+    const auto& [pool, samples, source, counters, ray_queue, settings, supply] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     set_lanes(ray, lanes_of(scene).at(path.rays));
@@ -364,16 +365,16 @@ struct ShadeSurface {
     const Hit hit = pool.load_hit(slot);
     PoolSink<streams, Traits::has_media> sink{pool, samples, slot, has_lights};
     if constexpr (streams) {
-      const StreamedSteps steps{source, samples, path, sink};
-      meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
+      const StreamingShading policy{source, samples, path, sink};
+      shade_surface<Traits>(scene, ray, hit, path, settings, policy, sink);
     } else {
       const PathId id_of_path = samples.id_of(path.index);
       auto random = source.open(id_of_path);
-      const DrawnSteps steps = draw_steps<Traits>(random, path);
+      const EagerShading policy = eager_shading<Traits>(random, path);
       if constexpr (branching == Branching::reduced) {
-        meet_anything<Traits>(scene, ray, hit, path, limits, steps, sink);
+        shade_without_branches<Traits>(scene, ray, hit, path, settings, policy, sink);
       } else {
-        meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
+        shade_surface<Traits>(scene, ray, hit, path, settings, policy, sink);
       }
       source.close(id_of_path, random);
     }
@@ -391,7 +392,7 @@ struct ShadeMedium {
   StageContext<Source> context;
 
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
+    const auto& [pool, samples, source, counters, ray_queue, settings, supply] = context;
     Ray ray;
     PathState path = pool.load_path(slot, ray);
     pool.load_medium(slot, path);
@@ -399,8 +400,8 @@ struct ShadeMedium {
     PoolSink<false, true> sink{pool, samples, slot, true};
     const PathId id_of_path = samples.id_of(path.index);
     auto random = source.open(id_of_path);
-    collide<Traits>(scene, ray, pool.load_hit(slot).t, path, limits,
-                    draw_steps<Traits>(random, path), sink);
+    shade_medium<Traits>(scene, ray, pool.load_hit(slot).t, path, settings,
+                         eager_shading<Traits>(random, path), sink);
     source.close(id_of_path, random);
     return sink.next;
   }
@@ -421,7 +422,7 @@ struct ShadowRays {
 
 /// Dims shadow rays by the media in which they begin, and end, since every boundary there has a
 /// BSDF and is opaque to them: for tracers that find occlusion only.
-struct DimShadowRays {
+struct AttenuateShadowRays {
   static constexpr StageId id = StageId::shadow;
   static constexpr StageOutcomes outcomes = {{free_slot}, false, false};
   static constexpr SphereAccess spheres = SphereAccess::once;
@@ -429,15 +430,15 @@ struct DimShadowRays {
   SampleBuffer samples;
 
   PT_HD Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const std::uint16_t around = pool.load_around_shadow_ray(slot);
-    if (around == no_medium) return {free_slot};
+    const std::uint16_t medium_id = pool.load_shadow_medium_id(slot);
+    if (medium_id == no_medium) return {free_slot};
     std::uint32_t path_index;
     ShadowRay shadow = pool.load_shadow(slot, path_index);
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     const std::uint32_t key =
         shadow_ray_key(scene, media_key(scene, samples, path_index), pool.load_shadow_rays(slot));
     pool.dim_shadow(slot,
-                    segment_transmittance(scene, around, shadow.ray, shadow.distance, key, 0));
+                    segment_transmittance(scene, medium_id, shadow.ray, shadow.distance, key, 0));
     return {free_slot};
   }
 };
@@ -455,7 +456,7 @@ struct TraceShadowRays : ShadowRays {
                            pool.load_shadow_rays(slot));
     }
     if constexpr (Traits::has_media) {
-      shadow.around = pool.load_around_shadow_ray(slot);
+      shadow.medium_id = pool.load_shadow_medium_id(slot);
       const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
       shadow.radiance = multiply_rounded(shadow.radiance, passed);
       return finish(path_index, shadow, false);
@@ -482,7 +483,7 @@ struct FollowPaths {
   bool starts_paths = false;  ///< in free slots: their first rays are never stored
 
   PT_HD_IN_KERNEL Next operator()(const Scene& scene, std::uint32_t slot, std::uint32_t) const {
-    const auto& [pool, samples, source, counters, ray_queue, limits, supply] = context;
+    const auto& [pool, samples, source, counters, ray_queue, settings, supply] = context;
     Ray ray;
     PathState path;
     if (starts_paths) {
@@ -505,7 +506,7 @@ struct FollowPaths {
     }
     bool alive = true;
     for (std::uint32_t traced = 0; alive && traced < rays_max; ++traced) {
-      alive = follow_ray<Traits>(scene, ray, path, radiance, limits, random, key, flight);
+      alive = follow_ray<Traits>(scene, ray, path, radiance, settings, random, key, flight);
       flight = {};
     }
     source.close(id_of_path, random);

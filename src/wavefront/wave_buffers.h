@@ -45,14 +45,14 @@ struct WavePolicy {
 
   WavePolicy() = default;
   WavePolicy(const ExecutionPlan& plan, const SceneTraits& traits, const Scene& scene,
-             bool has_volumes)
+             bool has_grids)
       : compaction(compaction_info(plan.compaction)),
         fused(plan.fused),
         orders_surfaces(plan.orders_surfaces),
         wave_rays(static_cast<std::uint32_t>(plan.wave_rays)),
         only_triangles(scene.has_only_triangles()),
         has_media(traits.has_media),
-        has_volumes(has_volumes),
+        has_volumes(has_grids),
         parts{.lights = traits.has_lights() && !plan.fused,
               .instances = traits.geometry == Geometry::mixed,
               .tags = !compaction.appends,

@@ -26,7 +26,7 @@ namespace pt {
 template <class Source, class Executor>
 void repeat_paths(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
   if constexpr (std::is_same_v<Source, SamplerSource>) {
-    if (!context.supply.repeats()) return;
+    if (!context.supply.has_chains()) return;
     constexpr StageId id = StageId::mutate;
     execute.compact(b.request<free_slot>(b.pool.tag));
     StageQueues free = b.stage_queues(id, b.waiting(id), b.pool.tag);
@@ -38,7 +38,7 @@ void repeat_paths(Executor& execute, const WaveBuffers& b, const StageContext<So
 /// New paths in free slots.
 template <class Traits, class Source, class Executor>
 void generate_paths(Executor& execute, const WaveBuffers& b, const StageContext<Source>& context) {
-  if (context.supply.repeats()) return;
+  if (context.supply.has_chains()) return;
   execute.run(GeneratePaths<Source>{context, Traits::has_lights},
               b.stage_queues(StageId::generate, &b.counters->generate, b.pool.tag));
 }
@@ -94,8 +94,7 @@ void shade_misses(Executor& execute, const WaveBuffers& b, const StageContext<So
   if constexpr (branching == Branching::divergent) {
     constexpr StageId id = StageId::shade_miss;
     constexpr Lighting sky = Traits::lighting == Lighting::full ? Lighting::full : Lighting::sky;
-    execute.run(ShadeMiss<typename Traits::Integrator, sky>{b.pool, context.samples, context.limits,
-                                                            Traits::has_lights},
+    execute.run(ShadeMiss<sky>{b.pool, context.samples, context.settings, Traits::has_lights},
                 b.stage_queues(id, b.waiting(id), b.pool.tag));
   }
 }
@@ -144,7 +143,7 @@ void trace_shadow_rays(Executor& execute, const WaveBuffers& b, const SampleBuff
         b.stage_queues(StageId::shadow, b.waiting(StageId::shadow), b.pool.shadow_tag);
     if constexpr (Executor::template traces_queues<Traits>) {
       if (rays.appends && execute.traces_queues_here()) {
-        if constexpr (Traits::has_media) execute.run(DimShadowRays{b.pool, samples}, rays);
+        if constexpr (Traits::has_media) execute.run(AttenuateShadowRays{b.pool, samples}, rays);
         return execute.trace_shadow_queue(rays, samples);
       }
     }

@@ -17,7 +17,7 @@ __global__ void begin_wave_kernel(WaveCounters* counters, std::uint32_t path_cou
 }  // namespace
 
 void WavefrontCuda::begin_wave() {
-  const std::uint32_t finish_paths = supply().repeats() ? 0 : finish_paths_;
+  const std::uint32_t finish_paths = supply().has_chains() ? 0 : finish_paths_;
   launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_, plan_.regenerate,
          finish_paths, buffers_.half_ring(), loop_, clock());
 }

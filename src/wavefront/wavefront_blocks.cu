@@ -8,7 +8,7 @@ void WavefrontCuda::finish_in_blocks(const SampleBuffer& batch) {
   const BegunPaths paths = blocks_->place(host_counters_->finish);
   run(HandOver{buffers_.pool, batch, paths},
       buffers_.stage_queues(StageId::hand_over, &buffers_.counters->finish, nullptr));
-  blocks_->finish(scene_, batch, sampler_source_of(plan_), limits_, StageId::finish, paths);
+  blocks_->finish(scene_, batch, sampler_source_of(plan_), path_settings_, StageId::finish, paths);
 }
 
 }  // namespace pt

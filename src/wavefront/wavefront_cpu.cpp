@@ -54,7 +54,7 @@ struct PoolPart {
   WaveBuffers buffers;
   StageTimer timer;
   std::vector<std::shared_ptr<void>> arrays;
-  // Of one thread: what runs in it waits for nobody, and takes no work of others meanwhile.
+  // One thread: work in this arena neither waits for other threads nor takes their work.
   tbb::task_arena arena{1};
 
   PoolPart(const WaveBuffers& common, std::uint32_t slots) : slot_count(slots), buffers(common) {
@@ -220,10 +220,14 @@ class WavefrontCpu : public CpuRenderer {
                  PathRuns& runs) const {
     part.reset();
     const WaveBuffers& buffers = part.buffers;
-    const bool repeats = this->supply().repeats();
-    const StageContext<Source> context{
-        buffers.pool,  batch,         source, &part.counters, buffers.queue(StageId::intersect),
-        this->limits_, this->supply()};
+    const bool repeats = this->supply().has_chains();
+    const StageContext<Source> context{buffers.pool,
+                                       batch,
+                                       source,
+                                       &part.counters,
+                                       buffers.queue(StageId::intersect),
+                                       this->path_settings_,
+                                       this->supply()};
     const std::uint64_t most_left = repeats ? 0 : std::uint64_t{plan_.finish_paths} / parts_.size();
     CpuExecutor execute(scene_, plan_, part, runs, repeats, static_cast<std::uint32_t>(most_left),
                         has_open_boundaries_);

@@ -119,8 +119,8 @@ void WavefrontCuda::start_queues() {
 template <class Source>
 StageContext<Source> WavefrontCuda::context_of(const SampleBuffer& batch,
                                                const Source& source) const {
-  return {buffers_.pool, batch,   source, buffers_.counters, buffers_.queue(StageId::intersect),
-          limits_,       supply()};
+  return {buffers_.pool,  batch,   source, buffers_.counters, buffers_.queue(StageId::intersect),
+          path_settings_, supply()};
 }
 
 template <class Function>
@@ -136,7 +136,7 @@ void WavefrontCuda::with_context(const SampleBuffer& batch, Function&& function)
 
 void WavefrontCuda::enqueue_wave(const SampleBuffer& batch, cudaGraphConditionalHandle loop,
                                  bool starts_paths) {
-  path_count_ = supply().repeats() ? 0 : batch.path_count;
+  path_count_ = supply().has_chains() ? 0 : batch.path_count;
   loop_ = loop;
   set_wave(static_cast<int>(flows_.size()));
   with_context(batch, [&](auto kinds, const auto& context) {
@@ -152,7 +152,7 @@ void WavefrontCuda::enqueue_finish(const SampleBuffer& batch) {
 }
 
 bool WavefrontCuda::has_few_paths(const SampleBuffer& batch) const {
-  return blocks_ != nullptr && !supply().repeats() && batch.path_count <= finish_paths_;
+  return blocks_ != nullptr && !supply().has_chains() && batch.path_count <= finish_paths_;
 }
 
 void WavefrontCuda::prepare_batch(const SampleBuffer& batch) {
@@ -234,7 +234,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
   flows_.clear();
   if (has_few_paths(batch)) {
     set_wave(-1);
-    return blocks_->trace(scene_, batch, sampler_source_of(plan_), limits_, StageId::finish);
+    return blocks_->trace(scene_, batch, sampler_source_of(plan_), path_settings_, StageId::finish);
   }
   start_queues();
   int number = 0;
@@ -243,7 +243,7 @@ void WavefrontCuda::trace_batch(const SampleBuffer& batch) {
     enqueue_wave(batch, 0, starts_paths);
     if (is_counting()) note_flow();
   };
-  run_all_waves(*this, buffers_, supply().repeats(), wave, [&] {
+  run_all_waves(*this, buffers_, supply().has_chains(), wave, [&] {
     if (finish_paths_ > 0) enqueue_finish(batch);
   });
   waves_ += host_counters_->waves;

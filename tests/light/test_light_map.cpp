@@ -34,6 +34,46 @@ SceneData lamp_row() {
   return scene;
 }
 
+// A plan counts emitters before the lights are listed. Chosen uniformly, each weighs 1.
+TEST(LightMap, EmittersAreCountedBeforeTheyAreListed) {
+  Options options;
+  options.kernel_set = KernelSet::general, options.light_selection = LightSelection::uniform;
+  const auto counts_of = [&](SceneData scene) {
+    prepare_scene(scene, options);
+    return std::pair(static_cast<double>(scene.properties.emitters),
+                     static_cast<double>(scene.light_list.total_weight));
+  };
+  const auto expect_count = [&](const SceneData& scene, double expected) {
+    const auto [counted, listed] = counts_of(scene);
+    EXPECT_EQ(counted, expected);
+    EXPECT_NEAR(listed, std::max(expected, 1.0), 1e-5);  // it is a divisor
+  };
+  SceneData scene = lamp_row();
+  expect_count(scene, 6);
+  const std::uint32_t dark = scene.add_material(make_diffuse(Color(1.0f)));
+  const std::uint32_t glow = scene.add_material(make_diffuse(Color(0.0f), Color(1.0f)));
+  const std::uint32_t masked = scene.add_material(make_diffuse(Color(0.0f), Color(1.0f)));
+  scene.materials[masked].opacity.offset = 0.5f;
+  scene.meshes.push_back(parallelogram({}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}, glow));  // no area
+  scene.meshes.push_back(parallelogram({}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, masked));
+  scene.add_sphere({0, 9, 0}, 1, dark);
+  expect_count(scene, 6);
+  scene.add_quad({0, 5, 0}, {1, 0, 0}, {0, 0, 1}, glow);
+  expect_count(scene, 7);
+  scene.add_quad({0, 6, 0}, {1, 0, 0}, {0, 0, 1}, glow);  // quads of a material are one mesh
+  expect_count(scene, 7);
+  scene.add_quad({0, 7, 0}, {1, 0, 0}, {0, 0, 1}, dark);
+  expect_count(scene, 7);
+  for (const Color& intensity : {Color(0.0f), Color(1.0f)}) {
+    DeltaLight light;
+    light.intensity = intensity;
+    scene.delta_lights.push_back(light);
+  }
+  expect_count(scene, 8);
+  scene.sun.one_minus_cos = 1e-4f, scene.sun.radiance = Color(2.0f);
+  expect_count(scene, 9);
+}
+
 TEST(LightMap, NamesTheLampThatWasSampled) {
   using AllTraits = Traits<Accel::bvh2, Geometry::mixed, Lighting::full>;
   const SceneData data = lamp_row();

@@ -301,7 +301,7 @@ Scene view_of(const SceneData& data) {
   Scene scene;
   scene.media.list = data.media.data();
   scene.grids = grids_of(data);
-  scene.around_camera = 0;
+  scene.camera_medium_id = 0;
   return scene;
 }
 
@@ -319,13 +319,13 @@ TEST(Travel, MayPauseAtAnyCollision) {
     const auto far = static_cast<float>(random.log_uniform(0.1, 10));
     const auto rays = static_cast<std::uint16_t>(random.below(3));
     PathState whole;
-    whole.rays = rays, whole.medium.around = 0;
+    whole.rays = rays, whole.medium.id = 0;
     FreeFlight flight;
     Hit expected{far, 5, 0};
     ASSERT_TRUE(travel(scene, ray, key, to_the_end, whole, flight, expected));
     for (const std::uint32_t collisions_max : {1u, 2u, 7u}) {
       PathState path;
-      path.rays = rays, path.medium.around = 0;
+      path.rays = rays, path.medium.id = 0;
       FreeFlight paused;
       Hit hit{far, 5, 0};
       while (!travel(scene, ray, key, collisions_max, path, paused, hit)) {
@@ -383,7 +383,7 @@ TEST(Travel, TakesTheCamerasMediumAtFirstAndThePathsAfterwards) {
   const auto collides = [&](std::uint16_t rays, std::uint32_t medium) {
     PathState path;
     path.rays = rays;
-    path.medium.around = static_cast<std::uint16_t>(medium);
+    path.medium.id = static_cast<std::uint16_t>(medium);
     FreeFlight flight;
     Hit hit{2.0f, 5, 0};
     EXPECT_TRUE(
@@ -392,11 +392,11 @@ TEST(Travel, TakesTheCamerasMediumAtFirstAndThePathsAfterwards) {
     return hit.is_collision();
   };
   for (const std::uint32_t of_path : {0u, 1u, no_medium}) {
-    scene.around_camera = 1;
+    scene.camera_medium_id = 1;
     EXPECT_TRUE(collides(0, of_path));
-    scene.around_camera = 0;
+    scene.camera_medium_id = 0;
     EXPECT_FALSE(collides(0, of_path));
-    scene.around_camera = no_medium;
+    scene.camera_medium_id = no_medium;
     EXPECT_FALSE(collides(0, of_path));
     EXPECT_EQ(collides(1, of_path), of_path == 1);
   }
@@ -418,7 +418,7 @@ TEST(Travel, LightsDrawTheFirstFlights) {
     for (int i = 0; i < 50'000; ++i) {
       PathState path;
       path.rays = static_cast<std::uint16_t>(rays);
-      path.medium.around = 0, path.medium.passed = static_cast<std::uint16_t>(passed);
+      path.medium.id = 0, path.medium.interface_crossings = static_cast<std::uint16_t>(passed);
       FreeFlight flight;
       Hit hit{4.0f, 5, 0};
       travel(scene, {Vec3(0.0f), Vec3(0, 0, 1)}, random.bits(), to_the_end, path, flight, hit);

@@ -41,7 +41,7 @@ SceneData floor_under_panes(const Vec3& sun_direction, const std::vector<float>&
   return scene;
 }
 
-TEST(Panes, DimShadowRays) {
+TEST(Panes, AttenuateShadowRays) {
   for (const Vec3& direction : {Vec3(0, -1, 0), Vec3(0.6f, -0.8f, 0), Vec3(0, -0.2f, 1)}) {
     const double cosine = -double{normalize(direction).y};
     for (const std::size_t count : {0u, 1u, 2u}) {

@@ -10,7 +10,7 @@
 #include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/render/batches.h"
 #include "common/render/dispatch.h"
-#include "common/render/path_limits_of.h"
+#include "common/render/path_settings_of.h"
 #include "common/sampling/random.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
@@ -39,7 +39,7 @@ struct PixelSum {
 };
 
 template <class Traits, class Draw>
-Color follow_path(const Scene& scene, std::uint32_t pixel, const PathLimits& limits,
+Color follow_path(const Scene& scene, std::uint32_t pixel, const PathSettings& settings,
                   const Draw& draw, PixelSum& sum) {
   PathState path;
   Color radiance(0.0f);
@@ -48,11 +48,12 @@ Color follow_path(const Scene& scene, std::uint32_t pixel, const PathLimits& lim
     sum.count_ray(path.rays++);
     const Hit hit = intersect_closest<Traits>(scene, ray);
     if (hit.is_miss()) {
-      return radiance + shade_miss<Traits::lighting>(scene, ray.direction, path, limits.mis);
+      return radiance + miss_radiance<Traits::lighting>(scene, ray.direction, path, settings.mis);
     }
     const Vec4 u = draw(scatter_block(path.rays));
     const Vec4 light = Traits::has_lights ? draw(light_block(path.rays)) : Vec4(0.0f);
-    const Scattering s = shade_surface<Traits>(scene, ray, hit, path, limits, DrawnSteps{u, light});
+    const Scattering s =
+        surface_scattering<Traits>(scene, ray, hit, path, settings, EagerShading{u, light});
     radiance += s.emitted;
     if (!is_black(s.shadow.radiance)) {
       ++sum.shadow_rays;
@@ -81,7 +82,7 @@ PixelSum plain_pixel(const SceneData& scene, const Options& options, std::uint32
     };
     dispatch_traits(CpuSceneKinds{}, scene.traits, [&](auto traits) {
       sum.radiance += glm::dvec3(
-          follow_path<decltype(traits)>(view, pixel, path_limits_of(options), draw, sum));
+          follow_path<decltype(traits)>(view, pixel, path_settings_of(options), draw, sum));
     });
   }
   return sum;

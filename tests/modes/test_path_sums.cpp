@@ -7,7 +7,7 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/path_limits.h"
+#include "common/transport/path_settings.h"
 #include "render_serial.h"
 #include "statistics.h"
 
@@ -34,14 +34,14 @@ TEST(Roulette, KeepsTheMeanOfEachChannel) {
 }
 
 TEST(Roulette, BeginsWithTheRayThatIsAskedFor) {
-  PathLimits limits;
+  PathSettings settings;
   for (const std::uint32_t rays : {0u, 1u, 2u, 1000u}) {
-    EXPECT_FALSE(limits.is_roulette(rays)) << "never, unless asked for";
+    EXPECT_FALSE(settings.is_roulette(rays)) << "never, unless asked for";
   }
-  limits.roulette_depth = 3;
-  EXPECT_FALSE(limits.is_roulette(2));
-  EXPECT_TRUE(limits.is_roulette(3));
-  EXPECT_TRUE(limits.is_roulette(4));
+  settings.roulette_depth = 3;
+  EXPECT_FALSE(settings.is_roulette(2));
+  EXPECT_TRUE(settings.is_roulette(3));
+  EXPECT_TRUE(settings.is_roulette(4));
 }
 
 // In a closed room of albedo 1/2 a path that plays always survives by 1/2: each ray from the first

@@ -7,7 +7,7 @@
 #include "emulated_gpu.h"
 #include "common/block_wavefront/block_wavefront.cuh"
 // clang-format on
-#include "common/render/path_limits_of.h"
+#include "common/render/path_settings_of.h"
 #include "common/render/random_source.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
@@ -33,7 +33,7 @@ class SortedPaths {
   SortedPaths(const SceneData& scene, const Options& options)
       : scene_(host_view(scene, options.width, options.height)),
         source_(sampler_source_of(options)),
-        limits_(path_limits_of(options)) {
+        path_settings_(path_settings_of(options)) {
     scene_.mask_seed = mask_seed(options.seed);
     const auto width = static_cast<std::uint32_t>(options.width);
     const auto height = static_cast<std::uint32_t>(options.height);
@@ -99,7 +99,7 @@ class SortedPaths {
       EmulatedBlock(threads).run([&] {
         uint2 stack[block_wavefront_stack_size<BlockWavefrontLane<Traits>>];
         BlockWavefront<Traits, SamplerSource, Memory> tracer(
-            scene_, source_, batch_, limits_, paths, *memory,
+            scene_, source_, batch_, path_settings_, paths, *memory,
             begun.slots.of_block(static_cast<std::uint32_t>(i)), stack);
         tracer.run(begun.count_in(static_cast<std::uint32_t>(i)));
       });
@@ -131,7 +131,7 @@ class SortedPaths {
       Color radiance(0.0f);
       bool alive = true;
       for (int i = 0; i < rays && alive; ++i) {
-        alive = follow_ray<Traits>(scene_, ray, path, radiance, limits_, random,
+        alive = follow_ray<Traits>(scene_, ray, path, radiance, path_settings_, random,
                                    mask_key<Traits>(scene_, id));
       }
       batch_.store(path, radiance);
@@ -155,14 +155,14 @@ class SortedPaths {
     PathState path;
     path.index = path_index;
     const Ray ray = begin_path(scene_, id, random);
-    const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
-                                               mask_key<Traits>(scene_, id));
+    const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), path_settings_,
+                                               random, mask_key<Traits>(scene_, id));
     return {radiance, path.packed_rays()};
   }
 
   Scene scene_;
   SamplerSource source_;
-  PathLimits limits_;
+  PathSettings path_settings_;
   std::vector<Sample> samples_;
   SampleBuffer batch_;
   std::vector<PathSlot> slots_;

@@ -192,7 +192,7 @@ template <class Lane>
 inline constexpr int block_wavefront_stack_size = Lane::stack_size + Lane::suspended_size;
 
 /// A sink (transport/path_step.h) that keeps a path in its slot. `streams`: it takes results as
-/// shading finds them (StreamedSteps).
+/// shading finds them (StreamingShading).
 template <bool streams = true, bool has_media = false>
 struct SlotSink {
   const SampleBuffer& samples;
@@ -206,7 +206,7 @@ struct SlotSink {
   PT_HD void aim(const PathState&, const ShadowRay& shadow) { slot.store_shadow_ray(shadow); }
   PT_HD void cast(const PathState&, const ShadowRay& shadow) {
     if constexpr (!streams) slot.store_shadow_ray(shadow);
-    slot.store_shadow_radiance(shadow.radiance, has_media ? shadow.around : no_medium);
+    slot.store_shadow_radiance(shadow.radiance, has_media ? shadow.medium_id : no_medium);
     casts = true;
   }
   PT_HD void continue_path(const PathState& path, const Ray& ray) {
@@ -240,11 +240,11 @@ PT_NOINLINE inline TravelledPath travel_out_of_line(const Scene& scene, Ray ray,
 }
 
 /// What of a slot's shadow ray its medium lets through.
-PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint16_t around,
+PT_NOINLINE inline Color shadow_passes_out_of_line(const Scene& scene, std::uint16_t medium_id,
                                                    const PathSlot& slot, std::uint32_t ray_key) {
   float distance;
   const Ray ray = slot.load_shadow_ray(distance);
-  return segment_transmittance(scene, around, ray, distance, ray_key, 0);
+  return segment_transmittance(scene, medium_id, ray, distance, ray_key, 0);
 }
 
 /// One thread's view. Traits: as for BlockWavefrontLane; Source: one whose streams are opened again
@@ -253,12 +253,12 @@ template <class Traits, class Source, class Memory>
 class BlockWavefront {
  public:
   __device__ BlockWavefront(const Scene& scene, const Source& source, const SampleBuffer& samples,
-                            const PathLimits& limits, const PathShare& paths, Memory& memory,
+                            const PathSettings& settings, const PathShare& paths, Memory& memory,
                             const BlockSlots& slots, uint2* stack)
       : scene_(scene),
         source_(source),
         samples_(samples),
-        limits_(limits),
+        path_settings_(settings),
         paths_(paths),
         memory_(memory),
         warp_(memory.tracing.warps[threadIdx.x / 32]),
@@ -481,8 +481,7 @@ class BlockWavefront {
     if constexpr (Traits::has_media) fly(slot_index, ray, path, hit);
     ++path.rays;
     if (hit.is_miss()) {
-      leave_scene<typename Traits::Integrator, Traits::lighting>(scene_, ray.direction, path,
-                                                                 limits_, sample);
+      shade_miss<Traits::lighting>(scene_, ray.direction, path, path_settings_, sample);
       state = Path::none;
       return;
     }
@@ -493,14 +492,14 @@ class BlockWavefront {
       if (hit.is_collision()) {
         SlotSink<false, true> sink{samples_, slot, medium};
         auto random = source_.open(samples_.id_of(path.index));
-        const DrawnSteps steps = draw_steps<Traits>(random, path);
-        collide<Shading>(scene_, ray, hit.t, path, limits_, steps, sink);
+        const EagerShading policy = eager_shading<Traits>(random, path);
+        shade_medium<Shading>(scene_, ray, hit.t, path, path_settings_, policy, sink);
         return wait(sink, state, shadow);
       }
     }
     SlotSink<true, Traits::has_media> sink{samples_, slot, medium};
-    const StreamedSteps steps{source_, samples_, path, sink};
-    meet_surface<Shading>(scene_, ray, hit, path, limits_, steps, sink);
+    const StreamingShading policy{source_, samples_, path, sink};
+    shade_surface<Shading>(scene_, ray, hit, path, path_settings_, policy, sink);
     wait(sink, state, shadow);
   }
 
@@ -514,19 +513,19 @@ class BlockWavefront {
   /// The path's flight through its medium, to `hit` or to a collision before it.
   __device__ void fly(std::uint32_t slot_index, const Ray& ray, PathState& path, Hit& hit) const {
     if (path.rays > 0) path.medium = unpack_medium(load_wide(media_ + slot_index));
-    if (path.rays > 0 && path.medium.around == no_medium) return;
+    if (path.rays > 0 && path.medium.id == no_medium) return;
     const TravelledPath there = travel_out_of_line(scene_, ray, key_of(path), path, hit);
     path = there.path, hit = there.hit;
   }
 
-  /// Of a shadow ray that nothing occludes.
+  /// The radiance of a shadow ray that nothing occludes, attenuated by its medium.
   __device__ Color light_that_arrives(const PathSlot& slot, const PathState& path) const {
     if constexpr (!Traits::has_media) return slot.load_shadow_radiance();
-    std::uint16_t around;
-    const Color radiance = slot.load_shadow_radiance(around);
-    if (around == no_medium) return radiance;
+    std::uint16_t medium_id;
+    const Color radiance = slot.load_shadow_radiance(medium_id);
+    if (medium_id == no_medium) return radiance;
     const std::uint32_t key = shadow_ray_key(scene_, key_of(path), path.rays);
-    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, around, slot, key));
+    return multiply_rounded(radiance, shadow_passes_out_of_line(scene_, medium_id, slot, key));
   }
 
   __device__ std::uint32_t key_of(const PathState& path) const {
@@ -536,7 +535,7 @@ class BlockWavefront {
   const Scene& scene_;
   const Source& source_;
   const SampleBuffer& samples_;
-  const PathLimits& limits_;
+  const PathSettings& path_settings_;
   const PathShare& paths_;
   Memory& memory_;
   PersistentWarp<Lane>& warp_;

@@ -31,25 +31,26 @@ BlockWavefronts::BlockWavefronts(CudaLauncher& launcher, CudaMemory& memory,
 }
 
 void BlockWavefronts::trace(const Scene& scene, const SampleBuffer& batch,
-                            const SamplerSource& source, const PathLimits& limits, StageId stage) {
+                            const SamplerSource& source, const PathSettings& settings,
+                            StageId stage) {
   check_cuda(cudaMemsetAsync(next_path_, 0, sizeof *next_path_, launcher_.stream()),
              "cudaMemsetAsync");
   const std::uint32_t at_once = (batch.path_count + blocks_ - 1) / blocks_;
-  launch(scene, batch, source, limits, stage, at_once, place(0));
+  launch(scene, batch, source, settings, stage, at_once, place(0));
 }
 
 void BlockWavefronts::finish(const Scene& scene, const SampleBuffer& batch,
-                             const SamplerSource& source, const PathLimits& limits, StageId stage,
-                             const BegunPaths& paths) {
-  launch(scene, batch, source, limits, stage, 0, paths);
+                             const SamplerSource& source, const PathSettings& settings,
+                             StageId stage, const BegunPaths& paths) {
+  launch(scene, batch, source, settings, stage, 0, paths);
 }
 
 void BlockWavefronts::launch(const Scene& scene, const SampleBuffer& batch,
-                             const SamplerSource& source, const PathLimits& limits, StageId stage,
-                             std::uint32_t at_once, const BegunPaths& begun) {
+                             const SamplerSource& source, const PathSettings& settings,
+                             StageId stage, std::uint32_t at_once, const BegunPaths& begun) {
   const PathShare paths{next_path_, at_once, slots_per_thread_};
   launcher_.launch(to_string(stage).c_str(), code_.kernel, blocks_, block_wavefront_threads,
-                   code_.bytes(slots_per_thread_), scene, batch, source, limits, paths, begun,
+                   code_.bytes(slots_per_thread_), scene, batch, source, settings, paths, begun,
                    stage, launcher_.clock());
 }
 

@@ -15,7 +15,7 @@ inline constexpr int block_wavefront_threads = 640;
 inline constexpr int block_wavefront_slots_least = 4, block_wavefront_slots_most = 12;
 
 /// See block_wavefront_kernel.cuh.
-using BlockWavefrontKernel = void (*)(Scene, SampleBuffer, SamplerSource, PathLimits, PathShare,
+using BlockWavefrontKernel = void (*)(Scene, SampleBuffer, SamplerSource, PathSettings, PathShare,
                                       BegunPaths, StageId, StageClock*);
 
 /// The kernel of one kind of scenes.
@@ -42,17 +42,17 @@ class BlockWavefronts {
   /// Enqueues a kernel that takes all paths of a batch from their first rays to their ends, and
   /// counts as `stage`.
   void trace(const Scene& scene, const SampleBuffer& batch, const SamplerSource& source,
-             const PathLimits& limits, StageId stage);
+             const PathSettings& settings, StageId stage);
 
   /// Where `count` paths are to be put for finish().
   BegunPaths place(std::uint32_t count) const { return BegunPaths::divide(slots_, count, blocks_); }
   /// The same as trace() for paths that have begun.
   void finish(const Scene& scene, const SampleBuffer& batch, const SamplerSource& source,
-              const PathLimits& limits, StageId stage, const BegunPaths& paths);
+              const PathSettings& settings, StageId stage, const BegunPaths& paths);
 
  private:
   void launch(const Scene& scene, const SampleBuffer& batch, const SamplerSource& source,
-              const PathLimits& limits, StageId stage, std::uint32_t at_once,
+              const PathSettings& settings, StageId stage, std::uint32_t at_once,
               const BegunPaths& begun);
 
   CudaLauncher& launcher_;

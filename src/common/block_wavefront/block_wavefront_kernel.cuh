@@ -19,7 +19,7 @@ template <class Traits>
 __global__ void __launch_bounds__(block_wavefront_threads, 1)
     block_wavefront(const __grid_constant__ Scene scene, const __grid_constant__ SampleBuffer batch,
                     const __grid_constant__ SamplerSource source,
-                    const __grid_constant__ PathLimits limits,
+                    const __grid_constant__ PathSettings settings,
                     const __grid_constant__ PathShare paths,
                     const __grid_constant__ BegunPaths begun, StageId stage, StageClock* clock) {
   using Memory = BlockMemory<Traits>;
@@ -27,7 +27,7 @@ __global__ void __launch_bounds__(block_wavefront_threads, 1)
   stamp_first_thread(clock, stage);
   uint2 stack[block_wavefront_stack_size<BlockWavefrontLane<Traits>>];
   BlockWavefront<Traits, SamplerSource, Memory> tracer(
-      scene, source, batch, limits, paths, *reinterpret_cast<Memory*>(block_wavefront_memory),
+      scene, source, batch, settings, paths, *reinterpret_cast<Memory*>(block_wavefront_memory),
       begun.slots.of_block(blockIdx.x), stack);
   tracer.run(begun.count_in(blockIdx.x));
 }

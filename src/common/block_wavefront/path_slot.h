@@ -43,7 +43,7 @@ struct alignas(128) PathSlot {
     return path;
   }
   PT_HD std::uint32_t load_path_index() const { return direction.w; }
-  /// Of the path, those traced so far.
+  /// The rays of the path that have been traced.
   PT_HD std::uint32_t load_rays() const { return throughput.w & 0xffffu; }
 
   PT_HD Ray load_ray() const { return {vec(load_wide(&origin)), vec(load_wide(&direction))}; }
@@ -74,14 +74,14 @@ struct alignas(128) PathSlot {
     distance = bits_to_float(o.w);
     return {vec(o), vec(load_wide(&shadow_direction))};
   }
-  /// `around`: where it begins, in scenes with media.
-  PT_HD void store_shadow_radiance(const Color& c, std::uint16_t around) {
-    store_wide(&shadow_radiance, pack(c, around));
+  /// `medium_id`: where it begins, in scenes with media.
+  PT_HD void store_shadow_radiance(const Color& c, std::uint16_t medium_id) {
+    store_wide(&shadow_radiance, pack(c, medium_id));
   }
   PT_HD Color load_shadow_radiance() const { return vec(load_wide(&shadow_radiance)); }
-  PT_HD Color load_shadow_radiance(std::uint16_t& around) const {
+  PT_HD Color load_shadow_radiance(std::uint16_t& medium_id) const {
     const PathRecord r = load_wide(&shadow_radiance);
-    around = static_cast<std::uint16_t>(r.w);
+    medium_id = static_cast<std::uint16_t>(r.w);
     return vec(r);
   }
 };

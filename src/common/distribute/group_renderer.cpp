@@ -242,7 +242,7 @@ void GroupRenderer::take(Member& member, UnitResult&& result, UnitQueue& queue, 
   film_.put(result.film);
   if (spares_.size() < 2 * members_.size()) spares_.push_back(std::move(result.film));
   const auto paths = static_cast<double>(span.part.window.pixel_count()) * result.run.samples_done;
-  // Of kernels alone: a unit that is short beside its way to the device and back must not make the
+  // By kernel time alone: a unit that is short beside its transfers must not make the
   // next one shorter still.
   if (result.run.kernel_ms > 0) member.paths_per_s = paths / (1e-3 * result.run.kernel_ms);
   DeviceShare& share = member.share;

@@ -51,34 +51,34 @@ struct Media {
   bool overlap = false;                        ///< what is around a point is a set
 
   /// The medium that is there, where one is.
-  PT_HD const Medium* at(std::uint32_t around) const {
-    return list + (overlap ? highest_bit(inverted(around)) : around);
+  PT_HD const Medium* at(std::uint32_t medium_id) const {
+    return list + (overlap ? highest_bit(inverted(medium_id)) : medium_id);
   }
 
   /// The sides of a surface that is no boundary.
-  PT_HD MediumBoundary same_on_both_sides(std::uint16_t around) const {
+  PT_HD MediumBoundary same_on_both_sides(std::uint16_t medium_id) const {
     if (overlap) return {};
-    return {around, around};
+    return {medium_id, medium_id};
   }
 
-  /// What is around who was in `around` and leaves a surface along `direction`.
+  /// What is around who was in `medium_id` and leaves a surface along `direction`.
   PT_HD std::uint16_t behind(const MediumBoundary& boundary, const Vec3& direction,
-                             const Vec3& normal, std::uint16_t around) const {
+                             const Vec3& normal, std::uint16_t medium_id) const {
     if (!overlap) return boundary.towards(direction, normal);
     const std::uint32_t shape = bit_of(boundary);
-    return static_cast<std::uint16_t>(dot(direction, normal) > 0.0f ? around | shape
-                                                                    : around & ~shape);
+    return static_cast<std::uint16_t>(dot(direction, normal) > 0.0f ? medium_id | shape
+                                                                    : medium_id & ~shape);
   }
 
   /// Whether a surface is within a medium of a higher priority than its own, where it is nothing.
-  PT_HD bool hides(std::uint32_t material, std::uint16_t around) const {
+  PT_HD bool hides(std::uint32_t material, std::uint16_t medium_id) const {
     if (!overlap) return false;
     const std::uint32_t shape = bit_of(boundaries[material]);
-    return shape != 0 && inverted(around) >= 2 * shape;
+    return shape != 0 && inverted(medium_id) >= 2 * shape;
   }
 
  private:
-  PT_HD static std::uint32_t inverted(std::uint32_t around) { return around ^ 0xffffu; }
+  PT_HD static std::uint32_t inverted(std::uint32_t medium_id) { return medium_id ^ 0xffffu; }
   PT_HD static std::uint32_t bit_of(const MediumBoundary& boundary) {
     return boundary.inside == no_medium ? 0u : 1u << boundary.inside;
   }

@@ -67,7 +67,7 @@ struct CheckpointChoice {
   float interval_s = 300.0f;
 };
 
-/// Of a viewer that shows the render at work.
+/// The address of a viewer that shows the render at work.
 struct DisplayAddress {
   std::string host;  ///< empty: nowhere
   std::uint16_t port = 0;

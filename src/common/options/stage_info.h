@@ -55,7 +55,7 @@ inline constexpr StageInfo stage_table[] = {PT_STAGES(PT_STAGE_ROW)};
 #undef PT_STAGES
 inline constexpr int stage_count = static_cast<int>(std::size(stage_table));
 
-/// Of all but StageId::idle.
+/// For every stage but StageId::idle.
 constexpr const StageInfo& stage_info(StageId id) { return stage_table[static_cast<int>(id)]; }
 
 inline std::string to_string(StageId id) {

@@ -30,7 +30,8 @@ constexpr std::uint64_t pool_paths_for_passes = std::uint64_t{1} << 20;
 constexpr std::uint64_t pool_paths_per_thread = 1024;       // of a CPU
 constexpr std::uint32_t finish_paths_of_blocks = 1u << 20;  // about as many as blocks hold
 constexpr int short_depth = 6;  // of which waves trace all rays with full warps
-// Of scans of quads, where a megakernel's warps wait for the longest path:
+// Scans of quads up to this many paths are faster in waves: a megakernel's warps wait for the
+// longest.
 constexpr std::uint64_t few_paths = std::uint64_t{1} << 19;
 
 constexpr const char* asked = "asked for";
@@ -63,7 +64,7 @@ class Planner {
   bool is_specialized() const { return plan_.kernel_set == KernelSet::specialized; }
   bool is_on_gpu(Mode mode) const { return device_.is_cuda && plan_.mode == mode; }
 
-  /// Of a GPU, for a block-local wavefront.
+  /// Whether a block-local wavefront fits into a block's shared memory.
   bool blocks_have_room() const { return device_.block_shared_bytes >= sorting_bytes_min; }
 
   void decide(const char* option, std::string value, std::string reason) {

@@ -24,7 +24,7 @@ struct SceneProperties {
   std::uint32_t bsdf_kinds = 0;  ///< a bit for each MaterialKind that a surface has
   std::size_t emitters = 0;      ///< lights that can be sampled
   std::size_t scan_bytes = 0;    ///< size of the spheres that CUDA scans
-  // Of a scene that has been built:
+  // Known once the scene has been built:
   std::optional<Accel> structure;
   std::string why_structure;  ///< as the plan said
 
@@ -36,11 +36,11 @@ struct SceneProperties {
 
 struct DeviceProperties {
   bool is_cuda = false;
-  // Of a CPU:
+  // CPU:
   bool has_avx2 = false;        ///< wide trees are traced by vectors
   bool has_ray_blocks = false;  ///< brute force scans for blocks of rays
   int threads = 1;
-  // Of a CUDA device:
+  // CUDA device:
   std::size_t block_shared_bytes = 227 * 1024;  ///< most shared memory of a block
   int block_threads_max = 1024;
 };

@@ -62,15 +62,15 @@ class RayPaths {
     const std::uint32_t pixel_id =
         pack_pixel(morton_coordinate(pixel), morton_coordinate(pixel >> 1));
     auto random = PhiloxSource{bounce_seed}.open({pixel_id, sample, 0});
-    const PathLimits limits{1u << 15, 0, false};
+    const PathSettings settings{1u << 15, 0, false};
     PathState path;
     Ray ray = generate_camera_path(scene_, pixel_id, random.draw(scatter_block(0)));
     for (int bounce = 0; bounce < bounces; ++bounce) {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;
       if (hit.is_miss()) return no_ray;
-      const Scattering next =
-          shade_surface<Traits>(scene_, ray, hit, path, limits, draw_steps<Traits>(random, path));
+      const Scattering next = surface_scattering<Traits>(scene_, ray, hit, path, settings,
+                                                         eager_shading<Traits>(random, path));
       if (!next.alive) return no_ray;
       ray = next.ray;
     }

@@ -60,7 +60,7 @@ consteval int selected_count() {
   return count;
 }
 
-/// Of the n-th combination that the selection has.
+/// The index of the n-th combination that the selection has.
 template <class Selection>
 consteval int selected(int n) {
   for (int i = 0; i < traits_count; ++i)

@@ -6,7 +6,7 @@
 #include "common/plan/execution_plan.h"
 #include "common/render/batches.h"
 #include "common/render/chain_layout.h"
-#include "common/render/path_limits_of.h"
+#include "common/render/path_settings_of.h"
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
 
@@ -52,7 +52,7 @@ class FilmRenderer : public Renderer {
   virtual bool can_repeat_paths() const { return true; }
   /// Whether paths will repeat in some batches of this render.
   bool paths_repeat() const { return has_chains() && can_repeat_paths(); }
-  /// Of the batch that is traced.
+  /// The supply of the batch that is traced.
   const PathSupply& supply() const { return supply_; }
   void set_supply(const PathSupply& supply) { supply_ = supply; }
 
@@ -88,7 +88,7 @@ class FilmRenderer : public Renderer {
   void describe_plan(RenderReport& report) const;
 
   const ExecutionPlan plan_;
-  const PathLimits limits_;
+  const PathSettings path_settings_;
   const FilmPlan film_plan_;  ///< what is summed
   const PixelFilter filter_;  ///< without its table
 

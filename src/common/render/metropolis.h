@@ -18,7 +18,7 @@ struct ChainPlan {
   std::uint32_t blocks = 0;           ///< of random numbers that each chain stores
   int clock_interval = 1;             ///< iterations between two looks at the clock
 
-  /// Of the largest batch.
+  /// The paths of the largest batch.
   std::uint64_t batch_paths() const { return std::max(chains, bootstrap_batch); }
 };
 
@@ -55,8 +55,8 @@ struct ChainStarts {
   ChainPositions positions;
 };
 
-/// Of so many bootstrap paths, of whose targets these are the sums, and of chains that begin in
-/// proportion to the target, all by one number `u` in [0, 1). Throws Error where no path found
+/// The starts of chains after `paths` bootstrap paths, whose targets have these sums; chains begin
+/// in proportion to the target, all by one number `u` in [0, 1). Throws Error where no path found
 /// light.
 ChainStarts choose_starts(const std::vector<TargetSum>& groups, std::uint32_t paths,
                           std::uint32_t chains, double u);

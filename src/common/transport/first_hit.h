@@ -10,7 +10,7 @@
 
 namespace pt {
 
-/// Of the first surface with a BSDF: camera rays go through boundaries of media.
+/// The first surface with a BSDF: camera rays go through boundaries of media.
 struct FirstHit {
   float distance = 0.0f;  ///< along the ray, in scene units
   /// To the path's collision with a medium before that, if it has one.
@@ -110,19 +110,19 @@ PT_HD ViewThroughMedia look_through_media(const Scene& scene, const Ray& camera_
     if (end.is_collision() && !view.collides) {
       view.collides = true, view.collision = view.distance + end.t;
     }
-    if (path.medium.around != no_medium) {
+    if (path.medium.id != no_medium) {
       view.transmittance = multiply_rounded(
           view.transmittance,
-          estimate_transmittance(scene.grids, load_wide(scene.media.at(path.medium.around)),
-                                 view.ray, view.hit.t, combine_hash(ray_key, 1)));
+          estimate_transmittance(scene.grids, load_wide(scene.media.at(path.medium.id)), view.ray,
+                                 view.hit.t, combine_hash(ray_key, 1)));
     }
     if (view.hit.is_miss()) return view;
     const std::uint32_t index = material_index_at(scene, view.hit);
     const Material material = scene.material(index);
-    if (!lets_through(scene, material, index, path.medium.around) || is_pane(material)) return view;
+    if (!lets_through(scene, material, index, path.medium.id) || is_pane(material)) return view;
     const Surface surface = surface_at<ShadingTraits<Traits>>(scene, view.ray, view.hit);
-    const BoundaryCrossing crossing = cross_boundary(scene, view.ray, surface, path.medium.around);
-    path.medium.around = crossing.around;
+    const BoundaryCrossing crossing = cross_boundary(scene, view.ray, surface, path.medium.id);
+    path.medium.id = crossing.medium_id;
     view.distance += crossing.length;
     view.ray = crossing.ray;
   }

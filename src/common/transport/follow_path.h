@@ -10,17 +10,17 @@ namespace pt {
 /// ray's has got already.
 template <class Traits, class Stream>
 PT_HD_IN_KERNEL bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,
-                                const PathLimits& limits, Stream& random, std::uint32_t path_key,
-                                const FreeFlight& flight = {}) {
+                                const PathSettings& settings, Stream& random,
+                                std::uint32_t path_key, const FreeFlight& flight = {}) {
   const auto key = [&] { return path_key; };
   PathRegisters<Traits, decltype(key)> registers{scene, key, radiance, ray};
   const Hit hit = next_hit<Traits>(scene, ray, path_key, path, flight);
   ++path.rays;
   if (hit.is_miss()) {
-    leave_scene<typename Traits::Integrator, Traits::lighting>(scene, ray.direction, path, limits,
-                                                               registers);
+    shade_miss<Traits::lighting>(scene, ray.direction, path, settings, registers);
   } else {
-    meet<Traits>(scene, ray, hit, path, limits, draw_steps<Traits>(random, path), registers);
+    shade_vertex<Traits>(scene, ray, hit, path, settings, eager_shading<Traits>(random, path),
+                         registers);
   }
   return registers.alive;
 }
@@ -29,8 +29,8 @@ PT_HD_IN_KERNEL bool follow_ray(const Scene& scene, Ray& ray, PathState& path, C
 /// along, and all that is added.
 template <class Traits, class Stream>
 PT_HD Color follow_path(const Scene& scene, Ray ray, PathState& path, Color radiance,
-                        const PathLimits& limits, Stream& random, std::uint32_t path_key) {
-  while (follow_ray<Traits>(scene, ray, path, radiance, limits, random, path_key)) {
+                        const PathSettings& settings, Stream& random, std::uint32_t path_key) {
+  while (follow_ray<Traits>(scene, ray, path, radiance, settings, random, path_key)) {
   }
   return radiance;
 }

@@ -13,8 +13,8 @@ namespace pt {
 struct ShadowRay {
   Ray ray;
   float distance = 0.0f;
-  Color radiance = Color(0.0f);      ///< added to the sample if not occluded; black: no shadow ray
-  std::uint16_t around = no_medium;  ///< where it begins (Media), in scenes with media
+  Color radiance = Color(0.0f);  ///< added to the sample if not occluded; black: no shadow ray
+  std::uint16_t medium_id = no_medium;  ///< where it begins (Media), in scenes with media
 };
 
 /// Spheres and quads, in a scene that has nothing else or besides its triangles.

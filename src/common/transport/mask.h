@@ -18,16 +18,16 @@ inline std::uint32_t mask_seed(std::uint64_t seed) {
   return combine_hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
 }
 
-/// Of a path; 0 in scenes with neither masks nor media.
+/// A hash of the path; 0 in scenes with neither masks nor media.
 template <class Traits>
 PT_HD std::uint32_t mask_key(const Scene& scene, const PathId& id) {
   if constexpr (!Traits::has_masks && !Traits::has_media) return 0;
   return combine_hash(combine_hash(scene.mask_seed, id.pixel), id.sample);
 }
 
-/// Of the ray after `rays_traced` others of the path, and of the shadow ray from where the last of
-/// them ended.
-/// In a scene with surfaces that camera rays do not hit, the last bit marks camera rays.
+/// The key of the ray after `rays_traced` others of the path, or of the shadow ray from where the
+/// last them ended. In a scene with surfaces that camera rays do not hit, the last bit marks camera
+/// rays.
 PT_HD std::uint32_t next_ray_key(const Scene& scene, std::uint32_t path_key,
                                  std::uint32_t rays_traced) {
   const std::uint32_t key = combine_hash(path_key, 2 * rays_traced);

@@ -38,15 +38,15 @@ struct MutationWeights {
   PT_HD double of_chain(float target, double mutations) const {
     return weight(target, mutations * (brightness / expected));
   }
-  /// Of a proposal, by its expected value: it is accepted with `accepted`.
+  /// The weight of a proposal that is accepted with probability `accepted` (its expected value).
   PT_HD double of_proposal(float target, float accepted, bool is_large) const {
     return of_chain(target, static_cast<double>(accepted)) + (is_large ? weight(target, 1.0) : 0.0);
   }
-  /// Of the state that the proposal may replace.
+  /// The weight of the state that the proposal may replace.
   PT_HD double of_current(float target, float accepted) const {
     return of_chain(target, 1.0 - static_cast<double>(accepted));
   }
-  /// Of a bootstrap path, in units of `bootstrap_share` / bootstrap paths.
+  /// The weight of a bootstrap path, in units of `bootstrap_share` / bootstrap paths.
   PT_HD double of_bootstrap(float target) const { return weight(target, 1.0); }
 };
 

@@ -14,9 +14,9 @@ PT_HD std::uint32_t pixel_y(std::uint32_t pixel) { return pixel >> 16; }
 
 /// A path among media; only in scenes that have any.
 struct PathMedium {
-  std::uint16_t around = no_medium;  ///< where its current ray begins (Media)
-  std::uint16_t passed = 0;          ///< surfaces without a BSDF that it has gone through
-  float travelled = 0.0f;            ///< from where it has its direction to where the ray begins
+  std::uint16_t id = no_medium;           ///< where its current ray begins (Media)
+  std::uint16_t interface_crossings = 0;  ///< surfaces without a BSDF that it has gone through
+  float travelled = 0.0f;  ///< from where it has its direction to where the ray begins
   ChannelDensities densities;
 };
 
@@ -36,7 +36,7 @@ struct PathState {
   /// Rays that max_depth counts.
   template <class Traits>
   PT_HD std::uint32_t depth() const {
-    if constexpr (Traits::has_media) return std::uint32_t{rays} - medium.passed;
+    if constexpr (Traits::has_media) return std::uint32_t{rays} - medium.interface_crossings;
     return rays;
   }
 

@@ -29,7 +29,7 @@ PT_HD PathRecord pack_shadow_origin(const ShadowRay& shadow) {
 
 PT_HD PathRecord pack_medium(const PathMedium& m) {
   return pack({m.travelled, m.densities.red, m.densities.green},
-              m.around | std::uint32_t{m.passed} << 16);
+              m.id | std::uint32_t{m.interface_crossings} << 16);
 }
 PT_HD PathMedium unpack_medium(const PathRecord& r) {
   return {static_cast<std::uint16_t>(r.w), static_cast<std::uint16_t>(r.w >> 16), r.x, {r.y, r.z}};

@@ -9,12 +9,14 @@
 // or, instead of both,
 //   void continue_path_if(bool, const PathState&, const Ray&)
 //
-// A ray that leaves the scene: emit, end. One that meets a surface or collides in a medium: emit,
-// perhaps cast, then continue_path or end. `path.rays` counts the ray that has ended.
+// shade_miss: emit, end. shade_surface and shade_medium: emit, perhaps cast, then continue_path or
+// end. `path.rays` counts the ray that has ended.
 #pragma once
 
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/shade_any.h"
+#include "common/transport/shade_miss.h"
+#include "common/transport/shade_surface.h"
+#include "common/transport/travel.h"
 
 namespace pt {
 
@@ -26,14 +28,14 @@ PT_HD Ray begin_path(const Scene& scene, const PathId& id, Stream& random) {
 }
 
 /// The ray has left the scene.
-template <class Integrator, Lighting lighting, class Sink>
-PT_HD void leave_scene(const Scene& scene, const Vec3& direction, const PathState& path,
-                       const PathLimits& limits, Sink& sink) {
-  sink.emit(path, Integrator::template miss<lighting>(scene, direction, path, limits));
+template <Lighting lighting, class Sink>
+PT_HD void shade_miss(const Scene& scene, const Vec3& direction, const PathState& path,
+                      const PathSettings& settings, Sink& sink) {
+  sink.emit(path, miss_radiance<lighting>(scene, direction, path, settings.mis));
   sink.end(path);
 }
 
-/// Tells the sink what a surface does with a path.
+/// Tells the sink what a surface or a medium does with a path.
 template <class Traits, class Sink>
 PT_HD_IN_KERNEL void follow_scattering(const Scattering& scattering, const PathState& path,
                                        Sink& sink) {
@@ -50,54 +52,65 @@ PT_HD_IN_KERNEL void follow_scattering(const Scattering& scattering, const PathS
   }
 }
 
-/// The ray has met a surface. `steps`: see surface_steps.h.
-template <class Traits, class Steps, class Sink>
-PT_HD_IN_KERNEL void meet_surface(const Scene& scene, const Ray& ray, const Hit& hit,
-                                  PathState& path, const PathLimits& limits, const Steps& steps,
-                                  Sink& sink) {
-  follow_scattering<Traits>(
-      Traits::Integrator::template surface<Traits>(scene, ray, hit, path, limits, steps), path,
-      sink);
+/// The ray has hit a surface. `policy`: see shading_policy.h.
+template <class Traits, class Policy, class Sink>
+PT_HD_IN_KERNEL void shade_surface(const Scene& scene, const Ray& ray, const Hit& hit,
+                                   PathState& path, const PathSettings& settings,
+                                   const Policy& policy, Sink& sink) {
+  follow_scattering<Traits>(surface_scattering<Traits>(scene, ray, hit, path, settings, policy),
+                            path, sink);
 }
 
 /// The ray has collided in a medium.
-template <class Traits, class Steps, class Sink>
-PT_HD_IN_KERNEL void collide(const Scene& scene, const Ray& ray, float distance, PathState& path,
-                             const PathLimits& limits, const Steps& steps, Sink& sink) {
-  follow_scattering<Traits>(
-      Traits::Integrator::template medium<Traits>(scene, ray, distance, path, limits, steps), path,
-      sink);
+template <class Traits, class Policy, class Sink>
+PT_HD_IN_KERNEL void shade_medium(const Scene& scene, const Ray& ray, float distance,
+                                  PathState& path, const PathSettings& settings,
+                                  const Policy& policy, Sink& sink) {
+  follow_scattering<Traits>(medium_scattering<Traits>(scene, ray, distance, path, settings, policy),
+                            path, sink);
 }
 
-/// One or the other.
-template <class Traits, class Steps, class Sink>
-PT_HD_IN_KERNEL void meet(const Scene& scene, const Ray& ray, const Hit& hit, PathState& path,
-                          const PathLimits& limits, const Steps& steps, Sink& sink) {
+/// Shades a surface hit or a medium collision.
+template <class Traits, class Policy, class Sink>
+PT_HD_IN_KERNEL void shade_vertex(const Scene& scene, const Ray& ray, const Hit& hit,
+                                  PathState& path, const PathSettings& settings,
+                                  const Policy& policy, Sink& sink) {
   if constexpr (Traits::has_media) {
     if (hit.is_collision()) {
-      return collide<Traits>(scene, ray, hit.t, path, limits, steps, sink);
+      return shade_medium<Traits>(scene, ray, hit.t, path, settings, policy, sink);
     }
   }
-  meet_surface<Traits>(scene, ray, hit, path, limits, steps, sink);
+  shade_surface<Traits>(scene, ray, hit, path, settings, policy, sink);
 }
 
-/// Both by one way through the code (shade_any.h).
+/// Shades a surface hit or a miss without a branch, the paper's 'reduced branching': a miss is a
+/// surface that emits the sky and reflects nothing, so that all threads of a warp take the same way
+/// through the code. The scene must have a primitive, whose data a miss loads and then discards.
 template <class Traits, class Sink>
-PT_HD_IN_KERNEL void meet_anything(const Scene& scene, const Ray& ray, const Hit& hit,
-                                   PathState& path, const PathLimits& limits,
-                                   const DrawnSteps& steps, Sink& sink) {
-  follow_scattering<Traits>(shade_any<Traits>(scene, ray, hit, path, limits, steps), path, sink);
+PT_HD_IN_KERNEL void shade_without_branches(const Scene& scene, const Ray& ray, const Hit& hit,
+                                            PathState& path, const PathSettings& settings,
+                                            const EagerShading& policy, Sink& sink) {
+  const bool miss = hit.is_miss();
+  const std::uint16_t shadow_rays = path.shadow_rays;
+  const Color sky = miss_radiance<Traits::lighting>(scene, ray.direction, path, settings.mis);
+  Scattering result =
+      surface_scattering<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, settings, policy);
+  result.alive = result.alive && !miss;
+  result.emitted = miss ? sky : result.emitted;
+  result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;
+  path.shadow_rays = miss ? shadow_rays : path.shadow_rays;
+  follow_scattering<Traits>(result, path, sink);
 }
 
 /// The numbers that decide what the ray's surface does, of which `scatter` are drawn already.
 template <class Traits, class Stream>
-PT_HD DrawnSteps draw_steps(const Vec4& scatter, Stream& random, const PathState& path) {
+PT_HD EagerShading eager_shading(const Vec4& scatter, Stream& random, const PathState& path) {
   return {scatter, Traits::has_lights ? random.draw(light_block(path.rays)) : Vec4(0.0f)};
 }
 template <class Traits, class Stream>
-PT_HD DrawnSteps draw_steps(Stream& random, const PathState& path) {
+PT_HD EagerShading eager_shading(Stream& random, const PathState& path) {
   const Vec4 scatter = random.draw(scatter_block(path.rays));
-  return draw_steps<Traits>(scatter, random, path);
+  return eager_shading<Traits>(scatter, random, path);
 }
 
 /// The sink of a thread that follows a path alone: its shadow rays are traced at once. `PathKey` is
@@ -116,8 +129,8 @@ struct PathRegisters {
   PT_HD void cast(const PathState& path, const ShadowRay& shadow) {
     const std::uint32_t key = shadow_ray_key(scene, path_key(), path.rays);
     if constexpr (Traits::has_media) {
-      const Color passed = shadow_transmittance<Traits>(scene, shadow, key);
-      radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, passed));
+      const Color transmittance = shadow_transmittance<Traits>(scene, shadow, key);
+      radiance = add_rounded(radiance, multiply_rounded(shadow.radiance, transmittance));
       return;
     }
     if (!intersect_shadow<Traits>(scene, shadow, key)) {

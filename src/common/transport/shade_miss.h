@@ -10,8 +10,8 @@ namespace pt {
 /// The radiance that the sky adds to the path's sample. The path ends. That of an environment and
 /// of the sun is weighted against light sampling, which could have chosen the same direction.
 template <Lighting lighting>
-PT_HD Color shade_miss(const Scene& scene, const Vec3& ray_direction, const PathState& path,
-                       MisHeuristic mis) {
+PT_HD Color miss_radiance(const Scene& scene, const Vec3& ray_direction, const PathState& path,
+                          MisHeuristic mis) {
   lanes_of(scene).at(path.rays - 1u).count(LanePoint::shade_miss);
   if constexpr (lighting == Lighting::full) {
     if (scene.camera.hides_emitters && path.rays == 1) return Color(0.0f);

@@ -6,11 +6,11 @@
 #include "common/sampling/mis.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
-#include "common/transport/path_limits.h"
+#include "common/transport/path_settings.h"
 #include "common/transport/resolve_material.h"
 #include "common/transport/sample_direction.h"
 #include "common/transport/sample_light.h"
-#include "common/transport/surface_steps.h"
+#include "common/transport/shading_policy.h"
 
 namespace pt {
 
@@ -19,7 +19,7 @@ struct Scattering {
   bool alive = false;
   Ray ray;
   Color emitted = Color(0.0f);  ///< to be added to the path's sample
-  ShadowRay shadow;             ///< to be traced unless its radiance is black; see DrawnSteps::aims
+  ShadowRay shadow;  ///< to be traced unless its radiance is black; see EagerShading::aims
 };
 
 /// The receiver for light selection.
@@ -91,44 +91,44 @@ PT_HD ShadowRay ask_light(const PathState& path, const Surface& surface, const V
                                   direct_radiance(path, light, value, mis));
 }
 
-/// Tells `steps` where the light's shadow ray goes; a light without one does not contribute.
-template <class Traits, class Steps>
-PT_HD void aim_at_light(const Steps& steps, const Surface& surface, const Vec3& from,
+/// Tells `policy` where the light's shadow ray goes; a light without one does not contribute.
+template <class Traits, class Policy>
+PT_HD void aim_at_light(const Policy& policy, const Surface& surface, const Vec3& from,
                         IncidentLight& light) {
   if (light.pdf <= 0.0f) return;
   const ShadowRay shadow = spawn_shadow_ray<Traits>(surface.point, from, light, Color(1.0f));
   if (is_black(shadow.radiance)) light.pdf = 0.0f;
-  steps.aim(shadow);
+  policy.aim(shadow);
 }
 
 /// Where a ray goes on behind a boundary that lets it through.
 struct BoundaryCrossing {
-  Ray ray;               ///< in the same direction
-  float length;          ///< from the origin of the ray before
-  std::uint16_t around;  ///< where it begins (Media)
+  Ray ray;                  ///< in the same direction
+  float length;             ///< from the origin of the ray before
+  std::uint16_t medium_id;  ///< where it begins (Media)
 };
 
-/// The media on both sides of a surface that a ray in `around` met.
+/// The media on both sides of a surface that a ray in `medium_id` met.
 PT_HD MediumBoundary media_beside(const Scene& scene, const Surface& surface,
-                                  std::uint16_t around) {
+                                  std::uint16_t medium_id) {
   return surface.material.is(Material::boundary) ? scene.media.boundaries[surface.material_index]
-                                                 : scene.media.same_on_both_sides(around);
+                                                 : scene.media.same_on_both_sides(medium_id);
 }
 
-/// `around`: what is around the ray's origin.
+/// `medium_id`: what is around the ray's origin.
 PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
-                                      std::uint16_t around) {
+                                      std::uint16_t medium_id) {
   const Ray next = spawn_ray(surface.point, ray.direction);
   return {next, dot(next.origin - ray.origin, ray.direction),
-          scene.media.behind(media_beside(scene, surface, around), ray.direction,
-                             surface.point.normal, around)};
+          scene.media.behind(media_beside(scene, surface, medium_id), ray.direction,
+                             surface.point.normal, medium_id)};
 }
 
 /// Whether light goes on through a surface as if it were not there.
 PT_HD bool lets_through(const Scene& scene, const Material& material, std::uint32_t index,
-                        std::uint16_t around) {
+                        std::uint16_t medium_id) {
   return material.is(Material::passes) ||
-         (material.emission == no_emission && scene.media.hides(index, around));
+         (material.emission == no_emission && scene.media.hides(index, medium_id));
 }
 
 /// Whether a surface that lets light through is thin glass, which reflects a part of it.
@@ -145,10 +145,10 @@ PT_HD ThinDielectric pane_at(const Scene& scene, const Surface& surface) {
 /// A surface that lets light through.
 PT_HD_IN_KERNEL Scattering pass_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                          PathState& path) {
-  const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, path.medium.around);
-  path.medium.around = crossing.around;
+  const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, path.medium.id);
+  path.medium.id = crossing.medium_id;
   path.medium.travelled = add_rounded(path.medium.travelled, crossing.length);
-  ++path.medium.passed;
+  ++path.medium.interface_crossings;
   Scattering result;
   result.alive = !is_black(path.beta);
   result.ray = crossing.ray;
@@ -163,28 +163,28 @@ PT_HD Frame shading_frame(const Vec3& normal, const Vec3& dp_du) {
   return make_frame(normal);
 }
 
-/// `path.rays` counts the ray that hit. `steps`: see surface_steps.h; steps.light() is not called
-/// in a scene without lights. Updates the path's throughput, density and counts. A path ends when
-/// it is absorbed, has traced all of its rays or loses at Russian roulette, which scatter().w
+/// `path.rays` counts the ray that hit. `policy`: see shading_policy.h; policy.light() is not
+/// called in a scene without lights. Updates the path's throughput, density and counts. A path ends
+/// when it is absorbed, has traced all of its rays or loses at Russian roulette, which scatter().w
 /// decides.
-template <class Traits, class Steps>
-PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, const Hit& hit,
-                                         PathState& path, const PathLimits& limits,
-                                         const Steps& steps) {
+template <class Traits, class Policy>
+PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray, const Hit& hit,
+                                              PathState& path, const PathSettings& settings,
+                                              const Policy& policy) {
   constexpr bool has_lights = Traits::has_lights, full = Traits::lighting == Lighting::full;
   // The specialised kernels of the paper's scenes stay small: the others do the rest
   // (scene_options.h).
-  const MisHeuristic mis = full ? limits.mis : MisHeuristic::power;
-  const DirectionSampling directions = full ? limits.directions : DirectionSampling::bsdf;
+  const MisHeuristic mis = full ? settings.mis : MisHeuristic::power;
+  const DirectionSampling directions = full ? settings.directions : DirectionSampling::bsdf;
   lanes_of(ray).count(LanePoint::shade_surface);
   Surface surface = surface_at<Traits>(scene, ray, hit);
   if constexpr (Traits::has_media) {
-    if (lets_through(scene, surface.material, surface.material_index, path.medium.around)) {
+    if (lets_through(scene, surface.material, surface.material_index, path.medium.id)) {
       if (!is_pane(surface.material)) return pass_boundary(scene, ray, surface, path);
       const ThinDielectric pane = pane_at(scene, surface);
       // By the number that decides it in ThinDielectric::sample().
       const float cosine = dot(ray.direction, surface.shading_normal);
-      if (!(steps.scatter().z < pane.reflectance(cosine))) {
+      if (!(policy.scatter().z < pane.reflectance(cosine))) {
         path.beta = multiply_rounded(path.beta, pane.passed);
         return pass_boundary(scene, ray, surface, path);
       }
@@ -192,16 +192,16 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
   }
   Scattering result;
   if constexpr (has_lights) {
-    result.emitted = steps.emit(emitted_radiance<Traits>(scene, ray, hit, path, surface, mis));
+    result.emitted = policy.emit(emitted_radiance<Traits>(scene, ray, hit, path, surface, mis));
   }
-  if (path.depth<Traits>() >= limits.max_depth) return result;
+  if (path.depth<Traits>() >= settings.max_depth) return result;
   MediumBoundary boundary;
   if constexpr (Traits::has_media) {
-    boundary = media_beside(scene, surface, path.medium.around);
+    boundary = media_beside(scene, surface, path.medium.id);
   }
   float choice = 0.0f;
   const bool is_nested = full && surface.material.is(Material::nested);
-  if (is_nested) choice = steps.scatter().w;
+  if (is_nested) choice = policy.scatter().w;
   if constexpr (full) resolve_material(scene, -ray.direction, choice, surface);
   if (full && surface.material.is(Material::one_sided) &&
       dot(ray.direction, surface.shading_normal) >= 0.0f) {
@@ -209,16 +209,16 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
   }
   // The light is chosen before the BSDF is known, as seen from where the BSDF's rays begin
   // (light_sample.h): so its code is there once, not once per BSDF.
-  const bool asks = has_lights && limits.ask_lights && !surface.material.is(Material::delta);
+  const bool asks = has_lights && settings.nee && !surface.material.is(Material::delta);
   const Vec3 from = spawn_origin(surface.point, -ray.direction);
   IncidentLight incident;
   if (asks) {
     lanes_of(ray).count(LanePoint::light);
     if (!full || scene.light_selector.has_tree()) path.receiver = receiver_of<Traits>(surface, ray);
-    incident = sample_light<Traits>(scene, from, path.receiver, steps.light());
-    if constexpr (Steps::aims) aim_at_light<Traits>(steps, surface, from, incident);
+    incident = sample_light<Traits>(scene, from, path.receiver, policy.light());
+    if constexpr (Policy::aims) aim_at_light<Traits>(policy, surface, from, incident);
   }
-  const Vec4 scatter = steps.scatter();
+  const Vec4 scatter = policy.scatter();
   if (!is_nested) choice = scatter.w;
   const Frame frame = shading_frame<Traits>(surface.shading_normal, surface.dp_du);
   BsdfSample next;
@@ -246,25 +246,25 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
   }
   if constexpr (has_lights) {
     path.bsdf_pdf = asks && !next.is_delta() ? next.pdf : PathState::delta_distribution;
-    if constexpr (Steps::aims) {
+    if constexpr (Policy::aims) {
       result.shadow.radiance = direct_radiance(path, incident, value, mis);
     } else {
       result.shadow = ask_light<Traits>(path, surface, from, incident, value, mis);
     }
     if constexpr (Traits::has_media) {
-      result.shadow.around =
-          scene.media.behind(boundary, incident.wi, surface.point.normal, path.medium.around);
+      result.shadow.medium_id =
+          scene.media.behind(boundary, incident.wi, surface.point.normal, path.medium.id);
     }
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  if (limits.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
+  if (settings.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
   if constexpr (Traits::has_media) {
-    path.medium.around = scene.media.behind(boundary, result.ray.direction, surface.point.normal,
-                                            path.medium.around);
+    path.medium.id =
+        scene.media.behind(boundary, result.ray.direction, surface.point.normal, path.medium.id);
     path.medium.travelled = 0.0f;
   }
   set_lanes(result.ray, lanes_of(scene).at(path.rays));

@@ -26,7 +26,7 @@ PT_HD FlightEvent fly_homogeneous(const Scene& scene, const Color& extinction, c
   const float u_distance = to_unit_float(combine_hash(key, 1));
   ChannelDensities& densities = path.medium.densities;
   const std::uint32_t lights = scene.light_point_count;
-  if (lights > 0 && path.rays == path.medium.passed && !is_black(extinction)) {
+  if (lights > 0 && path.rays == path.medium.interface_crossings && !is_black(extinction)) {
     const float choice = to_unit_float(combine_hash(key, 2)) * static_cast<float>(lights);
     const std::uint32_t light = min_integer(static_cast<std::uint32_t>(choice), lights - 1);
     const Equiangular towards(ray, t_max, Vec3(scene.light_points[light]));
@@ -42,7 +42,7 @@ PT_HD FlightEvent fly_homogeneous(const Scene& scene, const Color& extinction, c
 PT_HD void begin_flight(const Scene& scene, PathState& path) {
   if (path.rays > 0) return;
   path.medium = {};
-  path.medium.around = static_cast<std::uint16_t>(scene.around_camera);
+  path.medium.id = static_cast<std::uint16_t>(scene.camera_medium_id);
 }
 
 /// Takes a path to the end of its ray, `hit`, or to a collision before, which is then the hit.
@@ -52,8 +52,8 @@ PT_HD void begin_flight(const Scene& scene, PathState& path) {
 PT_HD bool travel(const Scene& scene, const Ray& ray, std::uint32_t path_key,
                   std::uint32_t collisions_max, PathState& path, FreeFlight& flight, Hit& hit) {
   if (!flight.has_begun()) begin_flight(scene, path);
-  if (path.medium.around == no_medium) return true;
-  const Medium medium = load_wide(scene.media.at(path.medium.around));
+  if (path.medium.id == no_medium) return true;
+  const Medium medium = load_wide(scene.media.at(path.medium.id));
   const std::uint32_t key = flight_key(path_key, path.rays);
   FlightEvent event;
   if (medium.is_homogeneous()) {
@@ -80,27 +80,27 @@ PT_HD Hit next_hit(const Scene& scene, const Ray& ray, std::uint32_t path_key, P
   return hit;
 }
 
-/// As shade_surface, for a collision `distance` along the ray: the medium emits, light is sampled,
-/// and the phase function decides where the path goes on.
-template <class Traits, class Steps>
-PT_HD_IN_KERNEL Scattering scatter_in_medium(const Scene& scene, const Ray& ray, float distance,
-                                             PathState& path, const PathLimits& limits,
-                                             const Steps& steps) {
+/// As surface_scattering, for a collision `distance` along the ray: the medium emits, light is
+/// sampled, and the phase function decides where the path goes on.
+template <class Traits, class Policy>
+PT_HD_IN_KERNEL Scattering medium_scattering(const Scene& scene, const Ray& ray, float distance,
+                                             PathState& path, const PathSettings& settings,
+                                             const Policy& policy) {
   lanes_of(ray).count(LanePoint::shade_medium);
-  const Medium medium = load_wide(scene.media.at(path.medium.around));
+  const Medium medium = load_wide(scene.media.at(path.medium.id));
   const Vec3 point = add_scaled(ray.origin, distance, ray.direction);
   const Color albedo = albedo_at(scene.grids, medium, point);
   Scattering result;
   const Color emission = emission_at(scene.grids, medium, point) * (Color(1.0f) - albedo);
-  result.emitted = steps.emit(path.beta * emission);
-  if (path.depth<Traits>() >= limits.max_depth || is_black(albedo)) return result;
+  result.emitted = policy.emit(path.beta * emission);
+  if (path.depth<Traits>() >= settings.max_depth || is_black(albedo)) return result;
   path.beta = multiply_rounded(path.beta, albedo);
   path.receiver = {};
   IncidentLight incident;
-  if (limits.ask_lights) {
-    incident = sample_light<Traits>(scene, point, path.receiver, steps.light());
+  if (settings.nee) {
+    incident = sample_light<Traits>(scene, point, path.receiver, policy.light());
   }
-  const Vec4 scatter = steps.scatter();
+  const Vec4 scatter = policy.scatter();
   BsdfValue value;
   PhaseSample next{};
   visit_phase(medium.phase, medium.phase_parameter, [&](const auto& phase) {
@@ -110,62 +110,63 @@ PT_HD_IN_KERNEL Scattering scatter_in_medium(const Scene& scene, const Ray& ray,
     }
     next = sample_phase(phase, ray.direction, scatter.x, scatter.y);
   });
-  const Color radiance = direct_radiance(path, incident, value, limits.mis);
+  const Color radiance = direct_radiance(path, incident, value, settings.mis);
   const float distance2 = dot(incident.end, incident.end);
   if (!is_black(radiance) && distance2 > 0.0f) {
     const float inverse = inverse_sqrt(distance2);
     result.shadow = {{point, multiply_rounded(incident.end, Vec3(inverse))},
                      multiply_rounded(distance2, inverse),
                      radiance,
-                     path.medium.around};
+                     path.medium.id};
     set_lanes(result.shadow.ray, lanes_of(ray).of_shadow_ray());
     ++path.shadow_rays;
   }
-  path.bsdf_pdf = limits.ask_lights ? next.pdf : PathState::delta_distribution;
+  path.bsdf_pdf = settings.nee ? next.pdf : PathState::delta_distribution;
   path.medium.travelled = 0.0f;
-  if (limits.is_roulette(path.rays)) play_roulette(path.beta, scatter.w);
+  if (settings.is_roulette(path.rays)) play_roulette(path.beta, scatter.w);
   result.alive = !is_black(path.beta);
   result.ray = {point, next.wi};
   set_lanes(result.ray, lanes_of(scene).at(path.rays));
   return result;
 }
 
-/// Of a shadow ray's way through one medium, up to `length`, after `segment` others of its way.
-PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t around, const Ray& ray,
+/// The transmittance of one segment of a shadow ray, of this length in one medium; `segment` is its
+/// number.
+PT_HD Color segment_transmittance(const Scene& scene, std::uint16_t medium_id, const Ray& ray,
                                   float length, std::uint32_t ray_key, std::uint32_t segment) {
-  return estimate_transmittance(scene.grids, load_wide(scene.media.at(around)), ray, length,
+  return estimate_transmittance(scene.grids, load_wide(scene.media.at(medium_id)), ray, length,
                                 flight_key(ray_key, segment));
 }
 
-/// What of a shadow ray's radiance arrives: black if a surface with a BSDF lies between its ends,
-/// else the transmittance of the media and panes through which it goes.
+/// The transmittance along a shadow ray: black if a surface with a BSDF lies between its ends, else
+/// that of the media and panes through which it goes.
 template <class Traits>
 PT_HD Color shadow_transmittance(const Scene& scene, const ShadowRay& shadow,
                                  std::uint32_t ray_key) {
-  Color passed(1.0f);
+  Color result(1.0f);
   Ray ray = shadow.ray;
   float left = shadow.distance;
-  std::uint16_t around = shadow.around;
+  std::uint16_t medium_id = shadow.medium_id;
   for (std::uint32_t segment = 0;; ++segment) {
     const Hit hit = intersect_closest<Traits>(scene, ray, ray_key);
     const bool arrives = hit.is_miss() || !(hit.t < left);
     const std::uint32_t material = arrives ? 0 : material_index_at(scene, hit);
-    if (!arrives && !lets_through(scene, scene.material(material), material, around)) {
+    if (!arrives && !lets_through(scene, scene.material(material), material, medium_id)) {
       return Color(0.0f);
     }
-    if (around != no_medium) {
+    if (medium_id != no_medium) {
       const float length = arrives ? left : hit.t;
-      passed = multiply_rounded(
-          passed, segment_transmittance(scene, around, ray, length, ray_key, segment));
+      result = multiply_rounded(
+          result, segment_transmittance(scene, medium_id, ray, length, ray_key, segment));
     }
-    if (arrives || is_black(passed)) return passed;
+    if (arrives || is_black(result)) return result;
     const Surface surface = surface_at<ShadingTraits<Traits>>(scene, ray, hit);
     if (is_pane(surface.material)) {
       const float cosine = dot(ray.direction, surface.shading_normal);
-      passed = multiply_rounded(passed, pane_at(scene, surface).transmittance(cosine));
+      result = multiply_rounded(result, pane_at(scene, surface).transmittance(cosine));
     }
-    const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, around);
-    around = crossing.around;
+    const BoundaryCrossing crossing = cross_boundary(scene, ray, surface, medium_id);
+    medium_id = crossing.medium_id;
     left -= crossing.length;
     ray.origin = crossing.ray.origin;
   }

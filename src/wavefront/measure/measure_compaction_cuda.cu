@@ -139,7 +139,7 @@ class Slots {
  private:
   static constexpr std::uint64_t counts_per_pass = 2;  // as CompactionRequest wants
 
-  /// Of slots; each set begins at a boundary of 256 bytes.
+  /// Slots from one set to the next, which begins at a boundary of 256 bytes.
   std::uint64_t stride() const { return (std::uint64_t{slot_count_} + 255) / 256 * 256; }
   std::uint64_t queues_per_set() const { return static_cast<std::uint64_t>(queue_count_); }
 

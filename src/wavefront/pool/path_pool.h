@@ -40,7 +40,7 @@ struct PathPool {
 
   std::uint32_t slot_count = 0;
   Strides strides;
-  // Of slot 0; at(field, slot) is another's, half_at(field, slot) that of a ray's two records.
+  // The records of slot 0; at(field, slot) and, for a ray's two, half_at(field, slot) find others.
   PathRecord* origin = nullptr;      ///< ray origin, density of the BSDF
   PathRecord* direction = nullptr;   ///< ray direction, index of the path | new_path
   PathRecord* throughput = nullptr;  ///< beta, rays | shadow rays << 16
@@ -149,7 +149,7 @@ struct PathPool {
     return path;
   }
 
-  // Of a scene with media:
+  // In scenes with media:
   PT_HD void load_medium(std::uint32_t slot, PathState& path) const {
     path.medium = unpack_medium(load_wide(at(medium, slot)));
   }
@@ -159,7 +159,7 @@ struct PathPool {
   PT_HD bool is_in_medium(std::uint32_t slot) const {
     PathState path;
     load_medium(slot, path);
-    return path.medium.around != no_medium;
+    return path.medium.id != no_medium;
   }
   /// Where the flight of the path's next ray has got in earlier waves.
   PT_HD FreeFlight load_flight(std::uint32_t slot) const {
@@ -225,21 +225,21 @@ struct PathPool {
                                    const PathState& path) const {
     store_wide(at(shadow_radiance, slot), pack(radiance, path.rays));
   }
-  /// Of a scene with media, the one in which the shadow ray begins, too.
+  /// In scenes with media also stores the medium in which the shadow ray begins.
   PT_HD void store_shadow_radiance(std::uint32_t slot, const ShadowRay& shadow,
                                    const PathState& path) const {
     store_wide(at(shadow_radiance, slot),
-               pack(shadow.radiance, path.rays | std::uint32_t{shadow.around} << 16));
+               pack(shadow.radiance, path.rays | std::uint32_t{shadow.medium_id} << 16));
   }
   PT_HD void dim_shadow(std::uint32_t slot, const Color& transmittance) const {
     const PathRecord r = load_wide(at(shadow_radiance, slot));
     store_wide(at(shadow_radiance, slot), pack(multiply_rounded(vec(r), transmittance), r.w));
   }
-  /// Of the path when it cast the shadow ray.
+  /// The path's count of shadow rays when it cast this one.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w & 0xffffu;
   }
-  PT_HD std::uint16_t load_around_shadow_ray(std::uint32_t slot) const {
+  PT_HD std::uint16_t load_shadow_medium_id(std::uint32_t slot) const {
     return static_cast<std::uint16_t>(at(shadow_radiance, slot)->w >> 16);
   }
   PT_HD ShadowRay load_shadow(std::uint32_t slot, std::uint32_t& path_index) const {
@@ -282,7 +282,7 @@ struct PathPool {
     return offset;
   }
 
-  /// Of all fields side by side, with what makes the next slot's lie as they do.
+  /// The size of all fields side by side, padded so that the next slot has the same alignment.
   static std::uint32_t fields_bytes(const Parts& parts) {
     std::uint32_t end = 0;
     PathPool().for_each_field(parts, [&]<class T>(T*) { next_offset<T>(end); });
@@ -291,7 +291,7 @@ struct PathPool {
 
   template <class T>
   PT_HD static T* step(T* field, std::uint32_t slot, std::uint32_t stride_bytes) {
-    // Of 64 bits: a large pool has more than 4 GiB.
+    // 64 bits: a large pool has more than 4 GiB.
     const std::uint64_t distance = std::uint64_t{slot} * stride_bytes;
     return reinterpret_cast<T*>(reinterpret_cast<char*>(field) + distance);
   }

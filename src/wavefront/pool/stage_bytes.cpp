@@ -81,7 +81,7 @@ class Predictor {
     if (!layout_.appends) return tag;
     return layout_.queues_free ? index : 0;
   }
-  /// Of stages that append nothing.
+  /// The bytes of a slot's own tag, which stages that append do not have.
   double own_tag() const { return layout_.appends ? 0 : tag; }
   double hit() const {
     return sizeof(StoredHit) + (layout_.parts.instances ? sizeof(std::uint32_t) : 0);

@@ -24,7 +24,7 @@ struct WaveFlow {
   double finished = 0;   ///< paths that were followed to their ends after it
 };
 
-/// Of the counters after the wave, but for `continued`: begin_wave tells that of the next one.
+/// The flow of a wave by its counters; begin_wave of the next wave tells `continued`.
 WaveFlow flow_of(const WaveCounters& counters);
 
 /// What of the render the bytes depend on.
@@ -39,9 +39,9 @@ struct WaveLayout {
   bool persistent = false;   ///< persistent warps trace the rays, and route_hits sends them on
 };
 
-/// Of one launch in a wave of this flow; nothing for kernels that are no stages of it. `kernel` as
-/// the statistics name it: "intersect", "shade_surface". A path is as likely to be new
-/// among misses as among surfaces, and each sampled light contributes.
+/// The bytes of one launch in a wave of this flow; nothing for kernels that are no stages. `kernel`
+/// as the statistics name it: "intersect", "shade_surface". A path is as likely to be new among
+/// misses as among surfaces, and each sampled light contributes.
 PredictedBytes predict_bytes(const std::string& kernel, const WaveFlow& flow,
                              const WaveLayout& layout);
 

@@ -44,7 +44,7 @@ class CounterSession {
   /// Launches beyond so many are not counted.
   static constexpr std::size_t launches_max = 4000;
 
-  /// Of kernels on the current CUDA device, which is this one.
+  /// `device`: the current CUDA device, whose kernels are counted.
   explicit CounterSession(int device, CounterReplay replay = CounterReplay::user)
       : device_(device), replay_(replay) {}
 

@@ -115,11 +115,11 @@ class CudaLauncher {
   std::map<std::pair<std::string, int>, int> others_;  ///< kernels of launch_others, by its call
   int wave_ = -1;
   std::vector<KernelInfo> kernels_;
-  /// Of kernels_; one may run as several stages.
+  /// The names of kernels; one kernel may run as several stages.
   std::vector<std::pair<const void*, std::string>> noted_kernels_;
 };
 
-/// Of this device. Throws Error where it is not there.
+/// Throws Error where there is no such device.
 cudaDeviceProp read_properties(int device);
 
 }  // namespace pt

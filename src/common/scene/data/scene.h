@@ -48,7 +48,7 @@ struct Scene {
   VolumeGrids grids;                          ///< of media
   const Vec4* light_points = nullptr;         ///< of point-like lights, in scenes with media
   std::uint32_t light_point_count = 0;
-  std::uint32_t around_camera = no_medium;  ///< see Media
+  std::uint32_t camera_medium_id = no_medium;  ///< see Media
   const Texture* textures = nullptr;
   const std::byte* texels = nullptr;
   PT_LANE_COUNTER;  ///< of all that is traced in it; set on CUDA
@@ -63,15 +63,11 @@ struct Scene {
   }
 };
 
-struct PathIntegrator;  // transport/path_integrator.h
-
 /// SceneTraits as a type, with the integrator. (A value as template argument, new in C++20, is
 /// refused by nvcc's host pass.)
 template <Accel accel_value, Geometry geometry_value, Lighting lighting_value,
-          bool has_masks_value = false, bool has_media_value = false,
-          class IntegratorType = PathIntegrator>
+          bool has_masks_value = false, bool has_media_value = false>
 struct Traits {
-  using Integrator = IntegratorType;
   static constexpr Accel accel = accel_value;
   static constexpr Geometry geometry = geometry_value;
   static constexpr Lighting lighting = lighting_value;
@@ -86,15 +82,12 @@ struct Traits {
 
 /// What shading depends on: scenes that differ in their structure or in masks share its kernels.
 template <class T>
-using ShadingTraits =
-    Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media, typename T::Integrator>;
+using ShadingTraits = Traits<Accel::brute, T::geometry, T::lighting, false, T::has_media>;
 
 /// The same of scenes that have triangles and nothing else.
 template <class T>
-using TrianglesAlone =
-    std::conditional_t<T::geometry == Geometry::mixed,
-                       Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks,
-                              T::has_media, typename T::Integrator>,
-                       T>;
+using TrianglesAlone = std::conditional_t<
+    T::geometry == Geometry::mixed,
+    Traits<T::accel, Geometry::triangles, T::lighting, T::has_masks, T::has_media>, T>;
 
 }  // namespace pt

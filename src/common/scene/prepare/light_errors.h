@@ -6,9 +6,9 @@
 
 namespace pt {
 
-/// Of the triangles of one instance, or of the world itself. A light is sampled in the world, where
-/// its first vertex has been rounded; a ray is taken to the instance's own space, where its origin
-/// is rounded. Both count in the world.
+/// The errors of one instance's triangles, or of the world's. A light is sampled in the world,
+/// where its first vertex has been rounded; a ray is taken to the instance's own space, where its
+/// origin is rounded. Both count in the world.
 class PlacementErrors {
  public:
   /// `to_world`: null where the triangles lie in the world. Must not be singular.

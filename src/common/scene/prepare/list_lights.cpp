@@ -48,7 +48,7 @@ class Lister {
   }
 
  private:
-  /// Of lights from `first` on.
+  /// The table of the lights from `first` on.
   void make_table(std::size_t first) {
     std::vector<float> weights;
     double total = 0;

@@ -74,7 +74,7 @@ void prepare_filter(SceneData& scene, const FilterChoice& filter) {
   scene.filter_quantiles.clear();
   if (filter == FilterChoice{}) return;
   const Integral side = integrate(filter);
-  // Of f(x) f(y) over the plane: (positive - negative)^2 and (positive + negative)^2.
+  // Integrals of f(x) f(y) and of its absolute value over the plane.
   const double sum = side.sum * side.sum, all = side.absolute.back() * side.absolute.back();
   if (!(side.sum > 0.1 * side.absolute.back()) || side.changes.size() > PixelFilter::changes_max) {
     throw Error(

@@ -8,7 +8,8 @@ namespace pt {
 namespace {
 
 constexpr double u = half_float_rounding;
-// Of the scaled spheres, from the centre of all: far from both ends of the halves, squared, too.
+// Largest distance of the scaled spheres from their centre: squared, it is far from both ends of
+// halves.
 constexpr double extent_max = 16.0;
 constexpr double scale_log2_max = 120.0;  // of a float
 // Times the median extent: what is larger is always a candidate.

@@ -81,7 +81,7 @@ void order_media(SceneData& scene) {
 
 }  // namespace
 
-std::uint32_t around_camera(const SceneData& scene) {
+std::uint32_t camera_medium_id(const SceneData& scene) {
   if (!scene.media_overlap || scene.camera_medium == no_medium) return scene.camera_medium;
   return no_medium ^ 1u << scene.camera_medium;
 }

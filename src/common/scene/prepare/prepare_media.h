@@ -17,6 +17,6 @@ void prepare_media(SceneData& scene);
 void separate_boundaries(SceneData& scene);
 
 /// As Scene has it. After prepare_media().
-std::uint32_t around_camera(const SceneData& scene);
+std::uint32_t camera_medium_id(const SceneData& scene);
 
 }  // namespace pt

@@ -92,7 +92,7 @@ Scene host_view(const SceneData& scene, int width, int height) {
   view.light_selector.environment_probability = scene.light_list.environment_probability;
   view.environment = scene.environment_map.view();
   view.media.overlap = scene.media_overlap;
-  view.around_camera = around_camera(scene);
+  view.camera_medium_id = camera_medium_id(scene);
   view.light_point_count = count(scene.light_points);
   for_each_array(scene, view,
                  [](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });

@@ -15,7 +15,7 @@ namespace {
 using DVec3 = glm::dvec3;
 using Corners = std::array<DVec3, 3>;
 
-/// Of instances: where they have more, none of them is looked at.
+/// Where instances have more triangles than this, none of them is looked at.
 constexpr std::uint64_t placed_triangles_max = std::uint64_t{1} << 24;
 
 /// A mesh where the scene has it.

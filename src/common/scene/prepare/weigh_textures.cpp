@@ -14,7 +14,7 @@ namespace pt {
 
 namespace {
 
-/// Of images times a factor, which is as often the same.
+/// The mean luminance of (image, factor), kept since many materials share both.
 using Means = std::map<std::tuple<std::uint32_t, float, float, float>, double>;
 
 double mean_of_image(const Texture& texture, const std::byte* texels, const Color& color) {

@@ -7,14 +7,13 @@
 #include "common/scene/load/files/studio.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
-#include "common/transport/path_integrator.h"
 #include "common/transport/path_step.h"
 
 namespace pt {
 namespace {
 
 constexpr int side = 32, samples = 32;
-constexpr PathLimits limits{.max_depth = 5};
+constexpr PathSettings settings{.max_depth = 5};
 constexpr float visible_emission = 0.01f, visible_albedo = 0.01f;
 
 Options options_of_estimate() {
@@ -70,9 +69,10 @@ void follow(const Scene& scene, const PathId& id, PixelSums& sums) {
     const Hit hit = next_hit<Traits>(scene, ray, mask, path);
     ++path.rays;
     if (hit.is_miss()) {
-      leave_scene<PathIntegrator, Traits::lighting>(scene, ray.direction, path, limits, sink);
+      shade_miss<Traits::lighting>(scene, ray.direction, path, settings, sink);
     } else {
-      meet<Traits>(scene, ray, hit, path, limits, draw_steps<Traits>(random, path), sink);
+      shade_vertex<Traits>(scene, ray, hit, path, settings, eager_shading<Traits>(random, path),
+                           sink);
     }
   } while (sink.alive);
   sums.radiance += reflected;

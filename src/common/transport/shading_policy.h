@@ -8,8 +8,8 @@
 
 namespace pt {
 
-/// The plain form: the numbers are drawn already, and all that is found lies in the Scattering.
-struct DrawnSteps {
+/// Eager shading: the numbers are drawn before it, and all results are returned in the Scattering.
+struct EagerShading {
   Vec4 scatter_numbers, light_numbers;
 
   /// The blocks of random numbers of the ray that hit (random.h); may be called repeatedly.
@@ -18,16 +18,17 @@ struct DrawnSteps {
   /// Takes what the surface emits, or returns it for Scattering::emitted.
   PT_HD Color emit(const Color& emitted) const { return emitted; }
   /// Whether aim() is to be called before the BSDF is evaluated, with the shadow ray's direction.
-  /// Of Scattering::shadow only the radiance is then set.
+  /// Scattering::shadow then has only its radiance.
   static constexpr bool aims = false;
   PT_HD void aim(const ShadowRay&) const {}
 };
 
-/// Streams results to a sink (path_step.h), to shorten live ranges. It has besides
+/// Streaming shading: passes results to a sink (path_step.h), to shorten live ranges. It has
+/// besides
 ///   void aim(const PathState&, const ShadowRay&)  the way of a shadow ray that may be cast
 /// Source: one whose streams have no state. `samples` gives a path's id.
 template <class Source, class Samples, class Sink>
-struct StreamedSteps {
+struct StreamingShading {
   const Source& source;
   const Samples& samples;
   const PathState& path;
@@ -51,7 +52,7 @@ struct StreamedSteps {
   }
 };
 template <class Source, class Samples, class Sink>
-StreamedSteps(const Source&, const Samples&, const PathState&, Sink&)
-    -> StreamedSteps<Source, Samples, Sink>;
+StreamingShading(const Source&, const Samples&, const PathState&, Sink&)
+    -> StreamingShading<Source, Samples, Sink>;
 
 }  // namespace pt

@@ -41,10 +41,10 @@ void expect_same_ray(const Ray& a, const Ray& b) {
 }
 
 /// Follows the path of this number; at each surface the stage does the same as shade_surface.
-void follow(const Scene& scene, const SamplerSource& source, const PathLimits& limits,
+void follow(const Scene& scene, const SamplerSource& source, const PathSettings& settings,
             std::uint32_t path_index, OneSlot& slot, Seen& seen) {
   const StageContext<SamplerSource> context{slot.pool, slot.batch, source, nullptr,
-                                            nullptr,   limits,     {}};
+                                            nullptr,   settings,   {}};
   const ShadeSurface<Kind, Branching::divergent, SamplerSource, true> stage{context};
   auto random = source.open(slot.batch.id_of(path_index));
   PathState path;
@@ -59,8 +59,8 @@ void follow(const Scene& scene, const SamplerSource& source, const PathLimits& l
     const Color before = slot.samples[path_index].radiance;
     const Next next = stage(scene, 0, 0);
     ++path.rays;
-    const Scattering expected =
-        shade_surface<Kind>(scene, ray, hit, path, limits, draw_steps<Kind>(random, path));
+    const Scattering expected = surface_scattering<Kind>(scene, ray, hit, path, settings,
+                                                         eager_shading<Kind>(random, path));
     alive = expected.alive, ray = expected.ray;
     EXPECT_EQ(slot.samples[path_index].radiance, add_rounded(before, expected.emitted));
     EXPECT_EQ(next.to, alive ? StageId::intersect : free_slot);
@@ -98,15 +98,15 @@ TEST(SurfaceSteps, StoreWhatShadingKeeps) {
   prepare_scene(data, options);
   ASSERT_EQ(data.traits.geometry, Geometry::triangles);
   const Scene scene = host_view(data, width, height);
-  PathLimits limits;
-  limits.max_depth = 6;
-  limits.roulette_depth = 3;
+  PathSettings settings;
+  settings.max_depth = 6;
+  settings.roulette_depth = 3;
   for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
     OneSlot slot;
     Seen seen;
     const SamplerSource source{7, make_sampler(sampler, sample_count)};
     for (std::uint32_t i = 0; i < width * height * sample_count && !HasFailure(); ++i) {
-      follow(scene, source, limits, i, slot, seen);
+      follow(scene, source, settings, i, slot, seen);
     }
     EXPECT_GT(seen.surfaces, 10000);
     EXPECT_GT(seen.shadow_rays, 1000);

@@ -1,4 +1,4 @@
-// When a path ends, and whether light sampling is used.
+// What the user sets for all paths: when they end, and how they are sampled.
 #pragma once
 
 #include "common/choices/choices.h"
@@ -6,10 +6,10 @@
 
 namespace pt {
 
-struct PathLimits {
+struct PathSettings {
   std::uint32_t max_depth = 50;      ///< rays of a path, the camera ray included
   std::uint32_t roulette_depth = 0;  ///< from so many rays on Russian roulette decides; 0: never
-  bool ask_lights = true;            ///< next-event estimation
+  bool nee = true;                   ///< next-event estimation
   DirectionSampling directions = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
 
