@@ -41,7 +41,7 @@ struct WavePolicy {
   bool only_triangles = false;                 ///< no instances, no spheres
   bool has_media = false;
   bool has_volumes = false;    ///< media with grids of densities
-  PathPool::Parts parts = {};  ///< what a path's slot stores
+  PathPool::Fields fields = {};  ///< what a path's slot stores
 
   WavePolicy() = default;
   WavePolicy(const ExecutionPlan& plan, const SceneTraits& traits, const Scene& scene,
@@ -53,7 +53,7 @@ struct WavePolicy {
         only_triangles(scene.has_only_triangles()),
         has_media(traits.has_media),
         has_volumes(has_grids),
-        parts{.lights = traits.has_lights() && !plan.fused,
+        fields{.lights = traits.has_lights() && !plan.fused,
               .instances = traits.geometry == Geometry::mixed,
               .tags = !compaction.appends,
               .receivers = scene.light_selector.has_tree(),
@@ -152,7 +152,7 @@ struct WaveBuffers {
       case StageId::intersect:
         return false;
       case StageId::shadow:
-        return !policy.parts.lights;
+        return !policy.fields.lights;
       case StageId::sample_medium:
       case StageId::shade_medium:
         return policy.fused || !policy.has_media;

@@ -61,7 +61,7 @@ struct PoolPart {
     buffers.slot_count = &slot_count;
     buffers.counters = &counters;
     buffers.pool.slot_count = slot_count;
-    buffers.pool.allocate_arrays(buffers.policy.parts, [&](auto* p, std::uint64_t count) {
+    buffers.pool.allocate_arrays(buffers.policy.fields, [&](auto* p, std::uint64_t count) {
       return array<std::remove_pointer_t<decltype(p)>>(count);
     });
     buffers.for_each_queue([&](auto*& queue, std::uint64_t capacity) {
@@ -176,7 +176,7 @@ class WavefrontCpu : public CpuRenderer {
     WaveBuffers common;
     common.policy = WavePolicy(plan, traits_, scene_, false);  // a thread takes no queue of flights
     common.all_slots = static_cast<std::uint32_t>(pool_size_);
-    const std::uint64_t size_bytes = pool_size_ * (PathPool::bytes_per_slot(common.policy.parts) +
+    const std::uint64_t size_bytes = pool_size_ * (PathPool::bytes_per_slot(common.policy.fields) +
                                                    common.queue_bytes_per_slot());
     check_host_memory(size_bytes, fmt::format("a pool of {} paths (--pool-size)", pool_size_));
     note_memory("path pool and queues", size_bytes);

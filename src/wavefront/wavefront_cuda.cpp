@@ -47,7 +47,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const WavePolicy policy(plan_, traits_, scene_, has_volumes);
   const bool appends = policy.compaction.appends;
   buffers_.policy = policy;
-  const std::uint64_t bytes_per_slot = PathPool::bytes_per_slot(policy.parts) +
+  const std::uint64_t bytes_per_slot = PathPool::bytes_per_slot(policy.fields) +
                                        buffers_.queue_bytes_per_slot() + sizeof(std::uint32_t);
   const int halvings = plan_.pool_size == 0 ? plan_.memory_halvings : 0;
   const std::uint64_t free = CudaMemory::free_bytes() >> halvings;
@@ -69,7 +69,7 @@ void WavefrontCuda::allocate_pool(const SceneData& scene) {
   const std::uint64_t n = pool_size_;
   PathPool& pool = buffers_.pool;
   pool.slot_count = buffers_.all_slots = static_cast<std::uint32_t>(n);
-  pool.allocate_arrays(policy.parts, [&](auto* array, std::uint64_t count) {
+  pool.allocate_arrays(policy.fields, [&](auto* array, std::uint64_t count) {
     return memory_.allocate<std::remove_pointer_t<decltype(array)>>("path pool", count);
   });
   buffers_.for_each_queue([&](auto*& queue, std::uint64_t capacity) {
@@ -258,8 +258,8 @@ void WavefrontCuda::note_flow() {
 void WavefrontCuda::predict_bytes(std::vector<LaunchCounters>& launches) const {
   if (traits_.has_media) return;  // cells, voxels and pauses of flights are not foreseen
   WaveLayout layout;
-  layout.parts = buffers_.policy.parts;
-  layout.parts.lights = traits_.has_lights();
+  layout.fields = buffers_.policy.fields;
+  layout.fields.lights = traits_.has_lights();
   layout.fused = plan_.fused;
   layout.slots = buffers_.pool.slot_count;
   layout.has_queues = buffers_.policy.compaction.has_queues;

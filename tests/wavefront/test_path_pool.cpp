@@ -12,11 +12,11 @@
 namespace pt {
 namespace {
 
-using Parts = PathPool::Parts;
+using Fields = PathPool::Fields;
 
 /// All combinations, in this layout.
-std::vector<Parts> all_parts(PoolLayout layout) {
-  std::vector<Parts> all;
+std::vector<Fields> all_fields(PoolLayout layout) {
+  std::vector<Fields> all;
   for (int bits = 0; bits < 16; ++bits) {
     all.push_back({(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0, layout});
   }
@@ -26,10 +26,10 @@ std::vector<Parts> all_parts(PoolLayout layout) {
 /// A pool whose memory is exactly as large as asked for, so that sanitizers see what leaves it.
 class PoolMemory {
  public:
-  PathPool allocate(const Parts& parts, std::uint32_t slot_count) {
+  PathPool allocate(const Fields& fields, std::uint32_t slot_count) {
     PathPool pool;
     pool.slot_count = slot_count;
-    pool.allocate_arrays(parts, [this]<class T>(T*, std::uint64_t count) {
+    pool.allocate_arrays(fields, [this]<class T>(T*, std::uint64_t count) {
       size_bytes += count * sizeof(T);
       memory_.emplace_back(std::aligned_alloc(16, (count * sizeof(T) + 15) / 16 * 16), std::free);
       return static_cast<T*>(memory_.back().get());
@@ -60,19 +60,19 @@ PathState path_of(std::uint32_t slot) {
   return path;
 }
 
-void store(const PathPool& pool, const Parts& parts, std::uint32_t slot) {
+void store(const PathPool& pool, const Fields& fields, std::uint32_t slot) {
   const PathState path = path_of(slot);
   pool.store_path(slot, {vector_of(slot, 2), vector_of(slot, 3)}, path);
   pool.store_hit(slot, {static_cast<float>(slot) / 2, slot + 100, slot + 200});
-  if (parts.lights) {
+  if (fields.lights) {
     const Ray ray{vector_of(slot, 4), vector_of(slot, 5)};
     pool.store_shadow(slot, {ray, static_cast<float>(slot) + 0.5f, vector_of(slot, 6)}, path);
   }
-  if (parts.tags) pool.tag[slot] = static_cast<StageId>(slot % 5);
-  if (parts.tags && parts.lights) pool.shadow_tag[slot] = static_cast<StageId>(slot % 3);
+  if (fields.tags) pool.tag[slot] = static_cast<StageId>(slot % 5);
+  if (fields.tags && fields.lights) pool.shadow_tag[slot] = static_cast<StageId>(slot % 3);
 }
 
-void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot) {
+void expect_stored(const PathPool& pool, const Fields& fields, std::uint32_t slot) {
   const PathState expected = path_of(slot);
   Ray ray;
   const PathState path = pool.load_path(slot, ray);
@@ -83,14 +83,14 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
   EXPECT_EQ(path.rays, expected.rays);
   EXPECT_EQ(path.shadow_rays, expected.shadow_rays);
   EXPECT_EQ(path.bsdf_pdf, expected.bsdf_pdf);
-  if (parts.receivers) {
+  if (fields.receivers) {
     EXPECT_EQ(path.receiver.bits, expected.receiver.bits);
   }
   const Hit hit = pool.load_hit(slot);
   EXPECT_EQ(hit.t, static_cast<float>(slot) / 2);
   EXPECT_EQ(hit.primitive, slot + 100);
-  EXPECT_EQ(hit.instance, parts.instances ? slot + 200 : 0);
-  if (parts.lights) {
+  EXPECT_EQ(hit.instance, fields.instances ? slot + 200 : 0);
+  if (fields.lights) {
     std::uint32_t path_index = 0;
     const ShadowRay shadow = pool.load_shadow(slot, path_index);
     EXPECT_EQ(path_index, expected.index);
@@ -100,10 +100,10 @@ void expect_stored(const PathPool& pool, const Parts& parts, std::uint32_t slot)
     EXPECT_EQ(shadow.radiance, vector_of(slot, 6));
     EXPECT_EQ(pool.load_shadow_rays(slot), expected.rays);
   }
-  if (parts.tags) {
+  if (fields.tags) {
     EXPECT_EQ(pool.tag[slot], static_cast<StageId>(slot % 5));
   }
-  if (parts.tags && parts.lights) {
+  if (fields.tags && fields.lights) {
     EXPECT_EQ(pool.shadow_tag[slot], static_cast<StageId>(slot % 3));
   }
 }
@@ -119,24 +119,24 @@ INSTANTIATE_TEST_SUITE_P(Layouts, PathPoolOf,
 
 TEST_P(PathPoolOf, KeepsWhatEachSlotHas) {
   constexpr std::uint32_t slot_count = 37;
-  for (const Parts& parts : all_parts(GetParam())) {
+  for (const Fields& fields : all_fields(GetParam())) {
     SCOPED_TRACE(testing::Message()
-                 << "lights " << parts.lights << ", instances " << parts.instances << ", tags "
-                 << parts.tags << ", receivers " << parts.receivers);
+                 << "lights " << fields.lights << ", instances " << fields.instances << ", tags "
+                 << fields.tags << ", receivers " << fields.receivers);
     PoolMemory memory;
-    const PathPool pool = memory.allocate(parts, slot_count);
-    for (std::uint32_t slot = 0; slot < slot_count; ++slot) store(pool, parts, slot);
-    for (std::uint32_t slot = 0; slot < slot_count; ++slot) expect_stored(pool, parts, slot);
-    EXPECT_EQ(memory.size_bytes, slot_count * PathPool::bytes_per_slot(parts));
+    const PathPool pool = memory.allocate(fields, slot_count);
+    for (std::uint32_t slot = 0; slot < slot_count; ++slot) store(pool, fields, slot);
+    for (std::uint32_t slot = 0; slot < slot_count; ++slot) expect_stored(pool, fields, slot);
+    EXPECT_EQ(memory.size_bytes, slot_count * PathPool::bytes_per_slot(fields));
     if (HasFailure()) return;
   }
 }
 
 // A record is read by one access of 16 bytes, which must not be apart.
 TEST_P(PathPoolOf, EveryRecordIsAligned) {
-  for (const Parts& parts : all_parts(GetParam())) {
+  for (const Fields& fields : all_fields(GetParam())) {
     PoolMemory memory;
-    const PathPool pool = memory.allocate(parts, 3);
+    const PathPool pool = memory.allocate(fields, 3);
     for (std::uint32_t slot = 0; slot < 3; ++slot) {
       const auto expect_aligned = [&](auto* field) {
         if (field == nullptr) return;
@@ -152,17 +152,17 @@ TEST_P(PathPoolOf, EveryRecordIsAligned) {
 
 // As the table in docs/design/wavefront.md has it.
 TEST(PathPool, SizesInBytes) {
-  const auto bytes = [](Parts parts, PoolLayout layout) {
-    parts.layout = layout;
-    return PathPool::bytes_per_slot(parts);
+  const auto bytes = [](Fields fields, PoolLayout layout) {
+    fields.layout = layout;
+    return PathPool::bytes_per_slot(fields);
   };
   const auto no_hits = [](bool instances, bool receivers) {  // of fused stages
-    Parts parts{false, instances, false, receivers};
-    parts.hits = false;
-    return parts;
+    Fields fields{false, instances, false, receivers};
+    fields.hits = false;
+    return fields;
   };
   const struct {
-    Parts parts;
+    Fields fields;
     std::uint64_t soa, aos;
   } cases[] = {{{false, false, false, false}, 56, 64},
                {{false, true, false, true}, 64, 64},
@@ -173,18 +173,18 @@ TEST(PathPool, SizesInBytes) {
                {no_hits(false, false), 48, 48},
                {no_hits(true, false), 48, 48},
                {no_hits(true, true), 52, 64}};
-  for (const auto& [parts, soa, aos] : cases) {
-    EXPECT_EQ(bytes(parts, PoolLayout::soa), soa);
-    EXPECT_EQ(bytes(parts, PoolLayout::sectors), soa);
-    EXPECT_EQ(bytes(parts, PoolLayout::aos), aos);
+  for (const auto& [fields, soa, aos] : cases) {
+    EXPECT_EQ(bytes(fields, PoolLayout::soa), soa);
+    EXPECT_EQ(bytes(fields, PoolLayout::sectors), soa);
+    EXPECT_EQ(bytes(fields, PoolLayout::aos), aos);
   }
 }
 
 // More than 4 GiB: no memory is touched.
 TEST_P(PathPoolOf, TheLastSlotOfALargePoolIsFarAway) {
-  const Parts parts{true, false, false, false, GetParam()};
+  const Fields fields{true, false, false, false, GetParam()};
   PoolMemory memory;
-  const PathPool pool = memory.allocate(parts, 1);
+  const PathPool pool = memory.allocate(fields, 1);
   const auto place = [](const void* p) { return reinterpret_cast<std::uintptr_t>(p); };
   const bool aos = GetParam() == PoolLayout::aos;
   const std::uint64_t of_ray = aos ? 112 : GetParam() == PoolLayout::sectors ? 32 : 16;

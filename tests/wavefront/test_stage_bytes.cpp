@@ -15,7 +15,7 @@ namespace {
 /// The defaults on CUDA: queues that are appended to, the whole batch in the pool.
 WaveLayout usual(bool lights = true) {
   WaveLayout layout;
-  layout.parts = {lights, false, false, false};
+  layout.fields = {lights, false, false, false};
   layout.slots = 1000;
   return layout;
 }
@@ -60,7 +60,7 @@ TEST(StageBytes, OldPathsHaveAThroughput) {
 
 TEST(StageBytes, WhatAScenesKindAdds) {
   WaveLayout layout = usual();
-  layout.parts.instances = layout.parts.receivers = layout.all_lights = true;
+  layout.fields.instances = layout.fields.receivers = layout.all_lights = true;
   layout.queues_free = true;
   const auto predict = [&](const char* kernel) {
     return predict_bytes(kernel, first_wave(), layout);
@@ -74,14 +74,14 @@ TEST(StageBytes, WhatAScenesKindAdds) {
 
 TEST(StageBytes, HalfARayIsASectorWhereBothShareOne) {
   WaveLayout layout = usual();
-  layout.parts.layout = PoolLayout::sectors;
+  layout.fields.layout = PoolLayout::sectors;
   expect_bytes(predict_bytes("shade_miss", first_wave(), layout), 40 * (4 + 32 + 12), 40 * 16);
 }
 
 TEST(StageBytes, TagsInsteadOfQueues) {
   WaveLayout layout = usual(false);
   layout.has_queues = layout.appends = false;
-  layout.parts.tags = true;
+  layout.fields.tags = true;
   const auto predict = [&](const char* kernel) {
     return predict_bytes(kernel, first_wave(), layout);
   };
@@ -116,7 +116,7 @@ TEST(StageBytes, FusedStagesStoreWhatGoesOn) {
                40 * (48 + 16 + 4) + 60 * (16 + 4));
   layout.queues_free = false;
   flow.generated = 0;  // a later wave, without lights
-  layout.parts.lights = false;
+  layout.fields.lights = false;
   expect_bytes(predict_bytes("bounce", flow, layout), 100 * (4 + 48), 40 * (48 + 4) + 60 * 16);
   layout.appends = false;  // all tags are read, and each path's is written
   expect_bytes(predict_bytes("bounce", flow, layout), 100 * (4 + 48),
@@ -149,9 +149,9 @@ class MarkedPool {
  public:
   static constexpr unsigned char mark = 0xa5;
 
-  MarkedPool(std::uint32_t slots, const PathPool::Parts& parts) {
+  MarkedPool(std::uint32_t slots, const PathPool::Fields& fields) {
     pool.slot_count = slots;
-    pool.allocate_arrays(parts, [&]<class T>(T*, std::uint64_t count) {
+    pool.allocate_arrays(fields, [&]<class T>(T*, std::uint64_t count) {
       blocks_.emplace_back(count * sizeof(T) / sizeof(PathRecord) + 1);
       std::memset(blocks_.back().data(), mark, blocks_.back().size() * sizeof(PathRecord));
       return reinterpret_cast<T*>(blocks_.back().data());
@@ -184,8 +184,8 @@ TEST(StageBytes, GenerateWritesThePredictedRecords) {
   const SceneData data = make_scene_for(options, choose_device({DeviceChoice::Kind::cpu, 0}));
   const Scene scene = host_view(data, options.width, options.height);
   constexpr std::uint32_t n = 32;
-  const PathPool::Parts parts = {true, false, false, false};
-  const MarkedPool marked(n, parts);
+  const PathPool::Fields fields = {true, false, false, false};
+  const MarkedPool marked(n, fields);
   std::vector<Sample> samples(n);
   std::vector<std::uint32_t> queue(n);
   WaveCounters counters{};
@@ -197,7 +197,7 @@ TEST(StageBytes, GenerateWritesThePredictedRecords) {
   WaveFlow flow;
   flow.generated = flow.rays = n;
   WaveLayout layout;
-  layout.parts = parts;
+  layout.fields = fields;
   const double beside = n * (sizeof(Sample) + sizeof(std::uint32_t));
   EXPECT_EQ(static_cast<double>(marked.written_bytes()) + beside,
             predict_bytes("generate", flow, layout).written);

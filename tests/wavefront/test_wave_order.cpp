@@ -254,7 +254,7 @@ TEST(WaveOrder, FusedStagesNeedNoQueuesBetweenThem) {
   buffers.pool.slot_count = few_slots;
   const auto places_of = [&](bool fused, bool reuses_slots) {
     buffers.policy.fused = fused, buffers.reuses_slots = reuses_slots;
-    buffers.policy.parts.lights = !fused;
+    buffers.policy.fields.lights = !fused;
     std::uint64_t all = 0;
     buffers.for_each_queue([&](auto*&, std::uint64_t capacity) { all += capacity; });
     return all / few_slots;

@@ -36,7 +36,7 @@ class GroupRenderer : public Renderer {
                 std::shared_ptr<ResultBell> bell, GroupHooks hooks = {});
 
   /// Renders begin with the samples of this film instead of none, and add the rest of
-  /// Options::spp.
+  /// ImageSettings::spp.
   void start_from(ImageFilm film);
   /// Renders no other pixels. By default those of the film's window.
   void restrict_to(std::vector<Window> windows);

@@ -93,7 +93,7 @@ struct Rays {
 
 }  // namespace aov
 
-/// Every AOV, once. Its index is its bit in Options::aovs.
+/// Every AOV, once. Its index is its bit in ImageSettings::aovs.
 using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, aov::Position,
                       aov::Uv, aov::Primitive, aov::Instance, aov::MaterialIndex, aov::Variance,
                       aov::Samples, aov::Bounces, aov::Rays, aov::Collision, aov::Transmittance>;

@@ -8,7 +8,7 @@
 namespace pt {
 
 struct MemoryShare {
-  int halvings = 0;     ///< for Options::memory_halvings
+  int halvings = 0;     ///< for ExecutionSettings::memory_halvings
   std::string problem;  ///< the first one; empty: none
   bool is_told = false;
 

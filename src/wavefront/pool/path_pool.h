@@ -60,7 +60,7 @@ struct PathPool {
   static constexpr std::uint32_t new_path = 0x80000000u;  ///< indices are below 2^31
 
   /// What a pool for these scenes has: `tags` for compaction over tags.
-  struct Parts {
+  struct Fields {
     bool lights = false, instances = false, tags = false, receivers = false;
     PoolLayout layout = PoolLayout::soa;
     bool hits = true;  ///< false: none is stored
@@ -71,38 +71,38 @@ struct PathPool {
   /// Sets what a pool of `slot_count` slots needs to allocate(T*{}, count), room for `count` of T,
   /// aligned to 16 bytes: the only list of it.
   template <class Allocate>
-  void allocate_arrays(const Parts& parts, Allocate&& allocate) {
+  void allocate_arrays(const Fields& fields, Allocate&& allocate) {
     const std::uint64_t n = slot_count;
-    if (parts.layout == PoolLayout::aos) {
-      const std::uint32_t slot_bytes = fields_bytes(parts);
+    if (fields.layout == PoolLayout::aos) {
+      const std::uint32_t slot_bytes = fields_bytes(fields);
       strides = {slot_bytes, slot_bytes, slot_bytes, slot_bytes, slot_bytes};
       std::byte* const slot_0 = allocate(static_cast<std::byte*>(nullptr), n * slot_bytes);
       std::uint32_t end = 0;
-      for_each_field(parts, [&]<class T>(T*& field) {
+      for_each_field(fields, [&]<class T>(T*& field) {
         field = reinterpret_cast<T*>(slot_0 + next_offset<T>(end));
       });
     } else {
-      if (parts.layout == PoolLayout::sectors) {
+      if (fields.layout == PoolLayout::sectors) {
         strides.ray = 2 * sizeof(PathRecord);
-        for_each_ray(parts, [&](PathRecord*& first, PathRecord*& second) {
+        for_each_ray(fields, [&](PathRecord*& first, PathRecord*& second) {
           first = allocate(first, 2 * n), second = first + 1;
         });
       }
-      for_each_field(parts, [&](auto*& field) {
+      for_each_field(fields, [&](auto*& field) {
         if (field == nullptr) field = allocate(field, n);
       });
     }
-    for_each_tag(parts, [&](StageId*& tags) { tags = allocate(tags, n); });
+    for_each_tag(fields, [&](StageId*& tags) { tags = allocate(tags, n); });
   }
 
   /// What allocate_arrays takes for each slot.
-  static std::uint64_t bytes_per_slot(const Parts& parts) {
+  static std::uint64_t bytes_per_slot(const Fields& fields) {
     std::uint64_t sum = 0;
     const auto add = [&](auto* field) { sum += sizeof *field; };
     PathPool pool;
-    pool.for_each_tag(parts, add);
-    if (parts.layout == PoolLayout::aos) return sum + fields_bytes(parts);
-    pool.for_each_field(parts, add);
+    pool.for_each_tag(fields, add);
+    if (fields.layout == PoolLayout::aos) return sum + fields_bytes(fields);
+    pool.for_each_field(fields, add);
     return sum;
   }
 
@@ -252,25 +252,25 @@ struct PathPool {
  private:
   // All that a slot has, in the order in which it lies side by side.
   template <class Function>
-  void for_each_field(const Parts& parts, Function&& function) {
+  void for_each_field(const Fields& fields, Function&& function) {
     function(origin), function(direction), function(throughput);
-    if (parts.hits) function(hit);
-    if (parts.hits && parts.instances) function(hit_instance);
-    if (parts.receivers) function(receiver);
-    if (parts.media) function(medium);
-    if (parts.flights) function(flight);
-    if (!parts.lights) return;
+    if (fields.hits) function(hit);
+    if (fields.hits && fields.instances) function(hit_instance);
+    if (fields.receivers) function(receiver);
+    if (fields.media) function(medium);
+    if (fields.flights) function(flight);
+    if (!fields.lights) return;
     function(shadow_origin), function(shadow_direction), function(shadow_radiance);
   }
   template <class Function>
-  void for_each_ray(const Parts& parts, Function&& function) {
+  void for_each_ray(const Fields& fields, Function&& function) {
     function(origin, direction);
-    if (parts.lights) function(shadow_origin, shadow_direction);
+    if (fields.lights) function(shadow_origin, shadow_direction);
   }
   template <class Function>
-  void for_each_tag(const Parts& parts, Function&& function) {
-    if (parts.tags) function(tag);
-    if (parts.tags && parts.lights) function(shadow_tag);
+  void for_each_tag(const Fields& fields, Function&& function) {
+    if (fields.tags) function(tag);
+    if (fields.tags && fields.lights) function(shadow_tag);
   }
 
   /// The offset of a T behind `end` bytes; `end` then includes it.
@@ -283,9 +283,9 @@ struct PathPool {
   }
 
   /// The size of all fields side by side, padded so that the next slot has the same alignment.
-  static std::uint32_t fields_bytes(const Parts& parts) {
+  static std::uint32_t fields_bytes(const Fields& fields) {
     std::uint32_t end = 0;
-    PathPool().for_each_field(parts, [&]<class T>(T*) { next_offset<T>(end); });
+    PathPool().for_each_field(fields, [&]<class T>(T*) { next_offset<T>(end); });
     return next_offset<PathRecord>(end);
   }
 

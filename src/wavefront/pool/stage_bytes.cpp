@@ -13,7 +13,7 @@ class Predictor {
   Predictor(const WaveFlow& flow, const WaveLayout& layout) : flow_(flow), layout_(layout) {}
 
   PredictedBytes generate() const {
-    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    const double sample_bytes = layout_.fields.lights ? sample : 0;
     const double ray_index = layout_.has_queues ? index : 0;
     const bool has_input = layout_.queues_free || !layout_.has_queues;
     return {has_input ? find(flow_.generated) : 0,
@@ -33,7 +33,7 @@ class Predictor {
   PredictedBytes shade_miss() const {
     const double n = flow_.misses;
     // The direction alone, but where it shares a sector with the origin both move.
-    const bool whole = layout_.all_lights || layout_.parts.layout == PoolLayout::sectors;
+    const bool whole = layout_.all_lights || layout_.fields.layout == PoolLayout::sectors;
     const double ray = whole ? 2 * record : record;
     return {find(n) + n * (ray + old_path() + before()), n * (sample + free())};
   }
@@ -44,7 +44,7 @@ class Predictor {
     return {find(n) + n * (2 * record + old_path() + hit() + receiver()) + ended * before(),
             alive * (3 * record + receiver() + send()) + ended * (sample + free()) +
                 shadows * (3 * record + (layout_.appends ? index : 0)) +
-                (layout_.parts.lights && !layout_.appends ? n * tag : 0)};
+                (layout_.fields.lights && !layout_.appends ? n * tag : 0)};
   }
 
   PredictedBytes shadow() const {
@@ -57,7 +57,7 @@ class Predictor {
     const bool starts = layout_.appends && !layout_.queues_free && flow_.generated > 0;
     const double n = flow_.rays, alive = flow_.continued, ended = flow_.rays - alive;
     const double loaded = 2 * record + old_path() + receiver() + before();
-    const double sample_bytes = layout_.parts.lights ? sample : 0;
+    const double sample_bytes = layout_.fields.lights ? sample : 0;
     return {starts ? 0 : find(n) + n * loaded,
             alive * (3 * record + receiver() + sample_bytes + send()) + ended * (sample + free())};
   }
@@ -84,15 +84,15 @@ class Predictor {
   /// The bytes of a slot's own tag, which stages that append do not have.
   double own_tag() const { return layout_.appends ? 0 : tag; }
   double hit() const {
-    return sizeof(StoredHit) + (layout_.parts.instances ? sizeof(std::uint32_t) : 0);
+    return sizeof(StoredHit) + (layout_.fields.instances ? sizeof(std::uint32_t) : 0);
   }
-  double receiver() const { return layout_.parts.receivers ? sizeof(Receiver) : 0; }
+  double receiver() const { return layout_.fields.receivers ? sizeof(Receiver) : 0; }
   /// What has happened to a path; nothing has to a new one.
   double old_path() const {
     return flow_.rays > 0 ? record * (1 - flow_.generated / flow_.rays) : 0;
   }
   /// The radiance that lights have added.
-  double before() const { return layout_.parts.lights ? radiance : 0; }
+  double before() const { return layout_.fields.lights ? radiance : 0; }
 
   const WaveFlow& flow_;
   const WaveLayout& layout_;

@@ -29,13 +29,13 @@ WaveFlow flow_of(const WaveCounters& counters);
 
 /// What of the render the bytes depend on.
 struct WaveLayout {
-  PathPool::Parts parts;
+  PathPool::Fields fields;
   double slots = 0;          ///< of the pool
   bool has_queues = true;    ///< else stages look at the tags of all slots
   bool appends = true;       ///< stages append to queues, else they write tags
   bool queues_free = false;  ///< free slots are queued
   bool all_lights = false;   ///< Lighting::full: a miss needs the whole ray
-  bool fused = false;        ///< one kernel traces and shades: parts.lights concerns samples alone
+  bool fused = false;        ///< one kernel traces and shades: fields.lights concerns samples alone
   bool persistent = false;   ///< persistent warps trace the rays, and route_hits sends them on
 };
 
