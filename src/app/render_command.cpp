@@ -13,7 +13,7 @@
 #include "app/resume_command.h"
 #include "app/scene_defaults.h"
 #include "app/standard_output.h"
-#include "common/device/devices_opening.h"
+#include "common/device/devices.h"
 #include "common/error/error.h"
 #include "common/error/terminal.h"
 #include "common/mpi/serve_units.h"

@@ -6,7 +6,7 @@
 #include "common/device/devices.h"
 #include "common/error/error.h"
 #include "common/rays/ray_file.h"
-#include "common/scene/prepare/convert_quads.h"
+#include "common/scene/prepare/prepare_triangles.h"
 
 namespace pt {
 

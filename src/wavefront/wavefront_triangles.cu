@@ -1,5 +1,5 @@
 // Scenes with triangles.
-#include "wavefront/trace_masked_queue.cuh"
+#include "wavefront/trace_queue.cuh"
 #include "wavefront/wavefront_enqueue.cuh"
 
 namespace pt {

@@ -1,6 +1,6 @@
 // Radiance inside of glass is eta^2 times that outside: lamps, cameras and skies on either side.
 #include "common/scene/prepare/prepare_scene.h"
-#include "common/transport/path_settings.h"
+#include "common/transport/path.h"
 #include "render_serial.h"
 #include "statistics.h"
 

@@ -10,7 +10,7 @@
 #include "common/accel/trace_cpu/traverse_brute_block.h"
 #include "common/render/batches.h"
 #include "common/render/dispatch.h"
-#include "common/render/path_settings_of.h"
+#include "common/render/settings_of.h"
 #include "common/sampling/random.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"

@@ -7,7 +7,7 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/generate_camera_path.h"
-#include "common/transport/path_settings.h"
+#include "common/transport/path.h"
 #include "render_serial.h"
 #include "statistics.h"
 

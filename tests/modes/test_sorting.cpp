@@ -7,8 +7,7 @@
 #include "emulated_gpu.h"
 #include "common/block_wavefront/block_wavefront.cuh"
 // clang-format on
-#include "common/render/path_settings_of.h"
-#include "common/render/random_source.h"
+#include "common/render/settings_of.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
 #include "medium/filled_glasses.h"
@@ -56,9 +55,9 @@ class SortedPaths {
     PathPool pool;
     pool.slot_count = batch_.path_count;
     std::vector<std::vector<std::uint64_t>> arrays;
-    PathPool::Parts parts{true, false, false, scene_.light_selector.has_tree()};
-    parts.media = Traits::has_media;
-    pool.allocate_arrays(parts, [&]<class T>(T*, std::uint64_t count) {
+    PathPool::Fields fields{true, false, false, scene_.light_selector.has_tree()};
+    fields.media = Traits::has_media;
+    pool.allocate_arrays(fields, [&]<class T>(T*, std::uint64_t count) {
       arrays.emplace_back(count * sizeof(T) / sizeof(std::uint64_t) + 1);
       return reinterpret_cast<T*>(arrays.back().data());
     });

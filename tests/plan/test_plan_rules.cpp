@@ -9,7 +9,6 @@
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "common/scene/prepare/scene_properties.h"
 
 namespace pt {
 namespace {

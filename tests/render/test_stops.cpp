@@ -3,7 +3,6 @@
 
 #include "common/film/pixel_statistics.h"
 #include "common/render/batches.h"
-#include "common/render/stop_clock.h"
 #include "film_cases.h"
 
 namespace pt {

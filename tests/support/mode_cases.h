@@ -18,7 +18,7 @@
 #include "common/plan/execution_plan.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_materials.h"
-#include "common/scene/prepare/scene_properties.h"
+#include "common/scene/prepare/prepare_scene.h"
 #include "make_render.h"
 #include "statistics.h"
 

@@ -7,7 +7,6 @@
 
 #include "app/options/option_values.h"
 #include "common/film/aov.h"
-#include "common/scene/prepare/filters.h"
 #include "common/scene/prepare/prepare_filter.h"
 
 namespace pt {

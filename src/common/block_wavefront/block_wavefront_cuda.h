@@ -5,7 +5,7 @@
 #include "common/cuda/cuda_memory.cuh"
 #include "common/device/cuda/cuda_launcher.cuh"
 #include "common/film/film.h"
-#include "common/render/random_source.h"
+#include "common/render/settings_of.h"
 
 namespace pt {
 

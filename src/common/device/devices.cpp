@@ -80,4 +80,13 @@ DeviceInfo choose_device(const DeviceChoice& choice) {
   throw Error(fmt::format("--device cuda:{}: no such CUDA device; {}", choice.index, about_gpus));
 }
 
+DeviceOpening::DeviceOpening([[maybe_unused]] const std::vector<DeviceInfo>& devices) {
+#ifdef PTEXP_CUDA
+  for (const DeviceInfo& device : devices) {
+    if (device.choice.kind != DeviceChoice::Kind::cuda) continue;
+    threads_.emplace_back([index = device.choice.index] { open_cuda_device(index); });
+  }
+#endif
+}
+
 }  // namespace pt

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/options/options.h"
@@ -33,5 +34,15 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices);
 
 /// Creates the context of a CUDA device, if it can be. Only in a build with CUDA.
 void open_cuda_device(int index);
+
+/// Creates the contexts of those devices that are GPUs while the host does something else. Whoever
+/// uses such a device waits for its context. What fails here fails there again, where it is said.
+class DeviceOpening {
+ public:
+  explicit DeviceOpening(const std::vector<DeviceInfo>& devices);
+
+ private:
+  std::vector<std::jthread> threads_;
+};
 
 }  // namespace pt

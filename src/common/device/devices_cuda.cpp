@@ -1,7 +1,7 @@
 #include <cuda_runtime_api.h>
 #include <fmt/format.h>
 
-#include "common/device/cuda/read_properties.cuh"
+#include "common/device/cuda/cuda_launcher.cuh"
 #include "common/device/devices.h"
 
 namespace pt {

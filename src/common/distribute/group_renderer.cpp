@@ -10,7 +10,7 @@
 #include "common/error/error.h"
 #include "common/film/develop.h"
 #include "common/film/pixel_statistics.h"
-#include "common/render/film_plan_of.h"
+#include "common/render/settings_of.h"
 
 namespace pt {
 namespace {

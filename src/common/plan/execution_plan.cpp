@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <bit>
 
+#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/material/material.h"
 #include "common/options/option_names.h"
 #include "common/plan/plan_rules.h"
+#include "common/plan/render_properties.h"
 
 namespace pt {
 namespace {
@@ -380,6 +383,14 @@ std::string plan_text(const std::vector<Decision>& decisions) {
                         d.reason);
   }
   return text;
+}
+
+DeviceProperties cpu_properties(int threads) {
+  DeviceProperties cpu;
+  cpu.has_avx2 = has_avx2();
+  cpu.has_ray_blocks = brute_block() != nullptr;
+  cpu.threads = threads;
+  return cpu;
 }
 
 }  // namespace pt

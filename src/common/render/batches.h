@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "common/render/renderer.h"
 
@@ -64,5 +65,30 @@ struct BatchRun {
 BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const RenderHooks& hooks,
                         const std::function<bool(int first_sample, int samples)>& run_batch,
                         const std::function<double()>& error = {}, BatchPace* pace = nullptr);
+
+class StopClock {
+ public:
+  /// Starts to measure. `rule` must live as long.
+  explicit StopClock(const StopRule& rule);
+
+  /// The most samples that the next batch may have. For the time: at first as many as there are,
+  /// then as many as fit into what is left at the rate so far. For the error: up to the next of
+  /// the numbers at which it is estimated, which do not depend on time or device.
+  int next(int done) const;
+  /// `done` is one of these numbers: 16, and then a quarter more each time.
+  bool wants_error(int done) const;
+  /// To be called after a batch. RunEnd::samples: continue.
+  RunEnd ends(int done, std::optional<double> error) const;
+  /// The samples that there will be in all, for a progress bar.
+  std::uint64_t expected(std::uint64_t done, std::uint64_t total,
+                         std::optional<double> error) const;
+  double elapsed_s() const;
+
+ private:
+  double now_s() const;
+
+  const StopRule& rule_;
+  double begin_s_;
+};
 
 }  // namespace pt

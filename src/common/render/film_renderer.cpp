@@ -6,7 +6,7 @@
 #include "common/film/develop.h"
 #include "common/film/pixel_statistics.h"
 #include "common/options/option_names.h"
-#include "common/render/film_plan_of.h"
+#include "common/render/settings_of.h"
 
 namespace pt {
 

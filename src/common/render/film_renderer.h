@@ -6,8 +6,8 @@
 #include "common/plan/execution_plan.h"
 #include "common/render/batches.h"
 #include "common/render/chain_layout.h"
-#include "common/render/path_settings_of.h"
 #include "common/render/renderer.h"
+#include "common/render/settings_of.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {

@@ -8,7 +8,7 @@
 
 #include "common/error/memory_error.h"
 #include "common/options/option_names.h"
-#include "common/render/stop_clock.h"
+#include "common/render/batches.h"
 
 namespace pt {
 namespace {

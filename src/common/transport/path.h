@@ -1,8 +1,10 @@
 // The state of a path between two stages.
 #pragma once
 
+#include "common/choices/choices.h"
 #include "common/geometry/ray.h"
 #include "common/light/receiver.h"
+#include "common/math/vec.h"
 #include "common/medium/channel_densities.h"
 #include "common/medium/medium.h"
 
@@ -42,5 +44,30 @@ struct PathState {
 
   PT_HD std::uint32_t packed_rays() const { return rays | std::uint32_t{shadow_rays} << 16; }
 };
+
+struct PathSettings {
+  std::uint32_t max_depth = 50;      ///< rays of a path, the camera ray included
+  std::uint32_t roulette_depth = 0;  ///< from so many rays on Russian roulette decides; 0: never
+  bool nee = true;                   ///< next-event estimation
+  DirectionSampling directions = DirectionSampling::bsdf;
+  MisHeuristic mis = MisHeuristic::power;
+
+  /// Whether a path that has traced `rays` takes part in the roulette.
+  PT_HD bool is_roulette(std::uint32_t rays) const {
+    return roulette_depth != 0 && rays >= roulette_depth;
+  }
+};
+
+/// Russian roulette (pbrt-v4, section 2.2.4): a path of low throughput ends, or is weighted for
+/// those that did. `u` in [0, 1) decides. The probability to continue is at most 0.95, so that no
+/// path between perfect mirrors lives for ever. `outside` times beta is what it is judged by: in
+/// glass, what beta would be outside of it, known from the surface alone, so that a path need not
+/// keep it. (Where the path hits something else inside, the probability is smaller than needed; the
+/// mean is the same.)
+PT_HD void play_roulette(Color& beta, float u, float outside = 1.0f) {
+  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * outside, 0.95f);
+  const float scale = u < survival ? divide(1.0f, survival) : 0.0f;
+  beta = multiply_rounded(beta, Color(scale));
+}
 
 }  // namespace pt

@@ -6,7 +6,6 @@
 #include "common/sampling/mis.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"
-#include "common/transport/path_settings.h"
 #include "common/transport/resolve_material.h"
 #include "common/transport/sample_direction.h"
 #include "common/transport/sample_light.h"

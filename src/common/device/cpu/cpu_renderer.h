@@ -9,7 +9,7 @@
 #include "common/device/cpu/cpu_chains.h"
 #include "common/render/dispatch.h"
 #include "common/render/film_renderer.h"
-#include "common/render/random_source.h"
+#include "common/render/settings_of.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {

@@ -1,4 +1,4 @@
-#include "common/device/cuda/feature_kernels.cuh"
+#include "common/device/cuda/film_kernels.cuh"
 #include "common/device/cuda/stage_stamp.cuh"
 
 namespace pt {

@@ -5,6 +5,7 @@
 
 #include "common/device/cuda/stage_clock.h"
 #include "common/film/film_planes.h"
+#include "common/render/dispatch.h"
 #include "common/sampling/sampler_source.h"
 
 namespace pt {
@@ -33,5 +34,11 @@ void develop_film(const FilmPixel* film, float* rgb, std::uint32_t pixel_count,
 /// The stage clock runs between these two, of one thread each.
 __global__ void start_clock(StageClock* clock);
 __global__ void stop_clock(StageClock* clock);
+
+using FeatureKernel = void (*)(Scene scene, FilmView film, SampleBuffer batch, SamplerSource source,
+                               StageClock* clock);
+
+/// The kernel for a scene. Throws Error where there is none.
+FeatureKernel feature_kernel(const SceneTraits& traits);
 
 }  // namespace pt

@@ -4,6 +4,7 @@
 // event can be recorded.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 
 #include "common/options/stage_info.h"
@@ -15,6 +16,17 @@ struct StageClock {
   std::uint64_t launches[stage_count + 1];  ///< likewise
   std::uint64_t last_ns;
   StageId running;
+};
+
+class WallTimer {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_)
+        .count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace pt

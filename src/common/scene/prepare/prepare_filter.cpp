@@ -7,7 +7,6 @@
 
 #include "common/error/error.h"
 #include "common/options/option_names.h"
-#include "common/scene/prepare/filters.h"
 
 namespace pt {
 namespace {

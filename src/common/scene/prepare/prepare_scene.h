@@ -27,4 +27,11 @@ bool move_camera(SceneData& scene, const CameraParameters& camera, const Options
 /// A view of `scene` in host memory, valid while `scene` is neither changed nor destroyed.
 Scene host_view(const SceneData& scene, int width, int height);
 
+/// The properties of a scene whose materials and media are prepared. `structure` is for
+/// prepare_scene() to fill in.
+SceneProperties properties_of(const SceneData& scene);
+
+/// Whether the scene has nothing that the paper's have not.
+bool has_primitives_only(const SceneData& scene);
+
 }  // namespace pt

@@ -16,4 +16,7 @@ void prepare_triangles(SceneData& scene, const ExecutionPlan& plan);
 /// the triangles alone.
 TreeOptions tree_options(Accel accel, TreeBuilder builder);
 
+/// Replaces the scene's quads by meshes of two triangles each, one mesh per material.
+void convert_quads(SceneData& scene);
+
 }  // namespace pt

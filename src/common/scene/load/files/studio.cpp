@@ -11,7 +11,7 @@
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/prepare/prepare_camera.h"
-#include "common/scene/prepare/weigh_textures.h"
+#include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
 namespace {

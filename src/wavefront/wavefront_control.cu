@@ -1,5 +1,6 @@
+// What happens between waves, and after the last one.
 #include "common/device/cuda/stage_stamp.cuh"
-#include "wavefront/wavefront_cuda.h"
+#include "wavefront/wavefront_enqueue.cuh"
 
 namespace pt {
 namespace {
@@ -20,6 +21,15 @@ void WavefrontCuda::begin_wave() {
   const std::uint32_t finish_paths = supply().has_chains() ? 0 : finish_paths_;
   launch("begin_wave", begin_wave_kernel, 1, 1, 0, buffers_.counters, path_count_, plan_.regenerate,
          finish_paths, buffers_.half_ring(), loop_, clock());
+}
+
+/// The last paths, followed to their ends by block-local wavefronts.
+void WavefrontCuda::finish_in_blocks(const SampleBuffer& batch) {
+  if (host_counters_->finish == 0) return;
+  const BegunPaths paths = blocks_->place(host_counters_->finish);
+  run(HandOver{buffers_.pool, batch, paths},
+      buffers_.stage_queues(StageId::hand_over, &buffers_.counters->finish, nullptr));
+  blocks_->finish(scene_, batch, sampler_source_of(plan_), path_settings_, StageId::finish, paths);
 }
 
 }  // namespace pt

@@ -1,11 +1,25 @@
-// Which source of random numbers a render has: by its scene's kernels and --rng.
+// What film, paths and random numbers take of the settings of an image.
 #pragma once
 
+#include "common/film/film_planes.h"
 #include "common/options/options.h"
+#include "common/sampling/pixel_filter.h"
 #include "common/sampling/sampler_source.h"
 #include "common/scene/data/scene.h"
+#include "common/transport/path.h"
 
 namespace pt {
+
+inline PathSettings path_settings_of(const ImageSettings& settings) {
+  return {static_cast<std::uint32_t>(settings.max_depth),
+          static_cast<std::uint32_t>(settings.rr_depth), settings.nee, settings.sampling,
+          settings.mis};
+}
+
+inline FilmPlan film_plan_of(const ImageSettings& settings, const PixelFilter& filter) {
+  return {settings.aovs, needs_moments(settings.aovs) || settings.target_error > 0.0f,
+          filter.has_negative()};
+}
 
 /// The numbers of a path that depend on its name alone, whichever kernels it has: those of a lean
 /// scene are PhiloxSource's. `chains`: of --integrator mlt, else null.
