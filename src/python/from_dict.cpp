@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "app/warning_limit.h"
+#include "app/terminal/warning_limit.h"
 #include "common/rays/ray_file.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"

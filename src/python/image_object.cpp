@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/options/option_values.h"
-#include "app/render_outputs.h"
+#include "app/render/render_outputs.h"
 #include "common/error/error.h"
 
 namespace pt::python {

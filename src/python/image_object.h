@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 
 namespace pt::python {
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 #include "common/error/terminal.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "python/image_object.h"

@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
+#include "app/commands/trace_mesh.h"
 #include "app/options/option_values.h"
-#include "app/trace_mesh.h"
 #include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/rays/ray_file.h"

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "app/progress.h"
-#include "app/render_devices.h"
-#include "app/render_outputs.h"
-#include "app/scene_defaults.h"
+#include "app/render/render_devices.h"
+#include "app/render/render_outputs.h"
+#include "app/render/scene_defaults.h"
+#include "app/terminal/progress.h"
 #include "common/error/host_memory.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "view/mode_command.h"

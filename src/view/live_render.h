@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 #include "view/orbit.h"
 
 namespace pt {

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "app/interrupt.h"
-#include "app/progress.h"
-#include "app/standard_output.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
+#include "app/terminal/standard_output.h"
 #include "common/error/terminal.h"
 #include "view/http_server.h"
 #include "view/live_render.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/doctor/checks.h"
-#include "app/doctor_command.h"
+#include "app/doctor/doctor_command.h"
 #include "app/options/command_line.h"
 #include "temp_folder.h"
 

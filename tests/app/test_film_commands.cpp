@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <regex>
 
-#include "app/compare_command.h"
-#include "app/film_header.h"
-#include "app/merge_command.h"
-#include "app/render_outputs.h"
-#include "app/render_session.h"
-#include "app/verify_command.h"
+#include "app/commands/compare_command.h"
+#include "app/commands/merge_command.h"
+#include "app/commands/verify_command.h"
+#include "app/render/render_outputs.h"
+#include "app/render/render_session.h"
+#include "app/report/film_header.h"
 #include "common/error/terminal.h"
 #include "common/film/checkpoint.h"
 #include "common/image/atomic_file.h"

@@ -3,9 +3,9 @@
 
 #include <csignal>
 
-#include "app/interrupt.h"
-#include "app/measure.h"
-#include "app/progress.h"
+#include "app/render/measure.h"
+#include "app/terminal/interrupt.h"
+#include "app/terminal/progress.h"
 #include "temp_folder.h"
 
 namespace pt {

@@ -1,8 +1,8 @@
 // A scene that is rendered again: whatever was kept, the image is that of a scene loaded anew.
 #include <gtest/gtest.h>
 
-#include "app/render_session.h"
-#include "app/scene_defaults.h"
+#include "app/render/render_session.h"
+#include "app/render/scene_defaults.h"
 #include "common/film/checkpoint.h"
 #include "common/image/compare/compare.h"
 #include "temp_folder.h"

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/make_renderer.h"
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
+#include "app/render/make_renderer.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"

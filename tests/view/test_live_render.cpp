@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "app/progress.h"
+#include "app/terminal/progress.h"
 #include "common/image/compare/compare.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "view/live_render.h"

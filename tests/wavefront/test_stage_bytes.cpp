@@ -4,7 +4,7 @@
 #include <cstring>
 #include <set>
 
-#include "app/make_renderer.h"
+#include "app/render/make_renderer.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "wavefront/pool/stage_bytes.h"
 #include "wavefront/run_stage_cpu.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/make_renderer.h"
+#include "app/render/make_renderer.h"
 #include "common/film/pixel_statistics.h"
 #include "common/image/codecs/image_io.h"
 #include "common/render/batches.h"
