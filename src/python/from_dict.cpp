@@ -1,4 +1,4 @@
-// Scenes out of dictionaries: python/ptexp/_dict.py makes elements of them, as of a Mitsuba file.
+// Scenes from dictionaries, which python/ptexp/_dict.py turns into elements of a Mitsuba file.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/render_command.h"
+#include "app/commands/commands.h"
 #include "app/options/command_line.h"
 #include "common/image/codecs/image_io.h"
 #include "temp_folder.h"

@@ -7,7 +7,7 @@
 #include <regex>
 #include <sstream>
 
-#include "app/commands/trace_command.h"
+#include "app/commands/commands.h"
 #include "app/options/command_line.h"
 #include "app/options/option_values.h"
 #include "common/error/terminal.h"

@@ -1,15 +1,13 @@
-#include "app/commands/compact_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
+#include "app/commands/commands.h"
 #include "app/options/option_values.h"
 #include "app/render/render_outputs.h"
 #include "app/report/csv_file.h"
-#include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"
@@ -18,7 +16,7 @@
 namespace pt {
 namespace {
 
-/// Median times of the copies that move as many bytes; 0 for a way that the device has not.
+/// Median times of copies of the same size; 0 for a way that the device lacks.
 struct CopyTimes {
   double memcpy_ms = 0, kernel_ms = 0;
 

@@ -1,5 +1,3 @@
-#include "app/commands/merge_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <set>
 #include <span>
 
+#include "app/commands/commands.h"
 #include "app/report/film_header.h"
 #include "common/error/error.h"
 #include "common/error/terminal.h"
@@ -30,7 +29,7 @@ PixelFilter filter_by(const Options& options) {
   return holder.filter;
 }
 
-/// The films of several files as one.
+/// Merges the films of several files.
 class Joiner {
  public:
   void add(const std::string& file) {
@@ -52,7 +51,7 @@ class Joiner {
   const ImageFilm& film() const { return *film_; }
   const ImageMetadata& header() const { return header_; }
 
-  /// The numbers N of --part N/M that no file is of; empty where they are not all of one division.
+  /// The numbers N of --part N/M that have no file; empty if M differs between the files.
   std::vector<int> missing_parts() const {
     std::set<int> present;
     int count = 1;
@@ -97,7 +96,7 @@ class Joiner {
     }
   }
 
-  /// What two files have of the same pixels.
+  /// Throws Error unless two files have the same samples and bits of their common pixels.
   void check_equal(const ImageFilm& film, const Window& window, const Origin& origin) const {
     const Film ours = film_->take(window), theirs = film.take(window);
     const std::string &a = files_[origin.file], &b = files_.back();
@@ -134,7 +133,7 @@ class Joiner {
   std::vector<Origin> origins_;
 };
 
-/// Share of the samples that are not there.
+/// Fraction of the samples that is missing.
 double missing_share(const ImageFilm& film, int spp) {
   const double wanted = static_cast<double>(film.window.pixel_count()) * spp;
   return 1.0 - static_cast<double>(film.samples()) / wanted;

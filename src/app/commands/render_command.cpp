@@ -1,24 +1,24 @@
-#include "app/commands/render_command.h"
-
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "app/commands/resume_command.h"
+#include "app/commands/commands.h"
 #include "app/render/make_renderer.h"
 #include "app/render/rank_setup.h"
 #include "app/render/render_devices.h"
 #include "app/render/render_outputs.h"
-#include "app/render/scene_defaults.h"
-#include "app/terminal/interrupt.h"
+#include "app/render/rendering.h"
+#include "app/report/film_header.h"
+#include "app/terminal/process.h"
 #include "app/terminal/progress.h"
-#include "app/terminal/standard_output.h"
 #include "common/device/devices_opening.h"
 #include "common/error/error.h"
 #include "common/error/terminal.h"
+#include "common/image/atomic_file.h"
 #include "common/mpi/serve_units.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
+#include "common/platform/steady_seconds.h"
 #include "common/scene/data/scene_facts.h"
 
 namespace pt {
@@ -27,12 +27,12 @@ namespace {
 /// Runs `work` and returns its wall time.
 template <typename Work>
 double timed_ms(const Work& work) {
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = steady_seconds();
   work();
-  return 1e3 * (Progress::steady_seconds() - begin_s);
+  return 1e3 * (steady_seconds() - begin_s);
 }
 
-/// Finds the devices for the options and says which. The options then name these.
+/// Finds and prints the devices. The options then name these.
 std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given,
                                      const Ranks& ranks) {
   using Kind = DeviceChoice::Kind;
@@ -50,7 +50,7 @@ std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given
   return devices;
 }
 
-/// The stops for the image's format, which are said where they were measured.
+/// The exposure in stops for the image's format. Prints a measured one.
 std::optional<float> choose_exposure(const Options& options, const Image& image, bool by_default) {
   const auto exposure = exposure_for(options.output, options.exposure, image, by_default);
   if (!exposure) return std::nullopt;
@@ -59,8 +59,8 @@ std::optional<float> choose_exposure(const Options& options, const Image& image,
   return exposure->stops;
 }
 
-/// The image, then what there is to tell about it; in between what a profiler does to the process.
-/// `has_checkpoint`: that has all samples, too.
+/// Writes the image, counts if asked for, then writes the statistics. `has_checkpoint`: a
+/// checkpoint has all samples, too.
 void write_outputs(const Options& options, const Image& image, const std::string& scene_hash,
                    Renderer& renderer, RenderReport& report, bool has_checkpoint,
                    Attempts& attempts) {
@@ -90,7 +90,7 @@ void write_outputs(const Options& options, const Image& image, const std::string
   write_statistics(options, report, attempts);
 }
 
-/// That of a part is all that there is of it.
+/// A failed checkpoint is an error for a part, which has no other output, else a warning.
 void report_checkpoint(const Options& options, const std::string& problem, Attempts& attempts) {
   if (problem.empty()) return;
   if (options.part.count > 1)
@@ -109,7 +109,7 @@ void say_interrupted(const Options& options, const Measurement& measurement, boo
                (options.csv_file.empty() ? "" : "; no row appended to " + options.csv_file));
 }
 
-/// Of a rank but the first: its devices work for that one until it needs them no more.
+/// Lets the devices of a rank other than the first work for the first one until it is done.
 void serve(Ranks& ranks, const Options& options, const SceneData& scene,
            const std::vector<DeviceInfo>& devices) {
   ResultBell bell;
@@ -127,9 +127,16 @@ Measurement measure_and_show(Rendering& rendering, const Options& options) {
   return rendering.measure(hooks);
 }
 
-}  // namespace
+/// Throws Error if the scene or the devices give other samples than the checkpoint has.
+void check_resumption(const Resumption& resumption, const Options& options,
+                      const std::string& scene_hash, const std::vector<DeviceInfo>& devices) {
+  const std::string kind = to_string(devices.front().choice.kind);
+  check_same_render(resumption.checkpoint.metadata, resumption.file,
+                    film_header(options, scene_hash, kind), "this render");
+}
 
-int render_command(const RenderCommand& command, Ranks& ranks, const Resumption* resumption) {
+/// `resumption`: the checkpoint that goes on, or null.
+int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumption) {
   Options options = command.options;
   const bool is_first = ranks.is_first();
   if (is_first) check_outputs(options);
@@ -194,6 +201,46 @@ int render_command(const RenderCommand& command, Ranks& ranks, const Resumption*
   attempts.check();
   if (!measurement.interrupted) return 0;
   return exit_code_of_signal();
+}
+
+/// Throws Error if the film's samples cannot be continued up to options.spp.
+void check_samples(const ImageFilm& film, const Options& before, const Options& options,
+                   const std::string& file) {
+  std::uint32_t most = 0;
+  for (const FilmPart& part : film.parts) most = std::max(most, part.next_sample);
+  if (most > static_cast<std::uint32_t>(options.spp)) {
+    throw Error(fmt::format("--spp {}: {} has pixels with {} samples; expected at least as many",
+                            options.spp, file, most));
+  }
+  if (options.spp != before.spp && options.sampler == SamplerKind::stratified) {
+    throw Error(
+        fmt::format("--spp {}: {} was begun for {} samples, over which --sampler stratified "
+                    "spreads them; expected the same",
+                    options.spp, file, before.spp));
+  }
+}
+
+}  // namespace
+
+int render_command(const RenderCommand& command, Ranks& ranks) {
+  return render(command, ranks, nullptr);
+}
+
+int resume_command(const ResumeCommand& command, Ranks& ranks) {
+  const Resumption resumption{command.file, read_checkpoint(command.file)};
+  const Options before = options_in_header(resumption.checkpoint.metadata, command.file);
+  RenderCommand again;
+  again.options = before;
+  again.options.checkpoint.file = command.file;
+  again.options.explain = false;
+  apply_settings(command.settings, command.file, again.options);
+  for (const Setting& setting : command.settings) again.given.insert(setting.entry->name);
+  check_consistent(again.options, again.given);
+  if (again.options.part.count == 1) check_not_read("--output", again.options.output, command.file);
+  check_samples(resumption.checkpoint.film, before, again.options, command.file);
+  // The file's own defaults were applied when the render was begun.
+  for (const char* name : {"width", "height", "spp", "max-depth", "rr"}) again.given.insert(name);
+  return render(again, ranks, &resumption);
 }
 
 }  // namespace pt

@@ -1,26 +1,27 @@
-#include "app/commands/trace_command.h"
-
 #include <fmt/format.h>
 
+#include "app/commands/commands.h"
 #include "app/commands/trace_mesh.h"
-#include "app/commands/trace_scene.h"
 #include "app/options/option_values.h"
 #include "app/render/render_outputs.h"
 #include "app/report/csv_file.h"
-#include "app/report/origin_columns.h"
 #include "app/report/run_summary.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/check_builder.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"
+#include "common/error/host_memory.h"
 #include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
 #include "common/rays/compare_hits.h"
+#include "common/scene/data/frame_scene.h"
+#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {
 
-/// All that a run of the command has found out.
+/// The results of `ptexp trace`.
 struct TraceReport {
   DeviceInfo device;
   std::uint64_t triangles = 0, rays = 0;
@@ -38,15 +39,15 @@ struct TraceReport {
   }
 };
 
-/// As the tree's builder weighs triangles.
+/// By the builder's cost of a triangle.
 double sah_cost(const TraceCommand& command, const TraceReport& report) {
   const bool is_wide = command.accel == AccelKind::cwbvh;
   return report.tree.quality.sah_cost(
       static_cast<double>((is_wide ? default_cwbvh_costs : default_bvh2_costs).triangle));
 }
 
-/// `auto` chooses by group, and a tree of the device that got too deep has another builder than
-/// asked for.
+/// The builder that was used: `auto` chooses one per group, and the device replaces a tree that is
+/// too deep.
 std::string builder_name(const TraceCommand& command, const TraceReport& report) {
   return report.tree.builder.empty() ? to_string(command.builder) : report.tree.builder;
 }
@@ -129,6 +130,26 @@ HitSet read_reference(const TraceCommand& command, const RaySet& rays) {
   return hits;
 }
 
+/// Inside the box near its +z side, looking down along it, which sees something in most meshes.
+CameraParameters default_camera(const Bounds& bounds) {
+  const Vec3 size = bounds.max - bounds.min;
+  CameraParameters camera;
+  camera.look_from = bounds.center() + Vec3(0.1434f, 0.0107f, 0.4422f) * size;
+  camera.look_at = bounds.center() + Vec3(0.0045f, -0.1575f, -0.2407f) * size;
+  return camera;
+}
+
+/// Ray files are large: prints the size and checks disk and memory before the scene is prepared.
+void check_size(const RaysCommand& command) {
+  const std::uint64_t size_bytes = ray_bytes_max(command.kind, command.size);
+  check_writable(command.output);
+  check_not_read("--output", command.output, command.scene);
+  check_room(command.output, size_bytes);
+  check_host_memory(2 * size_bytes, fmt::format("--size {}: the rays", command.size));
+  print_notice(fmt::format("rays: up to {} MB will be written to {}",
+                           grouped((size_bytes + 999'999) / 1'000'000), command.output));
+}
+
 }  // namespace
 
 int trace_command(const TraceCommand& given) {
@@ -163,6 +184,19 @@ int trace_command(const TraceCommand& given) {
         command, compare_hits(result.hits, reference.hits, position_resolution(rays.rays)));
   attempts.check();
   return code;
+}
+
+int rays_command(const RaysCommand& command) {
+  if (command.scene.empty()) throw Error("rays: expected --scene NAME|FILE or --mesh FILE");
+  check_size(command);
+  SceneData scene = load_traced_scene(command.scene);
+  if (command.scene.ends_with(".mesh")) scene.camera = default_camera(scene_bounds(scene));
+  override_camera(scene.camera, command.camera);
+  prepare_scene(scene, {});
+  const RaySet rays = generate_rays(command.kind, scene, command.size, command.bounces);
+  write_rays(command.output, rays);
+  print("wrote {}: {} rays\n", command.output, grouped(rays.rays.size()));
+  return 0;
 }
 
 }  // namespace pt

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "app/render/make_renderer.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
+#include "common/rays/ray_file.h"
+#include "common/scene/prepare/convert_quads.h"
 
 namespace pt {
 
@@ -37,6 +40,29 @@ BuiltTrace build_and_trace(const SceneData& scene, const TreeOptions& options, c
 #endif
   const TriangleTreeData tree = build_triangle_tree(scene.meshes, scene.instances, options);
   return {trace_tree(tree, rays, runs, device), summarize(tree)};
+}
+
+SceneData load_traced_scene(const std::string& name) {
+  SceneData scene;
+  if (name.ends_with(".mesh")) {
+    scene.meshes.push_back(read_trace_mesh(name));
+    scene.add_material(MaterialDescription());
+  } else {
+    Options options;
+    options.scene = name;
+    scene = load_scene(options, choose_device({DeviceChoice::Kind::cpu, 0}));
+    convert_quads(scene);
+  }
+  scene.name = name;
+  return scene;
+}
+
+SceneData load_triangles(const std::string& name) {
+  SceneData scene = load_traced_scene(name);
+  scene.spheres.clear();
+  scene.sphere_material.clear();
+  if (scene.triangle_count() == 0) throw Error(fmt::format("{}: has no triangles", name));
+  return scene;
 }
 
 }  // namespace pt

@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "app/terminal/progress.h"
 #include "common/error/host_memory.h"
+#include "common/platform/steady_seconds.h"
 
 namespace pt {
 
@@ -11,7 +11,7 @@ CheckpointKeeper::CheckpointKeeper(float interval_s, Save save, Warn warn)
     : interval_s_(interval_s),
       save_(std::move(save)),
       warn_(std::move(warn)),
-      saved_s_(Progress::steady_seconds()) {}
+      saved_s_(steady_seconds()) {}
 
 CheckpointKeeper::~CheckpointKeeper() { wait(); }
 
@@ -20,7 +20,7 @@ void CheckpointKeeper::wait() {
 }
 
 void CheckpointKeeper::film_grew(const ImageFilm& film) {
-  if (Progress::steady_seconds() - saved_s_ < interval_s_ || is_saving_) return;
+  if (steady_seconds() - saved_s_ < interval_s_ || is_saving_) return;
   wait();
   is_saving_ = true;
   try {
@@ -29,7 +29,7 @@ void CheckpointKeeper::film_grew(const ImageFilm& film) {
   } catch (const std::exception&) {  // no memory for a copy, or no thread: the render waits
     try_to_save(film);
   }
-  saved_s_ = Progress::steady_seconds();
+  saved_s_ = steady_seconds();
 }
 
 void CheckpointKeeper::try_to_save(const ImageFilm& film) {

@@ -1,4 +1,4 @@
-// Saves a render's film now and then, beside the render.
+// Saves the film of a render from time to time while it goes on.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,13 @@ class CheckpointKeeper {
   CheckpointKeeper(const CheckpointKeeper&) = delete;
   CheckpointKeeper& operator=(const CheckpointKeeper&) = delete;
 
-  /// Saves a copy of the film if the last one is older than the interval. What fails is a warning:
-  /// the render goes on, and the next film is tried again after the interval. It is said once,
-  /// until a film is saved or something else fails.
+  /// Saves a copy of the film if the last one is older than the interval. A failure is a warning:
+  /// the render goes on and saving is tried again after the interval. The same warning is given
+  /// once, until a film is saved.
   void film_grew(const ImageFilm& film);
-  /// Saves this film. Throws what saving throws.
+  /// Saves this film. Throws what `save` throws.
   void finish(const ImageFilm& film);
-  /// Until a film that is being saved is.
+  /// Waits until no film is being saved.
   void wait();
 
  private:
@@ -37,7 +37,7 @@ class CheckpointKeeper {
   const Save save_;
   const Warn warn_;
   double saved_s_;
-  std::string problem_;  ///< of the last film; whoever saves has it alone
+  std::string problem_;  ///< of the last film; used by the thread that saves
   std::atomic<bool> is_saving_{false};
   std::thread thread_;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "common/platform/steady_seconds.h"
+
 namespace pt {
 namespace {
 
@@ -26,26 +28,15 @@ Measurement measure(Renderer& renderer, const Options& options, const MeasureHoo
       break;
     }
     if (own.begin) own.begin(label(options, i));
-    const double begin_s = Progress::steady_seconds();
+    const double begin_s = steady_seconds();
     last = renderer.render(hooks);
-    last.wall_ms = 1e3 * (Progress::steady_seconds() - begin_s);
+    last.wall_ms = 1e3 * (steady_seconds() - begin_s);
     if (is_cut_short(last, options.spp)) {
       measurement = {{last}, true};
       break;
     }
     if (i >= options.warmup) measurement.runs.push_back(last);
   }
-  return measurement;
-}
-
-Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
-                    const std::function<bool()>& stop) {
-  MeasureHooks hooks;
-  hooks.begin = [&](const std::string& text) { progress.begin(text); };
-  hooks.progress = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
-  hooks.stop = stop;
-  const Measurement measurement = measure(renderer, options, hooks);
-  progress.finish();
   return measurement;
 }
 

@@ -1,24 +1,22 @@
-// The renders of one measurement: warm-ups, then repeats, until they are done or someone stops
-// them.
+// The renders of one measurement: warm-ups, then repeats, until all are done or stopped.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "app/terminal/progress.h"
 #include "common/render/renderer.h"
 
 namespace pt {
 
 struct Measurement {
-  /// The measured repeats. After an interruption they are as complete as the renderer's image and
-  /// counts: where a render was cut short, that one alone. Empty: no render was begun.
+  /// The measured repeats; if a render was cut short, only that one, which the renderer's image and
+  /// counts belong to. Empty: no render was begun.
   std::vector<RenderRun> runs;
   bool interrupted = false;
 };
 
-/// What a measurement tells and asks meanwhile. `stop` must be there.
+/// What a measurement reports and asks meanwhile. `stop` must not be empty.
 struct MeasureHooks {
   /// A render begins: "rendering", "warm-up 1 of 2".
   std::function<void(const std::string& label)> begin;
@@ -29,9 +27,5 @@ struct MeasureHooks {
 };
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& hooks);
-
-/// Of a render whose progress is shown.
-Measurement measure(Renderer& renderer, const Options& options, Progress& progress,
-                    const std::function<bool()>& stop);
 
 }  // namespace pt

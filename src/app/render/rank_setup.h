@@ -1,4 +1,4 @@
-// What the ranks of a job that is rendered together need of each other before they begin.
+// The ranks of a job agree on devices, options and scene before they render together.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace pt {
 
-/// The devices of this rank: those that the options name; of GPUs that they do not name one by one,
-/// and of the CPU's threads, its share among the ranks of its machine.
+/// The devices of this rank: those that the options name one by one, else its share of the
+/// machine's GPUs or CPU threads.
 std::vector<DeviceInfo> choose_rank_devices(Options& options, const RankInfo& rank);
 
-/// Where the launcher has left half of the machine's processors idle or more, a sentence about it;
-/// else none. Open MPI binds each of two ranks to one core unless it is told otherwise.
+/// A warning if the launcher leaves at least half of the machine's processors idle, else empty.
+/// Open MPI by default binds each of two ranks to one core.
 std::string binding_warning(const RankInfo& rank);
 
 /// Collective. Throws Error, naming rank and what differs, unless all ranks have the same program,

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "app/report/csv_file.h"
-#include "app/report/film_header.h"
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
@@ -37,13 +36,6 @@ std::string black_image_text(const Options& options, const Image& image) {
       std::ranges::any_of(image.rgb, [](float x) { return !(x < least); }))
     return "";
   return "the image is black: no light of the scene reaches what the camera sees";
-}
-
-ImageMetadata image_header(const Options& options, const RenderReport& report,
-                           const std::string& scene_hash) {
-  ImageMetadata metadata = report_metadata(options, report);
-  metadata.merge(film_header(options, scene_hash, report.device_kind));
-  return metadata;
 }
 
 HardwareCounters count_hardware(Renderer& renderer,

@@ -1,4 +1,4 @@
-// What a render leaves behind: its image, and the statistics beside it.
+// The outputs of a render: the image and the files of statistics.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace pt {
 
-/// Throws Error where one of the files that the options name could not be written.
+/// Throws Error if a file that the options name could not be written.
 void check_outputs(const Options& options);
 
 struct Exposure {
@@ -20,39 +20,34 @@ struct Exposure {
   bool is_measured = false;
 };
 
-/// Of an image of this format; none where it has a place for radiance (.exr). What `exposure`
-/// leaves open is measured in a .png if `by_default`.
+/// The exposure of an image of this format; none for an .exr, which holds radiance. If `exposure`
+/// leaves it to the scene, it is measured for a .png if `by_default`.
 std::optional<Exposure> exposure_for(const std::string& path, const ExposureChoice& exposure,
                                      const Image& image, bool by_default);
 
-/// What is said of an image that shows nothing; empty: it shows something, or is a part.
+/// A warning about a black image; empty if it shows something or is a part.
 std::string black_image_text(const Options& options, const Image& image);
 
-/// Options, device, times, and what makes an image one that can be verified.
-ImageMetadata image_header(const Options& options, const RenderReport& report,
-                           const std::string& scene_hash);
-
-/// Reads the hardware's counters. What could not be counted is no reason to lose what was rendered:
-/// it is a warning.
+/// Reads the hardware's counters. A failure is a warning, so that the image is not lost.
 HardwareCounters count_hardware(Renderer& renderer,
                                 const std::function<void(const std::string&)>& warn);
 
-/// Several things that should all be done: what one fails at keeps no other from being tried.
+/// Several actions that are all tried, even if one fails.
 class Attempts {
  public:
-  /// False where `action` has thrown. `advice` follows the message of what it has thrown.
+  /// Returns false if `action` throws. `advice` is appended to the message.
   bool make(const std::function<void()>& action, const std::string& advice = "");
-  /// Throws one Error for all that has failed.
+  /// Throws one Error with all messages.
   void check() const;
 
  private:
   std::vector<std::string> problems_;
 };
 
-/// The files of statistics that the options name. CSV rows are for comparing: complete runs only.
+/// Writes the files of statistics that the options name; a CSV row for complete runs only.
 void write_statistics(const Options& options, const RenderReport& report, Attempts& attempts);
 
-/// Throws Error where an output would replace a file that the scene was read from.
+/// Throws Error if an output would replace a file that the scene was read from.
 void check_not_of_scene(const Options& options, const std::vector<std::string>& source_files);
 
 }  // namespace pt

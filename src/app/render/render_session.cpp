@@ -3,36 +3,38 @@
 #include <algorithm>
 #include <array>
 
+#include "app/options/check_options.h"
 #include "app/render/make_group.h"
 #include "app/render/make_renderer.h"
 #include "app/render/render_devices.h"
 #include "app/render/render_outputs.h"
-#include "app/render/scene_defaults.h"
-#include "app/terminal/progress.h"
+#include "app/report/film_header.h"
 #include "common/error/error.h"
+#include "common/platform/steady_seconds.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {
 namespace {
 
-/// What neither preparation nor the renderer sees.
+/// Whether neither preparation nor the renderer uses the option.
 bool is_for_later(const OptionEntry& entry) {
   constexpr std::array names = {"output", "exposure", "stats", "csv", "quiet", "explain"};
   return std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
 }
 
-/// What preparation does not see, besides.
+/// Whether only the renderer uses the option.
 bool is_of_renderer(const OptionEntry& entry) {
   constexpr std::array names = {"spp", "seed", "max-depth", "rr", "crop", "aov"};
-  return entry.group == "Camera" || entry.group == "Measurement" ||
-         entry.group.starts_with("Stops") || entry.group.starts_with("Parts") ||
+  using Group = OptionGroup;
+  constexpr std::array groups = {Group::camera, Group::stops, Group::parts, Group::measurement};
+  return std::ranges::find(groups, entry.group) != groups.end() ||
          std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
 }
 
 struct Keys {
-  std::string scene;     ///< of renders that share a prepared scene but for its camera
-  std::string renderer;  ///< of those that share a renderer, too
+  std::string scene;     ///< renders of the same key share a prepared scene, except its camera
+  std::string renderer;  ///< renders of the same key also share a renderer
 };
 
 Keys keys_of(const Options& options) {
@@ -102,7 +104,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
     prepared_->keys = std::move(keys);
     return *prepared_;
   }
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = steady_seconds();
   std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
   if (next && next->keys.renderer != keys.renderer) next->rendering.reset();
   if (!next || next->keys.scene != keys.scene ||
@@ -112,7 +114,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
     prepare_scene_for(next->scene, options, devices.front());
     describe_scene(next->scene, next->facts);  // goes through the tree
   }
-  next->scene_ms = 1e3 * (Progress::steady_seconds() - begin_s);
+  next->scene_ms = 1e3 * (steady_seconds() - begin_s);
   next->warn = warn;
   next->options = options;
   next->keys = std::move(keys);
@@ -165,9 +167,9 @@ RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
   Prepared& ready = prepare(command, warn);
   Renderer& renderer = ready.rendering->renderer();
   RenderPass pass;
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = steady_seconds();
   pass.run = renderer.add(samples, hooks);
-  pass.run.wall_ms = 1e3 * (Progress::steady_seconds() - begin_s);
+  pass.run.wall_ms = 1e3 * (steady_seconds() - begin_s);
   ready.samples += pass.run.samples_done;
   pass.samples = ready.samples;
   if (pass.samples > 0) pass.image = renderer.image();

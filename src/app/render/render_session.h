@@ -1,5 +1,5 @@
-// A scene that stays in memory, to be rendered again and again: by other options, or after
-// something of it was changed. What can be kept from the render before is kept.
+// A scene in memory that is rendered again and again, by other options or after a change. A render
+// reuses what the one before has prepared.
 #pragma once
 
 #include <functional>
@@ -13,13 +13,13 @@
 
 namespace pt {
 
-/// What a render gave.
+/// The result of a render.
 struct RenderResult {
   bool has_image = false;  ///< else it was interrupted before its first sample
   bool interrupted = false;
-  Image image;  ///< where device_image is not null, its layers alone, and no rgb
+  Image image;  ///< if device_image is not null, without rgb
   std::shared_ptr<const DeviceImage> device_image;
-  Options options;  ///< with what the scene and the device decided
+  Options options;  ///< completed by the scene and the device
   RenderReport report;
   ImageMetadata header;
   bool measures_exposure = false;  ///< see exposure_for
@@ -28,7 +28,7 @@ struct RenderResult {
 /// Some samples of a progressive render.
 struct RenderPass {
   RenderRun run;
-  int samples = 0;  ///< per pixel, in all that the image has
+  int samples = 0;  ///< per pixel, of all passes
   Image image;
 };
 
@@ -38,27 +38,27 @@ class RenderSession {
 
   /// Loads the scene that the options name. Throws Error.
   RenderSession(const RenderCommand& command, const Warn& warn);
-  /// Of a scene that somebody has made.
+  /// Takes a scene that is not loaded from a file.
   explicit RenderSession(SceneData scene);
   ~RenderSession();
 
-  /// As loaded: not prepared.
+  /// As loaded, not prepared.
   const SceneData& scene() const { return source_; }
-  /// To be changed. The next render prepares it again.
+  /// For changes; the next render prepares the scene again.
   SceneData& change_scene();
-  /// The same of its camera alone, after which its acceleration structure is kept.
+  /// For changes of the camera, which keep the acceleration structure.
   CameraParameters& change_camera();
 
   /// Renders by these options, which name the same scene. Writes no image. `stays_on_device`: a
-  /// GPU's image stays there; Error for that of several. Throws Error; the session is as it was
-  /// then.
+  /// GPU's image stays there, which several devices cannot do. Throws Error and leaves the session
+  /// as it was.
   RenderResult render(const RenderCommand& command, const MeasureHooks& hooks, const Warn& warn,
                       bool stays_on_device = false);
-  /// Adds samples to what the last pass has left, or to none after a change: of the scene, of its
-  /// camera, of the options. Throws Error.
+  /// Adds samples to those of the last pass, or starts again after a change of the scene, its
+  /// camera or the options. Throws Error.
   RenderPass add_pass(const RenderCommand& command, int samples, const RenderHooks& hooks,
                       const Warn& warn);
-  /// How it would be rendered, and why.
+  /// How the scene would be rendered, and why.
   std::vector<Decision> plan(const RenderCommand& command);
 
  private:

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/options/option_values.h"
+#include "app/report/run_summary.h"
 #include "common/error/error.h"
+#include "common/options/option_names.h"
 #include "common/platform/build_info.h"
 
 namespace pt {
@@ -15,7 +19,7 @@ const char* const device_key = "ptexp.device_kind";
 
 std::string key_of(const OptionEntry& entry) { return "ptexp.option." + option_key(entry); }
 
-/// Empty where there is none: options that the scene decides are left out of headers.
+/// Empty where the header lacks the key, as it lacks options that the scene decides.
 std::string value_in(const ImageMetadata& header, const std::string& key) {
   const auto found = header.find(key);
   return found == header.end() ? "" : found->second;
@@ -38,6 +42,30 @@ ImageMetadata film_header(const Options& options, const std::string& scene_hash,
   return header;
 }
 
+ImageMetadata image_header(const Options& options, const RenderReport& report,
+                           const std::string& scene_hash) {
+  const BuildInfo& build = build_info();
+  const RunSummary summary = summarize(report);
+  const auto ms = [](double time) { return fmt::format("{:.6f}", time); };
+  ImageMetadata header = film_header(options, scene_hash, report.device_kind);
+  header["ptexp.build"] = fmt::format("{}, {}, CUDA {}{}", build.build_type, build.compiler,
+                                      build.cuda, build.fast_math ? ", fast math" : "");
+  header["ptexp.device"] = report.device_name;
+  header["ptexp.samples_done"] = std::to_string(summary.samples_done);
+  header["ptexp.ended_by"] = to_string(summary.ended_by);
+  header["ptexp.paths"] = std::to_string(report.counts.paths);
+  header["ptexp.rays"] = std::to_string(report.counts.rays);
+  header["ptexp.kernel_ms"] = ms(summary.kernel_ms.median);
+  header["ptexp.scene_ms"] = ms(report.scene_ms);
+  header["ptexp.setup_ms"] = ms(report.setup_ms);
+  header["ptexp.load_ms"] = ms(report.load_ms);
+  header["ptexp.transfer_ms"] = ms(report.transfer_ms);
+  if (summary.relative_error)
+    header["ptexp.relative_error"] = fmt::format("{:.6g}", *summary.relative_error);
+  if (report.exposure) header["ptexp.exposure"] = fmt::format("{}", *report.exposure);
+  return header;
+}
+
 Options options_in_header(const ImageMetadata& header, const std::string& file) {
   const std::string version = value_in(header, version_key);
   if (version.empty()) {
@@ -55,8 +83,7 @@ Options options_in_header(const ImageMetadata& header, const std::string& file) 
   for (const auto& [key, value] : header) {
     if (!key.starts_with("ptexp.option.")) continue;
     const auto& list = option_list();
-    const auto entry = std::find_if(
-        list.begin(), list.end(), [&key = key](const OptionEntry& e) { return key_of(e) == key; });
+    const auto entry = std::ranges::find(list, key, key_of);
     if (entry == list.end()) {
       throw Error(fmt::format("{}: {}: this program has no such option", file, key));
     }

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "common/platform/steady_seconds.h"
-
 namespace pt {
 namespace {
 
@@ -84,7 +82,5 @@ void Progress::finish() {
   std::fflush(stream_);
   bar_visible_ = false;
 }
-
-double Progress::steady_seconds() { return pt::steady_seconds(); }
 
 }  // namespace pt

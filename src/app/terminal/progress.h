@@ -1,11 +1,12 @@
-// How far a render is, for a person who waits.
+// The progress of a render on a terminal or in a log.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <string>
+
+#include "common/platform/steady_seconds.h"
 
 namespace pt {
 
@@ -18,8 +19,8 @@ enum class ProgressStyle {
 /// `bar` where `stream` is a terminal, else `lines`.
 ProgressStyle progress_style(std::FILE* stream, bool quiet);
 
-/// E.g. "[#####...............]  25 %  12.5 Msamples/s  0:08 left"; `bar_width` 0 leaves out the
-/// bar. Rate and time left stay away while they are unknown.
+/// E.g. "[#####...............]  25 %  12.5 Msamples/s  0:08 left"; without a bar if `bar_width` is
+/// 0, without rate and time while they are unknown.
 std::string progress_text(std::uint64_t done, std::uint64_t total, double elapsed_s, int bar_width);
 
 /// Shows one render after the other. Cheap to call often: it writes at most every tenth of a second
@@ -33,13 +34,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Starts the time of a render; `label` stands before its progress, e.g. "warm-up 1 of 2".
+  /// Starts the clock of a render; `label` stands before its progress, e.g. "warm-up 1 of 2".
   void begin(const std::string& label);
   void update(std::uint64_t done, std::uint64_t total);
   /// Clears the bar, so that other text can follow.
   void finish();
-
-  static double steady_seconds();
 
  private:
   std::FILE* stream_;

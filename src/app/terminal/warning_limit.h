@@ -1,4 +1,4 @@
-// Keeps a file with 100,000 faults from printing 100,000 lines.
+// Limits the warnings about one file, which may have 100,000 faults.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,8 @@
 
 namespace pt {
 
-/// Hands on the first warnings of each kind, and of all kinds together, and at its end says how
-/// many were left out. Warnings are of a kind where they differ in numbers and quoted names alone.
-/// May be called by several threads.
+/// Forwards the first warnings of each kind and of all kinds together; the destructor tells how
+/// many were left out. Warnings of a kind differ only in numbers and quoted names. Thread-safe.
 class WarningLimit {
  public:
   using Warn = std::function<void(const std::string&)>;
@@ -23,13 +22,13 @@ class WarningLimit {
   WarningLimit& operator=(const WarningLimit&) = delete;
 
   void operator()(const std::string& message);
-  /// For who takes a function; empty where nobody wants to be warned.
+  /// This as a function; empty if `warn` is.
   Warn function();
 
  private:
   const Warn warn_;
   std::mutex mutex_;
-  std::map<std::string, int> kinds_;  ///< of those handed on, their number
+  std::map<std::string, int> kinds_;  ///< number of forwarded warnings
   std::uint64_t passed_ = 0, left_out_ = 0;
 };
 
