@@ -157,6 +157,19 @@ TEST(RenderSession, OptionsGoBeforeTheScenesOwn) {
   EXPECT_EQ(given.max_depth, 4);
   EXPECT_EQ(given.rr_depth, 1);
   EXPECT_EQ(given.crop->x1, 45);
+  // An option that is given keeps only its own value.
+  const std::pair<const char*, int Options::*> fields[] = {{"width", &Options::width},
+                                                           {"height", &Options::height},
+                                                           {"spp", &Options::spp},
+                                                           {"max-depth", &Options::max_depth},
+                                                           {"rr", &Options::rr_depth}};
+  for (const auto& [name, field] : fields) {
+    Options one;
+    one.*field = 100;
+    apply_defaults(defaults, {name}, one);
+    for (const auto& [other, other_field] : fields)
+      EXPECT_EQ(one.*other_field, other_field == field ? 100 : options.*other_field) << other;
+  }
   // A stop decides instead of the number of samples, unless that is given.
   for (const bool has_time : {false, true}) {
     Options stopped;
