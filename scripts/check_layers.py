@@ -109,8 +109,8 @@ HTTP_FILES = ["view/*_http.*"]
 # Who may be compiled differently with and without CUDA.
 COMPILER_CONDITION = re.compile(r"\b(__CUDACC\w*|__CUDA_ARCH\w*|__CUDA__|__NVCC__|CUDA_VERSION)\b")
 BUILD_CONDITION = re.compile(r"\bPTEXP_CUDA\b")
-BUILD_CONDITION_FILES = ["app/make_renderer.cpp", "app/compact_command.cpp",
-                         "app/trace_mesh.cpp",
+BUILD_CONDITION_FILES = ["app/render/make_renderer.cpp", "app/commands/compact_command.cpp",
+                         "app/commands/trace_mesh.cpp",
                          "common/device/devices*.cpp"]
 
 SOURCE_ENDINGS = {".h", ".hpp", ".cpp", ".cc", ".cu", ".cuh", ".inl"}

@@ -1,16 +1,9 @@
 // ptexp: one image, rendered in several ways that can be compared.
-#include "app/compact_command.h"
-#include "app/compare_command.h"
-#include "app/doctor_command.h"
-#include "app/interrupt.h"
-#include "app/merge_command.h"
+#include "app/commands/commands.h"
+#include "app/doctor/doctor.h"
 #include "app/options/command_line.h"
 #include "app/reference/reference.h"
-#include "app/render_command.h"
-#include "app/resume_command.h"
-#include "app/standard_output.h"
-#include "app/trace_command.h"
-#include "app/verify_command.h"
+#include "app/terminal/process.h"
 #include "common/device/devices.h"
 #include "common/error/host_memory.h"
 #include "common/error/terminal.h"
@@ -20,7 +13,7 @@
 #include "common/plan/kernels.h"
 #include "common/platform/build_info.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "view/view_command.h"
+#include "view/view_site.h"
 
 namespace pt {
 namespace {
@@ -33,9 +26,7 @@ int execute(const MergeCommand& command) { return merge_command(command); }
 
 int execute(const VerifyCommand& command) { return verify_command(command); }
 
-int execute(const CompareCommand& command) {
-  return compare_command(command.a, command.b, command.tolerance, command.difference);
-}
+int execute(const CompareCommand& command) { return compare_command(command); }
 
 int execute(const TraceCommand& command) { return trace_command(command); }
 
@@ -87,7 +78,7 @@ int execute(const HelpCommand& command) {
   return 0;
 }
 
-/// All other commands are for one process.
+/// All other commands run in one process.
 template <class AnyCommand>
 int execute(const AnyCommand& command, const Ranks& ranks) {
   return ranks.is_first() ? execute(command) : 0;

@@ -1,4 +1,4 @@
-// Arrays from Python and to it.
+// Arrays from and to Python.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ using FloatsIn =
 using IndicesIn = nanobind::ndarray<const std::uint32_t, nanobind::ndim<2>, nanobind::c_contig,
                                     nanobind::device::cpu>;
 
-/// An array of Python's that owns the values.
+/// A Python array that owns the values.
 template <class T>
 nanobind::object array_of(std::vector<T>&& values, std::initializer_list<std::size_t> shape) {
   auto* const owned = new std::vector<T>(std::move(values));

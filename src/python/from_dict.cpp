@@ -1,4 +1,4 @@
-// Scenes out of dictionaries: python/ptexp/_dict.py makes elements of them, as of a Mitsuba file.
+// Scenes from dictionaries, which python/ptexp/_dict.py turns into elements of a Mitsuba file.
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "app/warning_limit.h"
+#include "app/terminal/warning_limit.h"
 #include "common/rays/ray_file.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"

@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 
 namespace pt::python {
 
-/// Without a copy; lives as long as anybody refers to it.
+/// An array without a copy, which keeps the image alive.
 using ArrayOut = nanobind::ndarray<nanobind::array_api>;
 
 class ImageObject {
  public:
   explicit ImageObject(RenderResult result) : result_(std::move(result)) {}
-  /// Of an image that was read.
+  /// An image that was read from a file.
   ImageObject(Image image, ImageMetadata header) {
     result_.has_image = true;
     result_.image = std::move(image);
@@ -30,22 +30,22 @@ class ImageObject {
   /// Size and layers; image() has the pixels.
   const Image& frame() const { return result_.image; }
   Image& frame() { return result_.image; }
-  /// In the host's memory: of a GPU's image a copy, made when it is first asked for.
+  /// In the host's memory; a GPU's image is copied at the first call.
   Image& image();
-  /// Null: the host's memory is the only one.
+  /// Null: the image is in the host's memory alone.
   const DeviceImage* device_image() const { return result_.device_image.get(); }
 
-  std::string statistics();  ///< JSON; empty: of an image that was read
+  std::string statistics();  ///< JSON; empty for an image that was read
   std::string table();
-  /// Writes an image with what is known of it. `exposure`: as the option; empty: the render's.
+  /// Writes the image with its header. `exposure`: as the option; empty: the render's.
   void save(const std::string& path, const std::string& exposure);
-  /// The files that the options name, of statistics.
+  /// Writes the files of statistics that the options name.
   void write_statistics();
 
  private:
   RenderReport report();  ///< a copy
 
-  std::mutex mutex_;  ///< of the host's copy of the pixels, and of the report
+  std::mutex mutex_;  ///< of the host's pixels and the report
   RenderResult result_;
 };
 

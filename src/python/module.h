@@ -1,4 +1,4 @@
-// What each part of the module adds to it.
+// The parts of the module, each of which adds its functions and classes.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -7,7 +7,7 @@
 
 namespace pt::python {
 
-/// Text for Python of bytes that need not be UTF-8: \xNN stands for what is none.
+/// Text for Python of bytes that need not be UTF-8; invalid bytes become \xNN.
 nanobind::str text(const std::string& bytes);
 
 void add_errors(nanobind::module_& m);

@@ -10,30 +10,30 @@
 #include <utility>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 #include "common/error/terminal.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "python/image_object.h"
 
 namespace pt::python {
 
-/// (keyword, value) as the command line has them.
+/// (keyword, value) as on the command line.
 using Words = std::vector<std::pair<std::string, std::string>>;
 
-/// Throws Error for one that is no option.
+/// Throws Error for an unknown option.
 RenderCommand command_of(const Words& words);
 
 class SceneObject {
  public:
-  /// Loads, without the interpreter's lock; warnings are Python's.
+  /// Loads without the interpreter's lock; gives warnings to Python.
   static std::unique_ptr<SceneObject> load(const Words& words);
   explicit SceneObject(SceneData scene)
       : session_(std::make_unique<RenderSession>(std::move(scene))) {
     list_parameters();
   }
 
-  /// The image, what was raised meanwhile (or None), and warnings. Whoever calls has the image,
-  /// and then raises and warns: neither loses it.
+  /// The image, the exception that was raised meanwhile (or None), and warnings. The caller takes
+  /// the image before it raises and warns, so that it is not lost.
   using Rendered =
       std::tuple<std::unique_ptr<ImageObject>, nanobind::object, std::vector<std::string>>;
   /// As RenderSession::render, interruptible.

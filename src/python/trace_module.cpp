@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
+#include "app/commands/trace_mesh.h"
 #include "app/options/option_values.h"
-#include "app/trace_mesh.h"
 #include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/rays/ray_file.h"
@@ -23,7 +23,7 @@ namespace {
 
 namespace nb = nanobind;
 
-/// Triangles on a device, whose tree is built once where the host builds it.
+/// Triangles on a device. A tree of the host is built once.
 class TracedMesh {
  public:
   TracedMesh(const FloatsIn& vertices, const IndicesIn& triangles, const std::string& device,
@@ -78,8 +78,8 @@ RaySet ray_set(const FloatsIn& rays, bool any) {
   return set;
 }
 
-/// Of the second and the third vertex, where the ray meets the triangle's plane (Moeller and
-/// Trumbore 1997), in double precision.
+/// Barycentric coordinates of the second and third vertex where the ray meets the triangle's plane
+/// (Moeller and Trumbore 1997), in double precision.
 void barycentrics(const Mesh& mesh, const RayRecord& ray, std::uint32_t triangle, float* uv) {
   using DVec3 = glm::dvec3;
   const auto& v = mesh.triangles[triangle].v;
@@ -92,7 +92,7 @@ void barycentrics(const Mesh& mesh, const RayRecord& ray, std::uint32_t triangle
   uv[1] = static_cast<float>(glm::dot(d, q) / determinant);
 }
 
-/// (t, primitive, uv) as arrays; of any hit t alone.
+/// (t, primitive, uv) as arrays.
 nb::tuple trace(const TracedMesh& mesh, const FloatsIn& given, bool any) {
   std::vector<float> t, uv;
   std::vector<std::uint32_t> primitive;

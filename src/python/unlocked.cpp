@@ -4,7 +4,9 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -24,13 +26,13 @@ struct Away {
   std::thread::id ender;
 };
 
-/// Never destroyed: threads may outlive all that is.
+/// Never destroyed: threads may outlive static objects.
 Away& away() {
   static Away& one = *new Away;
   return one;
 }
 
-/// At the interpreter's end: Python's other threads are daemons, which nobody has joined.
+/// Called at the interpreter's end, when Python's other threads are daemons.
 void end_all() {
   const int threads = nb::cast<int>(nb::module_::import_("threading").attr("active_count")());
   if (threads > 1) nb::set_leak_warnings(false);  // what the others hold is never freed
@@ -49,6 +51,51 @@ void end_all() {
   }
   PyEval_RestoreThread(state);
 }
+
+constexpr std::chrono::milliseconds interval(50);
+
+/// Looks for signals and reports progress. Its functions need the interpreter's lock.
+class Watcher {
+ public:
+  Watcher(WorkState& state, nb::object progress) : state_(state), progress_(std::move(progress)) {}
+
+  void look() {
+    if (error_) return;
+    try {
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      tell();
+    } catch (nb::python_error& error) {
+      error_.emplace(std::move(error));
+      state_.stop = true;
+    }
+  }
+  /// The exception with its traceback, or None.
+  nb::object raised() const { return error_ ? nb::borrow(error_->value()) : nb::none(); }
+
+ private:
+  void tell() {
+    const std::uint64_t done = state_.done, total = state_.total;
+    if (progress_.is_none() || total == 0 || (done == told_ && total == told_total_)) return;
+    told_ = done, told_total_ = total;
+    progress_(done, total);
+  }
+
+  WorkState& state_;
+  nb::object progress_;
+  std::uint64_t told_ = 0, told_total_ = 0;
+  std::optional<nb::python_error> error_;
+};
+
+/// Joins a thread in any case.
+struct Joined {
+  std::thread& thread;
+  WorkState& state;
+
+  ~Joined() {
+    state.stop = true;
+    if (thread.joinable()) thread.join();
+  }
+};
 
 }  // namespace
 
@@ -91,6 +138,39 @@ Unlocked::~Unlocked() {
 void add_end(nb::module_& m) {
   nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_all));
   (void)m;
+}
+
+nb::object run_interruptible(const std::function<void(WorkState&)>& work, nb::object progress) {
+  WorkState state;
+  Watcher watcher(state, std::move(progress));
+  std::mutex mutex;
+  std::condition_variable ended;
+  bool has_ended = false;
+  std::exception_ptr problem;
+  std::thread thread([&] {
+    try {
+      work(state);
+    } catch (...) {
+      problem = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    has_ended = true;
+    ended.notify_all();
+  });
+  const Joined joined{thread, state};
+  const auto wait = [&] {
+    const Unlocked unlocked;
+    std::unique_lock lock(mutex);
+    return ended.wait_for(lock, interval, [&] { return has_ended; });
+  };
+  while (!wait()) watcher.look();
+  {
+    const Unlocked unlocked;
+    thread.join();
+  }
+  watcher.look();
+  if (problem && watcher.raised().is_none()) std::rethrow_exception(problem);
+  return watcher.raised();
 }
 
 }  // namespace pt::python

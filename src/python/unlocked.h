@@ -1,14 +1,16 @@
-// Work without the interpreter's lock, and the interpreter's end meanwhile.
+// Work without the interpreter's lock: other Python threads go on, Ctrl-C ends it, its progress is
+// reported, and the interpreter waits for it at its end.
 #pragma once
 
 #include <nanobind/nanobind.h>
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 
 namespace pt::python {
 
-/// What the work and the thread that waits for it tell each other.
+/// Shared by the work and the thread that waits for it.
 struct WorkState {
   WorkState();  ///< to be stopped at the interpreter's end
   ~WorkState();
@@ -19,10 +21,10 @@ struct WorkState {
   std::atomic<std::uint64_t> done{0}, total{0};
 };
 
-/// The thread has not the interpreter's lock for as long as this lives. Python ends a thread that
-/// wants the lock of an interpreter that is ending, wherever that thread is: std::terminate() for a
-/// destructor. So the interpreter waits at its end until all have the lock again, and who comes
-/// later stays away.
+/// Releases the interpreter's lock for its lifetime. Python ends a thread that asks for the lock of
+/// an interpreter that is ending, wherever that thread is: std::terminate() in a destructor. So the
+/// interpreter waits at its end until all threads have the lock again; a thread that comes later
+/// never returns.
 class Unlocked {
  public:
   Unlocked();
@@ -34,7 +36,14 @@ class Unlocked {
   PyThreadState* state_;
 };
 
-/// Has the interpreter stop all work and wait for it at its end.
+/// Makes the interpreter stop all work and wait for it at its end.
 void add_end(nanobind::module_& m);
+
+/// Runs `work` in a thread of its own and waits for it without the interpreter's lock. Some times a
+/// second it looks for signals and calls `progress(done, total)`, unless that is None. What they
+/// raise sets `stop` and is returned when the work has ended, so that its result is not lost.
+/// Returns None if nothing was raised. Throws what the work throws.
+nanobind::object run_interruptible(const std::function<void(WorkState&)>& work,
+                                   nanobind::object progress);
 
 }  // namespace pt::python

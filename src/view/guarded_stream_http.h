@@ -1,4 +1,4 @@
-// A connection that cannot take more than its share of memory and time, for http_server_http.cpp.
+// A connection with limits of memory and time, for http_server_http.cpp.
 #pragma once
 
 #include <httplib.h>
@@ -10,7 +10,8 @@
 
 namespace pt {
 
-/// Of all answers: a browser keeps nothing, shows nothing in other pages and tells no address.
+/// Headers of all answers: a browser stores nothing, shows nothing in other pages and tells no
+/// address.
 inline const httplib::Headers careful_headers{
     {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
     {"X-Content-Type-Options", "nosniff"},

@@ -5,20 +5,19 @@
 #include <algorithm>
 #include <chrono>
 
-#include "app/progress.h"
-#include "app/render_devices.h"
-#include "app/render_outputs.h"
-#include "app/scene_defaults.h"
+#include "app/render/render_devices.h"
+#include "app/render/render_outputs.h"
 #include "common/error/host_memory.h"
+#include "common/options/option_names.h"
+#include "common/platform/steady_seconds.h"
 #include "common/scene/prepare/prepare_camera.h"
-#include "view/mode_command.h"
 
 namespace pt {
 namespace {
 
 constexpr double pass_limit_ms = 200;
-/// A pass that makes the first image of a camera may take so long although the camera has moved on:
-/// else one who drags sees nothing before he stops.
+/// The first pass of a camera may take this long after the camera has moved on, so that an image
+/// appears while a user drags.
 constexpr double grace_s = 0.5;
 
 std::string names_of_devices(const std::vector<DeviceInfo>& devices) {
@@ -31,7 +30,26 @@ double ms_per_sample(const LiveView& view) {
   return view.pass_samples > 0 ? view.pass_ms / view.pass_samples : 0;
 }
 
+/// The setting's value as the option prints it.
+std::string value_of(const Setting& setting) {
+  Options options;
+  setting.entry->set(options, setting.value);
+  return setting.entry->text(options);
+}
+
 }  // namespace
+
+RenderCommand mode_command(const std::vector<Setting>& settings, Mode mode) {
+  std::vector<Setting> chosen;
+  for (const Setting& setting : settings) {
+    const OptionEntry& entry = *setting.entry;
+    const bool is_kept = entry.name != "mode" && entry.group != OptionGroup::camera &&
+                         has_effect(entry, value_of(setting), mode);
+    if (is_kept) chosen.push_back(setting);
+  }
+  chosen.push_back({&find_option("mode"), to_string(mode)});
+  return make_render_command(chosen);
+}
 
 int next_pass(int done, int wanted, double ms_per_sample) {
   const double most = ms_per_sample > 0 ? pass_limit_ms / ms_per_sample : 1;
@@ -40,13 +58,13 @@ int next_pass(int done, int wanted, double ms_per_sample) {
   return std::min(samples, wanted - done);
 }
 
-/// What the thread does next, without the mutex.
+/// The thread's next pass, which it makes without the mutex.
 struct LiveRender::Task {
   std::uint64_t number = 0;
   LiveSettings settings;
   std::size_t view = 0;
   int samples = 0;
-  bool is_first = false;  ///< of its settings
+  bool is_first = false;  ///< the first pass by its settings
 };
 
 LiveRender::LiveRender(std::vector<Setting> settings, const Warn& warn)
@@ -208,14 +226,13 @@ void LiveRender::arrange_workers(const Task& task) {
 
 RenderPass LiveRender::do_pass(const Task& task) {
   if (arranged_ != task.number) arrange_workers(task);
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = steady_seconds();
   const auto is_unwanted = [&] {
     if (ends_ || !is_watched_) return true;
-    return number_ != task.number &&
-           (!task.is_first || Progress::steady_seconds() - begin_s > grace_s);
+    return number_ != task.number && (!task.is_first || steady_seconds() - begin_s > grace_s);
   };
-  // What some threads were told must hold for all, though a viewer comes back meanwhile: a batch of
-  // which they left a part is no whole one.
+  // Once some threads have abandoned a batch all must, even if a viewer comes back meanwhile: the
+  // batch is incomplete.
   std::atomic<bool> is_abandoned{false};
   RenderHooks hooks;
   hooks.cancel = [&] {

@@ -1,4 +1,4 @@
-// A render that goes on in a thread of its own while somebody watches, and begins anew whenever its
+// A render in a thread of its own. It goes on while somebody watches, and starts again when its
 // camera or its modes change.
 #pragma once
 
@@ -12,14 +12,14 @@
 #include <thread>
 #include <vector>
 
-#include "app/render_session.h"
+#include "app/render/render_session.h"
 #include "view/orbit.h"
 
 namespace pt {
 
-/// What is rendered. Another value begins anew.
+/// What is rendered. A change starts the render again.
 struct LiveSettings {
-  std::vector<Mode> modes;  ///< one, or several that render the same image by turns
+  std::vector<Mode> modes;  ///< several take turns at the same image
   Orbit orbit;
 
   bool operator==(const LiveSettings&) const = default;
@@ -28,27 +28,31 @@ struct LiveSettings {
 /// What one mode has rendered.
 struct LiveView {
   Mode mode{};
-  int samples = 0;  ///< per pixel, of the present settings; the image may yet be of earlier ones
+  int samples = 0;       ///< per pixel, by the present settings; the image may be of earlier ones
   int pass_samples = 0;  ///< of the last pass
   double pass_ms = 0;    ///< its kernel time
   double msamples_per_s = 0;
-  std::uint64_t image_number = 0;      ///< another one for each image; 0: there is none
-  std::shared_ptr<const Image> image;  ///< linear; null: there is none
+  std::uint64_t image_number = 0;      ///< changes with the image; 0: none
+  std::shared_ptr<const Image> image;  ///< linear; null: none
 };
 
 enum class LiveStatus { rendering, idle, done, failed };
 
 struct LiveState {
-  std::uint64_t version = 1;  ///< another one after each change
+  std::uint64_t version = 1;  ///< changes with the state
   LiveSettings settings;
-  float exposure = 0;  ///< stops; until an image was measured, where that was asked for, 0
+  float exposure = 0;  ///< stops; 0 until a first image was measured, if that was asked for
   LiveStatus status = LiveStatus::idle;
   std::string error;            ///< of LiveStatus::failed
   std::vector<LiveView> views;  ///< one for each of settings.modes
 };
 
-/// Samples of the next pass: as many as there are, which doubles them, but about 0.2 s at most and
-/// one at least. `ms_per_sample` is of the slowest mode's last pass; 0: unknown.
+/// The render of these settings in `mode`, seen by the scene's own camera. Leaves out what has no
+/// effect in that mode. Throws Error for settings that go together in no mode.
+RenderCommand mode_command(const std::vector<Setting>& settings, Mode mode);
+
+/// Samples of the next pass: it doubles the samples, but takes at most about 0.2 s and at least one
+/// sample. `ms_per_sample` is that of the slowest mode's last pass; 0: unknown.
 int next_pass(int done, int wanted, double ms_per_sample);
 
 /// All members but the destructor may be called by any thread.
@@ -65,13 +69,13 @@ class LiveRender {
 
   void change(const LiveSettings& settings);
   void change_exposure(float stops);  ///< renders nothing
-  /// Whether anybody looks. Else the pass at work is abandoned and the render waits.
+  /// While nobody watches, the render waits; the current pass is abandoned.
   void set_watched(bool is_watched);
 
   LiveState state() const;
   /// The state as soon as its version is not `version`, or after `seconds`, or when all ends.
   LiveState wait(std::uint64_t version, double seconds) const;
-  /// Ends the render for good; who waits is answered.
+  /// Ends the render for good, and all waits.
   void end();
 
   // These do not change.
@@ -81,7 +85,7 @@ class LiveRender {
   int samples_wanted() const { return command_.options.spp; }
 
  private:
-  /// A mode at work. Only the render's thread knows them.
+  /// A mode at work. Used by the render's thread alone.
   struct Worker {
     RenderCommand command;
     std::unique_ptr<RenderSession> session;
@@ -104,14 +108,14 @@ class LiveRender {
   bool measures_exposure_ = false;
 
   std::vector<Worker> workers_;
-  std::uint64_t arranged_ = 0;  ///< the settings' number that they obey
+  std::uint64_t arranged_ = 0;  ///< number of the settings that they follow
 
   mutable std::mutex mutex_;                 ///< of all below
-  mutable std::condition_variable changed_;  ///< for who waits
+  mutable std::condition_variable changed_;  ///< for wait()
   std::condition_variable wake_;             ///< for the render's thread
   LiveState state_;
   bool has_exposure_ = false;
-  int target_ = 0;        ///< samples that each view gets before another pass is planned
+  int target_ = 0;        ///< samples that each view gets before the next pass is planned
   std::size_t last_ = 0;  ///< the view that had its turn
   // Written under the mutex, but read while a batch is traced as well.
   std::atomic<std::uint64_t> number_{1};  ///< of the settings

@@ -12,8 +12,7 @@ using Wide = glm::dvec3;
 constexpr double degree = std::numbers::pi / 180;
 constexpr double most_elevation = 89 * degree;
 
-/// The way from what a camera looks at to the camera, in parts of its up vector and of what is
-/// across that.
+/// The vector from the point looked at to the camera, split along and across the up vector.
 struct Offset {
   explicit Offset(const CameraParameters& camera)
       : axis(glm::normalize(Wide(camera.up))),

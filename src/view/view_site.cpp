@@ -6,24 +6,26 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "app/terminal/process.h"
+#include "common/error/terminal.h"
 #include "common/image/codecs/image_codec.h"
 #include "common/options/option_names.h"
+#include "common/platform/steady_seconds.h"
 #include "view/change_settings.h"
-#include "view/page.h"
 
 namespace pt {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// An answer that waits for news tells the same again after this: so a viewer who is gone is missed
-/// soon.
+/// A request for news is answered after this time at the latest, so that a viewer who is gone is
+/// noticed soon.
 constexpr double longest_wait_s = 1.0;
 constexpr std::size_t longest_name = 64;
 
 HttpReply nothing_there() { return text_reply(404, "nothing is here"); }
 
-/// Takes as long for any other token as for the right one.
+/// Takes the same time for a wrong token as for the right one.
 bool is_same_token(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;
@@ -202,6 +204,31 @@ HttpReply ViewSite::leave(const HttpRequest& request) {
 void ViewSite::look_for_viewers() {
   const std::lock_guard lock(viewers_mutex_);
   live_.set_watched(viewers_.any(clock_()));
+}
+
+int view_command(const ViewCommand& command) {
+  HttpServer server(command.port);  // before the scene, which may take long
+  const std::string token = random_token();
+  LiveRender live(command.settings, print_warning);
+  ViewSite site(live, token, server.port(), steady_seconds);
+  const std::string address = fmt::format("http://127.0.0.1:{}/{}/", server.port(), token);
+  if (!command.is_quiet) {
+    print("{} on {}: open this address in a browser of this machine; Ctrl-C ends\n", live.scene(),
+          live.device());
+  }
+  print("{}\n", address);
+  flush_output();
+
+  note_signals();
+  server.serve(site, [&] {
+    site.look_for_viewers();
+    if (!interrupted()) return true;
+    end_on_signal();  // another one does not wait
+    live.end();       // who waits is answered
+    return false;
+  });
+  print_notice("interrupted");
+  return exit_code_of_signal();
 }
 
 }  // namespace pt

@@ -1,25 +1,58 @@
-// The addresses of a live render's page, and who may ask for them.
+// `ptexp view SCENE`: the page of a live render, its addresses, and who may ask for them.
 #pragma once
 
+#include <map>
 #include <mutex>
+#include <string>
+#include <string_view>
 
 #include "view/http_server.h"
 #include "view/live_render.h"
-#include "view/viewers.h"
 
 namespace pt {
 
-/// 128 random bits in hexadecimal digits. Throws Error where the system has none.
+/// Prints the page's address and serves it until a signal. Returns 130 or 143 (process.h). Throws
+/// Error.
+int view_command(const ViewCommand& command);
+
+/// src/view/page.html, which the build makes a string of. NONCE stands in it where the word of its
+/// Content-Security-Policy belongs.
+std::string_view page_html();
+
+/// Who looks at a page: those whose browsers keep asking for news. Times are seconds of any clock.
+class Viewers {
+ public:
+  /// A page that is silent for longer is closed, or its machine sleeps.
+  static constexpr double patience_s = 2.5;
+  /// More are not counted: a page may use a new name each time.
+  static constexpr std::size_t most = 100;
+
+  void saw(const std::string& viewer, double now_s) {
+    if (last_.size() < most || last_.contains(viewer)) last_[viewer] = now_s;
+  }
+  void left(const std::string& viewer) { last_.erase(viewer); }
+
+  /// Forgets those that were silent for too long; returns whether any are left.
+  bool any(double now_s) {
+    std::erase_if(last_, [&](const auto& one) { return now_s - one.second > patience_s; });
+    return !last_.empty();
+  }
+
+ private:
+  std::map<std::string, double> last_;  ///< when each was seen
+};
+
+/// 128 random bits as hexadecimal digits. Throws Error if the system has none.
 std::string random_token();
 
-/// All addresses lie below /TOKEN/, else nothing is there (404). Requests that name another host
-/// are refused (403), since a foreign page whose name leads to 127.0.0.1 sends those, and so are
-/// POST requests of foreign pages.
+/// All addresses lie below /TOKEN/; others are not found (404). Refuses (403) requests that name
+/// another host, which a foreign page sends whose name resolves to 127.0.0.1, and POST requests of
+/// foreign pages.
 ///
 /// method, address | answer
 /// GET             | the page
-/// GET state       | JSON; `after=VERSION`: once it is another one, a second later at the latest;
-///                 | `viewer=NAME`: who asks, and is taken for present until that name is silent
+/// GET state       | JSON; `after=VERSION`: waits up to a second for another version;
+///                 | `viewer=NAME`: the viewer, who is present until the name is silent
 /// GET image       | `mode=MODE`: PNG; 404 while there is none
 /// POST settings   | JSON: any of "orbit", "mode", "exposure"; 400 and a sentence for others
 /// POST leave      | `viewer=NAME` is gone
@@ -31,11 +64,11 @@ class ViewSite : public HttpSite {
   std::optional<HttpReply> refuse(const HttpRequest& request) override;
   HttpReply answer(const HttpRequest& request) override;
 
-  /// Has the render wait while nobody is there. To be called now and then.
+  /// Pauses the render while nobody is there. To be called now and then.
   void look_for_viewers();
 
  private:
-  /// A picture that several viewers want.
+  /// The encoded image, for all viewers.
   struct Picture {
     std::uint64_t image_number = 0;
     float exposure = 0;

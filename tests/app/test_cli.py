@@ -110,7 +110,7 @@ class CommandLine(unittest.TestCase):
 
 class Information(CommandLine):
     def test_help_names_every_option(self):
-        run = self.run_ok("--help")
+        run = self.run_ok("--help-all")
         self.assertEqual(run.stderr, "")
         for option in OPTIONS:
             self.assertRegex(run.stdout, rf"(?m)(^|[\s,]){option}\b")
@@ -520,7 +520,7 @@ class StandardOutput(CommandLine):
         self.render_ok("--output", "a.ppm")
         self.run_ok("rays", "--scene", "boxes", "--size", "16", "--output", "r")
         before = self.files()
-        for arguments in [["--help"], ["--version"], ["--list-scenes"], ["--list-devices"], ["--list-kernels"],
+        for arguments in [["--help"], ["--help-all"], ["--version"], ["--list-scenes"], ["--list-devices"], ["--list-kernels"],
                           ["compare", "--help"], ["compare", "a.ppm", "a.ppm"],
                           ["trace", "--mesh", "boxes", "--rays", "r", "--device", "cpu"],
                           ["compact", "--device", "cpu", "--items", "1K", "--repeat", "1"],

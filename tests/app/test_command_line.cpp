@@ -108,7 +108,7 @@ std::vector<std::string> arguments_for(const OptionEntry& entry, const std::stri
   std::vector<std::string> arguments{"--" + entry.name};
   if (entry.form != OptionForm::flag) arguments.push_back(value);
   if (entry.name == "exposure") arguments.insert(arguments.end(), {"--output", "image.png"});
-  if (entry.group.starts_with("Metropolis")) {
+  if (entry.group == OptionGroup::metropolis) {
     arguments.insert(arguments.end(), {"--integrator", "mlt"});
   }
   if (entry.name == "part") arguments.insert(arguments.end(), {"--checkpoint", "c.exr"});
@@ -339,8 +339,60 @@ TEST(CommandLine, OtherCommands) {
   EXPECT_EQ(std::get<CompareCommand>(parse("compare a b --tolerance 0.1")).tolerance, 0.1);
 }
 
+std::string help_text(const std::string& line) { return std::get<HelpCommand>(parse(line)).text; }
+
+/// The options that a help lists, by the last of their names.
+std::set<std::string> options_of(const std::string& help) {
+  std::set<std::string> options;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  -")) continue;
+    const std::string flags = line.substr(2, line.find(' ', 2) - 2);
+    EXPECT_TRUE(options.insert(flags.substr(flags.rfind(',') + 1)).second) << flags;
+  }
+  return options;
+}
+
+TEST(CommandLine, HelpListsWhatAUserChooses) {
+  const std::string help = help_text("--help");
+  const std::set<std::string> few = options_of(help), all = options_of(help_text("--help-all"));
+  EXPECT_LE(few.size(), 55u) << "what only an experiment turns is marked by .expert()";
+  EXPECT_TRUE(std::ranges::includes(all, few));
+  std::set<std::string> rest{"--help",    "--help-all",   "--list-scenes",  "--list-devices",
+                             "--version", "--completion", "--list-kernels", "--reference"};
+  for (const OptionEntry& entry : option_list()) {
+    EXPECT_EQ(few.contains("--" + entry.name), !entry.is_expert) << entry.name;
+    rest.insert("--" + entry.name);
+  }
+  EXPECT_EQ(all, rest);
+  const std::size_t last = help.rfind('\n', help.size() - 2);
+  EXPECT_NE(help.find("--help-all", last), std::string::npos) << "the last line names it";
+  EXPECT_EQ(help_text("--help-all").find("also lists"), std::string::npos);
+}
+
+// The subcommands that take options of rendering list these by --help-all alone, without lists of
+// scenes and the like, which would be refused.
+TEST(CommandLine, HelpOfSubcommands) {
+  std::set<std::string> renders{"--help"};
+  for (const OptionEntry& entry : option_list()) renders.insert("--" + entry.name);
+  const std::map<std::string, std::set<std::string>> own{
+      {"view", {"--port"}}, {"verify", {"--share"}}, {"resume", {}}};
+  for (const auto& [command, options] : own) {
+    std::set<std::string> few{"--help"}, all = renders;
+    few.insert(options.begin(), options.end());
+    all.insert(options.begin(), options.end());
+    const std::string help = help_text(command + " --help");
+    EXPECT_EQ(options_of(help), few) << command;
+    EXPECT_TRUE(help.ends_with("`ptexp " + command +
+                               " --help-all` also lists the options of rendering.\n"));
+    EXPECT_EQ(options_of(help_text(command + " --help-all")), all) << command;
+  }
+  EXPECT_EQ(help_text("trace --help").find("--help-all"), std::string::npos);
+  expect_error([] { parse("compare --help-all"); }, "--help-all: no such option");
+}
+
 TEST(CommandLine, HelpNamesEveryOptionAndDefault) {
-  const std::string help = std::get<HelpCommand>(parse("--help")).text;
+  const std::string help = help_text("--help-all");
   for (const OptionEntry& entry : option_list()) {
     EXPECT_NE(help.find("--" + entry.name + ' '), std::string::npos) << entry.name;
     EXPECT_FALSE(entry.help.empty()) << entry.name;

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "app/compact_command.h"
+#include "app/commands/commands.h"
 #include "app/options/command_line.h"
 #include "app/options/option_values.h"
 #include "temp_folder.h"

@@ -1,4 +1,4 @@
-"""What shells complete, and the man page, against --help: the same options, no more and no fewer.
+"""What shells complete, and the man page, against --help-all: the same options, no more and no fewer.
 
 The environment variable PTEXP names the executable (build/release/src/ptexp). Shells and checkers
 that are not installed skip.
@@ -22,9 +22,9 @@ def ptexp(*arguments):
 
 
 def flags_of_help(*command):
-    """Those in the first column of a help."""
+    """Those in the first column of a help; of the program, of all options."""
     flags = set()
-    for line in ptexp(*command, "--help").splitlines():
+    for line in ptexp(*command, "--help" if command else "--help-all").splitlines():
         match = re.match(r"  (-\S+)", line)
         flags.update(match.group(1).split(",") if match else [])
     return flags

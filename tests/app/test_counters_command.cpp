@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/commands/commands.h"
 #include "app/options/command_line.h"
-#include "app/render_command.h"
 #include "common/image/codecs/image_io.h"
 #include "temp_folder.h"
 

@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "app/display/display.h"
-#include "app/display/tev_packets.h"
+#include "app/display/tev.h"
 #include "app/options/option_values.h"
 #include "common/error/error.h"
 

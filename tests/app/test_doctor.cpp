@@ -5,8 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/doctor/checks.h"
-#include "app/doctor_command.h"
+#include "app/doctor/doctor.h"
 #include "app/options/command_line.h"
 #include "temp_folder.h"
 

@@ -5,12 +5,10 @@
 #include <filesystem>
 #include <regex>
 
-#include "app/compare_command.h"
-#include "app/film_header.h"
-#include "app/merge_command.h"
-#include "app/render_outputs.h"
-#include "app/render_session.h"
-#include "app/verify_command.h"
+#include "app/commands/commands.h"
+#include "app/render/render_outputs.h"
+#include "app/render/render_session.h"
+#include "app/report/film_header.h"
 #include "common/error/terminal.h"
 #include "common/film/checkpoint.h"
 #include "common/image/atomic_file.h"
@@ -96,7 +94,7 @@ TEST(Compare, PrintsTheNumbersOfTwoImages) {
   image.rgb[7] = 0.75f;
   write_image(a, image, {});
   const auto compare = [&](double tolerance, int code) {
-    return printed([&] { EXPECT_EQ(compare_command(a, b, tolerance), code); });
+    return printed([&] { EXPECT_EQ(compare_command({a, b, tolerance}), code); });
   };
   const std::string text = compare(0.2, 1);
   const std::regex expected(
@@ -121,8 +119,7 @@ TEST(Compare, TakesTheFlipOfItsFormats) {
   const TempFolder folder;
   for (const char* name : {"a.exr", "b.png"}) write_image(folder.file(name), grey(0.5f), {});
   const auto flip_of = [&](const char* a, const char* b) {
-    const std::string text =
-        printed([&] { compare_command(folder.file(a), folder.file(b), 1, ""); });
+    const std::string text = printed([&] { compare_command({folder.file(a), folder.file(b), 1}); });
     return text.substr(text.find("-FLIP") - 3, 3);
   };
   EXPECT_EQ(flip_of("a.exr", "a.exr"), "HDR");
@@ -144,8 +141,16 @@ TEST(FilmCommands, ReplaceNoFileThatTheyRead) {
       folder.file("../" + fs::path(folder.file("")).parent_path().filename().string() + "/a.exr");
   for (const std::string& name : {a, link, hard, around}) {
     expect_error([&] { merge_command({name, {b, a}}); }, "merge " + name + ": is the file " + a);
-    expect_error([&] { compare_command(a, b, 0, name); }, "--difference " + name + ": is the file");
-    expect_error([&] { compare_command(b, a, 0, name); }, "--difference " + name + ": is the file");
+    expect_error(
+        [&] {
+          compare_command({a, b, 0, name});
+        },
+        "--difference " + name + ": is the file");
+    expect_error(
+        [&] {
+          compare_command({b, a, 0, name});
+        },
+        "--difference " + name + ": is the file");
     Options options;
     options.output = folder.file("new.exr");
     check_not_of_scene(options, {b, a});

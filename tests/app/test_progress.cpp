@@ -3,9 +3,9 @@
 
 #include <csignal>
 
-#include "app/interrupt.h"
-#include "app/measure.h"
-#include "app/progress.h"
+#include "app/render/measure.h"
+#include "app/terminal/process.h"
+#include "app/terminal/progress.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -124,9 +124,11 @@ Measurement measure_until(int stop_at, FakeRenderer& renderer) {
   options.spp = 4;
   options.warmup = 2;
   options.repeat = 3;
-  Progress progress(stderr, ProgressStyle::silent);
   int calls = 0;
-  return measure(renderer, options, progress, [&] { return ++calls >= stop_at; });
+  MeasureHooks hooks;
+  hooks.progress = [](std::uint64_t, std::uint64_t) {};
+  hooks.stop = [&] { return ++calls >= stop_at; };
+  return measure(renderer, options, hooks);
 }
 
 TEST(Measure, WarmUpsAreNotCounted) {

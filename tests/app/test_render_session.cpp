@@ -1,8 +1,8 @@
 // A scene that is rendered again: whatever was kept, the image is that of a scene loaded anew.
 #include <gtest/gtest.h>
 
-#include "app/render_session.h"
-#include "app/scene_defaults.h"
+#include "app/options/check_options.h"
+#include "app/render/render_session.h"
 #include "common/film/checkpoint.h"
 #include "common/image/compare/compare.h"
 #include "temp_folder.h"
@@ -124,6 +124,11 @@ TEST(RenderSession, KeepsTheSceneOrItsTree) {
   const RenderResult moved = render(session, command_of("terrain:2000"));
   EXPECT_GT(differences(moved.image, first.image), 0u);
   EXPECT_EQ(moved.report.scene.tree.build_ms, first.report.scene.tree.build_ms) << "built anew";
+  const RenderResult by_options =
+      render(session, command_of("terrain:2000", {{"look-from", "3,2,1"}, {"fov", "30"}}));
+  EXPECT_GT(differences(by_options.image, moved.image), 0u);
+  EXPECT_EQ(by_options.report.scene.tree.build_ms, first.report.scene.tree.build_ms)
+      << "options of the camera need no other tree";
   session.change_scene().sky.zenith = Color(0.0f);
   EXPECT_NE(render(session, command_of("terrain:2000")).report.scene.tree.build_ms,
             first.report.scene.tree.build_ms);
@@ -152,6 +157,19 @@ TEST(RenderSession, OptionsGoBeforeTheScenesOwn) {
   EXPECT_EQ(given.max_depth, 4);
   EXPECT_EQ(given.rr_depth, 1);
   EXPECT_EQ(given.crop->x1, 45);
+  // An option that is given keeps only its own value.
+  const std::pair<const char*, int Options::*> fields[] = {{"width", &Options::width},
+                                                           {"height", &Options::height},
+                                                           {"spp", &Options::spp},
+                                                           {"max-depth", &Options::max_depth},
+                                                           {"rr", &Options::rr_depth}};
+  for (const auto& [name, field] : fields) {
+    Options one;
+    one.*field = 100;
+    apply_defaults(defaults, {name}, one);
+    for (const auto& [other, other_field] : fields)
+      EXPECT_EQ(one.*other_field, other_field == field ? 100 : options.*other_field) << other;
+  }
   // A stop decides instead of the number of samples, unless that is given.
   for (const bool has_time : {false, true}) {
     Options stopped;

@@ -7,6 +7,7 @@
 
 #include "app/options/option_list.h"
 #include "app/report/csv_file.h"
+#include "app/report/film_header.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/platform/build_info.h"
@@ -528,7 +529,7 @@ TEST(Build, NamesItsDivergenceCounters) {
 }
 
 TEST(ReportMetadata, HasOptionsDeviceBuildAndTimes) {
-  auto metadata = report_metadata(make_options(), make_report());
+  auto metadata = image_header(make_options(), make_report(), "");
   EXPECT_EQ(metadata["ptexp.commit"], build_info().commit);
   EXPECT_EQ(metadata["ptexp.device"], "CPU, 8 threads");
   EXPECT_EQ(metadata["ptexp.kernel_ms"], "3.000000");

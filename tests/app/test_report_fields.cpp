@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/option_list.h"
-#include "app/report/counter_fields.h"
+#include "app/report/film_header.h"
 #include "app/report/report.h"
+#include "app/report/run_summary.h"
 #include "common/platform/build_info.h"
 #include "common/scene/data/scene_facts.h"
 
@@ -154,7 +155,7 @@ TEST(ReportFields, CompleteIsWhatEveryRepeatIs) {
   EXPECT_FALSE(complete(report));
 }
 
-// All columns but those of the build, the options and the hardware's counters.
+// All columns except those of the options and the hardware's counters.
 TEST(ReportFields, OfTheCsv) {
   std::map<std::string, std::string> expected{
       {"device_name", "Device"},
@@ -239,10 +240,15 @@ TEST(ReportFields, OfTheCsv) {
   for (const auto& [name, value] : report_csv_row(two_repeats(), unequal_report())) {
     EXPECT_TRUE(found.emplace(name, value).second) << name;
   }
-  for (const char* name :
-       {"schema_version", "version", "commit", "build_type", "compiler", "cuda", "fast_math"}) {
-    EXPECT_EQ(found.erase(name), 1u) << name;
-  }
+  const BuildInfo& build = build_info();
+  expected.merge(
+      std::map<std::string, std::string>{{"schema_version", std::to_string(report_schema_version)},
+                                         {"version", build.version},
+                                         {"commit", build.commit},
+                                         {"build_type", build.build_type},
+                                         {"compiler", build.compiler},
+                                         {"cuda", build.cuda},
+                                         {"fast_math", build.fast_math ? "on" : "off"}});
   for (const OptionEntry& entry : option_list()) EXPECT_EQ(found.erase(option_key(entry)), 1u);
   for (const auto& [name, value] : expected) EXPECT_EQ(found[name], value) << name;
   EXPECT_EQ(found.size(), expected.size());
@@ -250,7 +256,8 @@ TEST(ReportFields, OfTheCsv) {
 
 // The header of an image: options apart, whose texts are those of the command line.
 TEST(ReportFields, OfTheHeader) {
-  std::map<std::string, std::string> header = report_metadata(two_repeats(), unequal_report());
+  std::map<std::string, std::string> header =
+      image_header(two_repeats(), unequal_report(), "0123abcd");
   std::erase_if(header, [](const auto& entry) { return entry.first.starts_with("ptexp.option."); });
   const BuildInfo& build = build_info();
   EXPECT_EQ(header.at("ptexp.build").substr(0, build.build_type.size() + 2),
@@ -263,12 +270,15 @@ TEST(ReportFields, OfTheHeader) {
       {"ptexp.paths", "11000000"},      {"ptexp.rays", "22000000"},
       {"ptexp.exposure", "2.25"},       {"ptexp.kernel_ms", "5.500000"},
       {"ptexp.scene_ms", "401.500000"}, {"ptexp.setup_ms", "402.500000"},
-      {"ptexp.load_ms", "403.500000"},  {"ptexp.transfer_ms", "404.500000"}};
+      {"ptexp.load_ms", "403.500000"},  {"ptexp.transfer_ms", "404.500000"},
+      {"ptexp.film_version", "1"},      {"ptexp.device_kind", unequal_report().device_kind},
+      {"ptexp.scene_hash", "0123abcd"}};
   EXPECT_EQ(header, expected);
   RenderReport plain = unequal_report();
   plain.exposure.reset(), plain.runs.back().relative_error.reset();
-  header = report_metadata(two_repeats(), plain);
-  EXPECT_FALSE(header.contains("ptexp.relative_error") || header.contains("ptexp.exposure"));
+  header = image_header(two_repeats(), plain, "");
+  EXPECT_FALSE(header.contains("ptexp.relative_error") || header.contains("ptexp.exposure") ||
+               header.contains("ptexp.scene_hash"));
 }
 
 // Medians are of both repeats; rates are by the median of the kernel times, 5.5 ms.

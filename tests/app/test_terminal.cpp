@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/checkpoint_keeper.h"
 #include "app/options/option_values.h"
-#include "app/warning_limit.h"
+#include "app/render/checkpoint_keeper.h"
+#include "app/terminal/warning_limit.h"
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/error/terminal.h"

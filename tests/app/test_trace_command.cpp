@@ -7,9 +7,9 @@
 #include <regex>
 #include <sstream>
 
+#include "app/commands/commands.h"
 #include "app/options/command_line.h"
 #include "app/options/option_values.h"
-#include "app/trace_command.h"
 #include "common/error/terminal.h"
 #include "common/options/option_names.h"
 #include "common/scene/builtin/generated/generate_terrain.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/compare_command.h"
+#include "app/commands/commands.h"
 #include "common/image/codecs/image_io.h"
 #include "common/image/compare/compare.h"
 #include "temp_folder.h"

@@ -49,7 +49,7 @@ class Bits(TestCase):
         self.assert_same_bits(ptexp.render(scene), self.program("--scene", path))
 
     def test_every_option_has_its_keyword(self):
-        help_text = subprocess.run([PTEXP, "--help"], capture_output=True, text=True, check=True).stdout
+        help_text = subprocess.run([PTEXP, "--help-all"], capture_output=True, text=True, check=True).stdout
         keywords = {option["keyword"] for option in ptexp.options()}
         for option in ptexp.options():
             self.assertIn(f"--{option['name']}", help_text)

@@ -11,9 +11,9 @@ sys.path.insert(0, str(SCRIPT.parent))
 import check_layers  # noqa: E402
 
 SOUND = {
-    "main.cpp": '#include "wavefront/wavefront.h"\n#include "app/make_renderer.h"\n',
-    "app/make_renderer.h": '#include "common/render/renderer.h"\n',
-    "app/make_renderer.cpp": "#ifdef PTEXP_CUDA\n#endif\n",
+    "main.cpp": '#include "wavefront/wavefront.h"\n#include "app/render/make_renderer.h"\n',
+    "app/render/make_renderer.h": '#include "common/render/renderer.h"\n',
+    "app/render/make_renderer.cpp": "#ifdef PTEXP_CUDA\n#endif\n",
     "serial/serial.cpp": '#include "common/transport/shade.h"\n',
     "megakernel/trace_path.h": '#include "common/transport/shade.h"\n',
     "wavefront/wavefront.h": '#include "common/transport/shade.h"\n',
@@ -113,9 +113,9 @@ class CheckLayers(unittest.TestCase):
     def test_common_includes_no_schedule_and_no_app(self):
         self.assert_breach("common/render/renderer.h", '#include "wavefront/wavefront.h"\n', 1,
                            "render does not include wavefront")
-        self.assert_breach("common/film/film.h", '#include "app/make_renderer.h"\n', 1,
+        self.assert_breach("common/film/film.h", '#include "app/render/make_renderer.h"\n', 1,
                            "film does not include app")
-        self.assert_breach("serial/serial.cpp", '#include "app/make_renderer.h"\n', 1,
+        self.assert_breach("serial/serial.cpp", '#include "app/render/make_renderer.h"\n', 1,
                            "serial does not include app")
 
     def test_lower_physics_does_not_include_higher(self):
@@ -174,7 +174,7 @@ class CheckLayers(unittest.TestCase):
         self.assert_breach("common/math/x.h", "#include <common/math/vec.h>\n", 1, "quotes")
         self.assert_breach("common/math/x.h", '#include "glm/glm.hpp"\n', 1, "<>")
         self.assert_breach("common/math/x.h", "#include HEADER\n", 1, "macro")
-        self.assert_breach("main.cpp", '#include "app/make_renderer.cpp"\n', 1, "compiled by itself")
+        self.assert_breach("main.cpp", '#include "app/render/make_renderer.cpp"\n', 1, "compiled by itself")
 
     def test_a_relative_path_does_not_hide_a_layer(self):
         status, output = self.check({"common/math/x.h": '#include "../scene/data/scene.h"\n'})

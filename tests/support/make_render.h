@@ -1,7 +1,7 @@
 // Scenes and renderers made at once from options, as tests want them.
 #pragma once
 
-#include "app/make_renderer.h"
+#include "app/render/make_renderer.h"
 #include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {

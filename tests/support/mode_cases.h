@@ -13,6 +13,7 @@
 
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
+#include "app/render/make_renderer.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"

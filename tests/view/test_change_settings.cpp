@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "view/change_settings.h"
-#include "view/viewers.h"
+#include "view/view_site.h"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "app/progress.h"
 #include "common/image/compare/compare.h"
+#include "common/platform/steady_seconds.h"
 #include "common/scene/prepare/prepare_camera.h"
 #include "view/live_render.h"
 
@@ -70,9 +70,9 @@ Image rendered(const Words& more, const Orbit& orbit = {}) {
 
 template <class Holds>
 LiveState wait_until(const LiveRender& live, Holds holds) {
-  const double begin_s = Progress::steady_seconds();
+  const double begin_s = steady_seconds();
   LiveState state = live.state();
-  while (!holds(state) && Progress::steady_seconds() - begin_s < patience_s)
+  while (!holds(state) && steady_seconds() - begin_s < patience_s)
     state = live.wait(state.version, 0.1);
   EXPECT_TRUE(holds(state)) << "waited in vain";
   return state;
@@ -163,8 +163,8 @@ TEST(LiveRender, ShowsImagesWhileTheCameraMoves) {
   wait_until(live, [](const LiveState& state) { return state.views.front().image_number > 0; });
   std::uint64_t last = images();
   int seen = 0;
-  const double begin_s = Progress::steady_seconds();
-  for (int i = 1; seen < 3 && Progress::steady_seconds() - begin_s < patience_s / 4; ++i) {
+  const double begin_s = steady_seconds();
+  for (int i = 1; seen < 3 && steady_seconds() - begin_s < patience_s / 4; ++i) {
     live.change({modes, {i * 0.5, 0, 1}});
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     if (images() == last) continue;

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "view/mode_command.h"
+#include "view/live_render.h"
 #include "view/orbit.h"
 #include "view/view_site.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "app/display/tev_packets.h"
 #include "app/options/option_values.h"
 #include "common/error/error.h"
 #include "common/platform/steady_seconds.h"

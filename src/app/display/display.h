@@ -1,4 +1,4 @@
-// Shows a render at work in a viewer, and never keeps it waiting: --display.
+// --display: shows a render at work in a viewer, without delaying it.
 #pragma once
 
 #include <condition_variable>
@@ -9,21 +9,21 @@
 #include <string>
 #include <thread>
 
-#include "app/display/connection.h"
+#include "app/display/tev.h"
 #include "common/image/image.h"
 
 namespace pt {
 
-/// When the next image is taken from a render that must not lose more than a fiftieth of its time
-/// by that, shorter batches included.
+/// Decides when to take the next image, so that the render loses at most a fiftieth of its time,
+/// shorter batches included.
 class DisplayPace {
  public:
   static constexpr double least_s = 0.25;  ///< between two images
   static constexpr double share = 0.015;   ///< of the time that showing may take
 
   bool is_due(double now_s) const { return now_s >= due_s_; }
-  /// An image was taken, which kept the render from `begin_s` to `end_s`; `others_s`: what the last
-  /// one took of the time of all processors, beside the render.
+  /// Taking an image has delayed the render from `begin_s` to `end_s`. `others_s`: time of all
+  /// processors that sending the last one took.
   void note(double begin_s, double end_s, double others_s);
 
  private:
@@ -34,16 +34,16 @@ class Display {
  public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// Connects. A viewer that is not there is a warning, and nothing is shown.
+  /// Connects. Warns if there is no viewer, and then shows nothing.
   Display(const DisplayAddress& address, std::string name, Warn warn);
   ~Display();
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
-  /// As RenderHooks::watch: takes the image if one is due and the last one was sent, and sends what
-  /// changed in a thread of its own.
+  /// For RenderHooks::watch: takes an image if one is due and the last one was sent. A thread sends
+  /// what has changed.
   void watch(const std::function<Image()>& image);
-  /// Sends the final image, which is taken if somebody sees it; waits for the viewer, but not long.
+  /// Sends the final image if a viewer is connected; waits a short time for it.
   void finish(const std::function<Image()>& image);
 
  private:
@@ -54,9 +54,9 @@ class Display {
   const std::string address_text_, name_;
   const Warn warn_;
   DisplayPace pace_;
-  std::unique_ptr<Connection> connection_;  ///< null: nobody sees it
+  std::unique_ptr<Connection> connection_;  ///< null: no viewer
 
-  Image shown_;  ///< of the thread
+  Image shown_;  ///< by the thread
   std::mutex mutex_;
   std::condition_variable changed_;
   std::optional<Image> next_;  ///< to be sent

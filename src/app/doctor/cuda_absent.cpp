@@ -1,5 +1,5 @@
-// In place of cuda_facts_cuda.cpp in a build without CUDA.
-#include "app/doctor/machine.h"
+// In place of cuda_facts_cuda.cu in a build without CUDA.
+#include "app/doctor/doctor.h"
 
 namespace pt {
 

@@ -1,8 +1,10 @@
-#include "app/doctor/gpu_checks.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+
+#include "app/doctor/doctor.h"
+#include "app/options/option_values.h"
 
 namespace pt {
 namespace {
@@ -12,14 +14,14 @@ std::string version_text(int version) {
   return fmt::format("{}.{}", version / 1000, version % 1000 / 10);
 }
 
-/// What the build says behind "architectures "; empty: nothing.
+/// The text behind "architectures " in the build's description; empty: none.
 std::string architectures_of(const BuildInfo& build) {
   constexpr std::string_view word = "architectures ";
   const std::size_t at = build.cuda.find(word);
   return at == std::string::npos ? "" : build.cuda.substr(at + word.size());
 }
 
-/// Of a build without CUDA, in which a GPU is of no use.
+/// The check of a build without CUDA, which cannot use a GPU.
 Check check_absent_cuda(const DriverFacts& driver) {
   if (driver.gpus.empty()) {
     return {"CUDA", Health::ok, "off: this ptexp is for the CPU, and no NVIDIA GPU is here", ""};
@@ -121,6 +123,28 @@ Check check_counters(const Machine& machine) {
 }
 
 }  // namespace
+
+GpuCode code_for(const std::string& architectures, int major, int minor) {
+  const int wanted = 10 * major + minor;
+  GpuCode best = GpuCode::none;
+  for (const std::string& one : split(architectures, ';')) {
+    int number = 0;
+    const char* end = one.data() + one.size();
+    const auto [stop, error] = std::from_chars(one.data(), end, number);
+    if (error != std::errc()) {  // "native", "all"
+      if (best == GpuCode::none) best = GpuCode::unknown;
+      continue;
+    }
+    // 90a is for that GPU alone, 100f for those of its generation.
+    const bool is_specific = stop != end && *stop == 'a', is_family = stop != end && *stop == 'f';
+    const std::string_view form(stop + (is_specific || is_family), end);
+    const bool in_family = !is_specific && number / 10 == major && number <= wanted;
+    if (form != "-virtual" && (number == wanted || in_family)) return GpuCode::machine;
+    const bool compiles = is_specific ? number == wanted : is_family ? in_family : number <= wanted;
+    if (form != "-real" && compiles) best = GpuCode::ptx;
+  }
+  return best;
+}
 
 void add_gpu_checks(const Machine& machine, std::vector<Check>& checks) {
   const CudaFacts& cuda = machine.cuda;

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "app/doctor/machine.h"
+#include "app/doctor/doctor.h"
 #include "common/accel/trace_cpu/traverse_cwbvh_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/device/cpu/cpu_renderer.h"
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What follows `key` and a colon in the first line that begins with it; empty: there is none.
+/// The text behind `key` and a colon in the first line that begins with it; empty: none.
 std::string value_in(const fs::path& path, const std::string& key) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "app/options/option_list.h"
@@ -12,6 +13,7 @@
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_io.h"
 #include "common/options/option_names.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 namespace {
@@ -137,7 +139,7 @@ void check_surface_order(const Options& options) {
         to_string(options.compaction)));
 }
 
-/// The kernels that vote and sort need whole warps that fetch paths, and the tree that these trace.
+/// The kernels `vote` and `sort` need whole warps that fetch paths, and a wide tree.
 void check_phase_voting(const Options& options, const GivenOptions& given) {
   if (options.kernel != MegakernelKind::vote && options.kernel != MegakernelKind::sort) return;
   const std::string kernel = to_string(options.kernel);
@@ -163,7 +165,7 @@ void check_phase_voting(const Options& options, const GivenOptions& given) {
   }
 }
 
-/// Another option leaves nothing that this one could change.
+/// `option` has no effect if `holds`.
 struct InertRule {
   const char* option;
   bool (*holds)(const Options&);
@@ -186,7 +188,7 @@ constexpr InertRule inert_rules[] = {
      "with --accel embree: it builds its own tree"},
 };
 
-/// A value that is the default asks for nothing, so that scripts may name it.
+/// Scripts may give an option's default value in any case.
 void check_inert(const Options& options, const GivenOptions& given) {
   for (const InertRule& rule : inert_rules) {
     const OptionEntry& entry = find_option(rule.option);
@@ -197,9 +199,7 @@ void check_inert(const Options& options, const GivenOptions& given) {
   }
 }
 
-}  // namespace
-
-/// A film that is made in pieces is of one render of whole paths.
+/// Checkpoints, parts and several devices need one render of whole paths.
 void check_parts(const Options& o, const GivenOptions& given) {
   const bool has_file = !o.checkpoint.file.empty();
   const auto refuse = [](const std::string& option, const std::string& why) {
@@ -226,6 +226,8 @@ void check_parts(const Options& o, const GivenOptions& given) {
            "the chains of --integrator mlt walk over the whole image and have no state that could "
            "be continued; expected one device and no checkpoint");
 }
+
+}  // namespace
 
 void check_consistent(const Options& options, const GivenOptions& given) {
   check_parts(options, given);
@@ -288,6 +290,23 @@ void check_applicable(const Options& options, const GivenOptions& given,
       if (has_value(rule, value)) check_rule(rule, entry.name, value, options.mode, device);
     }
   }
+}
+
+void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options) {
+  const auto apply = [&](const char* name, const std::optional<int>& value, int Options::*field) {
+    if (value && !given.contains(name)) options.*field = *value;
+  };
+  apply("width", defaults.width, &Options::width);
+  apply("height", defaults.height, &Options::height);
+  apply("spp", defaults.spp, &Options::spp);
+  apply("max-depth", defaults.max_depth, &Options::max_depth);
+  apply("rr", defaults.rr_depth, &Options::rr_depth);
+  if (!options.crop) options.crop = defaults.crop;
+  if (!options.filter) options.filter = defaults.filter;
+  check_crop(options);
+  // A stop is asked to decide: the number of samples does only where it is given.
+  const bool has_stop = options.time_limit > 0 || options.target_error > 0;
+  if (has_stop && !given.contains("spp")) options.spp = std::numeric_limits<int>::max();
 }
 
 }  // namespace pt

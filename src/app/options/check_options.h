@@ -1,4 +1,5 @@
-// Options that each are valid but do not go together, or that this run would ignore.
+// Refuses options that do not go together or that a run would ignore, and completes them by a
+// scene's defaults.
 #pragma once
 
 #include <optional>
@@ -10,6 +11,7 @@
 namespace pt {
 
 struct OptionEntry;
+struct SceneDefaults;
 
 /// The names of the options that the user gave, without dashes: defaults are never refused.
 using GivenOptions = std::set<std::string>;
@@ -17,19 +19,22 @@ using GivenOptions = std::set<std::string>;
 /// Throws Error when two options contradict each other, whatever the device.
 void check_consistent(const Options& options, const GivenOptions& given);
 
-/// Throws Error when --crop, or a scene file's, is no part of the image.
+/// Throws Error when the crop window, the user's or the scene file's, is not part of the image.
 void check_crop(const Options& options);
 
-/// Whether a value of the option, as its `text` gives it, has an effect in a mode on any device.
+/// Whether a value of the option, as its `text` prints it, has an effect in a mode on any device.
 bool has_effect(const OptionEntry& entry, const std::string& value, Mode mode);
 
-/// Where the mode is left open, makes it the one in which all given options have an effect, if only
-/// one is such. Throws Error where none is.
+/// Sets a mode that is left open if all given options have an effect in that mode alone. Throws
+/// Error if they have in none.
 void fit_mode(Options& options, const GivenOptions& given);
 
-/// Throws Error when a given option has no effect in the chosen mode, or none on `device`. The
-/// device is checked only where it is known: pass choose_device's answer to check all.
+/// Throws Error when a given option has no effect in the chosen mode or on `device`, which is not
+/// checked if absent.
 void check_applicable(const Options& options, const GivenOptions& given,
                       std::optional<DeviceChoice::Kind> device);
+
+/// Fills in what `given` lacks and the scene's file has. Throws Error as check_crop does.
+void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options);
 
 }  // namespace pt

@@ -7,10 +7,8 @@
 
 #include "app/options/check_options.h"
 #include "app/options/command_text.h"
-#include "app/options/compact_options.h"
-#include "app/options/doctor_options.h"
 #include "app/options/option_list.h"
-#include "app/options/trace_options.h"
+#include "app/options/subcommand_options.h"
 #include "common/options/options.h"
 
 namespace pt {
@@ -19,7 +17,7 @@ struct RenderCommand {
   Options options;
   GivenOptions given;  ///< for check_applicable, once the device is known
 };
-/// Of a checkpoint, whose options hold but for these.
+/// Continues a checkpoint by its own options, changed by these.
 struct ResumeCommand {
   std::string file;
   std::vector<Setting> settings;
@@ -32,13 +30,13 @@ struct MergeCommand {
 };
 struct VerifyCommand {
   std::string image;
-  double share = 0.01;  ///< of the pixels, in (0, 1]
+  double share = 0.01;  ///< part of the pixels, in (0, 1]
   std::vector<Setting> settings;
 };
-/// Of a page for browsers.
+/// Serves a page for browsers.
 struct ViewCommand {
-  int port = 8080;                ///< 0: any that is free
-  bool is_quiet = false;          ///< prints the address alone
+  int port = 8080;                ///< 0: any free one
+  bool is_quiet = false;          ///< prints only the address
   std::vector<Setting> settings;  ///< the scene's name, too
 };
 struct CompareCommand {
@@ -70,8 +68,8 @@ using Command =
                  ListScenesCommand, ListDevicesCommand, ListKernelsCommand, VersionCommand,
                  CompletionCommand, ReferenceCommand, HelpCommand>;
 
-/// Options of rendering from their settings, of which a later one overrides an earlier one. Throws
-/// Error for everything that can be refused without a device or a scene.
+/// Options of rendering from settings; a later one overrides an earlier one. Throws Error for
+/// everything that can be refused without a device or a scene.
 RenderCommand make_render_command(const std::vector<Setting>& settings);
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for

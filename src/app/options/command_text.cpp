@@ -8,7 +8,7 @@
 namespace pt {
 namespace {
 
-/// A word that a line's end has parted at its hyphen stays one.
+/// Joins lines; a word that was split at its hyphen becomes one again.
 std::string in_one_line(const std::string& text) {
   std::string line;
   for (const std::string& part : split(text, '\n')) {
@@ -35,6 +35,19 @@ OptionText describe(const CLI::Option& option) {
     }
   }
   return text;
+}
+
+bool is_plain(char c) {
+  const bool is_alphanumeric =
+      (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  return is_alphanumeric || std::string("-_./:,=+@%").find(c) != std::string::npos;
+}
+
+std::string quoted(const std::string& text) {
+  if (!text.empty() && std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
 }
 
 /// "auto|cuda[:N,..|:all]" -> "auto|cuda"
@@ -71,6 +84,13 @@ CommandText describe(const CLI::App& app) {
     (option->get_positional() ? text.arguments : text.options).push_back(describe(*option));
   }
   for (const CLI::App* one : app.get_subcommands({})) text.subcommands.push_back(describe(*one));
+  return text;
+}
+
+std::string shell_text(const std::vector<std::string>& arguments) {
+  std::string text;
+  for (const std::string& argument : arguments)
+    text += (text.empty() ? "" : " ") + quoted(argument);
   return text;
 }
 

@@ -1,4 +1,4 @@
-// What --help says of a command, as data: shell completions and the man page are made of it.
+// A command line as data and text. Shell completions and the man page are made of CommandText.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@ class App;
 namespace pt {
 
 struct OptionText {
-  std::vector<std::string> flags;  ///< {"-o", "--output"}; of an argument none
-  std::string value;               ///< what stands for it, e.g. "FILE"; empty: a flag
-  std::string standard;            ///< the value where it is not given; empty: none
+  std::vector<std::string> flags;  ///< {"-o", "--output"}; empty: an argument
+  std::string value;               ///< placeholder, e.g. "FILE"; empty: a flag
+  std::string standard;            ///< default value; empty: none
   std::string group;               ///< heading in the help
   std::string help;                ///< in one line
 
@@ -29,9 +29,12 @@ struct CommandText {
   std::vector<OptionText> arguments;  ///< files
   std::vector<OptionText> options;
   std::vector<CommandText> subcommands;
-  bool takes_render_options = false;  ///< behind a subcommand's name: the program's options, too
+  bool takes_render_options = false;  ///< a subcommand that also takes the program's options
 };
 
 CommandText describe(const CLI::App& app);
+
+/// The arguments as one line that a POSIX shell splits again.
+std::string shell_text(const std::vector<std::string>& arguments);
 
 }  // namespace pt

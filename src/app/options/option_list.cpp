@@ -36,34 +36,38 @@ std::string in_lines(const std::string& text) {
   return lines + line;
 }
 
-/// Collects the entries of one heading of the help.
+/// Adds the options of a group to the list.
 class Group {
  public:
-  Group(std::vector<OptionEntry>& list, std::string heading)
-      : list_(list), heading_(std::move(heading)) {}
+  Group(std::vector<OptionEntry>& list, OptionGroup group) : list_(list), group_(group) {}
 
   Group& add(OptionEntry entry, std::string help, std::string short_flag = "") {
-    entry.group = heading_;
+    entry.group = group_;
     entry.help = std::move(help);
     entry.short_flag = std::move(short_flag);
     list_.push_back(std::move(entry));
     return *this;
   }
 
-  /// The option added last, or this value of it, has an effect in these modes and on these devices
-  /// alone.
+  /// Restricts the option added last, or this value of it, to these modes and devices.
   Group& only(std::span<const Mode> modes, std::span<const Kind> devices, std::string value = "") {
     list_.back().rules.push_back({std::move(value), modes, devices});
     return *this;
   }
 
+  /// Leaves the option added last to --help-all.
+  Group& expert() {
+    list_.back().is_expert = true;
+    return *this;
+  }
+
  private:
   std::vector<OptionEntry>& list_;
-  std::string heading_;
+  OptionGroup group_;
 };
 
 void add_image(std::vector<OptionEntry>& list) {
-  Group(list, "Image")
+  Group(list, OptionGroup::image)
       .add(integer("width", &Options::width, 1, 65535), "Width in pixels, 1 to 65,535")
       .add(integer("height", &Options::height, 1, 65535), "Height in pixels, 1 to 65,535")
       .add(integer("spp", &Options::spp, 1, max_int), "Samples (paths) per pixel")
@@ -74,10 +78,7 @@ void add_image(std::vector<OptionEntry>& list) {
            "Longest path, in rays, the camera ray included")
       .add(integer("rr", &Options::rr_depth, 0, 65535),
            "Russian roulette may end paths of this many rays or more;\n0: never")
-      .add(custom(
-               "nee", OptionForm::text, "on|off",
-               [](Options& o, const std::string& s) { o.nee = parse_switch("nee", s); },
-               [](const Options& o) { return o.nee ? "on" : "off"; }),
+      .add(on_off("nee", &Options::nee),
            "Next-event estimation: surfaces sample a light and cast a\n"
            "shadow ray; off: BSDF samples alone hit emitters")
       .add(choice("light-selection", &Options::light_selection),
@@ -89,59 +90,46 @@ void add_image(std::vector<OptionEntry>& list) {
            "Multiple importance sampling of light and BSDF samples: weights\n"
            "by the power or the balance heuristic; none: emitters that can\n"
            "be sampled count only after a delta bounce")
+      .expert()
       .add(choice("sampling", &Options::sampling),
            "How directions are sampled at surfaces: uniform or cosine-\n"
            "weighted over the hemisphere, or by the BSDF")
+      .expert()
       .add(choice("sampler", &Options::sampler),
            "A pixel's samples: independent, stratified, or Owen-scrambled\n"
            "Sobol points (best if --spp is a power of two)")
-      .add(custom(
-               "multiple-scattering", OptionForm::text, "on|off",
-               [](Options& o, const std::string& s) {
-                 o.multiple_scattering = parse_switch("multiple-scattering", s);
-               },
-               [](const Options& o) { return o.multiple_scattering ? "on" : "off"; }),
+      .add(on_off("multiple-scattering", &Options::multiple_scattering),
            "Multiple scattering between the microfacets of rough\n"
            "conductors, whose energy is lost otherwise. Other materials\n"
            "do not change")
-      .add(custom(
-               "seed", OptionForm::number, "N",
-               [](Options& o, const std::string& s) {
-                 o.seed = parse_integer("seed", s, 0, UINT64_MAX);
+      .add(value(
+               "seed", OptionForm::number, "N", &Options::seed,
+               [](const std::string& name, const std::string& s) {
+                 return parse_integer(name, s, 0, UINT64_MAX);
                },
-               [](const Options& o) { return std::to_string(o.seed); }),
+               [](std::uint64_t seed) { return std::to_string(seed); }),
            "Seed of the random numbers, 64 bits")
       .add(text("output", "FILE", &Options::output),
            "Image to write: .exr (linear float), .png (8-bit sRGB) or\n.ppm (8-bit, gamma 2)", "-o")
-      .add(custom(
-               "exposure", OptionForm::number, "auto|STOPS",
-               [](Options& o, const std::string& s) { o.exposure = parse_exposure("exposure", s); },
-               [](const Options& o) { return exposure_text(o.exposure); }),
+      .add(value("exposure", OptionForm::number, "auto|STOPS", &Options::exposure, parse_exposure,
+                 exposure_text),
            "Multiplies a .png or .ppm by 2^STOPS; auto: so that its mean\n"
            "is middle grey. Default: 0; auto for the .png of a scene file\n"
            "in photometric units or in default lighting. No effect on .exr")
-      .add(custom(
-               "crop", OptionForm::text, "X0,Y0,X1,Y1",
-               [](Options& o, const std::string& s) { o.crop = parse_crop("crop", s); },
-               [](const Options& o) { return crop_text(o.crop); }),
+      .add(value("crop", OptionForm::text, "X0,Y0,X1,Y1", &Options::crop, parse_crop, crop_text),
            "Renders the pixels with X0 <= x < X1 and Y0 <= y < Y1 (0,0 is\n"
            "the upper left), equal to those of the whole image. The data\n"
            "window of an .exr has their position")
-      .add(custom(
-               "filter", OptionForm::text, "KIND[:A[:B]]",
-               [](Options& o, const std::string& s) { o.filter = parse_filter("filter", s); },
-               [](const Options& o) { return filter_text(o.filter); }),
+      .add(value("filter", OptionForm::text, "KIND[:A[:B]]", &Options::filter, parse_filter,
+                 filter_text),
            in_lines("Reconstruction filter: " + filter_forms(", ") +
                     "; lengths in pixels. Default: the scene file's, else a box of one pixel"))
-      .add(custom(
-               "aov", OptionForm::text, "NAME,...",
-               [](Options& o, const std::string& s) { o.aovs = parse_aovs("aov", s); },
-               [](const Options& o) { return aovs_text(o.aovs); }),
+      .add(value("aov", OptionForm::text, "NAME,...", &Options::aovs, parse_aovs, aovs_text),
            in_lines("Further layers of the .exr, of the first hit and of the samples: " +
                     aov_names(", ")));
 }
 
-/// Also takes `sort`, a name, for one release more, of `atomic` with --order-surfaces on.
+/// Also takes the old name `sort`, which means `atomic` with --order-surfaces on.
 OptionEntry compaction_entry() {
   OptionEntry entry = choice("compaction", &Options::compaction);
   entry.set = [set = entry.set](Options& o, const std::string& value) {
@@ -151,36 +139,40 @@ OptionEntry compaction_entry() {
   return entry;
 }
 
-OptionEntry size_or_auto(const std::string& name, std::uint64_t Options::*field,
-                         const std::string& what, std::uint64_t most) {
-  return custom(
-      name, OptionForm::number, "N|auto",
-      [=](Options& o, const std::string& s) {
-        o.*field = s == "auto" ? 0 : parse_size(name, s, "auto or a number of " + what, most);
-      },
-      [=](const Options& o) { return o.*field == 0 ? "auto" : std::to_string(o.*field); });
+/// Adds a definition to those given before.
+OptionEntry define_entry() {
+  OptionEntry entry{.name = "define", .form = OptionForm::list, .placeholder = "NAME=VALUE"};
+  entry.set = [](Options& o, const std::string& s) {
+    parse_definition("define", s, o.definitions);
+  };
+  entry.text = [](const Options& o) { return definitions_text(o.definitions); };
+  return entry;
 }
 
 void add_metropolis(std::vector<OptionEntry>& list) {
-  Group(list, "Metropolis light transport (--integrator mlt; --spp is the mutations per pixel)")
+  Group(list, OptionGroup::metropolis)
       .add(size_or_auto("chains", &Options::chains, "chains", 1 << 27),
            "Number of Markov chains, one path in flight each; auto: enough\n"
            "to fill the device. It changes the noise")
+      .expert()
       .add(number("large-step-probability", "P", &Options::large_step_probability,
                   "a number above 0, at most 1", [](float x) { return x > 0 && x <= 1; }),
            "Probability of a large step, an independent path")
+      .expert()
       .add(number("mutation-size", "SIZE", &Options::mutation_size, "a number above 0, at most 0.5",
                   [](float x) { return x > 0 && x <= 0.5f; }),
            "Largest change of a random number by a small step; the\n"
            "smallest is a sixteenth of it")
+      .expert()
       .add(size_or_auto("bootstrap", &Options::bootstrap, "paths", 1 << 30),
            "Bootstrap paths, from which the chains' first states are\n"
            "drawn; auto: twice the mutations, within 2^20 to 2^30 on CUDA\n"
-           "and 2^17 to 2^25 on the CPU, or half of --time-limit");
+           "and 2^17 to 2^25 on the CPU, or half of --time-limit")
+      .expert();
 }
 
 void add_stops(std::vector<OptionEntry>& list) {
-  Group(list, "Stops (the first that is reached ends the render; without --spp they alone do)")
+  Group(list, OptionGroup::stops)
       .add(number("time-limit", "SECONDS", &Options::time_limit, "seconds above 0",
                   [](float x) { return x > 0; }),
            "Seconds of rendering, without scene preparation")
@@ -191,50 +183,31 @@ void add_stops(std::vector<OptionEntry>& list) {
 }
 
 void add_parts(std::vector<OptionEntry>& list) {
-  Group(list, "Parts of a render (ptexp resume, ptexp merge and ptexp verify read their files)")
-      .add(custom(
-               "checkpoint", OptionForm::text, "FILE[,SECONDS]",
-               [](Options& o, const std::string& s) {
-                 o.checkpoint = parse_checkpoint("checkpoint", s);
-               },
-               [](const Options& o) { return checkpoint_text(o.checkpoint); }),
+  Group(list, OptionGroup::parts)
+      .add(value("checkpoint", OptionForm::text, "FILE[,SECONDS]", &Options::checkpoint,
+                 parse_checkpoint, checkpoint_text),
            "Saves the render so far as an .exr, every 300 seconds or as\n"
            "often as said, at its end, and at SIGINT, SIGTERM or SIGUSR1;\n"
            "ptexp resume FILE goes on")
-      .add(custom(
-               "part", OptionForm::text, "I/N",
-               [](Options& o, const std::string& s) { o.part = parse_part("part", s); },
-               [](const Options& o) { return part_text(o.part); }),
+      .add(value("part", OptionForm::text, "I/N", &Options::part, parse_part, part_text),
            "Renders the part I of N disjoint parts of the image into\n"
            "--checkpoint FILE; ptexp merge joins them");
 }
 
 void add_scene(std::vector<OptionEntry>& list) {
-  Group(list, "Scene")
+  Group(list, OptionGroup::scene)
       .add(text("scene", "NAME|FILE", &Options::scene),
            "A scene of --list-scenes, or a file: Mitsuba .xml, .gltf,\n"
            ".glb, .pbrt (version 4), .obj, .ply. Options override a\n"
            "file's size, spp, depth and camera")
-      .add(custom(
-               "define", OptionForm::list, "NAME=VALUE",
-               [](Options& o, const std::string& s) {
-                 parse_definition("define", s, o.definitions);
-               },
-               [](const Options& o) { return definitions_text(o.definitions); }),
-           "Sets a parameter of a Mitsuba file; may be repeated", "-D")
-      .add(custom(
-               "strict", OptionForm::flag, "",
-               [](Options& o, const std::string&) { o.strict = true; },
-               [](const Options& o) { return o.strict ? "on" : "off"; }),
+      .add(define_entry(), "Sets a parameter of a Mitsuba file; may be repeated", "-D")
+      .add(flag("strict", &Options::strict),
            "Unsupported features of a scene file are errors, not warnings")
       .add(choice("default-lighting", &Options::default_lighting),
            "A soft light from behind and above the camera. auto: where a\n"
            "scene file has no light, or a .gltf, .glb or .obj has none\n"
            "that reaches what its camera sees")
-      .add(custom(
-               "scene-from-disk", OptionForm::flag, "",
-               [](Options& o, const std::string&) { o.scene_from_disk = true; },
-               [](const Options& o) { return o.scene_from_disk ? "on" : "off"; }),
+      .add(flag("scene-from-disk", &Options::scene_from_disk),
            "In an MPI job each rank reads the scene's files; by default the\n"
            "first one does, and sends them to the others")
       .add(integer("spheres", &Options::spheres, 0, max_spheres),
@@ -242,11 +215,12 @@ void add_scene(std::vector<OptionEntry>& list) {
       .add(choice("create-world", &Options::create_world),
            "Where a random scene is made: on the host or by a CUDA kernel;\n"
            "the scene is the same")
+      .expert()
       .only(parallel, cuda, "device");
 }
 
 void add_camera(std::vector<OptionEntry>& list) {
-  Group(list, "Camera (in scene units; by default the scene's own)")
+  Group(list, OptionGroup::camera)
       .add(vector("look-from", &CameraOverrides::look_from), "Position of the camera; also X,Y,Z")
       .add(vector("look-at", &CameraOverrides::look_at), "The point in the image's centre")
       .add(vector("up", &CameraOverrides::up), "The direction that is up in the image")
@@ -263,17 +237,15 @@ void add_camera(std::vector<OptionEntry>& list) {
 }
 
 void add_execution(std::vector<OptionEntry>& list) {
-  Group(list, "Execution (how the image is made, not what it shows)")
+  Group(list, OptionGroup::execution)
       .add(choice("mode", &Options::mode),
            "auto: megakernel or wavefront, whichever is expected to be\n"
            "faster; they give the same image.\n"
            "serial: one CPU thread, one path after the other.\n"
            "megakernel: each thread traces whole paths.\n"
            "wavefront: one kernel per stage over a pool of paths")
-      .add(custom(
-               "device", OptionForm::text, "auto|cpu[:N]|cuda[:N,..|:all]",
-               [](Options& o, const std::string& s) { o.device = parse_devices("device", s); },
-               [](const Options& o) { return to_string(o.device); }),
+      .add(value("device", OptionForm::text, "auto|cpu[:N]|cuda[:N,..|:all]", &Options::device,
+                 parse_devices, [](const DeviceChoice& device) { return to_string(device); }),
            "Where to render; auto: the first GPU if there is one, else the\n"
            "CPU; cuda:0,2 or cuda:all: several GPUs, to the same image;\n"
            "cpu:N: N devices that share the threads. See --list-devices")
@@ -292,17 +264,17 @@ void add_execution(std::vector<OptionEntry>& list) {
       .add(choice("work", &Options::work),
            "megakernel: work of a thread: a pixel, a sample, or samples\n"
            "that it fetches from a global counter (persistent threads)")
+      .expert()
       .only(megakernel, any_device)
-      .add(custom(
-               "block", OptionForm::text, "WxH",
-               [](Options& o, const std::string& s) { o.block = parse_block("block", s); },
-               [](const Options& o) { return block_text(o.block); }),
+      .add(value("block", OptionForm::text, "WxH", &Options::block, parse_block, block_text),
            "megakernel on CUDA: thread block, at most 1,024 threads")
+      .expert()
       .only(megakernel, cuda)
       .add(choice("kernel-set", &Options::kernel_set),
            "lean: for the paper's spheres, quads and materials alone, with\n"
            "the default ways to sample; general: for every scene; auto:\n"
            "lean where it can")
+      .expert()
       .add(choice("kernel", &Options::kernel),
            "megakernel on CUDA. loop: each iteration traces one ray per\n"
            "lane to its end. vote: warp-level phase voting between\n"
@@ -310,123 +282,114 @@ void add_execution(std::vector<OptionEntry>& list) {
            "wavefront that sorts paths by BSDF. auto: sort in scenes of\n"
            "triangles alone; vote there if --block is given and all BSDFs\n"
            "are of one kind; else loop")
+      .expert()
       .only(megakernel, cuda)
       .add(compaction_entry(),
            "wavefront: compaction of the paths that wait for a stage.\n"
            "cub: CUB's ordered selection; scan: the same by our own\n"
            "kernel; atomic: unordered appends; none: every stage visits\n"
            "the whole pool")
+      .expert()
       .only(wavefront, any_device)
-      .add(custom(
-               "pool-size", OptionForm::number, "N|auto",
-               [](Options& o, const std::string& s) {
-                 o.pool_size = parse_pool_size("pool-size", s);
-               },
-               [](const Options& o) {
-                 return o.pool_size == 0 ? "auto" : std::to_string(o.pool_size);
-               }),
+      .add(size_or_auto("pool-size", &Options::pool_size, "paths", INT32_MAX),
            "wavefront: slots of the pool, the most paths in flight; K and\nM mean 2^10 and 2^20")
+      .expert()
       .only(wavefront, any_device)
       .add(choice("layout", &Options::layout),
            "wavefront: the pool's memory layout: structure of arrays, the\n"
            "same with a ray's two records in one 32-byte sector, or array\n"
            "of structures")
+      .expert()
       .only(wavefront, any_device)
       .add(choice("order-surfaces", &Options::order_surfaces),
            "wavefront: the queue of surfaces is sorted by BSDF type; auto:\n"
            "on CUDA, if the scene has many types or expensive ones")
+      .expert()
       .only(wavefront, any_device)
       .add(choice("stages", &Options::stages),
            "wavefront: split: a stage traces and others shade; fused: one\n"
            "kernel does both and no hit is stored; auto: fused where\n"
            "rays are cheap, in scenes of spheres and quads with --accel\n"
            "brute")
+      .expert()
       .only(wavefront, any_device)
       .add(integer("wave-collisions", &Options::wave_collisions, 0, 65535),
            "wavefront, in media with grids: a path that has collided with\n"
            "nothing so often waits for the next wave; 0: it loops until its\n"
            "flight ends")
+      .expert()
       .only(wavefront, any_device)
       .add(integer("wave-rays", &Options::wave_rays, 1, 65535),
            "wavefront with --stages fused: rays per path and wave; with\n"
            "--max-depth rays it is nearly the megakernel")
+      .expert()
       .only(wavefront, any_device)
-      .add(custom(
-               "regenerate", OptionForm::text, "on|off",
-               [](Options& o, const std::string& s) {
-                 o.regenerate = parse_switch("regenerate", s);
-               },
-               [](const Options& o) { return o.regenerate ? "on" : "off"; }),
+      .add(on_off("regenerate", &Options::regenerate),
            "wavefront: a path that ends gives its slot to a new one;\n"
            "off: the pool runs empty before it is filled again")
+      .expert()
       .only(wavefront, any_device)
-      .add(custom(
-               "persistent", OptionForm::text, "on|off",
-               [](Options& o, const std::string& s) {
-                 o.persistent = parse_switch("persistent", s);
-               },
-               [](const Options& o) { return o.persistent ? "on" : "off"; }),
+      .add(on_off("persistent", &Options::persistent),
            "wavefront on CUDA: persistent threads trace appended ray\n"
            "queues through a wide BVH, in scenes without spheres; off: a\n"
            "thread per ray")
+      .expert()
       .only(wavefront, cuda)
-      .add(custom(
-               "finish-paths", OptionForm::number, "N|auto",
-               [](Options& o, const std::string& s) {
-                 o.finish_paths = parse_finish_paths("finish-paths", s);
-               },
-               [](const Options& o) {
-                 return o.finish_paths ? std::to_string(*o.finish_paths) : "auto";
-               }),
+      .add(value("finish-paths", OptionForm::number, "N|auto", &Options::finish_paths,
+                 parse_finish_paths,
+                 [](const auto& paths) { return paths ? std::to_string(*paths) : "auto"; }),
            "wavefront: when no sample is left to start and at most this\n"
            "many paths are alive, a thread traces each to its end; 0:\n"
            "waves to the last ray; auto: fewer where paths cost more")
+      .expert()
       .only(wavefront, any_device)
       .add(choice("schedule", &Options::schedule),
            "wavefront: the host launches every stage, or one CUDA graph\n"
            "loops on the device; auto: graph on CUDA, host on the CPU")
+      .expert()
       .only(wavefront, any_device)
       .only(wavefront, cuda, "graph")
-      .add(custom(
-               "stage-block", OptionForm::text, "[N,][STAGE=N,...]",
-               [](Options& o, const std::string& s) {
-                 o.stage_block = parse_stage_blocks("stage-block", s, Options().stage_block);
+      .add(value(
+               "stage-block", OptionForm::text, "[N,][STAGE=N,...]", &Options::stage_block,
+               [](const std::string& name, const std::string& s) {
+                 return parse_stage_blocks(name, s, Options().stage_block);
                },
-               [](const Options& o) { return stage_blocks_text(o.stage_block); }),
+               stage_blocks_text),
            "wavefront on CUDA: threads per block, for all stages, by name\n"
            "or both: generate, intersect, shade_miss, shade_surface,\n"
            "shadow, bounce (of fused stages), finish, accumulate; e.g.\n"
            "intersect=128,shadow=64")
+      .expert()
       .only(wavefront, cuda);
 }
 
 void add_toggles(std::vector<OptionEntry>& list) {
-  Group(list, "The paper's toggles (of these xorwow alone changes the image)")
+  Group(list, OptionGroup::toggles)
       .add(choice("scene-memory", &Options::scene_memory),
            "CUDA: memory from which kernels read the spheres; constant\n"
            "memory is refused if they do not fit")
+      .expert()
       .only(parallel, cuda, "shared")
       .only(parallel, cuda, "constant")
       .add(choice("branching", &Options::branching),
            "reduced: a miss is shaded as a surface that reflects nothing,\n"
            "so that hits and misses share one branch; on CUDA only with\n"
            "--accel brute, --rng philox and global memory")
+      .expert()
       .only(parallel, any_device, "reduced")
       .add(choice("rng", &Options::rng),
            "philox: counter-based. xorwow: a stored state per path,\n"
            "initialised by render_init as in the paper; on CUDA only with\n"
-           "--accel brute");
+           "--accel brute")
+      .expert();
 }
 
 void add_measurement(std::vector<OptionEntry>& list) {
-  Group(list, "Measurement")
+  Group(list, OptionGroup::measurement)
       .add(integer("repeat", &Options::repeat, 1, 1'000'000), "Measured renders of the image")
       .add(integer("warmup", &Options::warmup, 0, 1'000'000),
            "Renders before them that are not measured")
-      .add(custom(
-               "counters", OptionForm::flag, "",
-               [](Options& o, const std::string&) { o.counters = true; },
-               [](const Options& o) { return o.counters ? "on" : "off"; }),
+      .add(flag("counters", &Options::counters),
            "Reads the GPU's counters of each kernel (SIMT efficiency,\n"
            "occupancy, cache hits, bytes), in renders after the measured\n"
            "ones; docs/experiments.md explains them")
@@ -437,22 +400,14 @@ void add_measurement(std::vector<OptionEntry>& list) {
       .add(text("csv", "FILE", &Options::csv_file),
            "Appends the same as one row, below a header if the file is\n"
            "new; a file with other columns is refused")
-      .add(custom(
-               "display", OptionForm::text, "HOST[:PORT]",
-               [](Options& o, const std::string& s) { o.display = parse_display("display", s); },
-               [](const Options& o) { return display_text(o.display); }),
+      .add(value("display", OptionForm::text, "HOST[:PORT]", &Options::display, parse_display,
+                 display_text),
            "Shows the render at work in the viewer tev, which listens\n"
            "there, by default at port 14158")
-      .add(custom(
-               "explain", OptionForm::flag, "",
-               [](Options& o, const std::string&) { o.explain = true; },
-               [](const Options& o) { return o.explain ? "on" : "off"; }),
+      .add(flag("explain", &Options::explain),
            "Prints how the render would be executed, and why, instead\nof rendering")
-      .add(
-          custom(
-              "quiet", OptionForm::flag, "", [](Options& o, const std::string&) { o.quiet = true; },
-              [](const Options& o) { return o.quiet ? "on" : "off"; }),
-          "No progress, no table and no warnings of the scene's file", "-q");
+      .add(flag("quiet", &Options::quiet),
+           "No progress, no table and no warnings of the scene's file", "-q");
 }
 
 }  // namespace
@@ -481,6 +436,30 @@ const OptionEntry& find_option(std::string_view name) {
   return *found;
 }
 
+std::string heading(OptionGroup group) {
+  switch (group) {
+    case OptionGroup::image:
+      return "Image";
+    case OptionGroup::metropolis:
+      return "Metropolis light transport (--integrator mlt; --spp is the mutations per pixel)";
+    case OptionGroup::stops:
+      return "Stops (the first that is reached ends the render; without --spp they alone do)";
+    case OptionGroup::parts:
+      return "Parts of a render (ptexp resume, ptexp merge and ptexp verify read their files)";
+    case OptionGroup::scene:
+      return "Scene";
+    case OptionGroup::camera:
+      return "Camera (in scene units; by default the scene's own)";
+    case OptionGroup::execution:
+      return "Execution (how the image is made, not what it shows)";
+    case OptionGroup::toggles:
+      return "The paper's toggles (of these xorwow alone changes the image)";
+    case OptionGroup::measurement:
+      break;
+  }
+  return "Measurement";
+}
+
 bool determines_image(const OptionEntry& entry) {
   const auto is_one_of = [](const std::string& text, std::initializer_list<const char*> list) {
     return std::ranges::any_of(list, [&](const char* one) { return text == one; });
@@ -488,8 +467,8 @@ bool determines_image(const OptionEntry& entry) {
   if (is_one_of(entry.name, {"output", "exposure", "spp", "strict", "scene-from-disk"}))
     return false;
   if (is_one_of(entry.name, {"rng", "kernel-set"})) return true;
-  return entry.group == "Image" || entry.group == "Scene" || entry.group.starts_with("Camera") ||
-         entry.group.starts_with("Metropolis");
+  return entry.group == OptionGroup::image || entry.group == OptionGroup::scene ||
+         entry.group == OptionGroup::camera || entry.group == OptionGroup::metropolis;
 }
 
 std::string option_key(const OptionEntry& entry) {

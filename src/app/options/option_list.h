@@ -1,6 +1,5 @@
-// Every option of `ptexp` that fills a field of Options, in one list: the command line, its help,
-// the statistics, the image metadata and the check of what applies all iterate it. A new option is
-// one entry; scene_options.h has the few rules that depend on the scene.
+// The list of all options of `ptexp` that fill a field of Options. The command line, its help, the
+// statistics, the image's header and the checks iterate it. A new option is one entry.
 #pragma once
 
 #include <functional>
@@ -22,9 +21,26 @@ enum class OptionForm {
   flag     ///< no value, a JSON boolean
 };
 
-/// Where an option, or one value of it, has an effect. What has no rule applies everywhere.
+/// A heading of the help.
+enum class OptionGroup {
+  image,
+  metropolis,
+  stops,
+  parts,
+  scene,
+  camera,
+  execution,
+  toggles,
+  measurement
+};
+
+/// As the help prints it, with what is to be known of the group.
+std::string heading(OptionGroup group);
+
+/// The modes and devices in which an option, or one value of it, has an effect. An option without a
+/// rule has one everywhere.
 struct OptionRule {
-  std::string value;  ///< empty: any; "cuda" stands for "cuda:1", too
+  std::string value;  ///< empty: any; "cuda" covers "cuda:1"
   std::span<const Mode> modes;
   std::span<const DeviceChoice::Kind> devices;
 };
@@ -34,13 +50,14 @@ struct OptionEntry {
   std::string short_flag{};  ///< e.g. "-o"; empty: none
   OptionForm form = OptionForm::text;
   std::string placeholder{};  ///< what the help shows for the value, e.g. "N"
-  std::string group{};        ///< heading in the help
-  std::string help{};         ///< lines of at most 60 characters
+  OptionGroup group{};
+  std::string help{};  ///< lines of at most 60 characters
   /// Parses and stores a value (of a flag: ignored). Throws Error naming option and value.
   std::function<void(Options&, const std::string&)> set{};
-  /// The value as `set` accepts it; empty where the scene or nothing decides.
+  /// The value as `set` accepts it; empty if it is left to the scene or not given.
   std::function<std::string(const Options&)> text{};
   std::vector<OptionRule> rules{};
+  bool is_expert = false;  ///< only experiments need it: --help-all lists it, --help does not
 };
 
 const std::vector<OptionEntry>& option_list();
@@ -51,8 +68,8 @@ struct Setting {
   std::string value;
 };
 
-/// Whether other values mean other samples: renders that differ in nothing else have the same bits
-/// on devices of one kind, and their samples can be added.
+/// Whether another value gives other samples. Renders that differ only in other options have the
+/// same bits on devices of one kind, and their samples can be added.
 bool determines_image(const OptionEntry& entry);
 
 /// Throws std::logic_error when there is no such option: a programmer's mistake.

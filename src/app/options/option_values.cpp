@@ -16,9 +16,8 @@
 namespace pt {
 namespace {
 
-constexpr int max_block_threads = 1024;             // CUDA's limit on every device since 2010
-constexpr std::uint64_t max_pool_size = INT32_MAX;  // slots are numbered with 32 bits
-constexpr std::size_t devices_max = 64;             // of one machine
+constexpr int max_block_threads = 1024;  // CUDA's limit on every device since 2010
+constexpr std::size_t devices_max = 64;  // of one machine
 
 /// The whole of `text` as a T, or nothing. Unlike strtol: no blanks, no sign of an unsigned value.
 template <typename T>
@@ -259,11 +258,6 @@ std::uint64_t parse_size(const std::string& name, const std::string& text, const
                  fmt::format("expected {} from 1 to {}, e.g. 512K or 2M (times 2^10, 2^20)", what,
                              grouped(most)));
   return *value << shift;
-}
-
-std::uint64_t parse_pool_size(const std::string& name, const std::string& text) {
-  if (text == "auto") return 0;
-  return parse_size(name, text, "auto or a number of paths", max_pool_size);
 }
 
 std::optional<std::uint32_t> parse_finish_paths(const std::string& name, const std::string& text) {

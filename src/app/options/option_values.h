@@ -1,5 +1,5 @@
-// A value of an option: from the text of the command line and back. Every parse_ function throws
-// Error with one line that names the option, the value and what was expected.
+// Values of options, to and from the text of the command line. Every parse_ function throws Error
+// with one line that names the option, the value and what was expected.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace pt {
 [[noreturn]] void refuse_value(const std::string& name, const std::string& value,
                                const std::string& problem);
 
-/// The parts between separators: one more than there are of these.
+/// The parts between separators.
 std::vector<std::string> split(const std::string& text, char separator);
 
 std::uint64_t parse_integer(const std::string& name, const std::string& text, std::uint64_t lowest,
@@ -27,9 +27,9 @@ float parse_number(const std::string& name, const std::string& text, const char*
                    bool (*holds)(float));
 std::array<float, 3> parse_vector(const std::string& name, const std::string& text);  ///< "x,y,z"
 bool parse_switch(const std::string& name, const std::string& text);  ///< "on" or "off"
-/// Of one device: "auto", "cpu", "cuda" or "cuda:N".
+/// One device: "auto", "cpu", "cuda" or "cuda:N".
 DeviceChoice parse_device(const std::string& name, const std::string& text);
-/// Of one or several: also "cpu:N", "cuda:N,M,..." or "cuda:all".
+/// One or several devices: also "cpu:N", "cuda:N,M,..." or "cuda:all".
 DeviceChoice parse_devices(const std::string& name, const std::string& text);
 /// "FILE" or "FILE,SECONDS".
 CheckpointChoice parse_checkpoint(const std::string& name, const std::string& text);
@@ -44,12 +44,10 @@ BlockSize parse_block(const std::string& name, const std::string& text);  ///< "
 /// "256" for all stages, or "intersect=128,shadow=64" over `blocks`.
 StageBlocks parse_stage_blocks(const std::string& name, const std::string& text,
                                StageBlocks blocks);
-/// A number from 1 to `most`, "K" and "M" standing for 2^10 and 2^20; `what` they count.
+/// A number from 1 to `most`; K and M mean 2^10 and 2^20. `what` names what it counts.
 std::uint64_t parse_size(const std::string& name, const std::string& text, const std::string& what,
                          std::uint64_t most);
-/// "auto" (0) or a number of paths, likewise.
-std::uint64_t parse_pool_size(const std::string& name, const std::string& text);
-/// Absent where `text` is "auto".
+/// Absent for "auto".
 std::optional<std::uint32_t> parse_finish_paths(const std::string& name, const std::string& text);
 
 template <NamedEnum E>
@@ -61,13 +59,13 @@ E parse_name(const std::string& name, const std::string& text) {
   refuse_value(name, text, "expected one of " + joined_names<E>(", "));
 }
 
-// The inverse of the functions above: text that they accept and that gives the same value.
+// The inverse: text that the functions above parse to the same value.
 std::string number_text(float value);
 std::string vector_text(const std::array<float, 3>& value);
 std::string block_text(const BlockSize& block);
 std::string stage_blocks_text(const StageBlocks& blocks);
 
-/// How often something is run: from `least` to a million.
+/// A number of runs, from `least` to a million.
 int parse_runs(const std::string& name, const std::string& text, std::uint64_t least);
 
 std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,567"
@@ -76,19 +74,19 @@ std::string grouped(std::uint64_t value);  ///< for reading: 1234567 -> "1,234,5
 CropWindow parse_crop(const std::string& name, const std::string& text);
 std::string crop_text(const std::optional<CropWindow>& crop);
 
-/// "KIND", "KIND:A" or "KIND:A:B"; what is left out is the filter's default.
+/// "KIND", "KIND:A" or "KIND:A:B"; the filter has defaults for A and B.
 FilterChoice parse_filter(const std::string& name, const std::string& text);
 std::string filter_text(const std::optional<FilterChoice>& filter);
-std::string filter_forms(const char* separator);  ///< all of them: "box[:RADIUS]"
+std::string filter_forms(const char* separator);  ///< of all filters: "box[:RADIUS]"
 
 /// "albedo,depth": bits of Options::aovs.
 std::uint32_t parse_aovs(const std::string& name, const std::string& text);
 std::string aovs_text(std::uint32_t aovs);
-std::string aov_names(const char* separator);  ///< all of them
+std::string aov_names(const char* separator);  ///< all names
 
 /// "auto" or stops.
 ExposureChoice parse_exposure(const std::string& name, const std::string& text);
-/// Empty where the scene decides.
+/// Empty if the scene decides.
 std::string exposure_text(const ExposureChoice& exposure);
 
 /// Adds NAME=VALUE to `definitions`.
@@ -96,7 +94,7 @@ void parse_definition(const std::string& name, const std::string& text,
                       std::map<std::string, std::string>& definitions);
 /// "a=1 b=2".
 std::string definitions_text(const std::map<std::string, std::string>& definitions);
-/// The NAME=VALUE of a text that definitions_text has made.
+/// Splits a text of definitions_text into NAME=VALUE.
 std::vector<std::string> split_definitions(const std::string& text);
 
 }  // namespace pt

@@ -1,8 +1,9 @@
 // The command line in other forms than --help: shell completions, the man page, a page of the site.
-// All are made of the same table (command_text.h).
+// All are made of CommandText.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "app/options/command_line.h"
 
@@ -11,10 +12,9 @@ namespace pt {
 std::string completion_text(const CompletionCommand& command);
 std::string reference_text(const ReferenceCommand& command);
 
-std::string bash_completion(const CommandText& program);
-std::string zsh_completion(const CommandText& program);
-std::string fish_completion(const CommandText& program);
-std::string man_page(const CommandText& program);
-std::string markdown_page(const CommandText& program);
+// Text for both.
+std::string join(const std::vector<std::string>& words, const std::string& separator);
+/// With `to` instead of each `from`.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
 
 }  // namespace pt

@@ -9,8 +9,10 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "common/error/error.h"
+#include "common/platform/build_info.h"
 
 namespace pt {
 namespace {
@@ -71,6 +73,14 @@ class File {
   int fd_;
 };
 
+/// Version of the kernel module; empty where there is none.
+std::string driver_version() {
+  std::ifstream file("/sys/module/nvidia/version");
+  std::string version;
+  std::getline(file, version);
+  return version;
+}
+
 /// RFC 4180: quoted where a comma, quote or line break would end the field.
 std::string quoted(const std::string& field) {
   if (field.find_first_of(",\"\r\n") == std::string::npos) return field;
@@ -126,6 +136,28 @@ void append_csv_row(const std::string& path, const CsvRow& row) {
   else if (file.read(file.size() - 1, 1) != "\n")  // a row that an editor or a crash left open
     bytes.insert(0, "\n");
   file.append(bytes);
+}
+
+CsvRow build_columns() {
+  const BuildInfo& build = build_info();
+  return {{"version", build.version},
+          {"commit", build.commit},
+          {"build_type", build.build_type},
+          {"compiler", build.compiler},
+          {"cuda", build.cuda},
+          {"fast_math", build.fast_math ? "on" : "off"}};
+}
+
+CsvRow origin_columns(const std::string& command_line, const DeviceInfo& device, int threads) {
+  const bool is_cuda = device.choice.kind == DeviceChoice::Kind::cuda;
+  CsvRow row = build_columns();
+  const CsvRow more{{"command", command_line},
+                    {"device", device.name},
+                    {"device_kind", is_cuda ? "cuda" : "cpu"},
+                    {"threads", is_cuda ? "" : std::to_string(threads)},
+                    {"driver", is_cuda ? driver_version() : ""}};
+  row.insert(row.end(), more.begin(), more.end());
+  return row;
 }
 
 }  // namespace pt

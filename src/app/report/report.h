@@ -1,8 +1,6 @@
-// What a finished run tells: a table for the eye, JSON and CSV for programs (docs/statistics.md),
-// and the metadata of its image.
+// What a finished run tells: a table for people, JSON and CSV for programs (docs/statistics.md).
 #pragma once
 
-#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,8 +10,8 @@
 
 namespace pt {
 
-/// Of the JSON and the CSV. Raise it whenever a field changes its name, unit or meaning or is
-/// added or removed, and tell docs/statistics.md.
+/// Version of the JSON and the CSV. Raise it, and change docs/statistics.md, whenever a field is
+/// added or removed or changes its name, unit or meaning.
 inline constexpr int report_schema_version = 13;
 
 /// Every repeat ran, and the last one had all its samples.
@@ -28,9 +26,5 @@ std::string report_json(const Options& options, const RenderReport& report);
 /// Column name and value of one CSV row; the names are the same for every run.
 using CsvRow = std::vector<std::pair<std::string, std::string>>;
 CsvRow report_csv_row(const Options& options, const RenderReport& report);
-
-/// Options, seed, device, build and times, for the header of the image.
-std::map<std::string, std::string> report_metadata(const Options& options,
-                                                   const RenderReport& report);
 
 }  // namespace pt

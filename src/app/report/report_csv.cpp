@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "app/options/option_list.h"
-#include "app/report/counter_fields.h"
+#include "app/report/csv_file.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/options/option_names.h"
-#include "common/platform/build_info.h"
 
 namespace pt {
 namespace {
@@ -28,16 +27,6 @@ std::string joined(const List& list, ToText to_text) {
   return text;
 }
 
-void add_build(CsvRow& row) {
-  const BuildInfo& build = build_info();
-  row.emplace_back("version", build.version);
-  row.emplace_back("commit", build.commit);
-  row.emplace_back("build_type", build.build_type);
-  row.emplace_back("compiler", build.compiler);
-  row.emplace_back("cuda", build.cuda);
-  row.emplace_back("fast_math", build.fast_math ? "on" : "off");
-}
-
 void add_spread(CsvRow& row, const std::string& name, const Spread& spread) {
   row.emplace_back(name + "_ms_median", ms(spread.median));
   row.emplace_back(name + "_ms_min", ms(spread.min));
@@ -56,7 +45,7 @@ void add_stage(CsvRow& row, const std::string& name, const RunSummary& summary) 
     row.emplace_back(name + suffix, "");
 }
 
-/// The report with every stage that has no columns renamed to one, "other".
+/// The report with all stages that have no columns summed as "other".
 RenderReport with_other_stage(const RenderReport& report) {
   const std::vector<std::string> known = column_stages();
   RenderReport renamed = report;
@@ -152,11 +141,7 @@ void add_metropolis(CsvRow& row, const std::optional<MetropolisStats>& stats) {
   add("mmutations_per_s", fmt::format("{:.6g}", 1e-6 * s.mutations_per_s));
 }
 
-}  // namespace
-
-namespace {
-
-/// Of the last render: "name:units:samples:kernel_ms:wall_ms;...", empty for one device.
+/// Devices of the last render: "name:units:samples:kernel_ms:wall_ms;..."; empty for one device.
 std::string devices_text(const RenderReport& report) {
   if (report.runs.empty()) return "";
   return joined(report.runs.back().devices, [](const DeviceShare& device) {
@@ -170,7 +155,7 @@ std::string devices_text(const RenderReport& report) {
 CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   const RunSummary summary = summarize(with_other_stage(report));
   CsvRow row{{"schema_version", std::to_string(report_schema_version)}};
-  add_build(row);
+  for (const auto& column : build_columns()) row.push_back(column);
   for (const OptionEntry& entry : option_list())
     row.emplace_back(option_key(entry), entry.text(options));
   add_device(row, report);

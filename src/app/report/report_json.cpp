@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/options/option_list.h"
-#include "app/report/counter_fields.h"
 #include "app/report/report.h"
 #include "app/report/run_summary.h"
 #include "common/options/option_names.h"

@@ -74,4 +74,23 @@ std::uint64_t memory_bytes(const RenderReport& report) {
   return total;
 }
 
+std::vector<std::pair<std::string, double>> counter_fields(const KernelCounters& kernel,
+                                                           int warps_per_sm) {
+  const CounterRatios ratios = ratios_of(kernel.values, warps_per_sm);
+  const auto get = [&](Counter counter) { return value_of(kernel.values, counter); };
+  return {{"time_ms", 1e-6 * get(Counter::time_ns)},
+          {"threads_per_instruction", ratios.threads_per_instruction},
+          {"issue", ratios.issue},
+          {"occupancy", ratios.occupancy},
+          {"l1_hit_rate", ratios.l1_hit_rate},
+          {"l2_hit_rate", ratios.l2_hit_rate},
+          {"l2_bytes", get(Counter::l2_bytes)},
+          {"l2_read_bytes", bytes_to_sm(kernel.values)},
+          {"l2_written_bytes", bytes_from_sm(kernel.values)},
+          {"dram_read_bytes", get(Counter::dram_read_bytes)},
+          {"dram_written_bytes", get(Counter::dram_written_bytes)},
+          {"predicted_read_bytes", kernel.predicted.read},
+          {"predicted_written_bytes", kernel.predicted.written}};
+}
+
 }  // namespace pt

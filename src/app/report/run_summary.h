@@ -1,11 +1,13 @@
-// The repeats of a measurement in a few numbers: what the table, the JSON and the CSV have in
-// common.
+// The repeats of a measurement and the hardware counters in a few numbers, which the table, the
+// JSON and the CSV share.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/options/hardware_counters.h"
 #include "common/options/stats.h"
 
 namespace pt {
@@ -41,5 +43,10 @@ struct RunSummary {
 RunSummary summarize(const RenderReport& report);
 
 std::uint64_t memory_bytes(const RenderReport& report);  ///< the sum of all buffers
+
+/// Name and value of each hardware counter of some launches; NaN where there was nothing to divide
+/// by.
+std::vector<std::pair<std::string, double>> counter_fields(const KernelCounters& kernel,
+                                                           int warps_per_sm);
 
 }  // namespace pt

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "common/choices/scene_traits.h"
+#include "common/choices/choices.h"
 #include "common/options/options.h"
 
 namespace pt {

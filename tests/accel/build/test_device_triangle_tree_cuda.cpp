@@ -1,6 +1,6 @@
 // Scenes with instances, and with spheres besides triangles, whose trees the GPU has built: hits
 // and images are those of trees built on the CPU, bit for bit.
-#include "app/trace_command.h"
+#include "app/commands/commands.h"
 #include "common/accel/build/tree_summary.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"

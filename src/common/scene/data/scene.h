@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/triangle_tree.h"
-#include "common/choices/scene_traits.h"
+#include "common/choices/choices.h"
 #include "common/geometry/mesh_view.h"
 #include "common/geometry/primitives.h"
 #include "common/geometry/sphere_frame.h"

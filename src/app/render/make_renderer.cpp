@@ -1,0 +1,122 @@
+#include "app/render/make_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/terminal/warning_limit.h"
+#include "common/device/cpu/cpu_renderer.h"
+#include "common/error/error.h"
+#include "common/render/film_renderer.h"
+#include "common/render/memory_share.h"
+#include "common/scene/builtin/builtin_scenes.h"
+#include "common/scene/load/files/scene_files.h"
+#include "common/scene/load/load_scene.h"
+#include "common/scene/prepare/prepare_scene.h"
+#include "megakernel/megakernel.h"
+#include "serial/serial.h"
+#include "wavefront/wavefront.h"
+
+#ifdef PTEXP_CUDA
+#include "common/device/cuda/create_world.h"
+#endif
+
+namespace pt {
+namespace {
+
+/// What is no built-in scene and looks like a path; other names get the list of scenes.
+bool is_scene_file(const std::string& scene) {
+  const std::string name = scene.substr(0, scene.find(':'));
+  const auto& list = scene_list();
+  const bool built_in = std::any_of(list.begin(), list.end(),
+                                    [&](const SceneInfo& info) { return info.name == name; });
+  return !built_in && scene.find_first_of("./") != std::string::npos;
+}
+
+/// What renders for `device`: in serial mode a thread of the host.
+DeviceProperties properties_for(const Options& options, const DeviceInfo& device, bool is_one) {
+  const bool is_on_gpu =
+      device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
+  if (is_on_gpu || !is_one) return device.properties;
+  return cpu_properties(cpu_threads(options.threads));
+}
+
+}  // namespace
+
+SceneData load_scene(const Options& options, [[maybe_unused]] const DeviceInfo& device,
+                     const Warn& warn) {
+  if (is_scene_file(options.scene)) {
+    const SceneFiles files;
+    WarningLimit limit(warn);
+    SceneData scene = load_scene_file(options.scene, {options.definitions,
+                                                      options.strict,
+                                                      limit.function(),
+                                                      {},
+                                                      options.default_lighting,
+                                                      options.camera});
+    scene.source_hash = files.hash(std::filesystem::path(options.scene).parent_path());
+    for (const auto& path : files.paths()) scene.source_files.push_back(path.string());
+    return scene;
+  }
+  if (options.strict || !options.definitions.empty()) {
+    throw Error(fmt::format("--{}: is for scene files; '{}' is a built-in scene",
+                            options.strict ? "strict" : "define", options.scene));
+  }
+  if (options.default_lighting != DefaultLighting::automatic)
+    throw Error(fmt::format("--default-lighting: is for scene files; '{}' is a built-in scene",
+                            options.scene));
+  if (options.create_world == WorldBuilder::host) return build_scene(options);
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda) {
+    return build_scene(options, create_world_on(device.choice.index));
+  }
+#endif
+  throw Error("--create-world device: expected a CUDA device, this is '" + device.name + "'");
+}
+
+std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& scene,
+                                       const std::vector<DeviceInfo>& devices) {
+  check_film(options, scene.properties, scene.filter);
+  SceneProperties properties = scene.properties;
+  std::vector<ExecutionPlan> plans;
+  for (const DeviceInfo& device : devices) {
+    plans.push_back(
+        plan_execution(options, properties, properties_for(options, device, devices.size() == 1)));
+    properties.structure = plans.front().accel;
+    properties.why_structure = plans.front().why_accel;
+  }
+  return plans;
+}
+
+std::unique_ptr<Renderer> make_renderer(const ExecutionPlan& plan, const SceneData& scene,
+                                        [[maybe_unused]] const DeviceInfo& device) {
+#ifdef PTEXP_CUDA
+  if (device.choice.kind == DeviceChoice::Kind::cuda && plan.mode != Mode::serial) {
+    return plan.mode == Mode::megakernel ? make_megakernel_cuda(plan, scene, device.choice.index)
+                                         : make_wavefront_cuda(plan, scene, device.choice.index);
+  }
+#endif
+  switch (plan.mode) {
+    case Mode::serial:
+      return make_serial_renderer(plan, scene);
+    case Mode::megakernel:
+      return make_megakernel_cpu(plan, scene);
+    default:
+      return make_wavefront_cpu(plan, scene);
+  }
+}
+
+std::unique_ptr<Renderer> make_fitting_renderer(const ExecutionPlan& plan, const SceneData& scene,
+                                                const DeviceInfo& device, const Warn& warn) {
+  MemoryShare share;
+  auto renderer = make_fitting(share, [&](int halvings) {
+    ExecutionPlan own = plan;
+    own.memory_halvings = halvings;
+    return make_renderer(own, scene, device);
+  });
+  const std::string warning = share.take_warning();
+  if (warn && !warning.empty()) warn(warning);
+  return renderer;
+}
+
+}  // namespace pt

@@ -1,0 +1,193 @@
+#include "app/render/render_session.h"
+
+#include <algorithm>
+#include <array>
+
+#include "app/options/check_options.h"
+#include "app/render/make_group.h"
+#include "app/render/make_renderer.h"
+#include "app/render/render_devices.h"
+#include "app/render/render_outputs.h"
+#include "app/report/film_header.h"
+#include "common/error/error.h"
+#include "common/platform/steady_seconds.h"
+#include "common/scene/data/scene_facts.h"
+#include "common/scene/prepare/prepare_scene.h"
+
+namespace pt {
+namespace {
+
+/// Whether neither preparation nor the renderer uses the option.
+bool is_for_later(const OptionEntry& entry) {
+  constexpr std::array names = {"output", "exposure", "stats", "csv", "quiet", "explain"};
+  return std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
+}
+
+/// Whether only the renderer uses the option.
+bool is_of_renderer(const OptionEntry& entry) {
+  constexpr std::array names = {"spp", "seed", "max-depth", "rr", "crop", "aov"};
+  using Group = OptionGroup;
+  constexpr std::array groups = {Group::camera, Group::stops, Group::parts, Group::measurement};
+  return std::ranges::find(groups, entry.group) != groups.end() ||
+         std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
+}
+
+struct Keys {
+  std::string scene;     ///< renders of the same key share a prepared scene, except its camera
+  std::string renderer;  ///< renders of the same key also share a renderer
+};
+
+Keys keys_of(const Options& options) {
+  Keys keys;
+  for (const OptionEntry& entry : option_list()) {
+    if (is_for_later(entry)) continue;
+    const std::string line = entry.name + ' ' + entry.text(options) + '\n';
+    (is_of_renderer(entry) ? keys.renderer : keys.scene) += line;
+  }
+  keys.renderer += keys.scene;
+  return keys;
+}
+
+}  // namespace
+
+struct RenderSession::Prepared {
+  Options options;
+  Keys keys;
+  std::vector<DeviceInfo> devices;
+  SceneData scene;
+  std::vector<ExecutionPlan> plans;  ///< one for each device
+  SceneFacts facts;
+  double scene_ms = 0;
+  Warn warn;  ///< of the render at work
+  std::unique_ptr<Rendering> rendering;
+  int samples = 0;  ///< of the last pass, in all
+
+  void make_rendering() {
+    rendering.reset();  // its memory is needed
+    rendering = std::make_unique<Rendering>(
+        options, plans, scene, devices,
+        Rendering::Surroundings{nullptr, nullptr, [this](const std::string& text) {
+                                  if (warn) warn(text);
+                                }});
+  }
+};
+
+RenderSession::RenderSession(SceneData scene) : source_(std::move(scene)) {}
+
+RenderSession::~RenderSession() = default;
+
+RenderSession::RenderSession(const RenderCommand& command, const Warn& warn) {
+  Options options = command.options;
+  const auto devices = choose_render_devices(options, command.given);
+  source_ = load_scene(options, devices.front(), warn);
+}
+
+SceneData& RenderSession::change_scene() {
+  prepared_.reset();
+  return source_;
+}
+
+CameraParameters& RenderSession::change_camera() {
+  camera_changed_ = true;
+  return source_.camera;
+}
+
+RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, const Warn& warn) {
+  Options options = command.options;
+  std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  apply_defaults(source_.defaults, command.given, options);
+  Keys keys = keys_of(options);
+  const bool is_same = prepared_ && !camera_changed_ && prepared_->keys.renderer == keys.renderer;
+  if (is_same) {
+    prepared_->scene_ms = 0;
+    prepared_->warn = warn;
+    prepared_->options = options;
+    prepared_->keys = std::move(keys);
+    return *prepared_;
+  }
+  const double begin_s = steady_seconds();
+  std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
+  if (next && next->keys.renderer != keys.renderer) next->rendering.reset();
+  if (!next || next->keys.scene != keys.scene ||
+      !move_camera(next->scene, source_.camera, options)) {
+    next = std::make_unique<Prepared>();
+    next->scene = source_;
+    resolve_scene(next->scene, options);
+    next->plans = plan_render(options, next->scene, devices);
+    prepare_scene(next->scene, next->plans.front());
+    describe_scene(next->scene, next->facts);  // goes through the tree
+  } else if (!next->rendering) {
+    next->plans = plan_render(options, next->scene, devices);
+  }
+  next->scene_ms = 1e3 * (steady_seconds() - begin_s);
+  next->warn = warn;
+  next->options = options;
+  next->keys = std::move(keys);
+  next->devices = std::move(devices);
+  next->samples = 0;
+  const Camera camera = make_camera(next->scene.camera, options.width, options.height);
+  if (!next->rendering || !next->rendering->renderer().set_camera(camera)) next->make_rendering();
+  prepared_ = std::move(next);
+  camera_changed_ = false;
+  return *prepared_;
+}
+
+RenderResult RenderSession::render(const RenderCommand& command, const MeasureHooks& hooks,
+                                   const Warn& warn, bool stays_on_device) {
+  Prepared& ready = prepare(command, warn);
+  if (stays_on_device && needs_group(ready.options, ready.devices)) {
+    throw Error(
+        "on_device: several devices, a checkpoint or a part put the image together in the host's "
+        "memory; expected one GPU, or on_device=False");
+  }
+  RenderResult result;
+  result.options = ready.options;
+  result.measures_exposure = source_.defaults.measure_exposure;
+  RenderReport& report = result.report;
+  report.scene_ms = ready.scene_ms;
+  report.primitives = ready.scene.primitive_count() + ready.scene.triangle_count();
+  report.scene = ready.facts;
+  const Measurement measurement = ready.rendering->measure(hooks);
+  const std::string& problem = ready.rendering->checkpoint_problem();
+  if (warn && !problem.empty()) warn("--checkpoint: " + problem);
+  result.interrupted = measurement.interrupted;
+  result.has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
+  ready.samples = result.has_image ? measurement.runs.back().samples_done : 0;
+  if (!result.has_image) return result;
+  Renderer& renderer = ready.rendering->renderer();
+  if (stays_on_device) result.device_image = renderer.device_image();
+  result.image = result.device_image ? result.device_image->frame() : renderer.image();
+  renderer.describe(report);
+  report.runs = measurement.runs;
+  if (const std::string text = black_image_text(ready.options, result.image); warn && !text.empty())
+    warn(text);
+  result.header = image_header(ready.options, report, ready.scene.source_hash);
+  if (ready.options.counters && is_complete(ready.options, report))
+    report.counters = count_hardware(renderer, warn);
+  return result;
+}
+
+RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
+                                   const RenderHooks& hooks, const Warn& warn) {
+  Prepared& ready = prepare(command, warn);
+  Renderer& renderer = ready.rendering->renderer();
+  RenderPass pass;
+  const double begin_s = steady_seconds();
+  pass.run = renderer.add(samples, hooks);
+  pass.run.wall_ms = 1e3 * (steady_seconds() - begin_s);
+  ready.samples += pass.run.samples_done;
+  pass.samples = ready.samples;
+  if (pass.samples > 0) pass.image = renderer.image();
+  return pass;
+}
+
+std::vector<Decision> RenderSession::plan(const RenderCommand& command) {
+  Options options = command.options;
+  const std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  apply_defaults(source_.defaults, command.given, options);
+  SceneData scene = source_;
+  resolve_scene(scene, options);
+  return plan_render(options, scene, devices).front().decisions;
+}
+
+}  // namespace pt

@@ -1,0 +1,74 @@
+// A scene in memory that is rendered again and again, by other options or after a change. A render
+// reuses what the one before has prepared.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/options/command_line.h"
+#include "app/render/rendering.h"
+#include "common/image/codecs/image_io.h"
+
+namespace pt {
+
+/// The result of a render.
+struct RenderResult {
+  bool has_image = false;  ///< else it was interrupted before its first sample
+  bool interrupted = false;
+  Image image;  ///< if device_image is not null, without rgb
+  std::shared_ptr<const DeviceImage> device_image;
+  Options options;  ///< completed by the scene and the device
+  RenderReport report;
+  ImageMetadata header;
+  bool measures_exposure = false;  ///< see exposure_for
+};
+
+/// Some samples of a progressive render.
+struct RenderPass {
+  RenderRun run;
+  int samples = 0;  ///< per pixel, of all passes
+  Image image;
+};
+
+class RenderSession {
+ public:
+  using Warn = std::function<void(const std::string&)>;
+
+  /// Loads the scene that the options name. Throws Error.
+  RenderSession(const RenderCommand& command, const Warn& warn);
+  /// Takes a scene that is not loaded from a file.
+  explicit RenderSession(SceneData scene);
+  ~RenderSession();
+
+  /// As loaded, not prepared.
+  const SceneData& scene() const { return source_; }
+  /// For changes; the next render prepares the scene again.
+  SceneData& change_scene();
+  /// For changes of the camera, which keep the acceleration structure.
+  CameraParameters& change_camera();
+
+  /// Renders by these options, which name the same scene. Writes no image. `stays_on_device`: a
+  /// GPU's image stays there, which several devices cannot do. Throws Error and leaves the session
+  /// as it was.
+  RenderResult render(const RenderCommand& command, const MeasureHooks& hooks, const Warn& warn,
+                      bool stays_on_device = false);
+  /// Adds samples to those of the last pass, or starts again after a change of the scene, its
+  /// camera or the options. Throws Error.
+  RenderPass add_pass(const RenderCommand& command, int samples, const RenderHooks& hooks,
+                      const Warn& warn);
+  /// How the scene would be rendered, and why.
+  std::vector<Decision> plan(const RenderCommand& command);
+
+ private:
+  struct Prepared;
+
+  Prepared& prepare(const RenderCommand& command, const Warn& warn);
+
+  SceneData source_;
+  bool camera_changed_ = false;
+  std::unique_ptr<Prepared> prepared_;
+};
+
+}  // namespace pt

@@ -1,0 +1,111 @@
+#include "app/render/rendering.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "app/display/display.h"
+#include "app/render/make_renderer.h"
+#include "app/report/film_header.h"
+#include "common/error/error.h"
+#include "common/error/host_memory.h"
+#include "common/mpi/serve_units.h"
+#include "common/options/option_names.h"
+
+namespace pt {
+
+std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& workers) {
+  std::vector<std::string> names;
+  for (const auto& worker : workers) names.push_back(worker->name());
+  return names;
+}
+
+Rendering::Rendering(const Options& options, const std::vector<ExecutionPlan>& plans,
+                     const SceneData& scene, const std::vector<DeviceInfo>& devices,
+                     const Surroundings& surroundings)
+    : options_(options), warn_(surroundings.warn) {
+  const Ranks* const ranks = surroundings.ranks;
+  const bool has_ranks = ranks != nullptr && ranks->count() > 1;
+  if (needs_group(options, devices) || has_ranks) {
+    make_group(plans, scene, devices, surroundings);
+  } else {
+    single_ = make_fitting_renderer(plans.front(), scene, devices.front(), surroundings.warn);
+  }
+}
+
+void Rendering::make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+                           const std::vector<DeviceInfo>& devices,
+                           const Surroundings& surroundings) {
+  filter_ = scene.filter;
+  header_ = film_header(options_, scene.source_hash, to_string(devices.front().choice.kind));
+  bell_ = std::make_shared<ResultBell>();
+  const auto& warn = surroundings.warn;
+  if (!options_.checkpoint.file.empty()) {
+    keeper_ = std::make_unique<CheckpointKeeper>(
+        options_.checkpoint.interval_s, [this](const ImageFilm& film) { save(film); },
+        [warn](const std::string& message) {
+          if (warn) warn("--checkpoint: " + message);
+        });
+  }
+  GroupHooks hooks;
+  hooks.warn = warn;
+  if (keeper_) hooks.film_grew = [this](const ImageFilm& film) { keeper_->film_grew(film); };
+  auto workers = make_workers(plans, scene, devices, *bell_);
+  Ranks* const ranks = surroundings.ranks;
+  const bool has_ranks = ranks != nullptr && ranks->count() > 1;
+  if (has_ranks) {
+    ranks->announce(names_of(workers));
+    const std::uint64_t least_paths = workers.front()->least_paths();
+    for (auto& remote : remote_workers(*ranks, least_paths)) workers.push_back(std::move(remote));
+  }
+  // Nobody rings for what comes from other ranks.
+  const std::shared_ptr<ResultBell> bell = has_ranks ? nullptr : bell_;
+  group_ = std::make_unique<GroupRenderer>(options_, scene.filter, std::move(workers), bell, hooks);
+  if (surroundings.resumption != nullptr)
+    group_->start_from(surroundings.resumption->checkpoint.film);
+  group_->restrict_to(part_windows(options_));
+}
+
+Measurement Rendering::measure(const MeasureHooks& hooks) {
+  try {
+    Measurement measurement = options_.display.host.empty()
+                                  ? pt::measure(renderer(), options_, hooks)
+                                  : measure_shown(hooks);
+    keep();
+    return measurement;
+  } catch (const std::exception& error) {
+    if (options_.checkpoint.file.empty()) throw;
+    keep();
+    throw Error(message_of(error) + "; " +
+                (checkpoint_problem_.empty()
+                     ? fmt::format("ptexp resume {} goes on", options_.checkpoint.file)
+                     : checkpoint_problem_));
+  }
+}
+
+Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
+  Display display(options_.display, std::filesystem::path(options_.output).filename().string(),
+                  warn_);
+  MeasureHooks shown = hooks;
+  shown.watch = [&](const std::function<Image()>& image) { display.watch(image); };
+  Measurement measurement = pt::measure(renderer(), options_, shown);
+  if (!measurement.runs.empty() && measurement.runs.back().samples_done > 0)
+    display.finish([this] { return renderer().image(); });
+  return measurement;
+}
+
+void Rendering::keep() {
+  checkpoint_problem_.clear();
+  try {
+    if (keeper_) keeper_->finish(group_->film());
+  } catch (const std::exception& error) {
+    checkpoint_problem_ = message_of(error);
+  }
+}
+
+void Rendering::save(const ImageFilm& film) const {
+  write_checkpoint(options_.checkpoint.file, {film, header_}, filter_,
+                   {0, 0, options_.width, options_.height});
+}
+
+}  // namespace pt

@@ -1,0 +1,69 @@
+// A render with all that its options ask for: one device's renderer, or a group of several, whose
+// film may be kept in a checkpoint.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/render/checkpoint_keeper.h"
+#include "app/render/make_group.h"
+#include "app/render/measure.h"
+#include "common/film/checkpoint.h"
+#include "common/mpi/ranks.h"
+
+namespace pt {
+
+/// A film that a render goes on with, and the file that it was in.
+struct Resumption {
+  std::string file;
+  Checkpoint checkpoint;
+};
+
+class Rendering {
+ public:
+  /// What may come from elsewhere. All may be absent.
+  struct Surroundings {
+    Ranks* ranks = nullptr;  ///< of the job; the others' devices work, too
+    const Resumption* resumption = nullptr;
+    std::function<void(const std::string&)> warn{};
+  };
+
+  /// `plans`: one for each device, see plan_render. `scene` is prepared for them, and must outlive
+  /// the rendering. Throws Error.
+  Rendering(const Options& options, const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+            const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
+
+  Renderer& renderer() { return group_ ? *group_ : *single_; }
+
+  /// Renders as often as the options say. What was rendered is in the checkpoint then, whatever
+  /// ended the render, unless there is a checkpoint_problem(). Throws Error.
+  Measurement measure(const MeasureHooks& hooks);
+
+  /// Why the last checkpoint could not be written, which is no reason to lose the image; or empty.
+  const std::string& checkpoint_problem() const { return checkpoint_problem_; }
+
+ private:
+  void make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
+                  const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
+  /// In a viewer, too.
+  Measurement measure_shown(const MeasureHooks& hooks);
+  void save(const ImageFilm& film) const;
+  void keep();
+
+  const Options options_;
+  const std::function<void(const std::string&)> warn_;
+  PixelFilter filter_{};
+  ImageMetadata header_;
+  std::unique_ptr<Renderer> single_;
+  std::shared_ptr<ResultBell> bell_;
+  std::unique_ptr<CheckpointKeeper> keeper_;
+  std::unique_ptr<GroupRenderer> group_;
+  std::string checkpoint_problem_;
+};
+
+/// Their names, for Ranks::announce.
+std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& workers);
+
+}  // namespace pt

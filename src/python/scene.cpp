@@ -1,0 +1,165 @@
+// Scene in Python.
+#include <fmt/format.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/error/error.h"
+#include "common/image/codecs/image_io.h"
+#include "python/module.h"
+#include "python/scene_object.h"
+#include "python/unlocked.h"
+
+namespace pt::python {
+
+namespace nb = nanobind;
+
+std::vector<std::string> Warnings::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(messages_, {});
+}
+
+void Warnings::give() {
+  const std::vector<std::string> messages = take();
+  if (messages.empty()) return;
+  const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
+  for (const std::string& message : messages) warn(message);
+}
+
+RenderCommand command_of(const Words& words) {
+  const auto& list = option_list();
+  std::vector<Setting> settings;
+  for (const auto& [keyword, value] : words) {
+    const auto entry = std::ranges::find(list, keyword, option_key);
+    if (entry == list.end()) throw Error(fmt::format("--{}: no such option", keyword));
+    settings.push_back({&*entry, value});
+  }
+  return make_render_command(settings);
+}
+
+std::unique_ptr<SceneObject> SceneObject::load(const Words& words) {
+  Warnings warnings;
+  std::unique_ptr<SceneObject> scene(new SceneObject);
+  {
+    const Unlocked unlocked;
+    scene->session_ = std::make_unique<RenderSession>(command_of(words), warnings.collector());
+    scene->list_parameters();
+  }
+  warnings.give();
+  return scene;
+}
+
+SceneObject::Rendered SceneObject::render(const Words& words, nb::object progress, bool on_device) {
+  const RenderCommand command = command_of(words);
+  Warnings warnings;
+  RenderResult result;
+  nb::object raised = run_interruptible(
+      [&](WorkState& state) {
+        const std::lock_guard turn(mutex_);
+        MeasureHooks hooks;
+        hooks.progress = [&state](std::uint64_t done, std::uint64_t total) {
+          state.done = done, state.total = total;
+        };
+        hooks.stop = [&state] { return state.stop.load(); };
+        result = session_->render(command, hooks, warnings.collector(), on_device);
+      },
+      std::move(progress));
+  return {std::make_unique<ImageObject>(std::move(result)), std::move(raised), warnings.take()};
+}
+
+std::unique_lock<std::mutex> SceneObject::lock() {
+  const Unlocked unlocked;  // a render may hold it for long
+  return std::unique_lock(mutex_);
+}
+
+std::vector<Decision> SceneObject::plan(const Words& words) {
+  const RenderCommand command = command_of(words);
+  const Unlocked unlocked;
+  const std::lock_guard turn(mutex_);
+  return session_->plan(command);
+}
+
+std::vector<float> SceneObject::get(std::size_t parameter) {
+  const auto turn = lock();
+  return parameters_.at(parameter).get(session_->scene());
+}
+
+void SceneObject::set(std::size_t parameter, const std::vector<float>& values) {
+  const auto turn = lock();
+  const SceneParameter& p = parameters_.at(parameter);
+  const std::size_t wanted = p.get(session_->scene()).size();
+  if (values.size() != wanted)
+    throw Error(fmt::format("{}: {} numbers; expected {}", p.name, values.size(), wanted));
+  if (p.is_of_camera) {
+    SceneData copy;  // a setter takes a scene, of which it changes the camera alone
+    copy.camera = session_->scene().camera;
+    p.set(copy, values);
+    session_->change_camera() = copy.camera;
+  } else {
+    p.set(session_->change_scene(), values);
+  }
+}
+
+void SceneObject::report_defaults(nb::dict& defaults) const {
+  const SceneDefaults& d = session_->scene().defaults;
+  const auto note = [&](const char* name, const std::optional<int>& value) {
+    if (value) defaults[name] = *value;
+  };
+  note("width", d.width), note("height", d.height), note("spp", d.spp);
+  note("max_depth", d.max_depth), note("rr", d.rr_depth);
+}
+
+namespace {
+
+/// (name, shape) of each.
+nb::list parameters(const SceneObject& self) {
+  nb::list list;
+  for (const SceneParameter& p : self.parameters()) {
+    nb::list shape;
+    for (const std::size_t n : p.shape) shape.append(n);
+    list.append(nb::make_tuple(text(p.name), nb::tuple(shape)));
+  }
+  return list;
+}
+
+nb::list plan(SceneObject& self, const Words& words) {
+  nb::list list;
+  for (const Decision& d : self.plan(words)) {
+    nb::dict decision;
+    decision["option"] = text(d.option);
+    decision["value"] = text(d.value);
+    decision["reason"] = text(d.reason);
+    list.append(decision);
+  }
+  return list;
+}
+
+nb::dict defaults(const SceneObject& self) {
+  nb::dict result;
+  self.report_defaults(result);
+  return result;
+}
+
+}  // namespace
+
+void add_scene(nb::module_& m) {
+  nb::class_<SceneObject>(m, "Scene")
+      .def("render", &SceneObject::render, nb::arg("words"), nb::arg("progress").none(),
+           nb::arg("on_device"))
+      .def("plan", plan)
+      .def_prop_ro("name", [](const SceneObject& self) { return text(self.name()); })
+      .def("defaults", defaults)
+      .def("parameters", parameters)
+      .def("get", &SceneObject::get)
+      .def("set", &SceneObject::set);
+  m.def("load", &SceneObject::load, nb::arg("words"));
+  m.def("check_output", check_image_path);  // before any work
+}
+
+}  // namespace pt::python
