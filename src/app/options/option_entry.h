@@ -104,8 +104,8 @@ inline OptionEntry flag(std::string name, bool Options::*field) {
       [](const std::string&, const std::string&) { return true; }, switch_text);
 }
 
-template <typename E>
-OptionEntry choice(std::string name, E Options::*field) {
+template <typename E, typename Settings>
+OptionEntry choice(std::string name, E Settings::*field) {
   return value(std::move(name), OptionForm::text, joined_names<E>("|"), field, parse_name<E>,
                [](E x) { return to_string(x); });
 }
