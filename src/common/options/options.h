@@ -61,13 +61,13 @@ struct PartChoice {
   bool operator==(const PartChoice&) const = default;
 };
 
-/// The file in which a render saves its film, and how often.
+/// Where a render's film is saved, and how often.
 struct CheckpointChoice {
   std::string file;  ///< empty: nowhere
   float interval_s = 300.0f;
 };
 
-/// Address of a viewer that shows the render at work.
+/// Of a viewer that shows the render at work.
 struct DisplayAddress {
   std::string host;  ///< empty: nowhere
   std::uint16_t port = 0;
@@ -127,7 +127,7 @@ struct Options {
   DirectionSampling sampling = DirectionSampling::bsdf;
   MisHeuristic mis = MisHeuristic::power;
   SamplerKind sampler = SamplerKind::independent;
-  // Metropolis light transport, IntegratorKind::mlt (docs/design/metropolis.md)
+  // Of IntegratorKind::mlt (docs/design/metropolis.md)
   std::uint64_t chains = 0;              ///< Markov chains, 0: automatic
   float large_step_probability = 0.05f;  ///< in (0, 1]
   float mutation_size = 0.00390625f;     ///< largest small step of a number, in (0, 1/2]
@@ -140,7 +140,7 @@ struct Options {
   std::optional<FilterChoice> filter;  ///< none: the scene file's, or a box of one pixel
   std::uint32_t aovs = 0;              ///< a bit for each layer of aov.h, in its order
 
-  // Stops: the first one that is reached ends the render
+  // Stops: the render ends with the first of them that is reached
   float time_limit = 0.0f;    ///< seconds of rendering, 0: none
   float target_error = 0.0f;  ///< relative standard error of the image (image_error.h), 0: none
 
@@ -150,7 +150,7 @@ struct Options {
 
   DisplayAddress display;
 
-  // Checkpoints and parts
+  // What is kept, and what is left to others
   CheckpointChoice checkpoint;
   PartChoice part;
 
@@ -159,9 +159,9 @@ struct Options {
   int spheres = 50;  ///< random spheres of the scene `spheres`, besides the ground, >= 0
   WorldBuilder create_world = WorldBuilder::host;
   std::map<std::string, std::string> definitions;  ///< of a scene file's parameters
-  bool strict = false;  ///< unsupported features of a scene file are errors
+  bool strict = false;  ///< what a scene file has and ptexp lacks is an error
   DefaultLighting default_lighting = DefaultLighting::automatic;  ///< of scene files
-  bool scene_from_disk = false;  ///< each rank of a job reads the scene's files itself
+  bool scene_from_disk = false;  ///< of a job's ranks: each reads the scene's files by itself
   CameraOverrides camera;
 
   // Execution
@@ -182,8 +182,8 @@ struct Options {
   SurfaceOrdering order_surfaces = SurfaceOrdering::automatic;  ///< wavefront: by kind of BSDF
   Stages stages = Stages::automatic;  ///< wavefront: whether one kernel traces and shades
   int wave_collisions = 0;            ///< Stages::split: null ones of a flight in a wave, 0: all
-  int wave_rays = 2;                  ///< Stages::fused: rays per path and wave, 1..65535
-  /// If at most this many paths are left, each is traced to its end; 0: none, absent: automatic.
+  int wave_rays = 2;                  ///< Stages::fused: rays that a path gets in a wave, 1..65535
+  /// So many paths left are followed to their ends at once, 0: none; absent: automatic.
   std::optional<std::uint32_t> finish_paths;
   Schedule schedule = Schedule::automatic;  ///< graph on CUDA, host on the CPU
   StageBlocks stage_block = default_stage_blocks();
@@ -199,7 +199,7 @@ struct Options {
   bool counters = false;   ///< read the hardware's counters, in renders of their own
   std::string stats_file;  ///< JSON, empty: none
   std::string csv_file;    ///< appended, empty: none
-  bool explain = false;    ///< print the plan and exit
+  bool explain = false;    ///< say how it would be rendered, and do not
   bool quiet = false;
 };
 

@@ -1,5 +1,6 @@
-// The stages: everything that has a time of its own. Queues, tags, clocks, --stage-block and the
-// columns of reports are made of this table. A new stage is a line here and its functor.
+// The stages: whatever has a time of its own. Whoever lists them (queues, tags, clocks, option
+// --stage-block, columns of the reports) reads this table; a new one is a line here and its
+// functor.
 #pragma once
 
 #include <array>
@@ -54,7 +55,7 @@ inline constexpr StageInfo stage_table[] = {PT_STAGES(PT_STAGE_ROW)};
 #undef PT_STAGES
 inline constexpr int stage_count = static_cast<int>(std::size(stage_table));
 
-/// `id` must not be StageId::idle.
+/// Of all but StageId::idle.
 constexpr const StageInfo& stage_info(StageId id) { return stage_table[static_cast<int>(id)]; }
 
 inline std::string to_string(StageId id) {
