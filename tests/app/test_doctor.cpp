@@ -282,6 +282,16 @@ TEST(DoctorFolders, AreTriedByWriting) {
   EXPECT_EQ(try_folder(folder.file("absent")).problem, "No such file or directory");
 }
 
+TEST(DoctorJson, ExitCodeTellsWhetherAnythingIsMissing) {
+  const auto code_of = [](Health health) {
+    const auto json = nlohmann::json::parse(doctor_json({}, {{"a", health, "", ""}}));
+    return json["exit_code"].get<int>();
+  };
+  EXPECT_EQ(code_of(Health::ok), 0);
+  EXPECT_EQ(code_of(Health::warning), 0);
+  EXPECT_EQ(code_of(Health::missing), 1);
+}
+
 TEST(DoctorJson, HasChecksAndNumbers) {
   Machine machine = healthy();
   machine.cuda.gpus[0].problem = "busy";

@@ -225,6 +225,13 @@ TEST(Merge, AddsTheCountsOfItsFiles) {
   EXPECT_EQ(found.lengths[2], expected.lengths[2]);
   EXPECT_NE(found.rays, read_checkpoint(b).film.tally.rays);
   EXPECT_FALSE(read_checkpoint(out).metadata.contains("ptexp.option.part"));
+  // Parts of different divisions have no common numbers: rows 0, 2, ... and 0, 3, ... of 30.
+  part(b, "1/3");
+  expect_error(
+      [&] {
+        merge_command({out, {a, b}});
+      },
+      "have 0 of 2 samples: 33.3 % of the samples are missing");
 }
 
 // Where a format has a place for radiance nothing is exposed; a scene of unknown brightness is

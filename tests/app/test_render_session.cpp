@@ -59,9 +59,7 @@ TEST(RenderSession, OptionsOfOneRenderDoNotStayInTheNext) {
   expect_same_as_anew("spheres", {{{"seed", "1"}}, {{"look-from", "5,3,2"}}, {{"fov", "60"}}});
 }
 
-// Whatever changes between two passes, the second one's image is that of a session that never
-// rendered anything else.
-// What ends a render, and whether its samples are in the checkpoint, is one message.
+// One message tells what ended a render and whether its samples are in the checkpoint.
 TEST(RenderSession, AnErrorLeavesTheCheckpointAndSaysSo) {
   const TempFolder folder;
   const std::string file = folder.file("c/c.exr");
@@ -86,6 +84,8 @@ TEST(RenderSession, AnErrorLeavesTheCheckpointAndSaysSo) {
   }
 }
 
+// Whatever changes between two passes, the second one's image is that of a session that never
+// rendered anything else.
 TEST(RenderSession, PassesAddSamplesUntilSomethingChanges) {
   for (const std::string device : {"cpu", "cpu:2"}) {
     SCOPED_TRACE(device);

@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/options/command_line.h"
 #include "app/options/option_values.h"
+#include "app/report/csv_file.h"
 #include "common/error/terminal.h"
 #include "common/options/option_names.h"
 #include "common/scene/builtin/generated/generate_terrain.h"
@@ -41,6 +42,16 @@ TEST(TraceCommandLine, ReadsAllOptions) {
 TEST(TraceCommandLine, IsKeptForTheRecord) {
   const auto c = parse<TraceCommand>({"trace", "--mesh", "a b", "--rays", "it's", "--hits", ""});
   EXPECT_EQ(c.command_line, "trace --mesh 'a b' --rays 'it'\\''s' --hits ''");
+}
+
+TEST(TraceCommandLine, KindsOfRays) {
+  const auto kind_of = [](const std::string& kind) {
+    return parse<RaysCommand>({"rays", "--mesh", "m", "--output", "r", "--kind", kind});
+  };
+  EXPECT_EQ(kind_of("ao").kind, RayKind::ao);
+  EXPECT_EQ(kind_of("bounce:3").kind, RayKind::bounce);
+  EXPECT_EQ(kind_of("bounce:3").bounces, 3);
+  expect_error([&] { kind_of("bounce:-1"); }, "--kind -1: expected a whole number");
 }
 
 TEST(TraceCommandLine, RefusesWhatItCannotDo) {
@@ -109,6 +120,16 @@ TEST_F(TraceFiles, AppendsRows) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
   EXPECT_NE(text.find(",fast_math,command,device,device_kind,threads,driver,"), std::string::npos);
   EXPECT_NE(text.find(",\"trace --mesh m,n\",CPU,cpu,"), std::string::npos) << text;
+  DeviceInfo device = choose_device({DeviceChoice::Kind::cpu, 0});
+  const auto column = [&](const char* name) {
+    for (const auto& [key, value] : origin_columns("", device, 7))
+      if (key == name) return value;
+    return std::string("missing");
+  };
+  EXPECT_EQ(column("threads"), "7");
+  EXPECT_EQ(column("driver"), "");
+  device.choice.kind = DeviceChoice::Kind::cuda;
+  EXPECT_EQ(column("threads"), "");
 }
 
 TEST_F(TraceFiles, ReplaceNothingThatIsRead) {

@@ -95,7 +95,7 @@ TEST_F(CompareCommand, PrintsTheDifferences) {
   const std::string a = write("a.exr", pixels({1.5f, 2, 3, 0, 1, 0}));
   const std::string b = write("b.exr", pixels({1, 2, 3, 0, 4, 0}));
   testing::internal::CaptureStdout();
-  const int code = compare_command(a, b, 0.5);
+  const int code = compare_command({a, b, 0.5});
   EXPECT_EQ(testing::internal::GetCapturedStdout(),
             "size                   2x1\n"
             "RMSE                   1.241638702145945\n"
@@ -112,29 +112,32 @@ TEST_F(CompareCommand, ExitCodes) {
   const std::string b = write("b.exr", pixels({1, 2, 3}));
   const std::string c = write("c.exr", pixels({nan, 2, 3}));
   testing::internal::CaptureStdout();
-  EXPECT_EQ(compare_command(a, a, 0), 0);
-  EXPECT_EQ(compare_command(c, c, 0), 0);
-  EXPECT_EQ(compare_command(a, b, 0.5), 0);
-  EXPECT_EQ(compare_command(a, b, 0.4999), 1);
-  EXPECT_EQ(compare_command(a, c, 1e300), 1);
+  EXPECT_EQ(compare_command({a, a, 0}), 0);
+  EXPECT_EQ(compare_command({c, c, 0}), 0);
+  EXPECT_EQ(compare_command({a, b, 0.5}), 0);
+  EXPECT_EQ(compare_command({a, b, 0.4999}), 1);
+  EXPECT_EQ(compare_command({a, c, 1e300}), 1);
   testing::internal::GetCapturedStdout();
 }
 
 TEST_F(CompareCommand, DifferentFormatsCompare) {
   const Image image = pixels({0, 1, 0, 1, 1, 1});
   testing::internal::CaptureStdout();
-  EXPECT_EQ(compare_command(write("a.png", image), write("b.ppm", image), 0), 0);
+  EXPECT_EQ(compare_command({write("a.png", image), write("b.ppm", image), 0}), 0);
   testing::internal::GetCapturedStdout();
 }
 
 TEST_F(CompareCommand, BadInputThrows) {
   const std::string a = write("a.exr", pixels({1, 2, 3}));
   const std::string wide = write("b.exr", pixels({1, 2, 3, 4, 5, 6}));
-  expect_error([&] { compare_command(a, wide, 0); },
-               "cannot compare " + a + " with " + wide + ": the sizes differ: 1x1 and 2x1");
-  expect_error([&] { compare_command(a, folder_.file("none.exr"), 0); }, "none.exr");
-  expect_error([&] { compare_command(a, a, -1); }, "tolerance -1");
-  expect_error([&] { compare_command(a, a, std::nan("")); }, "tolerance nan");
+  expect_error(
+      [&] {
+        compare_command({a, wide, 0});
+      },
+      "cannot compare " + a + " with " + wide + ": the sizes differ: 1x1 and 2x1");
+  expect_error([&] { compare_command({a, folder_.file("none.exr"), 0}); }, "none.exr");
+  expect_error([&] { compare_command({a, a, -1}); }, "tolerance -1");
+  expect_error([&] { compare_command({a, a, std::nan("")}); }, "tolerance nan");
 }
 
 }  // namespace

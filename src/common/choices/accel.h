@@ -14,18 +14,18 @@ namespace pt {
   ACCEL(embree)
 
 #define PT_ACCEL_ENUMERATOR(name) name,
-/// What --accel says.
+/// The values of --accel.
 enum class AccelKind { automatic, PT_ACCELS(PT_ACCEL_ENUMERATOR) };
 
-/// The structure in which a ray looks for its hit. Embree's is for the CPU, and cwbvh_avx2, the
-/// wide tree by a processor's AVX2, for one that has it.
+/// The acceleration structure that is traversed. Embree's is for the CPU; cwbvh_avx2 is the wide
+/// tree for processors with AVX2.
 enum class Accel { PT_ACCELS(PT_ACCEL_ENUMERATOR) cwbvh_avx2 };
 #undef PT_ACCEL_ENUMERATOR
 
 /// The trees over triangles for which all devices have kernels.
 inline constexpr std::initializer_list<Accel> tree_accels = {Accel::bvh2, Accel::cwbvh};
 
-/// Not of AccelKind::automatic.
+/// `kind` must not be AccelKind::automatic.
 constexpr Accel accel_of(AccelKind kind) {
   return static_cast<Accel>(static_cast<int>(kind) - static_cast<int>(AccelKind::brute));
 }
@@ -36,7 +36,7 @@ constexpr AccelKind accel_kind_of(Accel accel) {
 static_assert(accel_of(AccelKind::embree) == Accel::embree);
 
 #define PT_ACCEL_NAME(name) #name,
-/// As the command line has it.
+/// As on the command line.
 inline const char* accel_name(Accel accel) {
   constexpr const char* names[] = {PT_ACCELS(PT_ACCEL_NAME) "cwbvh"};
   return names[static_cast<int>(accel)];

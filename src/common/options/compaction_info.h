@@ -5,11 +5,11 @@
 
 namespace pt {
 
-/// What is done with the tags of all slots between two stages.
+/// What happens to the tags of all slots between two stages.
 enum class TagPass {
   none,
   count,   ///< how many slots wait for each stage
-  gather,  ///< likewise, and the queues are filled; by CUB on CUDA
+  gather,  ///< as count, and fills the queues; by CUB on CUDA
   scan,    ///< as gather; by one kernel of ours on CUDA
 };
 

@@ -1,5 +1,5 @@
-// What the hardware counted while the kernels of a render ran. Plain data: device/counter_session
-// fills it in, the reports print it.
+// Hardware counters of the kernels of a render. Plain data, which
+// device/cuda/counter_session_cuda.h fills and the reports print.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ constexpr double value_of(const CounterValues& values, Counter counter) {
   return values[static_cast<std::size_t>(counter)];
 }
 
-/// What a stage has to move by the layout of its data (wavefront/pool/stage_bytes.h); 0: not
+/// Bytes that a stage moves by the layout of its data (wavefront/pool/stage_bytes.h); 0: not
 /// predicted.
 struct PredictedBytes {
   double read = 0, written = 0;
@@ -70,7 +70,7 @@ struct LaunchCounters {
 
 /// One batch of a render, counted.
 struct HardwareCounters {
-  std::string problem;     ///< why there are none; empty: there are
+  std::string problem;     ///< why there are no counters; empty if there are
   int samples = 0;         ///< per pixel, of the batch
   std::uint64_t rays = 0;  ///< of all kinds, of the batch
   int passes = 0;          ///< how often it was rendered: the hardware has few counters at a time
@@ -92,7 +92,7 @@ std::vector<KernelCounters> sum_by_kernel(const std::vector<LaunchCounters>& lau
 /// All of them in one.
 KernelCounters sum_all(const std::vector<LaunchCounters>& launches);
 
-/// What the counters say; NaN where nothing was counted to divide by.
+/// Ratios of counters; NaN if the divisor is 0.
 struct CounterRatios {
   double threads_per_instruction;   ///< SIMT efficiency: threads that take part, of 32
   double issue;                     ///< of a scheduler's busy cycles, those that issue: 0..1

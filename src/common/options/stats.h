@@ -28,7 +28,7 @@ struct MetropolisStats {
   double brightness = 0;        ///< b: the mean luminance of the bootstrap's paths
   double brightness_error = 0;  ///< its standard error
   double large_share = 0;       ///< of the mutations, 0..1
-  double large_acceptance = 0;  ///< of large steps, those that were accepted, 0..1
+  double large_acceptance = 0;  ///< fraction of large steps that were accepted, 0..1
   double small_acceptance = 0;
   double bootstrap_ms = 0;     ///< of the kernel time: before the first mutation
   double mutations_per_s = 0;  ///< by the time of the mutations alone
@@ -58,7 +58,7 @@ struct RenderRun {
   double wall_ms = 0;                  ///< of the render on the host
 };
 
-/// Neither all samples were taken nor did a stop that was asked for end the render.
+/// The render has neither all samples nor reached a stop.
 inline bool is_cut_short(const RenderRun& run, int samples) {
   return run.samples_done < samples && run.ended_by != RunEnd::time_limit &&
          run.ended_by != RunEnd::target_error;
@@ -106,9 +106,9 @@ struct TreeFacts {
   double build_ms = 0;            ///< wall time on the host, kernel time on CUDA
 };
 
-/// A choice that options left open, or made, as --explain tells it.
+/// A choice of the plan, as --explain prints it.
 struct Decision {
-  std::string option;  ///< that makes the choice where it is given
+  std::string option;  ///< sets the choice if given
   std::string value;
   std::string reason;
 
