@@ -314,6 +314,12 @@ TEST(FilmHeaders, NameWhatDiffersAndWhere) {
   expect_error([&] { options_in_header(old, "o.exr"); },
                "o.exr: ptexp.film_version 0, of ptexp 0.0.3; this program, " +
                    build_info().version + ", has 1 and gives other bits");
+  ImageMetadata former = a;
+  former["ptexp.option.shade"] = "material";
+  EXPECT_EQ(film_header(options_in_header(former, "f.exr"), "abc", "cpu"), a);
+  former["ptexp.option.shades"] = "material";
+  expect_error([&] { options_in_header(former, "f.exr"); },
+               "f.exr: ptexp.option.shades: this program has no such option");
   Options changed = options_in_header(a, "a.exr");
   EXPECT_EQ(film_header(changed, "abc", "cpu"), a);
   apply_settings({{&find_option("seed"), "7"}, {&find_option("spp"), "9"}}, "a.exr", changed);

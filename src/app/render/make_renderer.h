@@ -22,8 +22,9 @@ using Warn = std::function<void(const std::string&)>;
 SceneData load_scene(const Options& options, const DeviceInfo& device, const Warn& warn = {});
 
 /// A plan for each device to render this resolved scene; all of them have the structure of the
-/// first. The options no longer leave anything to the scene's defaults (scene_defaults.h).
-/// Throws Error when they ask for something that the scene, a device or the mode cannot do.
+/// first. The options no longer leave anything to the scene's defaults (apply_defaults,
+/// options/check_options.h). Throws Error when they ask for something that the scene, a device or
+/// the mode cannot do.
 std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& scene,
                                        const std::vector<DeviceInfo>& devices);
 

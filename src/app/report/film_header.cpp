@@ -27,6 +27,9 @@ std::string value_in(const ImageMetadata& header, const std::string& key) {
 
 std::string shown(const std::string& value) { return value.empty() ? "none" : value; }
 
+/// Options of earlier programs that never changed an image.
+constexpr std::string_view former_options[] = {"ptexp.option.shade"};
+
 }  // namespace
 
 ImageMetadata film_header(const Options& options, const std::string& scene_hash,
@@ -85,6 +88,7 @@ Options options_in_header(const ImageMetadata& header, const std::string& file) 
     const auto& list = option_list();
     const auto entry = std::ranges::find(list, key, key_of);
     if (entry == list.end()) {
+      if (std::ranges::find(former_options, key) != std::end(former_options)) continue;
       throw Error(fmt::format("{}: {}: this program has no such option", file, key));
     }
     if (entry->form == OptionForm::flag && value != "on") continue;
