@@ -12,7 +12,7 @@
 #include "app/trace_command.h"
 #include "common/error/terminal.h"
 #include "common/options/option_names.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "temp_folder.h"
 
 namespace pt {

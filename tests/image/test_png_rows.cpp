@@ -9,8 +9,8 @@
 
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/integer_image.h"
+#include "common/image/codecs/png_codec.h"
 #include "common/image/codecs/png_rows.h"
-#include "common/image/codecs/png_session.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "common/math/fast_divide.h"
 #include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/math/transform.h"
 #include "common/sampling/mis.h"
 #include "statistics.h"

@@ -10,7 +10,7 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "shared_file.h"
 #include "temp_folder.h"
 

@@ -2,7 +2,7 @@
 // while-while).
 #pragma once
 
-#include "common/accel/bvh2.h"
+#include "common/accel/nodes.h"
 #include "common/geometry/primitives.h"
 
 namespace pt {

@@ -12,7 +12,7 @@ namespace pt {
 Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 
-// Of traverse_cwbvh_avx2.cpp, likewise; without has_avx2() they must not be called.
+// Of trace_avx2.cpp, likewise; without has_avx2() they must not be called.
 bool has_avx2();
 Hit closest_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);

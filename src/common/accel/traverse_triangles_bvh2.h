@@ -3,7 +3,7 @@
 // it was on entering the instance.
 #pragma once
 
-#include "common/accel/bvh2.h"
+#include "common/accel/nodes.h"
 #include "common/accel/slab_test.h"
 #include "common/accel/triangle_query.h"
 

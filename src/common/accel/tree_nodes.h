@@ -1,8 +1,8 @@
 // The nodes of trees over triangles: the one list of the structures that have some.
 #pragma once
 
-#include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 
 namespace pt {
 

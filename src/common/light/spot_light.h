@@ -6,7 +6,7 @@
 
 #include "common/light/light_bounds.h"
 #include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 
 namespace pt {
 

@@ -3,7 +3,7 @@
 
 #include "common/light/light_sample.h"
 #include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 
 namespace pt {
 

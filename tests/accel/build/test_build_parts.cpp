@@ -4,7 +4,7 @@
 #include <set>
 
 #include "accel/build_cases.h"
-#include "common/accel/build/morton.h"
+#include "common/accel/build/morton_order.h"
 #include "common/accel/build/ploc_pair.h"
 #include "common/accel/build/wide/collapse_cwbvh.h"
 #include "common/accel/build/wide/wide_children.h"

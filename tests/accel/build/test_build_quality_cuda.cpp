@@ -3,9 +3,9 @@
 
 #include "accel/device_tree.h"
 #include "accel/serial_reinsertion.h"
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/build/morton.h"
+#include "common/accel/build/morton_order.h"
 
 namespace pt {
 namespace {

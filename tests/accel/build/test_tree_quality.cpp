@@ -13,7 +13,7 @@
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
 #include "common/geometry/primitive_bounds.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/accel/build/binary/build_tree.h"
-#include "common/accel/build/morton.h"
+#include "common/accel/build/morton_order.h"
 #include "common/accel/build/ploc_pair.h"
 
 namespace pt {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/binary/build_sbvh.h"
 #include "common/accel/build/binary/overlap_share.h"
 #include "common/accel/build/binary/reinsert_nodes.h"
@@ -15,7 +15,7 @@
 #include "common/accel/build/check_builder.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/trial_rays.h"
+#include "common/accel/build/try_splits.h"
 #include "common/accel/build/wide/append_nodes.h"
 
 namespace pt {

@@ -33,7 +33,7 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// slots are in the order of the triangles' numbers.
 /// The automatic builder takes, group by group, the cheaper of the tree by sah and the same after
 /// reinsert_nodes() ("sah-reinsert"); or, where overlap_share() promises something and rays are
-/// found to cost less (trial_rays.h), the one by sbvh.
+/// found to cost less (try_splits.h), the one by sbvh.
 /// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/build_nodes.h"
 #include "common/accel/build/wide/append_nodes.h"
 #include "common/error/error.h"

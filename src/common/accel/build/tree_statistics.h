@@ -5,8 +5,8 @@
 #include <span>
 #include <unordered_map>
 
-#include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 #include "common/accel/triangle_tree.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/build/binary/build_tree.h"
-#include "common/accel/build/morton.h"
+#include "common/accel/build/morton_order.h"
 #include "common/accel/build_cuda/build_device.h"
 #include "common/accel/build_cuda/reinsertion.h"
 

@@ -3,7 +3,7 @@
 // without contraction, so the hits are the same, bit for bit.
 #pragma once
 
-#include "common/accel/trace_cpu/lanes_avx2.h"
+#include "common/accel/trace_cpu/lanes.h"
 
 #ifdef __x86_64__
 

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "common/accel/ray_arrays.h"
-#include "common/accel/trace_cuda/choose_turn.cuh"
+#include "common/accel/trace_cuda/choose_next.cuh"
 #include "common/accel/trace_cuda/slot_order.cuh"
 #include "common/platform/lane_counter.h"
 

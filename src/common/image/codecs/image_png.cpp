@@ -6,9 +6,9 @@
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/integer_image.h"
+#include "common/image/codecs/png_codec.h"
 #include "common/image/codecs/png_rows.h"
-#include "common/image/codecs/png_session.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {

@@ -1,8 +1,8 @@
-#include "common/image/codecs/png_session.h"
-
 #include <cstdio>
 #include <cstring>
 #include <new>
+
+#include "common/image/codecs/png_codec.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "common/image/codecs/image_io.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "common/error/error.h"
+#include "common/scene/builtin/dial.h"
+#include "common/scene/builtin/generate_boxes.h"
 #include "common/scene/builtin/generate_cloud.h"
-#include "common/scene/builtin/generate_dial.h"
-#include "common/scene/builtin/generated/generate_boxes.h"
-#include "common/scene/builtin/generated/generate_forest.h"
-#include "common/scene/builtin/generated/generate_statue.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generate_forest.h"
+#include "common/scene/builtin/generate_statue.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/builtin/hidden_light_scenes.h"
 #include "common/scene/builtin/quad_scenes.h"
 #include "common/scene/builtin/scene_memory.h"

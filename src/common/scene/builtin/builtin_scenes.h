@@ -7,7 +7,7 @@
 
 #include "common/options/options.h"
 #include "common/scene/builtin/scene_name.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/sphere_world.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {

@@ -1,6 +1,6 @@
 #include "common/scene/builtin/dial_materials.h"
 
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/scene/data/plastic_material.h"
 
 namespace pt {

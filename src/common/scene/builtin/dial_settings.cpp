@@ -7,7 +7,7 @@
 
 #include "common/error/error.h"
 #include "common/scene/builtin/name_parts.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 DialSettings parse_dial(const SceneName& scene) {

@@ -5,8 +5,8 @@
 
 #include "common/error/error.h"
 #include "common/scene/builtin/name_parts.h"
-#include "common/scene/builtin/shapes/noise.h"
-#include "common/scene/builtin/shapes/quad_shapes.h"
+#include "common/scene/builtin/noise.h"
+#include "common/scene/builtin/quad_shapes.h"
 
 namespace pt {
 namespace {

@@ -1,7 +1,7 @@
 #include "common/scene/builtin/hidden_light_scenes.h"
 
-#include "common/math/sincos.h"
-#include "common/scene/builtin/shapes/quad_shapes.h"
+#include "common/math/functions.h"
+#include "common/scene/builtin/quad_shapes.h"
 
 namespace pt {
 namespace {

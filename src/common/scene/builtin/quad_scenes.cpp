@@ -1,6 +1,6 @@
 #include "common/scene/builtin/quad_scenes.h"
 
-#include "common/scene/builtin/shapes/quad_shapes.h"
+#include "common/scene/builtin/quad_shapes.h"
 
 namespace pt {
 namespace {

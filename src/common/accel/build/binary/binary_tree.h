@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/accel/bvh2.h"
+#include "common/accel/nodes.h"
 #include "common/geometry/bounds.h"
 
 namespace pt {

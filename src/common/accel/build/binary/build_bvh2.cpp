@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/binary/merge_leaves.h"
 
 namespace pt {

@@ -1,12 +1,12 @@
 // Builds the binary BVH over spheres and quads on the CPU, as that over triangles is built: by the
-// binned surface area heuristic on all three axes (build_sah.h).
+// binned surface area heuristic on all three axes (build_binary.h).
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "common/accel/bvh2.h"
+#include "common/accel/nodes.h"
 #include "common/geometry/bounds.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/build/binary/binary_tree.h"
-#include "common/accel/build/split/build_reference.h"
+#include "common/accel/build/binary/build_reference.h"
 
 namespace pt {
 

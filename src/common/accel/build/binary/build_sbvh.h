@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/accel/build/binary/binary_tree.h"
-#include "common/accel/build/split/spatial_split.h"
+#include "common/accel/build/binary/spatial_split.h"
 
 namespace pt {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "common/accel/bvh2.h"
+#include "common/accel/nodes.h"
 
 namespace pt {
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "common/accel/bvh2.h"
 #include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 
 namespace pt {
 

@@ -8,7 +8,7 @@
 #include "common/error/host_memory.h"
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/integer_image.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/texture/sample_texture.h"
 

@@ -4,10 +4,15 @@
 #include <string>
 #include <string_view>
 
-#include "common/image/codecs/image_io.h"
 #include "common/image/image.h"
 
 namespace pt {
+
+/// How linear radiance becomes 8 bits: multiplied by 2^exposure, clamped to [0, 1], then encoded
+/// with the sRGB curve (PNG) or gamma 2 (PPM, as in the paper). NaN becomes 0.
+struct ToneMapping {
+  float exposure = 0.0f;  ///< stops
+};
 
 /// A transfer curve and its inverse on [0, 1].
 struct TransferCurve {

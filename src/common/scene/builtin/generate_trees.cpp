@@ -2,9 +2,9 @@
 #include <array>
 
 #include "common/math/frame.h"
-#include "common/scene/builtin/generated/generate_forest.h"
-#include "common/scene/builtin/shapes/mesh_shapes.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/generate_forest.h"
+#include "common/scene/builtin/shapes.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 namespace {

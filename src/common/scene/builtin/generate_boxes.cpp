@@ -1,9 +1,9 @@
-#include "common/scene/builtin/generated/generate_boxes.h"
+#include "common/scene/builtin/generate_boxes.h"
 
 #include <array>
 
-#include "common/scene/builtin/shapes/mesh_shapes.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/shapes.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 namespace {

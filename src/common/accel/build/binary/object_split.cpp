@@ -1,9 +1,9 @@
-#include "common/accel/build/split/object_split.h"
-
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+
+#include "common/accel/build/binary/split.h"
 
 namespace pt {
 

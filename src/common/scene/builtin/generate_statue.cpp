@@ -1,11 +1,11 @@
-#include "common/scene/builtin/generated/generate_statue.h"
+#include "common/scene/builtin/generate_statue.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "common/error/error.h"
-#include "common/scene/builtin/shapes/mesh_shapes.h"
-#include "common/scene/builtin/shapes/noise.h"
+#include "common/scene/builtin/noise.h"
+#include "common/scene/builtin/shapes.h"
 
 namespace pt {
 namespace {

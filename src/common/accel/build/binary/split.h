@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "common/accel/build/split/partition_range.h"
+#include "common/accel/build/binary/partition_range.h"
 
 namespace pt {
 

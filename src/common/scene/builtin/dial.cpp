@@ -1,7 +1,7 @@
-#include "common/scene/builtin/generate_dial.h"
+#include "common/scene/builtin/dial.h"
 
 #include "common/scene/builtin/dial_materials.h"
-#include "common/scene/builtin/shapes/mesh_shapes.h"
+#include "common/scene/builtin/shapes.h"
 
 namespace pt {
 namespace {

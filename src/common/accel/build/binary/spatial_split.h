@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "common/accel/build/split/partition_range.h"
+#include "common/accel/build/binary/partition_range.h"
 #include "common/geometry/triangle.h"
 
 namespace pt {

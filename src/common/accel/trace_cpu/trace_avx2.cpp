@@ -1,5 +1,4 @@
 #include "common/accel/trace_cpu/traverse_cwbvh_avx2.h"
-
 #include "common/accel/traverse_triangles.h"
 
 namespace pt {

@@ -1,4 +1,4 @@
-#include "common/scene/builtin/generated/generate_forest.h"
+#include "common/scene/builtin/generate_forest.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -6,8 +6,8 @@
 #include <array>
 
 #include "common/error/error.h"
-#include "common/scene/builtin/shapes/noise.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/noise.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 namespace {

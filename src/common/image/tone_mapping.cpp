@@ -1,4 +1,4 @@
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>

@@ -1,4 +1,4 @@
-#include "common/scene/builtin/shapes/quad_shapes.h"
+#include "common/scene/builtin/quad_shapes.h"
 
 namespace pt {
 

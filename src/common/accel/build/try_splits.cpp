@@ -1,4 +1,4 @@
-#include "common/accel/build/trial_rays.h"
+#include "common/accel/build/try_splits.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

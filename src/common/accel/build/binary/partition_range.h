@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "common/accel/build/split/build_reference.h"
-#include "common/accel/build/split/parallel_partition.h"
+#include "common/accel/build/binary/build_reference.h"
+#include "common/accel/build/binary/parallel.h"
 
 namespace pt {
 

@@ -1,4 +1,4 @@
-#include "common/accel/build/split/spatial_split.h"
+#include "common/accel/build/binary/spatial_split.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-#include "common/accel/build/split/clip_triangle.h"
+#include "common/accel/build/binary/clip_triangle.h"
 
 namespace pt {
 

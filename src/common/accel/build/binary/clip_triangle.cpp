@@ -1,4 +1,4 @@
-#include "common/accel/build/split/clip_triangle.h"
+#include "common/accel/build/binary/clip_triangle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "common/scene/builtin/shapes/mesh_shapes.h"
+#include "common/scene/builtin/shapes.h"
 
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 
 namespace pt {
 namespace {

@@ -1,10 +1,9 @@
-#include "common/scene/builtin/generated/generate_terrain.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "common/error/error.h"
-#include "common/scene/builtin/shapes/noise.h"
+#include "common/scene/builtin/generated_scenes.h"
+#include "common/scene/builtin/noise.h"
 
 namespace pt {
 namespace {

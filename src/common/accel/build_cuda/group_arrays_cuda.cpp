@@ -2,7 +2,7 @@
 
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build_cuda/upload_groups.cuh"
+#include "common/accel/build_cuda/group_arrays.cuh"
 #include "common/cuda/cuda_check.cuh"
 
 namespace pt {

@@ -1,4 +1,4 @@
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
@@ -7,7 +7,7 @@
 
 #include "common/accel/build/binary/build_children.h"
 #include "common/accel/build/binary/invoke_both.h"
-#include "common/accel/build/split/object_split.h"
+#include "common/accel/build/binary/split.h"
 
 namespace pt {
 

@@ -7,7 +7,7 @@
 #include "common/image/codecs/image_codec.h"
 #include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/pnm_header.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {
