@@ -9,7 +9,6 @@
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_io.h"
 #include "common/image/compare/compare.h"
-#include "common/image/compare/difference_image.h"
 #include "common/image/compare/flip.h"
 
 namespace pt {

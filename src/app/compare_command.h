@@ -8,7 +8,7 @@ namespace pt {
 /// Prints the differences of image file `a` from the reference `b`. Returns the exit code: 0, or 1
 /// when the largest absolute difference exceeds `tolerance`. FLIP is the one of 8-bit images where
 /// both are that, else that of radiance (flip.h). Writes the difference to a file where one is
-/// named (difference_image.h). Throws Error.
+/// named (compare.h). Throws Error.
 int compare_command(const std::string& a, const std::string& b, double tolerance,
                     const std::string& difference_file = "");
 

@@ -10,12 +10,11 @@
 #include "app/trace_mesh.h"
 #include "app/trace_scene.h"
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/build/check_builder.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"
 #include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
-#include "common/rays/compare_hits.h"
+#include "common/rays/trace_rays.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 

@@ -8,9 +8,7 @@
 #include <random>
 
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/integer_image.h"
 #include "common/image/codecs/png_codec.h"
-#include "common/image/codecs/png_rows.h"
 
 namespace pt {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/builtin/dial.h"
-#include "common/scene/builtin/dial_materials.h"
 #include "material/each_bsdf.h"
 #include "temp_folder.h"
 

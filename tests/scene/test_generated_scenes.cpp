@@ -9,9 +9,6 @@
 
 #include "common/geometry/triangle.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/builtin/generate_boxes.h"
-#include "common/scene/builtin/generate_forest.h"
-#include "common/scene/builtin/generate_statue.h"
 #include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/builtin/noise.h"
 #include "common/scene/builtin/shapes.h"

@@ -1,4 +1,4 @@
-// Between linear radiance and the integer samples of PNG and PPM files.
+// Between linear radiance and the integer samples of PNG and PPM files; a picture's own exposure.
 #pragma once
 
 #include <string>
@@ -35,5 +35,12 @@ inline int sample_bytes(int max_value) { return max_value > 255 ? 2 : 1; }
 /// Fills image.rgb from as many samples in [0, max_value]; `max_value` in 1..65535.
 /// Throws Error for a larger sample.
 void dequantize(std::string_view samples, int max_value, const TransferCurve& curve, Image& image);
+
+/// Stops by which an image must be multiplied so that the log-average of its luminance becomes
+/// 0.18, a middle grey (Reinhard et al. 2002, 'Photographic Tone Reproduction for Digital Images',
+/// equation 1). Of the pixels that are not black, the brightest hundredth (emitters, fireflies) and
+/// those a thousand times darker than the rest's brightest (nothing there, deep shadow) do not
+/// count. 0 for an image that is black or not finite; within -100 and 100.
+float measure_exposure(const Image& image);
 
 }  // namespace pt

@@ -1,6 +1,6 @@
 #include "common/plan/render_properties.h"
 
-#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/error/memory_error.h"
+#include "common/error/host_memory.h"
 #include "common/render/stop_clock.h"
 
 namespace pt {

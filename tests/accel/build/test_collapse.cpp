@@ -4,12 +4,10 @@
 
 #include "accel/triangle_meshes.h"
 #include "common/accel/build/binary/build_binary.h"
-#include "common/accel/build/binary/build_sbvh.h"
-#include "common/accel/build/binary/clip_triangle.h"
-#include "common/accel/build/binary/merge_leaves.h"
+#include "common/accel/build/binary/build_bvh2.h"
+#include "common/accel/build/binary/split.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/tree_statistics.h"
-#include "common/accel/build/wide/collapse_choices.h"
 #include "common/accel/build/wide/collapse_cwbvh.h"
 
 namespace pt {

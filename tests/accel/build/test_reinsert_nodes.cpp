@@ -8,7 +8,6 @@
 
 #include "accel/triangle_meshes.h"
 #include "common/accel/build/binary/build_binary.h"
-#include "common/accel/build/binary/reinsert_nodes.h"
 #include "common/accel/build/mesh_triangles.h"
 
 namespace pt {

@@ -1,4 +1,4 @@
-// H-PLOC by one thread: the tree that the device's builder makes (build_cuda/hploc.cu), but for
+// H-PLOC by one thread: the tree that the device's builder makes (build_cuda/hierarchy.cu), but for
 // what another rounding of areas decides.
 #pragma once
 
@@ -10,7 +10,6 @@
 
 #include "common/accel/build/binary/build_tree.h"
 #include "common/accel/build/morton_order.h"
-#include "common/accel/build/ploc_pair.h"
 
 namespace pt {
 

@@ -1,6 +1,5 @@
-// Morton codes: points sorted along a space-filling curve, the order in which the device builders
-// see the primitives; and the common prefixes of neighbours, which are the binary radix tree
-// (Karras 2012, 'Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees').
+// The order in which the device builders see the primitives, sorted by Morton codes along a
+// space-filling curve, and the pairs that neighbours form in it.
 #pragma once
 
 #include "common/geometry/bounds.h"
@@ -54,13 +53,44 @@ PT_HD int count_leading_zeros_64(std::uint64_t x) {
                    : 32 + count_leading_zeros(static_cast<std::uint32_t>(x));
 }
 
-/// How long a prefix the sorted neighbours i and i + 1 share, plus 1: 0 is left for the two ends of
-/// the sequence. Equal codes are told apart by their indices, so that runs of them become balanced
-/// trees. At most 64 + 32 + 1.
+/// How long a prefix the sorted neighbours i and i + 1 share, plus 1. The common prefixes are the
+/// binary radix tree (Karras 2012, 'Maximizing Parallelism in the Construction of BVHs, Octrees,
+/// and k-d Trees'). 0 is left for the two ends of the sequence. Equal codes are told apart by their
+/// indices, so that runs of them become balanced trees. At most 64 + 32 + 1.
 PT_HD std::uint8_t neighbour_prefix(std::uint64_t code, std::uint64_t next, std::uint32_t i) {
   const int length =
       code != next ? count_leading_zeros_64(code ^ next) : 64 + count_leading_zeros(i ^ (i + 1));
   return static_cast<std::uint8_t>(length + 1);
+}
+
+// Pairs of neighbours in locally-ordered clustering (Meister and Bittner 2018, 'Parallel
+// Locally-Ordered Clustering for Bounding Volume Hierarchy Construction').
+
+inline constexpr int ploc_radius = 8;  ///< neighbours looked at on either side
+inline constexpr std::uint32_t no_pair = 0xffffffffu;
+
+PT_HD int lowest_bit(int x) { return 31 - count_leading_zeros(static_cast<std::uint32_t>(x & -x)); }
+
+/// A pair's rank, the same seen from both members: the area of the joint box, less the last four
+/// bits, then the distance in the order, then a bit that tells the two pairs apart that a cluster
+/// has at this distance. So every cluster has one best pair, and where all areas are equal (copies
+/// of one triangle) clusters pair up two by two instead of forming a chain.
+/// `lower` is the index of the member that comes first, 1 <= `distance` <= ploc_radius.
+PT_HD std::uint32_t pair_rank(const Bounds& a, const Bounds& b, int lower, int distance) {
+  Bounds both = a;
+  both.grow(b);
+  const Vec3 size = both.max - both.min;
+  const float area = size.x * size.y + size.y * size.z + size.z * size.x;
+  const std::uint32_t bits = float_to_bits(area);  // of NaN, too: large, but never `no_pair`
+  const int side = lower >> lowest_bit(distance) & 1;
+  return (bits & ~15u) | static_cast<std::uint32_t>((distance - 1) << 1 | side);
+}
+
+/// The other member of the pair to which the cluster at `index` belongs.
+PT_HD int pair_partner(std::uint32_t rank, int index) {
+  const int distance = static_cast<int>(rank >> 1 & 7u) + 1;
+  const bool is_lower = (index >> lowest_bit(distance) & 1) == static_cast<int>(rank & 1u);
+  return is_lower ? index + distance : index - distance;
 }
 
 }  // namespace pt

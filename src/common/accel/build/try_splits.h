@@ -1,13 +1,23 @@
-// Rays that are traced through trees over the same triangles to tell which is the best: what the
-// surface area heuristic expects holds for rays that begin outside and meet nothing.
+// Whether spatial splits pay: the overlap that they may save in a tree, and the cost of trial rays
+// in the trees with and without them.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build/build_nodes.h"
 
 namespace pt {
+
+/// By the surface area heuristic, the cost of visiting both of two siblings where one would do,
+/// relative to the cost of the whole tree. A ray that passes what the boxes of two siblings share
+/// visits both; without the other one's overlap it would save the cheaper of them. Summed over all
+/// nodes; more than 1 is possible, since what is saved by an ancestor is saved again below. 0 for a
+/// leaf. Does not depend on the number of threads.
+double overlap_share(const BinaryTree& tree);
+
+// Trial rays: the surface area heuristic holds only for rays that begin outside and hit nothing.
 
 /// A ray and the distance of its hit, or infinity.
 struct TrialRay {

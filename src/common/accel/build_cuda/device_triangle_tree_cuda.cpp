@@ -5,7 +5,6 @@
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/accel/build_cuda/group_arrays.cuh"
-#include "common/accel/build_cuda/tree_arrays.cuh"
 
 namespace pt {
 namespace {

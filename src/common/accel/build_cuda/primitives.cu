@@ -1,4 +1,7 @@
-// Boxes of the primitives, of their centers and of the scene; the triangles' records.
+// Boxes of the primitives, of their centers and of the scene; the triangles' records; Morton codes,
+// their sorting (CUB's radix sort) and the prefixes that neighbours share.
+#include <cub/device/device_radix_sort.cuh>
+
 #include "common/accel/build/binary/binary_tree.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/launch.cuh"
@@ -43,12 +46,8 @@ struct Primitive {
   bool is_usable;
 };
 
-__device__ Primitive load_primitive(const PrimitiveSource& source, std::uint32_t i) {
-  if (source.boxes != nullptr) {
-    const Bounds box = source.boxes[i];
-    return {box, is_usable(box.min) && is_usable(box.max)};
-  }
-  const Triangle t = load_triangle(source.triangles, i);
+__device__ Primitive load_primitive(const TriangleSource& source, std::uint32_t i) {
+  const Triangle t = load_triangle(source, i);
   return {hit_bounds(t.v0, t.v1, t.v2), is_usable(t.v0) && is_usable(t.v1) && is_usable(t.v2)};
 }
 
@@ -62,7 +61,7 @@ __device__ void shrink(std::uint32_t (&bits)[12], int first, const Vec3& low, co
 }
 
 __global__ void __launch_bounds__(block_size)
-    bound_primitives(PrimitiveSource source, std::uint32_t count, BuildNode* primitives,
+    bound_primitives(TriangleSource source, std::uint32_t count, BuildNode* primitives,
                      SharedBounds* bounds) {
   std::uint32_t bits[12];
   PT_UNROLL(12)
@@ -102,7 +101,7 @@ __global__ void __launch_bounds__(block_size)
 
 }  // namespace
 
-void enqueue_bounds(const PrimitiveSource& source, std::uint32_t count, BuildNode* primitives,
+void enqueue_bounds(const TriangleSource& source, std::uint32_t count, BuildNode* primitives,
                     SharedBounds* bounds) {
   check_cuda(cudaMemsetAsync(bounds, 0xff, sizeof(SharedBounds)), "clear bounds");
   bound_primitives<<<resident_blocks(bound_primitives, count), block_size>>>(source, count,
@@ -114,6 +113,69 @@ void enqueue_triangles(const TriangleSource& source, const std::uint32_t* order,
                        std::uint32_t count, Triangle* triangles) {
   write_triangles<<<blocks_for(count), block_size>>>(source, order, count, triangles);
   check_cuda(cudaGetLastError(), "write_triangles");
+}
+
+namespace {
+
+__global__ void __launch_bounds__(block_size)
+    make_codes(const BuildNode* primitives, std::uint32_t count, const SharedBounds* bounds,
+               std::uint64_t* keys, std::uint32_t* values) {
+  const MortonGrid grid = make_morton_grid(read_bounds(*bounds, 0), morton_bits_max);
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  const Bounds box = load_wide(&primitives[i]).bounds();
+  keys[i] = morton_code(grid, box.center());
+  values[i] = i;
+}
+
+__global__ void __launch_bounds__(block_size)
+    find_prefixes(const std::uint64_t* keys, std::uint32_t count, bool by_code,
+                  std::uint8_t* prefixes) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;  // of i - 1 and i
+  if (i > count) return;
+  const bool is_end = i == 0 || i == count;
+  const std::uint64_t code = is_end || !by_code ? 0 : keys[i];
+  const std::uint64_t before = is_end || !by_code ? 0 : keys[i - 1];
+  prefixes[i] = is_end ? std::uint8_t{0} : neighbour_prefix(before, code, i - 1);
+}
+
+std::uint64_t sort(SortBuffers& buffers, std::uint32_t count, void* scratch,
+                   std::size_t scratch_bytes) {
+  cub::DoubleBuffer<std::uint64_t> keys(buffers.keys[0], buffers.keys[1]);
+  cub::DoubleBuffer<std::uint32_t> values(buffers.values[0], buffers.values[1]);
+  check_cuda(cub::DeviceRadixSort::SortPairs(scratch, scratch_bytes, keys, values, count, 0,
+                                             3 * morton_bits_max),
+             "sorting Morton codes");
+  if (scratch != nullptr) {
+    buffers = {{keys.Current(), keys.Alternate()}, {values.Current(), values.Alternate()}};
+  }
+  return scratch_bytes;
+}
+
+}  // namespace
+
+void enqueue_morton(const BuildNode* primitives, std::uint32_t count, const SharedBounds* bounds,
+                    const SortBuffers& buffers) {
+  make_codes<<<blocks_for(count), block_size>>>(primitives, count, bounds, buffers.keys[0],
+                                                buffers.values[0]);
+  check_cuda(cudaGetLastError(), "make_codes");
+}
+
+std::uint64_t sort_scratch_bytes(std::uint32_t count) {
+  SortBuffers none{};
+  return sort(none, count, nullptr, 0);
+}
+
+void enqueue_sort(SortBuffers& buffers, std::uint32_t count, void* scratch,
+                  std::uint64_t scratch_bytes) {
+  sort(buffers, count, scratch, scratch_bytes);
+}
+
+void enqueue_prefixes(const std::uint64_t* keys, std::uint32_t count, bool by_code,
+                      std::uint8_t* prefixes) {
+  find_prefixes<<<blocks_for(std::uint64_t{count} + 1), block_size>>>(keys, count, by_code,
+                                                                      prefixes);
+  check_cuda(cudaGetLastError(), "find_prefixes");
 }
 
 }  // namespace pt::device_build

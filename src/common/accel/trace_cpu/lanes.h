@@ -1,6 +1,6 @@
-// Four or eight floats at once by AVX2, under the names that what is written for any number of
-// lanes uses. Sums and products of them are the compiler's own operators. Functions here, and all
-// that call them, are compiled for such a processor one by one: PT_LANES says for which.
+// Four or eight floats at once by AVX2, and the triangle test for any number of lanes. Code for any
+// number of lanes uses these names; sums and products are the compiler's operators. PT_LANES is the
+// processor for which such functions, and all that call them, are compiled.
 #pragma once
 
 #ifdef __x86_64__
@@ -109,6 +109,31 @@ struct Lanes8 {
   PT_AVX2 static __m128 high(Float a) { return _mm256_extractf128_ps(a, 1); }
   PT_AVX2 static Float join(__m128 a, __m128 b) { return _mm256_set_m128(b, a); }
 };
+
+/// Which lanes hit their triangle at t, t_min < t <= t_max, and that t. `x`, `y` and `depth` are
+/// its projected vertices, `inverse` is TriangleRay's. Each lane executes the operations of
+/// intersect_triangle (geometry/triangle.h) in their order and without contraction, so the hits
+/// have the same bits.
+template <class L>
+PT_LANES inline typename L::Mask meet_projected(const typename L::Float (&x)[3],
+                                                const typename L::Float (&y)[3],
+                                                const typename L::Float (&depth)[3],
+                                                typename L::Float inverse, typename L::Float t_min,
+                                                typename L::Float t_max, typename L::Float& t) {
+  using Float = typename L::Float;
+  // Rounded differences of exact products.
+  const Float u = L::difference_of_products(x[2], y[1], y[2], x[1]);
+  const Float v = L::difference_of_products(x[0], y[2], y[0], x[2]);
+  const Float w = L::difference_of_products(x[1], y[0], y[1], x[0]);
+  const Float zero = L::all(0.0f);
+  const Float least = L::least(u, L::least(v, w)), most = L::most(u, L::most(v, w));
+  const typename L::Mask missed = L::both(L::less(least, zero), L::less(zero, most));
+  t = zero;
+  if (L::bits(missed) == L::every_bit) return L::but_not(missed, missed);
+  const Float sum = L::sum_of_products(u, depth[0], v, depth[1], w, depth[2]);
+  t = sum * (L::all(1.0f) / (u + v + w)) * inverse;
+  return L::but_not(L::both(L::less(t_min, t), L::less_equal(t, t_max)), missed);
+}
 
 }  // namespace pt
 

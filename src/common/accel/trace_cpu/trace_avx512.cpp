@@ -1,7 +1,8 @@
-// Rays through the wide tree by AVX-512: a node's eight boxes as sixteen planes in one vector, and
-// its triangles gathered without a loop.
+// Blocks of rays by AVX-512. In the wide tree a node's eight boxes are sixteen planes in one
+// vector, and its triangles are gathered without a loop.
 #include "common/accel/trace_cpu/lanes_avx512.h"
 // clang-format off: behind it
+#include "common/accel/trace_cpu/traverse_brute_lanes.h"
 #include "common/accel/trace_cpu/traverse_cwbvh_turns.h"
 // clang-format on
 
@@ -109,9 +110,13 @@ const TreeBlock* tree_block_avx512() {
   return has_avx512() ? &TreeBlockBy<TurnsByAvx512>::functions : nullptr;
 }
 
+const BruteBlock* brute_block_avx512() { return has_avx512() ? &brute_block_by<Lanes16> : nullptr; }
+
 #else
 
 const TreeBlock* tree_block_avx512() { return nullptr; }
+
+const BruteBlock* brute_block_avx512() { return nullptr; }
 
 #endif
 

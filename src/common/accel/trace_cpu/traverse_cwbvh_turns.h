@@ -9,8 +9,8 @@
 // PT_LANES says for what functions here are compiled; all of them depend on Isa.
 #pragma once
 
-#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
-#include "common/accel/trace_cpu/triangle_lanes.h"
+#include "common/accel/trace_cpu/lanes.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_cwbvh.h"
 
 #ifdef __x86_64__

@@ -1,10 +1,11 @@
-// OpenEXR's streams, to and from memory.
+// OpenEXR: its streams to and from memory, and a look at a header before OpenEXR reads it.
 #pragma once
 
 #include <Iex.h>
 #include <ImfIO.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -53,5 +54,18 @@ class ExrReader : public Imf::IStream {
   std::string_view bytes_;
   std::uint64_t position_ = 0;
 };
+
+/// What a header announces; OpenEXR would allocate that. The sides are those of the data window,
+/// and may be any numbers.
+struct ExrSize {
+  std::int64_t width = 0, height = 0;
+  std::int64_t tile_width = 0, tile_height = 0;  ///< 0: the file has lines
+  std::size_t bytes_per_pixel = 0;               ///< of all channels, decompressed
+};
+
+/// Throws Error unless `bytes` begin with the header of a flat, single-part OpenEXR file whose
+/// attributes have the sizes of their types and lie within the file, which must be large enough for
+/// the offsets of its tiles (https://openexr.com/en/latest/OpenEXRFileLayout.html).
+ExrSize check_exr_header(std::string_view bytes);
 
 }  // namespace pt

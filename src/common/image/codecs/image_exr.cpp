@@ -16,7 +16,6 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/exr.h"
-#include "common/image/codecs/exr_header.h"
 #include "common/image/codecs/image_codec.h"
 
 namespace pt {

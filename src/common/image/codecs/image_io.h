@@ -33,8 +33,8 @@ void write_image(const std::string& path, const Image& image, const ImageMetadat
 /// pixels a side.
 Image read_image(const std::string& path, ImageMetadata* metadata = nullptr);
 
-/// The same of an .exr, with those of its layers of whole numbers (ImageLayer::numbers) whose names
-/// begin with `prefix`.
+/// Reads an .exr as read_image does, with its layers of whole numbers (ImageLayer::numbers) whose
+/// names begin with `prefix`.
 Image read_image_with_numbers(const std::string& path, const std::string& prefix,
                               ImageMetadata& metadata);
 

@@ -1,7 +1,6 @@
-#include "common/scene/builtin/generate_boxes.h"
-
 #include <array>
 
+#include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/builtin/shapes.h"
 #include "common/scene/builtin/sphere_world.h"
 

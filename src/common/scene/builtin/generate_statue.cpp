@@ -1,9 +1,8 @@
-#include "common/scene/builtin/generate_statue.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "common/error/error.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "common/scene/builtin/noise.h"
 #include "common/scene/builtin/shapes.h"
 

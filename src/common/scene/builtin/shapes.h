@@ -1,10 +1,11 @@
-// Simple shapes, added to a mesh: their triangles point outward.
+// Simple shapes. The triangles of meshes point outward.
 #pragma once
 
 #include <span>
 
 #include "common/geometry/mesh.h"
 #include "common/math/transform.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 
@@ -24,5 +25,9 @@ struct ProfilePoint {
 /// of the profile and the next, facing away from the axis where the profile rises. Where the radius
 /// is zero, half of them have no area and are left out.
 void add_revolution(Mesh& mesh, const Vec3& base, std::span<const ProfilePoint> profile, int sides);
+
+/// A box of six quads whose normals point outward (or inward), turned about the y axis.
+void add_quad_box(SceneData& scene, const Vec3& center, const Vec3& size, float turn_degrees,
+                  std::uint32_t material, bool inward = false);
 
 }  // namespace pt

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "common/geometry/sphere.h"
-#include "common/sampling/philox.h"
+#include "common/sampling/random.h"
 #include "common/sampling/warp.h"
 #include "common/scene/data/material_description.h"
 

@@ -1,7 +1,8 @@
-// Partitioning an array in place on several threads, with a result that does not depend on them.
+// Work shared by threads, with results that do not depend on them.
 #pragma once
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -9,6 +10,17 @@
 #include <vector>
 
 namespace pt {
+
+/// Calls both functions, for the two halves of a subtree: at the same time where these are large
+/// enough to pay for tasks.
+template <class First, class Second>
+void invoke_both(bool in_parallel, const First& first, const Second& second) {
+  if (in_parallel) {
+    tbb::parallel_invoke(first, second);
+  } else {
+    first(), second();
+  }
+}
 
 namespace partition_detail {
 
@@ -44,8 +56,8 @@ class Cursor {
 }  // namespace partition_detail
 
 /// Reorders `values` so that those that `goes_left` says of come first, and returns their number.
-/// Fixed blocks are partitioned on their own; then what lies on the wrong side of the result's
-/// border is exchanged.
+/// Fixed blocks are partitioned on their own; then the elements on the wrong side of the
+/// result's border are exchanged.
 template <class T, class GoesLeft>
 std::size_t parallel_partition(std::span<T> values, GoesLeft goes_left) {
   constexpr std::size_t block = 1 << 14;

@@ -10,8 +10,6 @@
 #include <optional>
 
 #include "common/error/error.h"
-#include "common/error/error_context.h"
-#include "common/error/quoted.h"
 #include "common/image/tone_mapping.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/text.h"
