@@ -22,8 +22,7 @@ HEADER = "common/mutant.h"
 CUDA_SUFFIXES = (".cu", ".cuh", "_cuda.cpp", "_cuda.h")
 # Device code that tests run on emulated blocks (tests/support/emulated_gpu.h).
 EMULATED = ("common/block_wavefront/block_wavefront.cuh", "common/block_wavefront/path_query.cuh",
-            "common/device/cuda/counting_sort.cuh", "common/accel/trace_cuda/reserve_rays.cuh",
-            "common/accel/trace_cuda/persistent_cwbvh.cuh")
+            "common/device/cuda/counting_sort.cuh", "common/accel/trace_cuda/persistent_cwbvh.cuh")
 
 # Host code reads the environment once. Device code has a variable in each translation unit, which
 # the test program sets before its first test.

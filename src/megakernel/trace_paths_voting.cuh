@@ -9,10 +9,10 @@
 // the same order as in the loop, so its radiance is the same, bit for bit.
 #pragma once
 
-#include "common/accel/trace_cuda/choose_turn.cuh"
+#include "common/accel/trace_cuda/choose_next.cuh"
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
 #include "common/block_wavefront/path_query.cuh"
-#include "common/film/path_sample.h"
+#include "common/film/film.h"
 #include "common/transport/path_step.h"
 
 namespace pt {

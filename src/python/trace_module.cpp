@@ -10,7 +10,7 @@
 
 #include "app/commands/trace_mesh.h"
 #include "app/options/option_values.h"
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
 #include "common/rays/ray_file.h"
 #include "common/scene/data/material_description.h"

@@ -6,7 +6,7 @@
 // others as soon as there are a few of them.
 #pragma once
 
-#include "common/accel/trace_cuda/reserve_rays.cuh"
+#include "common/accel/trace_cuda/persistent_cwbvh.cuh"
 #include "common/medium/free_flight.h"
 
 namespace pt {

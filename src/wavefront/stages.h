@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/block_wavefront/path_share.h"
-#include "common/film/path_supply.h"
+#include "common/film/markov_chains.h"
 #include "common/options/options.h"
 #include "common/transport/follow_path.h"
 #include "wavefront/pool/path_pool.h"

@@ -4,7 +4,6 @@
 
 #include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
-#include "common/accel/trace_cuda/reserve_rays.cuh"
 #include "common/device/cuda/stage_stamp.cuh"
 #include "common/transport/mask.h"
 #include "wavefront/wave_buffers.h"

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <numeric>
 
-#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/host_memory.h"
 #include "common/options/option_names.h"

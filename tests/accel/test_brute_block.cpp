@@ -5,7 +5,7 @@
 #include "accel/primitive_scenes.h"
 #include "accel/tree_kinds.h"
 #include "accel/triangle_rays.h"
-#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_triangles.h"
 

@@ -4,7 +4,7 @@
 #include "accel/nasty_rays.h"
 #include "accel/tree_kinds.h"
 #include "accel/triangle_rays.h"
-#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 
 namespace pt {

@@ -9,7 +9,8 @@
 
 #include "accel/tree_kinds.h"
 #include "accel/triangle_rays.h"
-#include "common/accel/build/refit_triangle_tree.h"
+#include "common/accel/build/build_triangle_tree.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/accel/embree/embree_tree.h"
 #include "temp_folder.h"
 
@@ -191,7 +192,7 @@ struct EmbreeCount {
 void expect_embree(const TriangleTreeData& tree, const TriangleTreeData& plain,
                    const EmbreeTree& embree, const Ray& ray, float t_min, EmbreeCount& count) {
   const Hit own = closest_hit(tree, ray, t_min),
-            other = embree.closest_hit(ray, t_min, infinite_distance);
+            other = closest_triangle_embree(embree, ray, t_min, infinite_distance);
   const float tolerance = 1e-5f * std::max(own.t, max_abs(ray.origin));
   if (own.is_miss() == other.is_miss() &&
       (own.is_miss() || std::abs(own.t - other.t) <= tolerance)) {
@@ -252,7 +253,7 @@ TEST_P(TreeTraversal, AgreesWithEmbreeOnInstances) {
   for (int i = 0; i < 2000; ++i) {
     const Ray ray = ray_to(target.anywhere(random), target.on_surface(random));
     const Met own(tree, closest_hit(tree, ray)),
-        other(plain, embree.closest_hit(ray, 0, infinite_distance));
+        other(plain, closest_triangle_embree(embree, ray, 0, infinite_distance));
     hits += own.id != no_primitive;
     different += std::abs(own.t - other.t) > 1e-4f * own.t || own.id != other.id;
     EXPECT_EQ(any_hit(tree, ray, 0, 1e3f), own.t < 1e3f);

@@ -13,7 +13,7 @@
 #include "app/report/csv_file.h"
 #include "common/error/terminal.h"
 #include "common/options/option_names.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "temp_folder.h"
 
 namespace pt {

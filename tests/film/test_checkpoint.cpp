@@ -9,7 +9,6 @@
 #include "common/error/error.h"
 #include "common/film/aov.h"
 #include "common/film/checkpoint.h"
-#include "common/film/checkpoint_header.h"
 #include "common/film/develop.h"
 #include "temp_folder.h"
 

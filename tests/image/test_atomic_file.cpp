@@ -11,7 +11,6 @@
 #include <thread>
 
 #include "common/image/atomic_file.h"
-#include "common/image/temporary_file.h"
 #include "temp_folder.h"
 
 namespace pt {

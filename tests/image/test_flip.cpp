@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "common/image/codecs/image_io.h"
-#include "common/image/compare/difference_image.h"
+#include "common/image/compare/compare.h"
 #include "common/image/compare/flip.h"
 #include "temp_folder.h"
 

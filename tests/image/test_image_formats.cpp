@@ -10,7 +10,7 @@
 #include <cmath>
 
 #include "common/image/codecs/image_io.h"
-#include "common/image/codecs/png_session.h"
+#include "common/image/codecs/png_codec.h"
 #include "temp_folder.h"
 
 namespace pt {

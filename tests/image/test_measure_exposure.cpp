@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/image/measure_exposure.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 namespace {

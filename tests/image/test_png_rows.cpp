@@ -8,9 +8,7 @@
 #include <random>
 
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/integer_image.h"
-#include "common/image/codecs/png_rows.h"
-#include "common/image/codecs/png_session.h"
+#include "common/image/codecs/png_codec.h"
 
 namespace pt {
 namespace {

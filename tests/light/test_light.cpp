@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "common/geometry/primitive_bounds.h"
+#include "common/geometry/primitives.h"
 #include "common/light/area_light.h"
 #include "common/light/sky/sky.h"
 #include "statistics.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/sampling/philox.h"
+#include "common/sampling/random.h"
 #include "cuda_test.h"
 
 namespace pt {

@@ -1,9 +1,7 @@
 // The arithmetic below everything else, against double precision and integer division.
 #include <gtest/gtest.h>
 
-#include "common/math/fast_divide.h"
-#include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/math/transform.h"
 #include "common/sampling/mis.h"
 #include "statistics.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/platform/platform.h"
-#include "common/sampling/philox.h"
+#include "common/sampling/random.h"
 
 namespace pt {
 namespace {

@@ -7,7 +7,7 @@
 #include <atomic>
 #include <map>
 
-#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/render/batches.h"
 #include "common/render/dispatch.h"
 #include "common/render/settings_of.h"

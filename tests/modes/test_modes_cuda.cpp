@@ -7,7 +7,7 @@
 #include <iostream>
 #include <optional>
 
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/device/cuda/create_world.h"
 #include "common/error/error.h"
 #include "common/image/compare/compare.h"

@@ -2,8 +2,6 @@
 #include <map>
 
 #include "common/mpi/channel.h"
-#include "common/mpi/heartbeats.h"
-#include "common/mpi/local_devices.h"
 #include "common/mpi/processors.h"
 #include "gtest/gtest.h"
 

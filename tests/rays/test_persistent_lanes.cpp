@@ -7,7 +7,6 @@
 #include "common/accel/traverse_triangles.h"
 #include "common/accel/trace_cuda/instanced_lane.cuh"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
-#include "common/accel/trace_cuda/reserve_rays.cuh"
 // clang-format on
 #include "accel/instanced_meshes.h"
 #include "common/accel/build/build_triangle_tree.h"

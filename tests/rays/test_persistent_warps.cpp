@@ -6,7 +6,6 @@
 // clang-format off
 #include "emulated_gpu.h"
 #include "common/accel/trace_cuda/persistent_cwbvh.cuh"
-#include "common/accel/trace_cuda/reserve_rays.cuh"
 // clang-format on
 
 namespace pt {

@@ -8,9 +8,8 @@
 #include "accel/instanced_meshes.h"
 #include "accel/terrain_rays.h"
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "shared_file.h"
 #include "temp_folder.h"
 

@@ -3,9 +3,8 @@
 #include "accel/terrain_rays.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
-#include "common/rays/compare_hits.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/builtin/generated/generate_terrain.h"
+#include "common/scene/builtin/generated_scenes.h"
 #include "cuda_test.h"
 
 namespace pt {

@@ -4,8 +4,7 @@
 #include <set>
 
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/builtin/dial_materials.h"
-#include "common/scene/builtin/generate_dial.h"
+#include "common/scene/builtin/dial.h"
 #include "material/each_bsdf.h"
 #include "temp_folder.h"
 

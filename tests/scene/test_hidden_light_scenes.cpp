@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/builtin/hidden_light_scenes.h"
+#include "common/scene/builtin/quad_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "mode_cases.h"
 #include "render_serial.h"

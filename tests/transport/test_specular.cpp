@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/material/material.h"
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "statistics.h"
 
 namespace pt {

@@ -16,7 +16,6 @@
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_io.h"
 #include "common/image/compare/compare.h"
-#include "common/image/compare/difference_image.h"
 #include "common/image/compare/flip.h"
 #include "common/options/option_names.h"
 #include "common/render/batches.h"

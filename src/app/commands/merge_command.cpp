@@ -13,7 +13,7 @@
 #include "common/film/checkpoint.h"
 #include "common/film/develop.h"
 #include "common/image/atomic_file.h"
-#include "common/image/measure_exposure.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/prepare/prepare_filter.h"
 
 namespace pt {

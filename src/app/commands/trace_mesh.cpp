@@ -4,7 +4,6 @@
 
 #include "app/render/make_renderer.h"
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/build/check_builder.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/rays/ray_file.h"

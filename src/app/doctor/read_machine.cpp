@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "app/doctor/doctor.h"
-#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/device/cpu/cpu_renderer.h"
 #include "common/error/host_memory.h"

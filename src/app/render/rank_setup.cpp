@@ -8,7 +8,7 @@
 #include "app/options/option_list.h"
 #include "common/distribute/bytes.h"
 #include "common/error/error.h"
-#include "common/mpi/local_devices.h"
+#include "common/mpi/processors.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
 #include "common/scene/load/files/scene_files.h"

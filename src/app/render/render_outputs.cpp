@@ -8,7 +8,7 @@
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
-#include "common/image/measure_exposure.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 

@@ -3,7 +3,7 @@
 // likewise the triangles of its leaves. Children are visited by (slot XOR ray octant).
 #pragma once
 
-#include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 #include "common/accel/slab_test.h"
 #include "common/accel/triangle_query.h"
 

@@ -1,18 +1,18 @@
 // Traversal of triangles in the structure that a type names.
 #pragma once
 
+#include "common/accel/traverse_brute.h"
+#include "common/accel/traverse_bvh2.h"
 #include "common/accel/traverse_cwbvh.h"
-#include "common/accel/traverse_triangles_brute.h"
-#include "common/accel/traverse_triangles_bvh2.h"
 #include "common/choices/accel.h"
 
 namespace pt {
 
-// Of embree_tree.h, which is for the CPU alone.
+// On the CPU alone (embree_tree.cpp).
 Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 
-// Of traverse_cwbvh_avx2.cpp, likewise; without has_avx2() they must not be called.
+// On the CPU alone, where has_avx2() (trace_avx2.cpp).
 bool has_avx2();
 Hit closest_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);
 bool any_triangle_avx2(const TriangleTree& tree, const Ray& ray, float t_min, float t_max);

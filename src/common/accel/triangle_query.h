@@ -126,9 +126,9 @@ PT_HD bool is_up_to_mask(const Query& query, const Triangle& triangle, float t) 
          t <= query.t_max();
 }
 
-/// The same of what is there of masked triangles. Mask has
+/// A query that ignores the holes of masked triangles. Mask has
 ///   bool hides(const Triangle&, const TriangleHit&, std::uint32_t instance) const
-/// and is asked about them alone. Only offer_slots() heeds it.
+/// and is asked about masked triangles only. Only offer_slots() uses it.
 template <class Query, class Mask>
 class MaskedQuery : public Query {
  public:
@@ -204,7 +204,7 @@ PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::ui
   return false;
 }
 
-/// The same in an instance.
+/// offer_slots() in an instance.
 template <class Query>
 PT_HD bool offer_slots(const TriangleTree& tree, const TriangleRay& ray, std::uint32_t first,
                        std::uint32_t count, const InstanceVisit& visit, std::uint32_t instance,

@@ -24,7 +24,7 @@
 #include "common/block_wavefront/path_query.cuh"
 #include "common/block_wavefront/path_share.h"
 #include "common/device/cuda/counting_sort.cuh"
-#include "common/film/path_sample.h"
+#include "common/film/film.h"
 #include "common/transport/mask.h"
 #include "common/transport/path_step.h"
 #include "common/transport/travel.h"

@@ -5,7 +5,7 @@
 
 namespace pt {
 
-// By their names on the command line. traverse_triangles.h traverses them; tree_nodes.h and
+// By their names on the command line. traverse_triangles.h traverses them; triangle_tree.h and
 // build/build_nodes.h have the nodes of those that are built of a binary tree.
 #define PT_ACCELS(ACCEL) \
   ACCEL(brute)           \

@@ -10,8 +10,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "common/error/memory_error.h"
-
 namespace pt {
 namespace {
 

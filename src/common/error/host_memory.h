@@ -2,10 +2,14 @@
 // memory is overcommitted an allocation succeeds, and the process is killed later.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <string>
+
+#include "common/error/error.h"
 
 namespace pt {
 
@@ -13,10 +17,25 @@ namespace pt {
 /// its own limits (ulimit -v) leave; 2^64 - 1 where nothing is known. `root`: of /proc and /sys.
 std::uint64_t free_host_memory(const std::filesystem::path& root = "/");
 
-/// What a user is told of an exception: of one for want of memory, that.
+/// The message for a user: the exception's own, or that memory is lacking.
 std::string message_of(const std::exception& error);
 
 /// Throws Error when `size_bytes` exceed it; `purpose` is what needs them.
 void check_host_memory(std::uint64_t size_bytes, const std::string& purpose);
+
+/// A device had less memory than it said it had; with less to do the same may succeed.
+class OutOfMemory : public Error {
+ public:
+  using Error::Error;
+};
+
+/// `memory`: "memory" or "device memory"; `purpose`: what needs so many bytes.
+inline Error memory_error(const std::string& memory, const std::string& purpose,
+                          std::uint64_t needed_bytes, std::uint64_t free_bytes) {
+  constexpr double mib = 1024.0 * 1024.0;
+  return Error(fmt::format("not enough {}: {} needs {:.0f} MiB, {:.0f} MiB are free", memory,
+                           purpose, static_cast<double>(needed_bytes) / mib,
+                           static_cast<double>(free_bytes) / mib));
+}
 
 }  // namespace pt

@@ -99,7 +99,7 @@ using Aovs = TypeList<aov::Albedo, aov::ShadingNormal, aov::Normal, aov::Depth, 
                       aov::Samples, aov::Bounces, aov::Rays, aov::Collision, aov::Transmittance>;
 static_assert(Aovs::size <= 32);
 
-/// What an AOV is made of.
+/// The source of an AOV.
 enum class AovSource { mean, number, statistics };
 
 struct AovInfo {

@@ -6,7 +6,7 @@
 
 namespace pt {
 
-/// Of the targets of some paths.
+/// The sum of the targets of some paths.
 struct TargetSum {
   double sum = 0;
   double squares = 0;

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "common/error/error_context.h"
-#include "common/film/checkpoint_header.h"
+#include "common/error/error.h"
 #include "common/film/develop.h"
 
 namespace pt {

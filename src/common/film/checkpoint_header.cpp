@@ -1,5 +1,3 @@
-#include "common/film/checkpoint_header.h"
-
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -8,6 +6,7 @@
 #include <span>
 
 #include "common/error/error.h"
+#include "common/film/checkpoint.h"
 
 namespace pt {
 namespace {
@@ -167,7 +166,7 @@ void add_checksum(const std::vector<T>& values, std::uint32_t& sum) {
   sum = static_cast<std::uint32_t>(crc32_z(sum, bytes, values.size() * sizeof(T)));
 }
 
-/// Of the names and values of all attributes but itself, each with the zero byte that ends it.
+/// The CRC-32 of the names and values of all attributes but itself, each with its final zero byte.
 std::uint32_t header_checksum(const ImageMetadata& header) {
   uLong sum = 0;
   for (const auto& [name, value] : header) {

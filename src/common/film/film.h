@@ -2,7 +2,7 @@
 // own element of the batch's sample buffer, and a pixel adds its samples one after the other.
 #pragma once
 
-#include "common/math/fast_divide.h"
+#include "common/math/functions.h"
 #include "common/sampling/random.h"
 #include "common/transport/path.h"
 
@@ -85,7 +85,7 @@ struct FilmPixel {
   double sum[3] = {0, 0, 0};
   std::uint64_t samples = 0;
 
-  /// What makes a sum the mean; 0 without samples.
+  /// The factor from a sum to the mean; 0 without samples.
   PT_HD double to_mean() const { return samples == 0 ? 0.0 : 1.0 / static_cast<double>(samples); }
 };
 
@@ -121,7 +121,7 @@ PT_HD bool count_sample(const Sample& sample, PathTally& tally, Count&& count) {
   return finite;
 }
 
-/// What a film sums of a pixel beyond its radiance, where an option needs it.
+/// The sums of a pixel beyond its radiance, where an option needs them.
 struct PixelMoments {
   double luminance_squares = 0;  ///< of the finite samples
   std::uint64_t rays = 0;        ///< of all samples, as are the shadow rays
@@ -174,5 +174,17 @@ PT_HD void accumulate_pixel(Sum sum, const SampleBuffer& buffer, std::uint32_t p
   }
   sum.store();
 }
+
+/// The sink (transport/path_step.h) of a path that is about to end: puts its radiance into its
+/// sample.
+struct PathSample {
+  const SampleBuffer& samples;
+  Color radiance;  ///< of the path so far
+
+  PT_HD void emit(const PathState&, const Color& emitted) {
+    radiance = add_rounded(radiance, emitted);
+  }
+  PT_HD void end(const PathState& path) { samples.store(path, radiance); }
+};
 
 }  // namespace pt

@@ -22,7 +22,7 @@ void for_each_row(const Window& image, const Window& part, std::uint64_t planes,
   }
 }
 
-/// Of an array of FilmSums, as FilmPlan says.
+/// The lengths of the arrays of a FilmSums, as FilmPlan says.
 struct PlaneCounts {
   std::uint64_t pixels, moments, features;
 

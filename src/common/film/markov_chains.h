@@ -217,4 +217,20 @@ PT_HD bool continue_chain(const ChainRun& run, Sample* samples, std::uint32_t ch
   return run.arrays.proposals[chain].iteration <= run.last;
 }
 
+/// Which path a mode traces under an index of its batch. An index is one path, or a chain of them
+/// where a path depends on what the one before it found; a mode does not know what for.
+struct PathSupply {
+  const ChainRun* chains = nullptr;  ///< in the device's memory; null: an index is one path
+
+  PT_HD bool has_chains() const { return chains != nullptr; }
+
+  /// With chains: takes the result of the index's last path, if there is one, and returns
+  /// whether a path is to be traced. `samples`: [index], of no rays before the first path.
+  PT_HD bool next(Sample* samples, std::uint32_t index) const {
+    return continue_chain(*chains, samples, index);
+  }
+
+  friend bool operator==(const PathSupply&, const PathSupply&) = default;
+};
+
 }  // namespace pt

@@ -18,7 +18,7 @@ std::array<double, 2> sign_weights(const PixelFilter& filter, std::uint64_t posi
 /// Reads a film's sums pixel by pixel.
 class PixelReader {
  public:
-  /// Of `pixel_count` pixels; `sums` may be larger than that.
+  /// Reads `pixel_count` pixels; `sums` may be larger than that.
   PixelReader(const FilmSums& sums, const FilmPlan& plan, const PixelFilter& filter,
               std::uint64_t pixel_count)
       : sums_(sums), plan_(plan), filter_(filter), count_(pixel_count) {}
@@ -29,7 +29,7 @@ class PixelReader {
   /// is that of a mean, s^2 / n with s^2 = (sum y^2 - (sum y)^2 / n) / (n - 1), added up over the
   /// signs with their weights squared; 0 where there are fewer than two samples.
   PixelStatistics statistics(std::uint64_t pixel, std::uint64_t samples) const;
-  /// Of a plane of features (1: the first channel), as `value` is of radiance.
+  /// The mean of a plane of features (1: the first channel), as `value` is that of radiance.
   double feature(std::uint64_t pixel, std::uint32_t plane) const;
   /// An AOV that is an index: that of the pixel's first sample.
   std::uint32_t number(std::uint64_t pixel, std::uint32_t plane) const;

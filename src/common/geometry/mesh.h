@@ -1,8 +1,10 @@
-// A triangle mesh in host memory, as loaders and generators make it.
+// A triangle mesh in host memory, as loaders and generators make it, and its instances; what
+// shading needs of a triangle.
 #pragma once
 
 #include <vector>
 
+#include "common/math/transform.h"
 #include "common/math/vec.h"
 
 namespace pt {
@@ -24,6 +26,30 @@ struct Mesh {
   bool masked = false;      ///< set from the material: see TriangleAttributes
   /// Linear, by vertex and by triangle, or empty: what loaders make a texture of (vertex_colors.h).
   std::vector<Color> colors = {}, face_colors = {};
+};
+
+/// The attributes of a triangle's corners, side by side: four 16-byte loads from two sectors of
+/// memory. Vertices that triangles share are repeated. Their own arrays would be half as large, but
+/// a hit would read 15 words from seven addresses, and their indices before that.
+struct alignas(64) CornerAttributes {
+  Vec3 normal[3] = {Vec3(0.0f), Vec3(0.0f), Vec3(0.0f)};  ///< unit length, or the mesh has none
+  Vec2 uv[3] = {Vec2(0.0f), Vec2(0.0f), Vec2(0.0f)};
+  float padding = 0.0f;
+
+  PT_HD Vec3 normal_at(const Vec3& b) const {
+    return weighted_sum(b, normal[0], normal[1], normal[2]);
+  }
+  PT_HD Vec2 uv_at(const Vec3& b) const {
+    const Vec3 at = weighted_sum(b, Vec3(uv[0], 0.0f), Vec3(uv[1], 0.0f), Vec3(uv[2], 0.0f));
+    return {at.x, at.y};
+  }
+};
+static_assert(sizeof(CornerAttributes) == 64);
+
+/// A group of meshes placed in the world.
+struct Instance {
+  std::uint32_t group = 0;  ///< Mesh::group, not 0
+  Affine to_world;
 };
 
 }  // namespace pt

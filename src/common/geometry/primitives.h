@@ -1,11 +1,19 @@
-// The geometry of a scene as arrays, and one primitive's intersection by number.
+// The spheres and quads of a scene as arrays; one primitive's intersection by number; boxes.
 #pragma once
 
-#include "common/geometry/half_spheres.h"
+#include "common/geometry/bounds.h"
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
+#include "common/platform/platform.h"
 
 namespace pt {
+
+/// Four spheres in half precision, two in each word (32 bytes), for the first pass of brute force
+/// on CUDA.
+struct alignas(16) HalfSpheres {
+  static constexpr std::uint32_t count = 4;
+  std::uint32_t x[2], y[2], z[2], radius_squared[2];
+};
 
 /// Numbered spheres first: primitive i is spheres[i] or quads[i - sphere_count].
 struct Primitives {
@@ -47,6 +55,19 @@ PT_HD SurfacePoint surface_point(const Primitives& primitives, const Ray& ray, c
   return primitives.is_sphere(hit.primitive)
              ? sphere_surface(load_wide(&primitives.spheres[hit.primitive]), ray, hit.t)
              : quad_surface(primitives.quad(hit.primitive), ray, hit.t);
+}
+
+PT_HD Bounds sphere_bounds(const Sphere& sphere) {
+  return {sphere.center - sphere.radius(), sphere.center + sphere.radius()};
+}
+
+PT_HD Bounds quad_bounds(const Quad& quad) {
+  Bounds bounds;
+  for (int i = 0; i < 4; ++i) {
+    bounds.grow(quad.corner + static_cast<float>(i & 1) * quad.edge_a +
+                static_cast<float>(i >> 1) * quad.edge_b);
+  }
+  return bounds;
 }
 
 }  // namespace pt

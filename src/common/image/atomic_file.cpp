@@ -16,7 +16,6 @@
 #include <system_error>
 
 #include "common/error/error.h"
-#include "common/image/temporary_file.h"
 
 namespace pt {
 namespace {

@@ -1,13 +1,14 @@
-// An image in memory: linear RGB, row by row from the top.
+// An image, in the host's memory or in a GPU's: linear RGB, row by row from the top.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pt {
 
-/// Further values of an image's pixels: a layer of an EXR. Of the two arrays it has one.
+/// Further values of an image's pixels: a layer of an EXR. One of the two arrays is empty.
 struct ImageLayer {
   std::string name;
   std::string channels;                ///< a letter each
@@ -35,6 +36,28 @@ struct Image {
   const float* pixel(int x, int y) const {
     return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x);
   }
+};
+
+/// An image whose pixels are in the memory of the GPU that has rendered them. Owns its memory,
+/// which no later render touches.
+class DeviceImage {
+ public:
+  virtual ~DeviceImage() = default;
+
+  /// Size, place and layers; no rgb.
+  const Image& frame() const { return frame_; }
+  /// Image::rgb in the device's memory, complete.
+  virtual float* rgb() const = 0;
+  /// As CUDA numbers it.
+  virtual int device() const = 0;
+  /// Copies rgb() to the host's memory. Throws Error.
+  virtual std::vector<float> download() const = 0;
+
+ protected:
+  explicit DeviceImage(Image frame) : frame_(std::move(frame)) {}
+
+ private:
+  Image frame_;
 };
 
 }  // namespace pt

@@ -1,5 +1,3 @@
-#include "common/image/temporary_file.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
@@ -31,8 +29,8 @@ void note_unfinished(const fs::path& path) {
   is_unfinished = true;
 }
 
-/// The same for all writers of a file. The machine's name keeps away from those on others, whose
-/// locks not every network file system shows.
+/// The same for all writers of a file on this machine: not every network file system shows the
+/// locks of writers on others.
 std::string prefix_of(const fs::path& target) {
   char host[256] = {};
   ::gethostname(host, sizeof host - 1);

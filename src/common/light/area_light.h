@@ -3,7 +3,7 @@
 
 #include "common/geometry/primitives.h"
 #include "common/light/light_sample.h"
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/sampling/warp.h"
 
 namespace pt {

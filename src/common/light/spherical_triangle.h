@@ -3,7 +3,7 @@
 // Sampling for Polygonal Lights'), which needs no arc functions but one.
 #pragma once
 
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/math/vec.h"
 
 namespace pt {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "common/light/light_bounds.h"
-#include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
+#include "common/math/transform.h"
 
 namespace pt {
 

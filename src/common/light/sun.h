@@ -2,8 +2,8 @@
 #pragma once
 
 #include "common/light/light_sample.h"
-#include "common/math/frame.h"
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
+#include "common/math/transform.h"
 
 namespace pt {
 

@@ -3,8 +3,8 @@
 // (Heitz 2014, 'Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs').
 #pragma once
 
+#include "common/math/functions.h"
 #include "common/math/vec.h"
-#include "common/sampling/erf.h"
 #include "common/sampling/warp.h"
 
 namespace pt {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "common/material/two_lobes.h"
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 
 namespace pt {
 

@@ -80,7 +80,7 @@ PT_HD Vec3 cross_rounded(const Vec3& a, const Vec3& b) {
   return {minus(a.y, b.z, a.z, b.y), minus(a.z, b.x, a.x, b.z), minus(a.x, b.y, a.y, b.x)};
 }
 
-/// Of the three channels.
+/// The mean of the three channels.
 PT_HD float mean(const Color& c) { return multiply_rounded(c.x + c.y + c.z, 1.0f / 3.0f); }
 
 PT_HD bool is_black(const Color& c) { return c.x == 0.0f && c.y == 0.0f && c.z == 0.0f; }

@@ -5,7 +5,6 @@
 #include "common/medium/equiangular.h"
 #include "common/medium/majorant_walk.h"
 #include "common/medium/medium.h"
-#include "common/sampling/hash.h"
 #include "common/sampling/random.h"
 
 namespace pt {

@@ -9,7 +9,7 @@
 //   float sample_cosine(float u) const         of that density; u uniform in [0, 1)
 #pragma once
 
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/platform/type_list.h"
 #include "common/sampling/warp.h"
 

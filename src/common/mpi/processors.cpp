@@ -51,4 +51,13 @@ int idle_processors(std::span<const ProcessorSet> ranks, const ProcessorSet& fre
   return used.none() ? 0 : static_cast<int>((free & ~used).count());
 }
 
+std::vector<int> local_devices(int local_rank, int local_ranks, int gpu_count) {
+  if (gpu_count <= 0) return {};
+  if (local_ranks >= gpu_count) return {local_rank % gpu_count};
+  std::vector<int> ordinals;
+  const int end = (local_rank + 1) * gpu_count / local_ranks;
+  for (int i = local_rank * gpu_count / local_ranks; i < end; ++i) ordinals.push_back(i);
+  return ordinals;
+}
+
 }  // namespace pt

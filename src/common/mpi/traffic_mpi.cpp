@@ -1,5 +1,3 @@
-#include "common/mpi/traffic_mpi.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "common/error/error.h"
+#include "common/mpi/channel_mpi.h"
 #include "common/mpi/processors.h"
 
 namespace pt {

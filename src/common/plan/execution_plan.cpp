@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "common/accel/trace_cpu/traverse_brute_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/material/material.h"
 #include "common/options/option_names.h"

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/kernels.h"

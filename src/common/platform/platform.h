@@ -125,7 +125,7 @@ PT_HD float inverse_sqrt(float x) {
 #endif
 }
 
-/// The same for x >= 2^-126: three instructions fewer.
+/// inverse_sqrt for x >= 2^-126: three instructions fewer.
 PT_HD float inverse_sqrt_of_normal(float x) {
 #ifdef __CUDA_ARCH__
   float result;
@@ -146,8 +146,7 @@ PT_HD float fast_sqrt(float x) {
 #endif
 }
 
-/// c ? a : b without a branch: both are computed, which the compiler would not do for one that is
-/// dear.
+/// c ? a : b without a branch: both are computed, even if one is expensive.
 PT_HD float select(bool c, float a, float b) {
 #ifdef __CUDA_ARCH__
   float result;

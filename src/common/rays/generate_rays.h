@@ -16,10 +16,10 @@ enum class RayKind {
 /// Bytes that a file of such rays has at most: fewer where paths end before.
 std::uint64_t ray_bytes_max(RayKind kind, int size);
 
-/// Of a prepared scene, by pixels in Morton order of an image of `size` x `size`, a power of two.
-/// Paths that end before are left out. Instead, more paths are followed through each pixel:
-/// for diffuse rays until there are size^2, or the whole image finds none; for RayKind::bounce 64
-/// of them. `bounces` is for the latter. Throws Error where there is no such ray.
+/// Rays in a prepared scene, by pixels in Morton order of an image of `size` x `size`, a power of
+/// two. Paths that end before are left out, and more paths are followed through each pixel instead:
+/// for diffuse rays until there are size^2, or the whole image adds none; for RayKind::bounce,
+/// which alone has `bounces`, 64 of them. Throws Error where there is no such ray.
 RaySet generate_rays(RayKind kind, const SceneData& scene, int size, int bounces = 0);
 
 }  // namespace pt

@@ -26,7 +26,7 @@ struct HitSet {
 /// another kind, type or size than its header says, or holds what is not a mesh (positions that are
 /// not finite, indices of no vertex) or a ray (not finite, no direction, t_min < 0).
 Mesh read_trace_mesh(const std::string& path);
-/// What read_trace_mesh and read_rays check, of what is in memory.
+/// The checks of read_trace_mesh and read_rays, for data in memory.
 void check_trace_mesh(const Mesh& mesh, const std::string& name);
 void check_rays(const RaySet& rays, const std::string& name);
 RaySet read_rays(const std::string& path);

@@ -1,9 +1,9 @@
 // Launches the kernels that trace arrays of rays. Host-facing.
 #pragma once
 
-#include "common/accel/ray_arrays.h"
+#include "common/accel/ray_record.h"
 #include "common/accel/triangle_tree.h"
-#include "common/rays/trace_variant.h"
+#include "common/rays/trace_rays.h"
 
 namespace pt {
 

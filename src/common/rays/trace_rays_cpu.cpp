@@ -1,11 +1,13 @@
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <chrono>
+#include <cmath>
 
+#include "common/accel/traverse_brute.h"
+#include "common/accel/traverse_bvh2.h"
 #include "common/accel/traverse_cwbvh.h"
-#include "common/accel/traverse_triangles_brute.h"
-#include "common/accel/traverse_triangles_bvh2.h"
 #include "common/rays/trace_rays.h"
 
 namespace pt {
@@ -62,6 +64,40 @@ TraceResult trace_rays_cpu(const TriangleTreeData& tree, const RaySet& set, cons
     });
     const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - begin;
     if (run >= 0) result.times_ms.push_back(time.count());
+  }
+  return result;
+}
+
+namespace {
+
+std::string describe(const HitRecord& hit) {
+  if (hit.t < 0.0f) return "a miss";
+  if (hit.primitive == no_primitive) return "a hit";
+  return fmt::format("triangle {} at {}", hit.primitive, hit.t);
+}
+
+}  // namespace
+
+float position_resolution(const std::vector<RayRecord>& rays) {
+  float largest = 0.0f;
+  for (const RayRecord& ray : rays) largest = std::fmax(largest, max_abs(ray.origin));
+  return 4.0f * half_ulp * largest;
+}
+
+HitComparison compare_hits(const std::vector<HitRecord>& hits,
+                           const std::vector<HitRecord>& reference, float resolution) {
+  HitComparison result;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    const HitRecord &a = hits[i], &b = reference[i];
+    const bool hit = !(a.t < 0.0f), expected = !(b.t < 0.0f);
+    const bool same_t = std::fabs(a.t - b.t) <= hit_tolerance * std::fabs(b.t) + resolution;
+    if (hit == expected && (same_t || !hit)) {
+      ++(a.primitive == b.primitive ? result.same : result.ties);
+      continue;
+    }
+    ++(hit && expected ? result.other : hit ? result.invented : result.missed);
+    if (result.first.empty())
+      result.first = fmt::format("ray {}: {}, expected {}", i, describe(a), describe(b));
   }
   return result;
 }

@@ -2,7 +2,6 @@
 
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/cuda/cuda_check.cuh"
-#include "common/cuda/cuda_event.cuh"
 #include "common/cuda/cuda_memory.cuh"
 #include "common/error/error.h"
 #include "common/rays/trace_kernels.cuh"

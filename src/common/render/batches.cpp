@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error/memory_error.h"
+#include "common/error/host_memory.h"
 #include "common/platform/steady_seconds.h"
 
 namespace pt {

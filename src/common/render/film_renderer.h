@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/film/film_data.h"
-#include "common/film/path_supply.h"
+#include "common/film/markov_chains.h"
 #include "common/plan/execution_plan.h"
 #include "common/render/batches.h"
 #include "common/render/chain_layout.h"

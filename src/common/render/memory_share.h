@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "common/error/memory_error.h"
+#include "common/error/host_memory.h"
 
 namespace pt {
 

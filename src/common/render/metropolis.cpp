@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error/memory_error.h"
+#include "common/error/host_memory.h"
 #include "common/options/option_names.h"
 #include "common/render/batches.h"
 

@@ -7,9 +7,10 @@
 
 #include "common/error/error.h"
 #include "common/film/film_data.h"
-#include "common/image/device_image.h"
-#include "common/plan/execution_plan.h"
+#include "common/image/image.h"
+#include "common/options/options.h"
 #include "common/options/stats.h"
+#include "common/plan/execution_plan.h"
 #include "common/scene/data/camera.h"
 
 namespace pt {

@@ -33,7 +33,7 @@ PT_HD AliasSample resolve_alias(const AliasEntry* entries, std::uint32_t index, 
   return {own ? index : entry.alias, fminf(rest, one_minus_ulp)};
 }
 
-/// Of at most a few thousand entries, as one float of 24 random bits has to name the entry and the
+/// For at most a few thousand entries, as one float of 24 random bits has to name the entry and the
 /// position in it.
 PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, float u) {
   const float scaled = u * static_cast<float>(count);
@@ -43,7 +43,7 @@ PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, f
                        fminf(fmaxf(scaled - static_cast<float>(index), 0.0f), one_minus_ulp));
 }
 
-/// Of up to 2^32 - 1 entries, from the 48 random bits of two floats that are multiples of 2^-24 in
+/// For up to 2^32 - 1 entries, from the 48 random bits of two floats that are multiples of 2^-24 in
 /// [0, 1); the position in the entry keeps 24 of them.
 PT_HD AliasSample sample_alias(const AliasEntry* entries, std::uint32_t count, float u0, float u1) {
   const auto high = static_cast<std::uint64_t>(u0 * 16777216.0f) * count;

@@ -2,12 +2,123 @@
 #pragma once
 
 #include "common/choices/choices.h"
+#include "common/platform/platform.h"
 #include "common/sampling/chains.h"
 #include "common/sampling/random.h"
-#include "common/sampling/sobol.h"
-#include "common/sampling/stratified.h"
+#include "common/sampling/warp.h"
 
 namespace pt {
+
+/// A bijection in which every bit of the result depends on all bits of x (two rounds of
+/// multiplication and shift; constants by Wellons' search for low bias).
+PT_HD std::uint32_t remix(std::uint32_t x) {
+  x ^= x >> 16;
+  x *= 0x7feb352du;
+  x ^= x >> 15;
+  x *= 0x846ca68bu;
+  return x ^ x >> 16;
+}
+
+// Sobol points: the sequence's first two dimensions with hash-based Owen scrambling and a shuffled
+// order (Burley 2020, 'Practical hash-based Owen scrambling', JCGT 9(4)). Each pair of numbers of
+// each block is a sequence of its own over a pixel's samples: padding, as pbrt-v4's
+// PaddedSobolSampler (section 8.6.3) does it.
+
+/// A permutation in which each bit changes by those below it alone (Laine and Karras 2011, with
+/// Vegdahl's constants of 2021).
+PT_HD std::uint32_t permute_upwards(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= seed >> 16 | 1u;
+  x ^= x * 0x05526c56u;
+  return x ^ x * 0x53a22864u;
+}
+
+/// The second generator matrix is Pascal's triangle modulo 2: bit i of the result is the sum of all
+/// bits j of the index in whose binary number i's is contained (Lucas), five passes.
+PT_HD std::uint32_t pascal_sum(std::uint32_t index) {
+  index ^= index >> 1 & 0x55555555u;
+  index ^= index >> 2 & 0x33333333u;
+  index ^= index >> 4 & 0x0f0f0f0fu;
+  index ^= index >> 8 & 0x00ff00ffu;
+  return index ^ (index >> 16 & 0x0000ffffu);
+}
+
+/// A scrambled pair of the sequence that `seeds` name: a shuffle and two scrambles.
+PT_HD Vec2 sobol_pair(std::uint32_t sample, std::uint32_t shuffle, std::uint32_t scramble0,
+                      std::uint32_t scramble1) {
+  // Scrambling the index, too, permutes aligned runs of 2^m points and keeps each one whole.
+  const std::uint32_t index = reverse_bits(permute_upwards(reverse_bits(sample), shuffle));
+  const std::uint32_t x = reverse_bits(permute_upwards(index, scramble0));
+  const std::uint32_t y = reverse_bits(permute_upwards(pascal_sum(index), scramble1));
+  return {to_unit_float(x), to_unit_float(y)};
+}
+
+/// The four numbers of a block for the sample of this number; `seeds`: 128 random bits that are the
+/// same for all samples of a pixel.
+PT_HD Vec4 sobol_block(std::uint32_t sample, const Uint4& seeds) {
+  const Vec2 a = sobol_pair(sample, seeds.x, seeds.y, seeds.z);
+  const Vec2 b = sobol_pair(sample, seeds.w, remix(seeds.y), remix(seeds.z));
+  return {a.x, a.y, b.x, b.y};
+}
+
+// Stratified numbers: a pixel's samples take the cells of a grid in random order, one each, a grid
+// for every pair of numbers of a block (pbrt-v4, section 8.5).
+
+/// The cells of a grid for `count` samples, as square as can be; what is left over is not
+/// stratified.
+struct StrataGrid {
+  std::uint32_t columns = 1, rows = 1;
+
+  PT_HD std::uint32_t cells() const { return columns * rows; }
+};
+
+inline StrataGrid make_strata_grid(std::uint32_t count) {
+  std::uint32_t columns = 1;
+  while (std::uint64_t{columns + 1} * (columns + 1) <= count) ++columns;
+  return {columns, count / columns};
+}
+
+/// A random permutation of [0, count), for each seed another: bijections of the next power of two
+/// are applied until the value is below count (cycle walking, as Kensler 2013, 'Correlated
+/// multi-jittered sampling').
+PT_HD std::uint32_t permute(std::uint32_t i, std::uint32_t count, std::uint32_t seed) {
+  std::uint32_t mask = count - 1;
+  mask |= mask >> 1, mask |= mask >> 2, mask |= mask >> 4, mask |= mask >> 8, mask |= mask >> 16;
+  const std::uint32_t shift = mask > 0x3fu ? 4u : mask > 7u ? 2u : 1u;
+  do {
+    PT_UNROLL(1)
+    for (std::uint32_t round = 0; round < 4; ++round) {  // fewer leave pairs of small grids uneven
+      const std::uint32_t key = remix(seed + round * 0x9e3779b9u);
+      i = (i ^ key) * (key >> 8 | 1u) & mask;
+      i ^= i >> shift;
+      i = (i + (key >> 20)) * (key >> 12 | 1u) & mask;
+      i ^= i >> 1;
+    }
+  } while (i >= count);
+  return i;
+}
+
+/// `u` in its cell. `sample` below the grid's number of cells.
+PT_HD Vec2 stratify(const Vec2& u, const StrataGrid& grid, std::uint32_t sample,
+                    std::uint32_t seed) {
+  const std::uint32_t cell = permute(sample, grid.cells(), seed);
+  const std::uint32_t row = cell / grid.columns, column = cell - row * grid.columns;
+  return {
+      fminf((static_cast<float>(column) + u.x) / static_cast<float>(grid.columns), one_minus_ulp),
+      fminf((static_cast<float>(row) + u.y) / static_cast<float>(grid.rows), one_minus_ulp)};
+}
+
+/// The four numbers of a block: `u`, independent for each sample, in the cells that `seeds` (the
+/// same for all samples of a pixel) give this sample. Samples after the last cell begin a new grid.
+PT_HD Vec4 stratified_block(const Vec4& u, const StrataGrid& grid, std::uint32_t count,
+                            std::uint32_t sample, const Uint4& seeds) {
+  const std::uint32_t round = sample / count, index = sample - round * count;
+  if (index >= grid.cells()) return u;
+  const Vec2 a = stratify({u.x, u.y}, grid, index, seeds.x + round * seeds.z);
+  const Vec2 b = stratify({u.z, u.w}, grid, index, seeds.y + round * seeds.w);
+  return {a.x, a.y, b.x, b.y};
+}
 
 struct Sampler {
   SamplerKind kind = SamplerKind::independent;

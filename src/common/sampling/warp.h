@@ -1,7 +1,7 @@
 // From uniform numbers to directions: warps with known densities (pbrt-v4, appendix A.5).
 #pragma once
 
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/math/vec.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 // of its own over their camera rays.
 #pragma once
 
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/sampling/random.h"
 #include "common/transport/generate_camera_path.h"
 #include "common/transport/shade_surface.h"

@@ -1,7 +1,6 @@
 #include "common/transport/intersect_block.h"
 
-#include "common/accel/trace_cpu/traverse_brute_block.h"
-#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/transport/intersect.h"
 
 namespace pt {

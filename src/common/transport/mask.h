@@ -7,7 +7,6 @@
 #pragma once
 
 #include "common/accel/triangle_query.h"
-#include "common/sampling/hash.h"
 #include "common/sampling/random.h"
 #include "common/scene/data/scene.h"
 #include "common/texture/sample_texture.h"

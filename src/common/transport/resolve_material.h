@@ -11,7 +11,7 @@
 // terminator problem').
 #pragma once
 
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/texture/texture_gradient.h"
 #include "common/transport/surface.h"
 

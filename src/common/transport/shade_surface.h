@@ -2,7 +2,7 @@
 // path on (pbrt-v4, section 13.2.2: path tracing with multiple importance sampling).
 #pragma once
 
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/sampling/mis.h"
 #include "common/transport/intersect.h"
 #include "common/transport/path.h"

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "common/cuda/cuda_event.cuh"
+#include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
 #include "wavefront/compaction/compaction_cuda.h"
 #include "wavefront/measure/measure_compaction.h"

@@ -3,11 +3,11 @@
 
 #include "accel/tree_kinds.h"
 #include "accel/triangle_rays.h"
-#include "common/accel/build/binary/build_sah.h"
-#include "common/accel/build/binary/overlap_share.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/tree_summary.h"
-#include "common/scene/builtin/generated/generate_boxes.h"
+#include "common/accel/build/tree_statistics.h"
+#include "common/accel/build/try_splits.h"
+#include "common/scene/builtin/generated_scenes.h"
 
 namespace pt {
 namespace {

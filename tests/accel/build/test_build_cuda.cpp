@@ -129,55 +129,14 @@ TEST_F(CudaBuild, MeshesGiveTheRecordsOfTheirTriangles) {
   check_triangles(tree, expected);
 }
 
-TEST_F(CudaBuild, TreesOverBoxesAndWithOffsets) {
+TEST_F(CudaBuild, TreesWithOffsets) {
   const std::vector<Triangle> triangles = make_soup(700, 10, 3);
-  std::vector<Bounds> boxes, moved;
-  for (const Triangle& t : triangles) {
-    boxes.push_back(triangle_bounds(t.v0, t.v1, t.v2));
-    moved.push_back({2.0f * boxes.back().min, 2.0f * boxes.back().max + 1.0f});
-  }
-  const DeviceArray<Bounds> device(boxes), device_moved(moved);
   for (DeviceBuildOptions options : {binary_options(), DeviceBuildOptions{}}) {
     options.costs.leaf_max = 1;
     options.first_node = 1000, options.first_slot = 5000;
-    DeviceTree tree = builder_->build(device.data(), 700, options);
-    EXPECT_EQ(tree.triangles, nullptr);
-    EXPECT_EQ(builder_->measure(tree).leaves, 700u) << "one box per leaf";
-    const auto check = [&](const std::vector<Bounds>& expected) {
-      const HostTree host = download(tree, options);
-      std::vector<Bounds> by_slot;
-      for (const std::uint32_t i : host.order) by_slot.push_back(expected.at(i));
-      check_nodes(host, by_slot);
-    };
-    check(boxes);
-    builder_->refit(tree, device_moved.data(), options);
-    check(moved);
-  }
-}
-
-TEST_F(CudaBuild, RefittedTreesHoldTheMovedTriangles) {
-  for (const std::uint32_t count : {1u, 2u, 40u, 30'000u}) {
-    const std::vector<Triangle> triangles = make_soup(count, 10, 1);
-    std::vector<Triangle> moved = triangles;
-    for (Triangle& t : moved)
-      for (Vec3* v : {&t.v0, &t.v1, &t.v2}) *v = Vec3(v->y, 2 * v->x, v->z + 0.1f * v->x * v->y);
-    for (const DeviceBuildOptions& options : all_options()) {
-      SCOPED_TRACE(testing::Message() << count << " triangles, " << name_of(options));
-      DeviceTree tree = build(triangles, options);
-      const TreeQuality before = builder_->measure(tree);
-      source_ = std::make_unique<DeviceArray<Triangle>>(moved);
-      builder_->refit(tree, source(), options);
-      const HostTree host = download(tree, options);
-      check_triangles(host, moved);
-      if (count > 30 && count < 1000) expect_brute_force_hits(host, moved, 200);
-      source_ = std::make_unique<DeviceArray<Triangle>>(triangles);
-      builder_->refit(tree, source(), options);
-      EXPECT_NEAR(builder_->measure(tree).nodes_per_ray, before.nodes_per_ray,
-                  1e-5 * before.nodes_per_ray)
-          << "there and back again";
-      if (HasFailure()) return;
-      forget_outputs();
-    }
+    const DeviceTree tree = build(triangles, options);
+    EXPECT_EQ(builder_->measure(tree).leaves, 700u) << "one triangle per leaf";
+    check_triangles(download(tree, options), triangles);
   }
 }
 
@@ -231,8 +190,8 @@ TEST_F(CudaBuild, RefusesWhatItCannotBuild) {
   std::vector<Triangle> triangles = make_soup(100, 1, 1);
   DeviceBuildOptions options;
   EXPECT_EQ(builder_->build(source_ ? source() : TriangleSource{}, 0, options).node_count, 0u);
-  options.morton_bits = 22;
-  EXPECT_EQ(message(triangles, options), "building a tree: morton_bits is 22; expected 1 to 21");
+  options.costs.leaf_max = 9;
+  EXPECT_EQ(message(triangles, options), "building a tree: leaf_max is 9; expected 1 to 8");
   for (const float bad : {NAN, HUGE_VALF, -2e15f}) {
     triangles[42].v1.y = bad;
     EXPECT_EQ(message(triangles, {}),

@@ -10,10 +10,10 @@
 #include "accel/check_tree.h"
 #include "accel/instanced_meshes.h"
 #include "accel/tree_kinds.h"
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/tree_summary.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/error/error.h"
 
 namespace pt {

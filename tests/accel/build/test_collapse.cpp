@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "accel/triangle_meshes.h"
-#include "common/accel/build/binary/build_sah.h"
-#include "common/accel/build/binary/build_sbvh.h"
-#include "common/accel/build/binary/merge_leaves.h"
+#include "common/accel/build/binary/build_binary.h"
+#include "common/accel/build/binary/build_bvh2.h"
+#include "common/accel/build/binary/split.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/split/clip_triangle.h"
 #include "common/accel/build/tree_statistics.h"
-#include "common/accel/build/wide/collapse_choices.h"
 #include "common/accel/build/wide/collapse_cwbvh.h"
 
 namespace pt {

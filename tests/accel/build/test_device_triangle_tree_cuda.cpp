@@ -1,7 +1,7 @@
 // Scenes with instances, and with spheres besides triangles, whose trees the GPU has built: hits
 // and images are those of trees built on the CPU, bit for bit.
 #include "app/commands/commands.h"
-#include "common/accel/build/tree_summary.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/rays/trace_rays.h"

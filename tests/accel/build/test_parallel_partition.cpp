@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/accel/build/split/parallel_partition.h"
+#include "common/accel/build/binary/parallel.h"
 #include "statistics.h"
 
 namespace pt {

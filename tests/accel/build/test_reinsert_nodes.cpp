@@ -7,8 +7,7 @@
 #include <numeric>
 
 #include "accel/triangle_meshes.h"
-#include "common/accel/build/binary/build_sah.h"
-#include "common/accel/build/binary/reinsert_nodes.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/mesh_triangles.h"
 
 namespace pt {

@@ -6,9 +6,8 @@
 
 #include "accel/build_cases.h"
 #include "accel/serial_reinsertion.h"
-#include "common/accel/build/binary/build_sah.h"
-#include "common/accel/build/binary/reinsert_nodes.h"
-#include "common/accel/build/binary/tree_costs.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/tree_statistics.h"
 #include "common/accel/build/wide/collapse_cwbvh.h"
 

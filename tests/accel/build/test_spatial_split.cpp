@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accel/triangle_rays.h"
-#include "common/accel/build/split/spatial_split.h"
+#include "common/accel/build/binary/split.h"
 
 namespace pt {
 namespace {

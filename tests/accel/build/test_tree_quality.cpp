@@ -8,12 +8,12 @@
 #include "accel/primitive_scenes.h"
 #include "accel/tree_kinds.h"
 #include "accel/triangle_rays.h"
-#include "common/accel/build/tree_summary.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
 #include "common/accel/traverse_brute.h"
 #include "common/accel/traverse_bvh2.h"
-#include "common/geometry/primitive_bounds.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/geometry/primitives.h"
+#include "common/scene/builtin/sphere_world.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 #include "accel/tree_kinds.h"
 #include "accel/triangle_meshes.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/trial_rays.h"
+#include "common/accel/build/try_splits.h"
 
 namespace pt {
 namespace {

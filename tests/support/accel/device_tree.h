@@ -19,13 +19,8 @@ inline const char* name_of(DeviceBuilder builder) {
 }
 
 inline std::string name_of(const DeviceBuildOptions& options) {
-  const bool is_wide = options.format == TreeFormat::cwbvh;
-  const bool is_optimal = is_wide && options.collapse == Collapse::optimal;
   return std::string(name_of(options.builder)) +
-         (is_optimal ? " optimal cwbvh"
-          : is_wide  ? " greedy cwbvh"
-                     : " bvh2") +
-         ", " + std::to_string(3 * options.morton_bits) + " bits";
+         (options.format == TreeFormat::cwbvh ? " cwbvh" : " bvh2");
 }
 
 inline DeviceBuildOptions binary_options() {
@@ -39,18 +34,12 @@ inline std::vector<DeviceBuildOptions> all_options() {
   std::vector<DeviceBuildOptions> all;
   for (const DeviceBuilder builder : {DeviceBuilder::lbvh, DeviceBuilder::hploc,
                                       DeviceBuilder::hploc_reinsert, DeviceBuilder::balanced}) {
-    for (const int format : {0, 1, 2}) {
-      DeviceBuildOptions options = format == 0 ? binary_options() : DeviceBuildOptions{};
-      if (format == 1) options.collapse = Collapse::greedy;
+    for (DeviceBuildOptions options : {binary_options(), DeviceBuildOptions{}}) {
       options.builder = builder;
       options.depth_max = 1000;  // some cases are deep; nothing is to be replaced here
       all.push_back(options);
     }
   }
-  all.push_back(all.back());
-  all.back().morton_bits = 10;
-  all.push_back(all[3]);
-  all.back().morton_bits = 7;
   return all;
 }
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "accel/triangle_rays.h"
-#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
 #include "common/rays/ray_file.h"
 
 namespace pt {

@@ -3,7 +3,7 @@
 
 #include "accel/triangle_meshes.h"
 #include "accel/triangle_rays.h"
-#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
 #include "statistics.h"
 
 namespace pt {

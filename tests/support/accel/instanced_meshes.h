@@ -2,7 +2,7 @@
 #pragma once
 
 #include "accel/triangle_meshes.h"
-#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
 #include "common/rays/ray_file.h"
 
 namespace pt {

@@ -1,4 +1,4 @@
-// H-PLOC by one thread: the tree that the device's builder makes (build_cuda/hploc.cu), but for
+// H-PLOC by one thread: the tree that the device's builder makes (build_cuda/hierarchy.cu), but for
 // what another rounding of areas decides.
 #pragma once
 
@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "common/accel/build/binary/build_tree.h"
-#include "common/accel/build/morton.h"
-#include "common/accel/build/ploc_pair.h"
+#include "common/accel/build/morton_order.h"
 
 namespace pt {
 

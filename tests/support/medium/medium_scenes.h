@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "common/geometry/mesh.h"
-#include "common/scene/builtin/shapes/mesh_shapes.h"
+#include "common/scene/builtin/shapes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "medium/volume_cases.h"
 #include "mode_cases.h"

@@ -1,5 +1,6 @@
 #include "common/accel/build/build_triangle_tree.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,19 +8,15 @@
 #include <numeric>
 #include <set>
 
-#include "common/accel/build/binary/build_sah.h"
-#include "common/accel/build/binary/build_sbvh.h"
-#include "common/accel/build/binary/overlap_share.h"
-#include "common/accel/build/binary/reinsert_nodes.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/build_nodes.h"
-#include "common/accel/build/check_builder.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
-#include "common/accel/build/trial_rays.h"
-#include "common/accel/build/wide/append_nodes.h"
+#include "common/accel/build/try_splits.h"
+#include "common/error/error.h"
+#include "common/options/option_names.h"
 
 namespace pt {
-
 namespace {
 
 /// The tree of one group: its root and its slots come first.
@@ -111,10 +108,7 @@ std::string add_group(TriangleTreeData& tree, const MeshTriangles& triangles,
   group.first_slot = static_cast<std::uint32_t>(tree.triangles.size());
   group.slot_count = static_cast<std::uint32_t>(order.size());
   group.node_count = built.nodes.node_count();
-  tree.for_each_nodes(built.nodes, [&](auto& all, auto& nodes) {
-    if (!nodes.empty()) group.root = append_nodes(all, std::move(nodes), group.first_slot);
-  });
-  group.first_node = group.root;
+  group.root = group.first_node = append_nodes(tree, std::move(built.nodes), group.first_slot);
   tree.triangles.resize(tree.triangles.size() + order.size());
   copy_by_slot(triangles, order, tree.triangles.data() + group.first_slot);
   tree.groups.push_back(group);
@@ -158,6 +152,19 @@ TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
   tree.build_ms = time.count();
   tree.builder = joined(builders);
   return tree;
+}
+
+void check_builder(TreeBuilder builder, AccelKind accel, bool on_cuda) {
+  if (!is_device_builder(builder)) return;
+  const std::string name = to_string(builder);
+  if (!on_cuda) {
+    throw Error(
+        fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh", name));
+  }
+  if (accel != AccelKind::bvh2 && accel != AccelKind::cwbvh) {
+    throw Error(fmt::format(
+        "--builder {}: builds binary and wide trees; expected --accel bvh2 or cwbvh", name));
+  }
 }
 
 }  // namespace pt

@@ -1,12 +1,12 @@
-// Builds what rays are traced against in scenes made of triangles, on the CPU.
+// Builds what rays are traced against in scenes made of triangles, on the CPU, and fits it to
+// geometry that has moved.
 #pragma once
 
 #include <span>
 
-#include "common/accel/build/binary/build_sbvh.h"
-#include "common/accel/build/binary/tree_costs.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/triangle_tree_data.h"
-#include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
 #include "common/options/options.h"
 
@@ -33,10 +33,29 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// slots are in the order of the triangles' numbers.
 /// The automatic builder takes, group by group, the cheaper of the tree by sah and the same after
 /// reinsert_nodes() ("sah-reinsert"); or, where overlap_share() promises something and rays are
-/// found to cost less (trial_rays.h), the one by sbvh.
+/// found to cost less (try_splits.h), the one by sbvh.
 /// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,
                                      const TreeOptions& options);
+
+/// Whether trees are built on the CUDA device.
+inline bool is_device_builder(TreeBuilder builder) {
+  return builder == TreeBuilder::lbvh || builder == TreeBuilder::hploc ||
+         builder == TreeBuilder::hploc_reinsert;
+}
+
+/// Throws Error where a builder of the device is to work on the CPU, or for a structure that is not
+/// a tree of ours. `accel` is the structure in use, never automatic.
+void check_builder(TreeBuilder builder, AccelKind accel, bool on_cuda);
+
+/// Fits a tree to geometry that has moved. The meshes have the triangles with which `tree` was
+/// built, and their vertices may have moved; the instances are of the same groups, and their
+/// transforms may have changed. Nodes keep their children, so that rays take longer the further
+/// triangles move away from their neighbours; parts of split triangles get the boxes of whole ones.
+/// The tree over instances is built again. Throws Error as build_triangle_tree() does, and for
+/// meshes of fewer triangles.
+void refit_triangle_tree(TriangleTreeData& tree, std::span<const Mesh> meshes,
+                         std::span<const Instance> instances);
 
 }  // namespace pt

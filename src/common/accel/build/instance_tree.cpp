@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "common/accel/build/binary/build_sah.h"
+#include "common/accel/build/binary/build_binary.h"
 #include "common/accel/build/build_nodes.h"
-#include "common/accel/build/wide/append_nodes.h"
 #include "common/error/error.h"
 
 namespace pt {
@@ -116,10 +115,8 @@ InstanceTree build_instance_tree(std::span<const GroupTree> groups,
   BinaryTree binary = build_sah(static_cast<std::uint32_t>(records.size()),
                                 [&](std::uint32_t i) { return records[i].bounds; });
   BuiltNodes built = build_nodes(std::move(binary), accel, instance_costs);
-  tree.for_each_nodes(built, [&](auto& to, auto& nodes) {
-    to = std::move(nodes);
-    for (auto& node : to) move_references(node, first_node, 0);
-  });
+  move_references(built, first_node, 0);
+  tree.for_each_nodes(built, [](auto& to, auto& nodes) { to = std::move(nodes); });
   for (const std::uint32_t i : built.order) tree.instances.push_back(records[i]);
   return tree;
 }

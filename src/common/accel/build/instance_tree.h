@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/accel/build/triangle_tree_data.h"
-#include "common/geometry/instance.h"
+#include "common/geometry/mesh.h"
 #include "common/options/options.h"
 
 namespace pt {

@@ -1,5 +1,3 @@
-#include "common/accel/build/refit_triangle_tree.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
@@ -7,6 +5,7 @@
 #include <algorithm>
 
 #include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build/mesh_triangles.h"
 #include "common/accel/build/wide/encode_cwbvh.h"
@@ -77,7 +76,7 @@ void refit_bvh2(TriangleTreeData& tree, const GroupTree& group) {
   }
 }
 
-// The same children in the same slots.
+// Encodes the node again: the same children in the same slots.
 CwbvhNode encode_again(const TriangleTreeData& tree, const CwbvhNode& node,
                        std::span<const Bounds> bounds, std::uint32_t first_node) {
   CwbvhChildren children;

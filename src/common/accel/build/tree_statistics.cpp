@@ -6,7 +6,6 @@
 #include "common/accel/build/wide/encode_cwbvh.h"
 
 namespace pt {
-
 namespace {
 
 struct Child {
@@ -107,6 +106,31 @@ TreeQuality measure_instances(std::span<const CwbvhNode> nodes, std::uint32_t fi
                               std::span<const InstanceRecord> instances,
                               const QualityByRoot& groups) {
   return measure_two_levels(nodes, first_node, instances, groups);
+}
+
+namespace {
+
+template <class Node>
+TreeQuality measure(const TriangleTreeData& tree, std::span<const Node> nodes) {
+  if (tree.instances.empty()) return measure_tree(nodes, tree.root);
+  QualityByRoot groups;
+  for (const GroupTree& group : tree.groups) {
+    groups[group.root] = measure_tree(nodes, group.root);
+  }
+  return measure_instances(nodes.subspan(tree.first_top_node), tree.first_top_node, tree.instances,
+                           groups);
+}
+
+}  // namespace
+
+TreeSummary summarize(const TriangleTreeData& tree) {
+  TreeSummary summary;
+  summary.builder = tree.builder;
+  if (!tree.bvh2.empty()) summary.quality = measure(tree, std::span(tree.bvh2));
+  if (!tree.cwbvh.empty()) summary.quality = measure(tree, std::span(tree.cwbvh));
+  summary.size_bytes = tree.size_bytes();
+  summary.build_ms = tree.build_ms;
+  return summary;
 }
 
 }  // namespace pt

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "common/accel/build/tree_statistics.h"
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/bounds.h"
 
@@ -59,7 +58,7 @@ struct TriangleTreeData : TreeNodes<NodesVector> {
   TriangleTree view() const {
     return view([](auto*& pointer, const auto& values, const char*) { pointer = values.data(); });
   }
-  /// Of nodes, triangles and instances.
+  /// Size of nodes, triangles and instances.
   std::uint64_t size_bytes() const {
     std::uint64_t sum = 0;
     TriangleTree none;

@@ -1,4 +1,4 @@
-// Builds trees over triangles or boxes on the CUDA device. Host-facing: no CUDA types.
+// Builds trees over triangles on the CUDA device. Host-facing: no CUDA types.
 #pragma once
 
 #include <cstdint>
@@ -6,10 +6,8 @@
 #include <memory>
 
 #include "common/accel/build/binary/binary_tree.h"
-#include "common/accel/build/binary/tree_costs.h"
 #include "common/accel/build/tree_statistics.h"
-#include "common/accel/bvh2.h"
-#include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 #include "common/accel/triangle_tree.h"
 #include "common/geometry/mesh.h"
 #include "common/geometry/triangle.h"
@@ -41,14 +39,11 @@ enum class DeviceBuilder {
   balanced,  ///< halves along the Morton curve: poor, but no deeper than log2 of the triangles
 };
 enum class TreeFormat { bvh2, cwbvh };
-enum class Collapse { greedy, optimal };  ///< to wide nodes: by area, or by dynamic programming
 
 struct DeviceBuildOptions {
   DeviceBuilder builder = DeviceBuilder::hploc;
   TreeFormat format = TreeFormat::cwbvh;
-  Collapse collapse = Collapse::optimal;
   TreeCosts costs = default_cwbvh_costs;  ///< of the format: default_bvh2_costs for the other
-  int morton_bits = 21;  ///< per axis, 1..morton_bits_max; up to 10 make 32-bit keys
   int depth_max = bvh_depth_max;
   std::uint32_t first_node = 0;  ///< added to node numbers: for trees that share arrays
   std::uint32_t first_slot = 0;  ///< added to slot numbers
@@ -75,7 +70,7 @@ struct DeviceTree {
   Bvh2Node* bvh2 = nullptr;
   CwbvhNode* cwbvh = nullptr;
   std::uint32_t* order = nullptr;  ///< [slot]: the primitive
-  Triangle* triangles = nullptr;   ///< [slot]; null for trees over boxes
+  Triangle* triangles = nullptr;   ///< [slot]
   std::uint32_t node_count = 0;
   std::uint32_t slot_count = 0;  ///< as many as primitives
   int depth = 0;                 ///< nodes from the root to the deepest one
@@ -83,12 +78,9 @@ struct DeviceTree {
   DeviceBuilder builder = DeviceBuilder::hploc;  ///< another than asked for where that was too deep
   DeviceBuildTimes times;
   std::uint64_t scratch_bytes = 0;  ///< of temporary memory
-
-  /// For traversal, of a tree whose nodes and slots are numbered from 0.
-  TriangleTree view() const { return {bvh2, cwbvh, triangles, nullptr, slot_count, 0, 0}; }
 };
 
-/// What a tree consists of.
+/// The arrays of a tree.
 enum class TreeArray { nodes, order, triangles };
 
 /// Gives device memory for an array, aligned as its elements are, or throws Error. Each build asks
@@ -107,19 +99,7 @@ class DeviceTreeBuilder {
   DeviceTree build(const TriangleSource& source, std::uint32_t count,
                    const DeviceBuildOptions& options);
 
-  /// The tree over boxes in device memory, of instances for example. `order` says which box lies in
-  /// which slot.
-  DeviceTree build(const Bounds* boxes, std::uint32_t count, const DeviceBuildOptions& options);
-
-  /// Fits the boxes of a tree made by this class to triangles that have moved: their records are
-  /// written again, and the nodes bottom-up. `options` are those of the build.
-  void refit(DeviceTree& tree, const TriangleSource& source, const DeviceBuildOptions& options);
-  void refit(DeviceTree& tree, const Bounds* boxes, const DeviceBuildOptions& options);
-
   TreeQuality measure(const DeviceTree& tree);
-
-  /// Frees the temporary memory.
-  void release();
 
  private:
   class Work;

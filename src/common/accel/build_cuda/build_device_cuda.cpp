@@ -6,7 +6,6 @@
 #include "common/accel/build_cuda/build_device.h"
 #include "common/accel/build_cuda/kernels.cuh"
 #include "common/accel/build_cuda/scratch.cuh"
-#include "common/accel/build_cuda/stopwatch.cuh"
 #include "common/error/error.h"
 
 namespace pt {
@@ -29,8 +28,6 @@ void check_options(std::uint32_t count, const DeviceBuildOptions& options) {
         fmt::format("building a tree: {} is {}; expected {} to {}", what, value, low, high));
   };
   expect(count <= tree_primitives_max, "the number of primitives", count, 0, tree_primitives_max);
-  expect(options.morton_bits >= 1 && options.morton_bits <= morton_bits_max, "morton_bits",
-         options.morton_bits, 1, morton_bits_max);
   expect(options.costs.leaf_max >= 1 && options.costs.leaf_max <= leaf_size_max, "leaf_max",
          options.costs.leaf_max, 1, leaf_size_max);
 }
@@ -47,7 +44,7 @@ DeviceBuilder next_builder(DeviceBuilder builder) {
   }
 }
 
-/// Of a tree that is to change: the costs are found afterwards.
+/// For a tree that will change: its costs are computed afterwards.
 HierarchyJob without_costs(HierarchyJob job) {
   job.tables = nullptr, job.binary_costs = nullptr;
   return job;
@@ -60,7 +57,7 @@ class DeviceTreeBuilder::Work {
  public:
   explicit Work(DeviceAllocator allocate) : allocate_(std::move(allocate)) {}
 
-  DeviceTree build(const PrimitiveSource& source, std::uint32_t count,
+  DeviceTree build(const TriangleSource& source, std::uint32_t count,
                    const DeviceBuildOptions& options) {
     check_options(count, options);
     if (count == 0) return {};
@@ -90,24 +87,6 @@ class DeviceTreeBuilder::Work {
     return tree;
   }
 
-  void refit(DeviceTree& tree, const PrimitiveSource& source, const DeviceBuildOptions& options) {
-    if (tree.node_count == 0) return;
-    if (source.boxes == nullptr) {
-      enqueue_triangles(source.triangles, tree.order, tree.slot_count, tree.triangles);
-    }
-    RefitJob job;
-    job.node_count = tree.node_count;
-    job.first_node = options.first_node, job.first_slot = options.first_slot;
-    job.triangles = tree.triangles, job.boxes = source.boxes, job.order = tree.order;
-    scratch_.divide([&](Scratch& s) {
-      job.parents = s.take<std::uint32_t>(tree.node_count);
-      job.waiting = s.take<std::uint32_t>(tree.node_count);
-      job.bounds = s.take<BuildNode>(tree.node_count);
-    });
-    tree.bvh2 != nullptr ? enqueue_refit(job, tree.bvh2) : enqueue_refit(job, tree.cwbvh);
-    tree.bounds = download(job.bounds, "refitting a tree").bounds();
-  }
-
   TreeQuality measure(const DeviceTree& tree) {
     TreeQuality quality;
     if (tree.node_count == 0) return quality;
@@ -126,18 +105,12 @@ class DeviceTreeBuilder::Work {
     return quality;
   }
 
-  void release() {
-    scratch_.release();
-    collapse_scratch_.release();
-  }
-
  private:
   bool is_wide() const { return options_.format == TreeFormat::cwbvh; }
 
   void divide_scratch() {
     const std::uint64_t count = job_.count;
-    sort_bytes_ = sort_scratch_bytes(job_.count, options_.morton_bits);
-    const bool has_tables = is_wide() && options_.collapse == Collapse::optimal;
+    sort_bytes_ = sort_scratch_bytes(job_.count);
     scratch_.divide([&](Scratch& s) {
       bounds_ = s.take<SharedBounds>(1);
       counters_ = s.take<CollapseCounters>(1);
@@ -150,7 +123,7 @@ class DeviceTreeBuilder::Work {
       sort_scratch_ = s.take<char>(sort_bytes_);
       prefixes_ = s.take<std::uint8_t>(count + 1);
       job_.nodes = s.take<BuildNode>(count);
-      job_.tables = has_tables ? s.take<CollapseTable>(count) : nullptr;
+      job_.tables = is_wide() ? s.take<CollapseTable>(count) : nullptr;
       job_.binary_costs = is_wide() ? nullptr : s.take<float>(count);
       job_.pairs = s.take<std::uint64_t>(count);
       job_.ranges = s.take<std::uint32_t>(count);
@@ -166,12 +139,12 @@ class DeviceTreeBuilder::Work {
     });
   }
 
-  void sort_primitives(const PrimitiveSource& source, DeviceBuildTimes& times) {
+  void sort_primitives(const TriangleSource& source, DeviceBuildTimes& times) {
     enqueue_bounds(source, job_.count, primitives_, bounds_);
     watch_.mark(&times.bounds_ms);
-    enqueue_morton(primitives_, job_.count, bounds_, options_.morton_bits, sorted_);
+    enqueue_morton(primitives_, job_.count, bounds_, sorted_);
     watch_.mark(&times.morton_ms);
-    enqueue_sort(sorted_, job_.count, options_.morton_bits, sort_scratch_, sort_bytes_);
+    enqueue_sort(sorted_, job_.count, sort_scratch_, sort_bytes_);
     watch_.mark(&times.sort_ms);
   }
 
@@ -196,8 +169,7 @@ class DeviceTreeBuilder::Work {
   }
 
   void build_hierarchy(DeviceBuilder builder, DeviceBuildTimes& times) {
-    enqueue_prefixes(sorted_.keys[0], job_.count, options_.morton_bits,
-                     builder != DeviceBuilder::balanced, prefixes_);
+    enqueue_prefixes(sorted_.keys[0], job_.count, builder != DeviceBuilder::balanced, prefixes_);
     job_.order = sorted_.values[0];
     job_.prefixes = prefixes_;
     job_.primitives = primitives_;
@@ -242,7 +214,7 @@ class DeviceTreeBuilder::Work {
     job.queue = queue_;
     job.order = order_;
     job.counters = counters_;
-    is_wide() ? enqueue_collapse(job, options_.collapse, reinterpret_cast<CwbvhNode*>(nodes_))
+    is_wide() ? enqueue_collapse(job, reinterpret_cast<CwbvhNode*>(nodes_))
               : enqueue_collapse(job, reinterpret_cast<Bvh2Node*>(nodes_));
     watch_.mark(&times.collapse_ms);
     watch_.read();
@@ -250,7 +222,7 @@ class DeviceTreeBuilder::Work {
   }
 
   /// Moves the nodes and the order to memory of their own size, and writes the triangles.
-  void write_outputs(DeviceTree& tree, const PrimitiveSource& source) {
+  void write_outputs(DeviceTree& tree, const TriangleSource& source) {
     const std::uint64_t slots = tree.slot_count;
     const std::uint64_t node_size = is_wide() ? sizeof(CwbvhNode) : sizeof(Bvh2Node);
     void* nodes = allocate_(TreeArray::nodes, tree.node_count * node_size);
@@ -258,17 +230,13 @@ class DeviceTreeBuilder::Work {
     tree.cwbvh = is_wide() ? static_cast<CwbvhNode*>(nodes) : nullptr;
     tree.order =
         static_cast<std::uint32_t*>(allocate_(TreeArray::order, slots * sizeof *tree.order));
-    if (source.boxes == nullptr) {
-      tree.triangles =
-          static_cast<Triangle*>(allocate_(TreeArray::triangles, slots * sizeof(Triangle)));
-    }
+    tree.triangles =
+        static_cast<Triangle*>(allocate_(TreeArray::triangles, slots * sizeof(Triangle)));
     watch_.start();
     copy(nodes, nodes_, tree.node_count * node_size);
     copy(tree.order, order_, slots * sizeof *tree.order);
     watch_.mark(&tree.times.collapse_ms);
-    if (source.boxes == nullptr) {
-      enqueue_triangles(source.triangles, tree.order, tree.slot_count, tree.triangles);
-    }
+    enqueue_triangles(source, tree.order, tree.slot_count, tree.triangles);
     watch_.mark(&tree.times.triangles_ms);
     watch_.read();
   }
@@ -301,26 +269,9 @@ DeviceTreeBuilder::~DeviceTreeBuilder() = default;
 
 DeviceTree DeviceTreeBuilder::build(const TriangleSource& source, std::uint32_t count,
                                     const DeviceBuildOptions& options) {
-  return work_->build({source, nullptr}, count, options);
-}
-
-DeviceTree DeviceTreeBuilder::build(const Bounds* boxes, std::uint32_t count,
-                                    const DeviceBuildOptions& options) {
-  return work_->build({{}, boxes}, count, options);
-}
-
-void DeviceTreeBuilder::refit(DeviceTree& tree, const TriangleSource& source,
-                              const DeviceBuildOptions& options) {
-  work_->refit(tree, {source, nullptr}, options);
-}
-
-void DeviceTreeBuilder::refit(DeviceTree& tree, const Bounds* boxes,
-                              const DeviceBuildOptions& options) {
-  work_->refit(tree, {{}, boxes}, options);
+  return work_->build(source, count, options);
 }
 
 TreeQuality DeviceTreeBuilder::measure(const DeviceTree& tree) { return work_->measure(tree); }
-
-void DeviceTreeBuilder::release() { work_->release(); }
 
 }  // namespace pt

@@ -99,15 +99,13 @@ __device__ void drain_queue(const CollapseJob& job, const Maker& maker) {
   if (lane == 0 && depth_max > 0) atomicMax(&job.counters->depth, depth_max);
 }
 
-template <Collapse collapse>
 struct WideMaker {
   using Children = WideChildren;
   const CollapseJob& job;
   CwbvhNode* nodes;
 
   __device__ Children choose(TreeRef ref) const {
-    return collapse == Collapse::optimal ? optimal_children(job.tree, job.costs, ref)
-                                         : greedy_children(job.tree, job.costs, ref);
+    return optimal_children(job.tree, job.costs, ref);
   }
   __device__ void count(const Children& c, std::uint32_t& inner, std::uint32_t& slots) const {
     inner = static_cast<std::uint32_t>(c.count - __popc(c.leaf_mask));
@@ -191,10 +189,9 @@ struct BinaryMaker {
   }
 };
 
-template <Collapse collapse>
 __global__ void __launch_bounds__(collapse_block)
     collapse_wide(const __grid_constant__ CollapseJob job, CwbvhNode* nodes) {
-  drain_queue(job, WideMaker<collapse>{job, nodes});
+  drain_queue(job, WideMaker{job, nodes});
 }
 
 __global__ void __launch_bounds__(collapse_block)
@@ -222,12 +219,8 @@ void enqueue_collapse(const CollapseJob& job, Bvh2Node* nodes) {
   launch(collapse_binary, job, nodes);
 }
 
-void enqueue_collapse(const CollapseJob& job, Collapse collapse, CwbvhNode* nodes) {
-  if (collapse == Collapse::optimal) {
-    launch(collapse_wide<Collapse::optimal>, job, nodes);
-  } else {
-    launch(collapse_wide<Collapse::greedy>, job, nodes);
-  }
+void enqueue_collapse(const CollapseJob& job, CwbvhNode* nodes) {
+  launch(collapse_wide, job, nodes);
 }
 
 }  // namespace pt::device_build

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/build/build_triangle_tree.h"
-#include "common/accel/build/tree_summary.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/cuda/cuda_memory.cuh"
 
 namespace pt {
@@ -12,10 +12,10 @@ struct DeviceTriangleTree {
   TreeSummary summary;
 };
 
-/// The same tree as build_triangle_tree's but for what the builder chooses: one of the whole, or
-/// one for each group on the device and, since it is small, one over the instances on the CPU. Its
-/// arrays belong to `memory`. `meshes` and `instances` have passed check_geometry(), and the
-/// options check_builder(). Throws Error where the device has too little memory.
+/// As build_triangle_tree(), by a builder of the device: one tree of the whole, or one for each
+/// group and, on the CPU since it is small, one over the instances. Its arrays belong to `memory`.
+/// `meshes` and `instances` have passed check_geometry(), and the options check_builder(). Throws
+/// Error where the device has too little memory.
 DeviceTriangleTree build_device_triangle_tree(std::span<const Mesh> meshes,
                                               std::span<const Instance> instances,
                                               const TreeOptions& options, CudaMemory& memory);

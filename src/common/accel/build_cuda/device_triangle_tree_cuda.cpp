@@ -4,8 +4,7 @@
 
 #include "common/accel/build/instance_tree.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
-#include "common/accel/build_cuda/tree_arrays.cuh"
-#include "common/accel/build_cuda/upload_groups.cuh"
+#include "common/accel/build_cuda/group_arrays.cuh"
 
 namespace pt {
 namespace {

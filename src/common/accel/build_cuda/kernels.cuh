@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/accel/build/binary/build_tree.h"
-#include "common/accel/build/morton.h"
+#include "common/accel/build/morton_order.h"
 #include "common/accel/build_cuda/build_device.h"
 #include "common/accel/build_cuda/reinsertion.h"
 
@@ -32,37 +32,28 @@ PT_HD Bounds read_bounds(const SharedBounds& shared, int first) {
   return box;
 }
 
-/// Primitives: triangles, or boxes where `boxes` is not null.
-struct PrimitiveSource {
-  TriangleSource triangles;
-  const Bounds* boxes = nullptr;
-};
-
-void enqueue_bounds(const PrimitiveSource& source, std::uint32_t count, BuildNode* primitives,
+void enqueue_bounds(const TriangleSource& source, std::uint32_t count, BuildNode* primitives,
                     SharedBounds* bounds);
-
-/// 32-bit keys up to 10 bits per axis, else 64-bit ones.
-inline bool has_small_keys(int morton_bits) { return morton_bits <= 10; }
 
 /// Two buffers of keys and of values; sorting may swap them.
 struct SortBuffers {
-  void* keys[2];
+  std::uint64_t* keys[2];
   std::uint32_t* values[2];
 };
 
 void enqueue_morton(const BuildNode* primitives, std::uint32_t count, const SharedBounds* bounds,
-                    int morton_bits, const SortBuffers& buffers);
+                    const SortBuffers& buffers);
 
-std::uint64_t sort_scratch_bytes(std::uint32_t count, int morton_bits);
+std::uint64_t sort_scratch_bytes(std::uint32_t count);
 /// The sorted arrays are the first ones afterwards. Stable.
-void enqueue_sort(SortBuffers& buffers, std::uint32_t count, int morton_bits, void* scratch,
+void enqueue_sort(SortBuffers& buffers, std::uint32_t count, void* scratch,
                   std::uint64_t scratch_bytes);
 
 /// prefixes[0..count]: of i - 1 and i; the ends are 0. Without `by_code` indices alone count.
-void enqueue_prefixes(const void* keys, std::uint32_t count, int morton_bits, bool by_code,
+void enqueue_prefixes(const std::uint64_t* keys, std::uint32_t count, bool by_code,
                       std::uint8_t* prefixes);
 
-/// What the hierarchy builders read and write.
+/// The input and output of the hierarchy builders.
 struct HierarchyJob {
   std::uint32_t count = 0;  ///< at least 1
   const std::uint32_t* order = nullptr;
@@ -103,25 +94,10 @@ struct CollapseJob {
 };
 
 void enqueue_collapse(const CollapseJob& job, Bvh2Node* nodes);
-void enqueue_collapse(const CollapseJob& job, Collapse collapse, CwbvhNode* nodes);
+void enqueue_collapse(const CollapseJob& job, CwbvhNode* nodes);
 
 void enqueue_triangles(const TriangleSource& source, const std::uint32_t* order,
                        std::uint32_t count, Triangle* triangles);
-
-/// What refitting needs besides the nodes.
-struct RefitJob {
-  std::uint32_t node_count = 0;
-  std::uint32_t first_node = 0, first_slot = 0;
-  const Triangle* triangles = nullptr;   ///< [slot], or
-  const Bounds* boxes = nullptr;         ///< [primitive] with
-  const std::uint32_t* order = nullptr;  ///< [slot]
-  std::uint32_t* parents = nullptr;      ///< [node_count]
-  std::uint32_t* waiting = nullptr;      ///< [node_count]: children not yet done
-  BuildNode* bounds = nullptr;           ///< [node_count]
-};
-
-void enqueue_refit(const RefitJob& job, Bvh2Node* nodes);
-void enqueue_refit(const RefitJob& job, CwbvhNode* nodes);
 
 /// Sums over the nodes of a tree; starts as zeros. Areas are halves, of the children's boxes.
 struct QualitySums {

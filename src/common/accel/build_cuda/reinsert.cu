@@ -1,5 +1,5 @@
 // Launches of parallel reinsertion (reinsertion.h) after H-PLOC.
-#include "common/accel/build_cuda/costs.cuh"
+#include "common/accel/build_cuda/launch.cuh"
 
 namespace pt::device_build {
 namespace {

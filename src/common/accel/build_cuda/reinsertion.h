@@ -180,7 +180,7 @@ PT_HD ChangedLinks links_of(const ReinsertionJob& job, TreeRef moved, TreeRef to
   return {moved, other_child(job, node, moved), to, parent};
 }
 
-/// Of moves that are in each other's way the one of the largest key is made: of the largest gain.
+/// Of conflicting moves the one with the largest key is made: the one with the largest gain.
 PT_HD std::uint64_t move_key(const Move& move, std::uint32_t candidate) {
   return static_cast<std::uint64_t>(float_to_bits(move.gain)) << 32 | candidate;
 }

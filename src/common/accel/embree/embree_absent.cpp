@@ -1,5 +1,6 @@
 // Built instead of embree_tree.cpp where CMake finds no Embree.
 #include "common/accel/embree/embree_tree.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/error/error.h"
 
 namespace pt {
@@ -15,7 +16,7 @@ EmbreeTree::~EmbreeTree() = default;
 EmbreeTree::EmbreeTree(EmbreeTree&&) noexcept = default;
 EmbreeTree& EmbreeTree::operator=(EmbreeTree&&) noexcept = default;
 
-Hit EmbreeTree::closest_hit(const Ray&, float, float) const { return {}; }
-bool EmbreeTree::any_hit(const Ray&, float, float) const { return false; }
+Hit closest_triangle_embree(const EmbreeTree&, const Ray&, float, float) { return {}; }
+bool any_triangle_embree(const EmbreeTree&, const Ray&, float, float) { return false; }
 
 }  // namespace pt

@@ -5,13 +5,40 @@
 #include <cmath>
 #include <vector>
 
-#include "common/accel/embree/embree_api.h"
-#include "common/accel/triangle_query.h"
+#include "common/accel/traverse_triangles.h"
 #include "common/error/error.h"
 
-namespace pt {
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 
+namespace pt {
 namespace {
+
+// The two versions of Embree that distributions have, as one.
+#if RTC_VERSION_MAJOR >= 4
+
+void embree_intersect(RTCScene scene, RTCRayHit* ray_hit) {
+  rtcIntersect1(scene, ray_hit, nullptr);
+}
+void embree_occluded(RTCScene scene, RTCRay* ray) { rtcOccluded1(scene, ray, nullptr); }
+
+#else
+
+void embree_intersect(RTCScene scene, RTCRayHit* ray_hit) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, ray_hit);
+}
+void embree_occluded(RTCScene scene, RTCRay* ray) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, ray);
+}
+
+#endif
 
 struct ReleaseDevice {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -123,22 +150,22 @@ EmbreeTree::~EmbreeTree() = default;
 EmbreeTree::EmbreeTree(EmbreeTree&&) noexcept = default;
 EmbreeTree& EmbreeTree::operator=(EmbreeTree&&) noexcept = default;
 
-Hit EmbreeTree::closest_hit(const Ray& ray, float t_min, float t_max) const {
-  if (scenes_->root == nullptr || !is_traceable(ray)) return {};
+Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max) {
+  if (tree.scenes_->root == nullptr || !is_traceable(ray)) return {};
   RTCRayHit found{};
   found.ray = make_ray(ray, t_min, t_max);
   found.hit.geomID = found.hit.primID = found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  embree_intersect(scenes_->root, &found);
+  embree_intersect(tree.scenes_->root, &found);
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  if (scenes_->top == nullptr) return {found.ray.tfar, found.hit.primID, 0};
+  if (tree.scenes_->top == nullptr) return {found.ray.tfar, found.hit.primID, 0};
   const std::uint32_t instance = found.hit.instID[0];
-  return {found.ray.tfar, scenes_->first_slot[instance] + found.hit.primID, instance};
+  return {found.ray.tfar, tree.scenes_->first_slot[instance] + found.hit.primID, instance};
 }
 
-bool EmbreeTree::any_hit(const Ray& ray, float t_min, float t_max) const {
-  if (scenes_->root == nullptr || !is_traceable(ray)) return false;
+bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max) {
+  if (tree.scenes_->root == nullptr || !is_traceable(ray)) return false;
   RTCRay found = make_ray(ray, t_min, t_max);
-  embree_occluded(scenes_->root, &found);
+  embree_occluded(tree.scenes_->root, &found);
   return found.tfar < 0.0f;
 }
 

@@ -13,7 +13,7 @@ namespace pt {
 std::string embree_version();
 
 /// Embree's own tree in its robust mode. Hits name slots and indices of instances as those of the
-/// traversals do, but of several hits at one distance any may be reported, and distances differ by
+/// traversals do, but any of several hits at one distance may be reported, and distances differ by
 /// rounding. Queries may come from several threads at once.
 class EmbreeTree {
  public:
@@ -25,8 +25,9 @@ class EmbreeTree {
   EmbreeTree& operator=(EmbreeTree&&) noexcept;
 
   /// With t_min < t < t_max; t_min >= 0. Rays that are not finite meet nothing.
-  Hit closest_hit(const Ray& ray, float t_min, float t_max) const;
-  bool any_hit(const Ray& ray, float t_min, float t_max) const;
+  friend Hit closest_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min,
+                                     float t_max);
+  friend bool any_triangle_embree(const EmbreeTree& tree, const Ray& ray, float t_min, float t_max);
 
  private:
   struct Scenes;

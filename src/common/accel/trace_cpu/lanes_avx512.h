@@ -1,10 +1,10 @@
-// Sixteen floats at once by AVX-512, as lanes_avx2.h has eight. To be included before it.
+// Sixteen floats at once by AVX-512, as lanes.h has eight. To be included before it.
 #pragma once
 
 #ifdef __x86_64__
 #define PT_LANES __attribute__((target("avx512f,avx512dq,avx512vl,bmi,bmi2,popcnt")))
 
-#include "common/accel/trace_cpu/lanes_avx2.h"
+#include "common/accel/trace_cpu/lanes.h"
 
 // GCC 12 takes its own intrinsics' undefined vectors for a mistake (GCC bug 105593).
 #if defined(__GNUC__) && !defined(__clang__)

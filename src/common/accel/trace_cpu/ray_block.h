@@ -1,6 +1,10 @@
-// Rays that the CPU traces together, as arrays.
+// Blocks of rays that the CPU traces together, by AVX-512 or AVX2 where the processor has it. Each
+// ray finds the hit that it finds alone, bit for bit.
 #pragma once
 
+#include "common/accel/triangle_query.h"
+#include "common/accel/triangle_tree.h"
+#include "common/geometry/primitives.h"
 #include "common/geometry/ray.h"
 
 namespace pt {
@@ -44,5 +48,50 @@ struct HitBlock {
   alignas(64) float t[RayBlock::size_max];
   std::uint32_t primitive[RayBlock::size_max];
 };
+
+// Every primitive against a block of rays (traverse_brute_lanes.h).
+
+/// How the rays of a block are tested: lanes of a processor that may not be there. Rays are filled
+/// up to whole lanes (RayBlock::fill_lanes). Functions that look for any hit return a bit for each
+/// ray.
+struct BruteBlock {
+  void (*closest_primitives)(const Primitives&, const RayBlock&, HitBlock&);
+  std::uint32_t (*any_primitive)(const Primitives&, const RayBlock&);
+  // For a tree without instances; `primitive` is the slot.
+  void (*closest_triangles)(const TriangleTree&, const RayBlock&, HitBlock&);
+  std::uint32_t (*any_triangle)(const TriangleTree&, const RayBlock&);
+};
+
+/// Each null where the processor lacks it.
+const BruteBlock* brute_block_avx2();
+const BruteBlock* brute_block_avx512();
+
+/// The best there is; null: one ray after the other.
+const BruteBlock* brute_block();
+
+// The rays of a block through the wide tree together (traverse_cwbvh_turns.h).
+
+/// Decides about masked triangles, of which only a part is there.
+struct BlockMask {
+  const void* scene;
+  /// Whether ray i of the block, which meets the triangle of this slot, goes through it.
+  bool (*hides)(const void* scene, const RayBlock& rays, std::uint32_t i, std::uint32_t slot);
+};
+
+/// How the rays of a block are traced, in trees without instances. `mask` is null where no
+/// triangle is masked.
+struct TreeBlock {
+  void (*closest)(const TriangleTree& tree, const RayBlock& rays, const BlockMask* mask,
+                  HitBlock& hits);
+  /// A bit for each ray that meets anything.
+  std::uint32_t (*any)(const TriangleTree& tree, const RayBlock& rays, const BlockMask* mask);
+};
+
+/// Each null where the processor lacks it.
+const TreeBlock* tree_block_avx2();
+const TreeBlock* tree_block_avx512();
+
+/// The best there is; null: one ray after the other.
+const TreeBlock* tree_block();
 
 }  // namespace pt

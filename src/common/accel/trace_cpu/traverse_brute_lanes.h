@@ -1,11 +1,10 @@
-// Every primitive against as many rays of a block as there are lanes: a lane is a ray, and does the
-// very operations of the plain tests (traverse_brute.h, traverse_triangles_brute.h), in their order
-// and without contraction. L is Lanes8, or what else has its functions.
+// Every primitive against as many rays of a block as there are lanes: a lane is a ray, and executes
+// the operations of the plain tests (traverse_brute.h) in their order and without contraction. L is
+// Lanes8 or another type with its functions.
 #pragma once
 
+#include "common/accel/trace_cpu/lanes.h"
 #include "common/accel/trace_cpu/ray_block.h"
-#include "common/accel/trace_cpu/traverse_brute_block.h"
-#include "common/accel/trace_cpu/triangle_lanes.h"
 
 #ifdef __x86_64__
 

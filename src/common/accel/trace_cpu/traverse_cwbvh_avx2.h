@@ -5,7 +5,7 @@
 // and is called where has_avx2() says so.
 #pragma once
 
-#include "common/accel/trace_cpu/triangle_lanes.h"
+#include "common/accel/trace_cpu/lanes.h"
 #include "common/accel/traverse_cwbvh.h"
 
 #ifdef __x86_64__

@@ -3,14 +3,14 @@
 // at once, then each ray chooses the node after that and asks memory for it. Few
 // branches are mispredicted, and while one ray waits for memory others continue. `Isa` is the
 // processor's:
-//   Lanes                                    eight floats (lanes_avx2.h)
+//   Lanes                                    eight floats (lanes.h)
 //   meet_node(node, ray, octant)             as intersect_cwbvh_node
 //   list_triangles(node, hits, ray, pairs)   appends those of the leaves among `hits`
 // PT_LANES says for what functions here are compiled; all of them depend on Isa.
 #pragma once
 
-#include "common/accel/trace_cpu/traverse_cwbvh_block.h"
-#include "common/accel/trace_cpu/triangle_lanes.h"
+#include "common/accel/trace_cpu/lanes.h"
+#include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_cwbvh.h"
 
 #ifdef __x86_64__

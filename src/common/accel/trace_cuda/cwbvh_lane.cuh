@@ -2,9 +2,9 @@
 // vote on what its lanes do together.
 #pragma once
 
+#include "common/accel/trace_cuda/choose_next.cuh"
 #include "common/accel/trace_cuda/cwbvh_step.cuh"
 #include "common/accel/trace_cuda/prepared_rays.cuh"
-#include "common/accel/trace_cuda/slot_order.cuh"
 
 namespace pt {
 
@@ -17,7 +17,7 @@ struct SlotGroup {
   __device__ bool has_slots() const { return (bits & 0xffu) != 0; }
 };
 
-/// Those of a node that are not missed; `parent` has the ray's octant.
+/// The inner children of a node that are not missed; `parent` has the ray's octant.
 __device__ inline SlotGroup inner_children(const CwbvhWords& node, std::uint32_t misses,
                                            const SlotGroup& parent) {
   return {node.child_base(), __byte_perm(node.part[0].w, parent.bits, 0x0050) & ~misses};

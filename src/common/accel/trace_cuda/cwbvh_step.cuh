@@ -32,7 +32,7 @@ __device__ inline CwbvhWords load_cwbvh_words(const CwbvhNode* node) {
   return words;
 }
 
-/// Those with its masks and bases alone.
+/// Loads only the words with the masks and bases.
 __device__ inline CwbvhWords load_cwbvh_masks(const CwbvhNode* node) {
   const auto* part = reinterpret_cast<const uint4*>(node);
   return {{__ldg(part), __ldg(part + 1)}};

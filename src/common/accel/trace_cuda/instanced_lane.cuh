@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "common/accel/trace_cuda/cwbvh_lane.cuh"
-#include "common/accel/trace_cuda/world_rays.cuh"
+#include "common/accel/trace_cuda/prepared_rays.cuh"
 
 namespace pt {
 
@@ -21,7 +21,7 @@ class InstancedLane {
   using Memory = InstancedLanes;
   static constexpr bool has_instances = true;
   static constexpr bool is_speculative = false;
-  /// Of either level a group for each of its nodes' levels; and where an instance is entered, those
+  /// For both levels a group for each level of nodes; where an instance is entered, the instances
   /// beside it and the mark.
   static constexpr int stack_size = 2 * bvh_depth_max + 2;
   static_assert(!Query::has_masks);

@@ -5,7 +5,7 @@
 
 #include "common/cuda/cuda_check.cuh"
 #include "common/cuda/cuda_memory.cuh"
-#include "common/image/device_image.h"
+#include "common/image/image.h"
 
 namespace pt {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/cuda/cuda_check.cuh"
-#include "common/cuda/cuda_download.cuh"
 #include "common/cuda/cuda_memory.cuh"
 #include "common/device/cuda/cuda_chains.cuh"
 #include "common/device/cuda/cuda_launcher.cuh"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/build_cuda/device_triangle_tree.cuh"
 #include "common/device/cuda/cuda_image.cuh"
 #include "common/device/cuda/cuda_launcher.cuh"
@@ -10,7 +10,7 @@
 #include "common/device/cuda/film_kernels.cuh"
 #include "common/device/cuda/profiler_range.cuh"
 #include "common/device/cuda/stage_clock.h"
-#include "common/error/memory_error.h"
+#include "common/error/host_memory.h"
 #include "common/film/develop.h"
 #include "common/options/option_names.h"
 #include "common/render/lane_histograms.h"

@@ -1,5 +1,3 @@
-#include "common/image/codecs/exr_header.h"
-
 #include <ImfVersion.h>
 #include <fmt/format.h>
 
@@ -7,7 +5,7 @@
 #include <cstdint>
 
 #include "common/error/error.h"
-#include "common/error/quoted.h"
+#include "common/image/codecs/exr.h"
 
 namespace pt {
 namespace {

@@ -15,8 +15,7 @@
 #include <vector>
 
 #include "common/error/error.h"
-#include "common/image/codecs/exr_header.h"
-#include "common/image/codecs/exr_memory.h"
+#include "common/image/codecs/exr.h"
 #include "common/image/codecs/image_codec.h"
 
 namespace pt {

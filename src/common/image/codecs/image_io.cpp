@@ -10,7 +10,7 @@
 #include <new>
 #include <system_error>
 
-#include "common/error/error_context.h"
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/image/atomic_file.h"
 #include "common/image/codecs/image_codec.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/image/image.h"
+#include "common/image/tone_mapping.h"
 
 namespace pt {
 
@@ -12,12 +13,6 @@ namespace pt {
 /// where a value is not ASCII, taken as UTF-8); a PPM has no place for it. Names are 1 to 79
 /// printable ASCII characters and none that OpenEXR itself defines; values have no zero byte.
 using ImageMetadata = std::map<std::string, std::string>;
-
-/// How linear radiance becomes 8 bits: multiplied by 2^exposure, clamped to [0, 1], then encoded
-/// with the sRGB curve (PNG) or gamma 2 (PPM, as in the paper). NaN becomes 0.
-struct ToneMapping {
-  float exposure = 0.0f;  ///< stops
-};
 
 /// The lower case ending of an image's name: ".exr", ".png" or ".ppm". Throws Error for others.
 std::string image_ending(const std::string& path);
@@ -38,8 +33,8 @@ void write_image(const std::string& path, const Image& image, const ImageMetadat
 /// pixels a side.
 Image read_image(const std::string& path, ImageMetadata* metadata = nullptr);
 
-/// The same of an .exr, with those of its layers of whole numbers (ImageLayer::numbers) whose names
-/// begin with `prefix`.
+/// Reads an .exr as read_image does, with its layers of whole numbers (ImageLayer::numbers) whose
+/// names begin with `prefix`.
 Image read_image_with_numbers(const std::string& path, const std::string& prefix,
                               ImageMetadata& metadata);
 

@@ -10,7 +10,6 @@
 
 #include "common/error/error.h"
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/integer_image.h"
 
 namespace pt {
 namespace {

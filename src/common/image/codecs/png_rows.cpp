@@ -1,5 +1,3 @@
-#include "common/image/codecs/png_rows.h"
-
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <zlib.h>
@@ -10,6 +8,8 @@
 #include <cstdlib>
 #include <limits>
 #include <new>
+
+#include "common/image/codecs/png_codec.h"
 
 namespace pt {
 namespace {

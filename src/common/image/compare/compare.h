@@ -1,7 +1,9 @@
-// How far two images are apart.
+// How far two images are apart, and where, as a picture.
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string>
 
 #include "common/image/image.h"
 
@@ -18,5 +20,17 @@ struct ImageDifference {
 
 /// Throws Error when the sizes differ. `tolerance` >= 0.
 ImageDifference compare_images(const Image& a, const Image& b, double tolerance);
+
+/// Values in [0, 1] as colours from black over violet, red and orange to a pale yellow, brighter
+/// with each step, for a display (linear).
+Image false_colors(std::span<const float> values, int width, int height);
+
+/// `a` - `b`, value by value.
+Image subtract(const Image& a, const Image& b);
+
+/// Writes how `a` differs from the reference `b`: into an .exr a - b, into other formats the FLIP
+/// of each pixel, which is given, in false colours. Throws Error.
+void write_difference(const std::string& path, const Image& a, const Image& b,
+                      std::span<const float> flip);
 
 }  // namespace pt

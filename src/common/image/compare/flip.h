@@ -32,8 +32,8 @@ FlipExposures flip_exposures(const Image& reference);
 /// [y][x], of two images of one size. Values are linear and clamped to [0, 1].
 std::vector<float> ldr_flip(const Image& test, const Image& reference, const FlipView& view = {});
 
-/// Of linear radiance: the largest LDR-FLIP of all exposures, tone mapped by the ACES curve. What
-/// is negative or not a number counts as 0.
+/// FLIP of linear radiance: the largest LDR-FLIP of all exposures, tone mapped by the ACES curve.
+/// Negative values and NaN count as 0.
 std::vector<float> hdr_flip(const Image& test, const Image& reference, const FlipView& view = {});
 
 /// The one or the other. Where no pixel differs nothing is seen, which is not computed.

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "common/math/sincos.h"
+#include "common/math/functions.h"
 #include "common/math/transform.h"
 #include "common/sampling/alias_table.h"
 

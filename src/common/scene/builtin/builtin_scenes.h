@@ -7,7 +7,7 @@
 
 #include "common/options/options.h"
 #include "common/scene/builtin/scene_name.h"
-#include "common/scene/builtin/shapes/sphere_world.h"
+#include "common/scene/builtin/sphere_world.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {
@@ -16,7 +16,7 @@ namespace pt {
 using SphereWorldCreator =
     std::function<void(SphereWorld& world, SphereWorldKind kind, std::uint32_t count)>;
 
-/// What a scene is made from.
+/// The input of a scene's maker.
 struct SceneRequest {
   const SceneName& name;
   const Options& options;
@@ -44,5 +44,14 @@ SceneData build_scene(const Options& options, const SphereWorldCreator& create_w
 /// Builds and prepares the scene that the options name. Throws Error as build_scene and
 /// prepare_scene do.
 SceneData make_scene(const Options& options, const SphereWorldCreator& create_world = {});
+
+// The host's memory that scenes of any size need, checked before it is taken.
+
+/// Check the memory for `count` primitives of a request's scene, their acceleration structure
+/// included as it is built. Throw Error that names the option.
+void check_triangle_memory(const SceneRequest& request, std::uint64_t count);
+void check_instance_memory(const SceneRequest& request, std::uint64_t count);
+void check_cloud_memory(const SceneRequest& request, std::uint64_t side);
+void check_sphere_memory(std::uint64_t count);
 
 }  // namespace pt

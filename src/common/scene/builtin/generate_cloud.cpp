@@ -1,12 +1,11 @@
-#include "common/scene/builtin/generate_cloud.h"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "common/error/error.h"
-#include "common/scene/builtin/name_parts.h"
-#include "common/scene/builtin/shapes/noise.h"
-#include "common/scene/builtin/shapes/quad_shapes.h"
+#include "common/scene/builtin/generated_scenes.h"
+#include "common/scene/builtin/noise.h"
+#include "common/scene/builtin/scene_name.h"
+#include "common/scene/builtin/shapes.h"
 
 namespace pt {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -79,6 +79,19 @@ double parse_scale(const SceneName& scene) {
                             scene.full, scene.name));
   }
   return value;
+}
+
+std::string_view next_part(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find(':'), rest.size());
+  const std::string_view part = rest.substr(0, end);
+  rest.remove_prefix(std::min(end + 1, rest.size()));
+  return part;
+}
+
+void refuse_part(const SceneName& scene, char part, std::string_view value,
+                 std::string_view expected, const char* form) {
+  throw Error(fmt::format("--scene {}: {} is '{}', expected {} in {}", scene.full, part, value,
+                          expected, form));
 }
 
 }  // namespace pt

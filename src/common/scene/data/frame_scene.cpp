@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "common/geometry/primitive_bounds.h"
+#include "common/geometry/primitives.h"
 
 namespace pt {
 

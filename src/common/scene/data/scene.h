@@ -3,9 +3,9 @@
 
 #include "common/accel/triangle_tree.h"
 #include "common/choices/choices.h"
-#include "common/geometry/mesh_view.h"
+#include "common/geometry/mesh.h"
 #include "common/geometry/primitives.h"
-#include "common/geometry/sphere_frame.h"
+#include "common/geometry/sphere.h"
 #include "common/light/emission.h"
 #include "common/light/light_selector.h"
 #include "common/light/sky/environment.h"

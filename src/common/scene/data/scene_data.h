@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/accel/build/triangle_tree_data.h"
-#include "common/geometry/instance.h"
 #include "common/geometry/mesh.h"
 #include "common/light/build_light_tree.h"
 #include "common/light/delta_light.h"

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/accel/build/tree_summary.h"
+#include "common/accel/build/tree_statistics.h"
 #include "common/options/stats.h"
 #include "common/scene/data/scene_data.h"
 

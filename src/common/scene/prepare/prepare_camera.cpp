@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/error/error.h"
-#include "common/geometry/primitive_bounds.h"
+#include "common/geometry/primitives.h"
 #include "common/scene/data/frame_scene.h"
 
 namespace pt {

@@ -27,7 +27,7 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/half_spheres.h"
+#include "common/geometry/primitives.h"
 #include "common/geometry/sphere.h"
 
 namespace pt {

@@ -5,7 +5,7 @@
 
 #include "common/accel/build/binary/build_bvh2.h"
 #include "common/accel/traverse_brute.h"
-#include "common/geometry/primitive_bounds.h"
+#include "common/geometry/primitives.h"
 #include "common/scene/prepare/prepare_half_spheres.h"
 
 namespace pt {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/error/error.h"
-#include "common/geometry/half_spheres.h"
+#include "common/geometry/sphere.h"
 #include "common/scene/data/scene_arrays.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_camera.h"

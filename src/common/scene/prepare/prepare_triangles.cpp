@@ -6,7 +6,7 @@
 #include <map>
 
 #include "common/accel/build/build_nodes.h"
-#include "common/accel/build/check_builder.h"
+#include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/error/error.h"
 #include "common/scene/data/frame_scene.h"

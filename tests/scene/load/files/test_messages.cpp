@@ -1,7 +1,7 @@
 // Text of files in messages.
 #include <gtest/gtest.h>
 
-#include "common/error/quoted.h"
+#include "common/error/error.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/geometry/mesh_view.h"
+#include "common/geometry/mesh.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
 #include "common/scene/load/load_scene.h"

@@ -1,5 +1,3 @@
-#include "common/accel/build/binary/reinsert_nodes.h"
-
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <atomic>
 #include <queue>
 #include <vector>
+
+#include "common/accel/build/binary/build_binary.h"
 
 namespace pt {
 
@@ -45,7 +45,7 @@ class Reinserter {
     tried_ = std::min(upper_max / 2, nodes_in(tree) / 10);
   }
 
-  /// Of the upper nodes.
+  /// Sum over the upper nodes.
   double area() const {
     double sum = 0;
     for (const Node& node : nodes_) {

@@ -5,7 +5,7 @@
 // planes of flat children.
 #pragma once
 
-#include "common/accel/cwbvh.h"
+#include "common/accel/nodes.h"
 #include "common/geometry/bounds.h"
 
 namespace pt {
@@ -73,7 +73,7 @@ struct CwbvhPlanes {
     low[count] = lower, high[count] = upper, area[count++] = face;
   }
 
-  /// Those of the largest areas come first, and no others stay.
+  /// Sorts by descending area and drops all but the first `most`.
   PT_HD void keep_largest() {
     for (int i = 0; i < count && i < most; ++i) {
       for (int k = i + 1; k < count; ++k) {

@@ -1,9 +1,84 @@
-// Which subtrees of the binary tree become the children of a wide node.
+// Which subtrees of the device's binary tree become the children of a wide node, and which are
+// leaves, by the surface area heuristic. Costs are areas (half areas, as Bounds has them) times the
+// cost of one step.
 #pragma once
 
-#include "common/accel/build/wide/collapse_cost.h"
+#include "common/accel/build/binary/binary_tree.h"
+#include "common/accel/build/binary/build_tree.h"
+#include "common/accel/build/wide/encode_cwbvh.h"
+#include "common/accel/nodes.h"
 
 namespace pt {
+
+PT_HD std::uint32_t wide_leaf_max(const TreeCosts& costs) {
+  return costs.leaf_max < cwbvh_leaf_max ? costs.leaf_max : cwbvh_leaf_max;
+}
+
+/// The cost of a subtree as a leaf of a wide node; infinite when it has too many triangles. Those
+/// of a leaf are tested side by side: two take the time of one.
+PT_HD float wide_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
+  return count <= wide_leaf_max(costs) ? multiply_rounded(area, costs.triangle) : HUGE_VALF;
+}
+
+PT_HD CollapseTable primitive_table(const TreeCosts& costs, float area) {
+  CollapseTable table;
+  for (float& cost : table.cost) cost = wide_leaf_cost(costs, area, 1);
+  return table;
+}
+
+/// The least cost of representing two subtrees by j children in all, 2 <= j <= 8, and the first
+/// one's share of them.
+struct ChildSplit {
+  float cost = HUGE_VALF;
+  int left = 1;
+};
+
+PT_HD ChildSplit split_children(const CollapseTable& a, const CollapseTable& b, int j) {
+  ChildSplit best;
+  PT_UNROLL(7)
+  for (int k = 1; k < cwbvh_width; ++k) {
+    if (k >= j) continue;
+    const float cost = add_rounded(a.cost[k - 1], b.cost[j - k - 1]);
+    if (cost < best.cost) best = {cost, k};
+  }
+  return best;
+}
+
+/// The table of the node that joins two subtrees.
+PT_HD CollapseTable join_tables(const TreeCosts& costs, const CollapseTable& a,
+                                const CollapseTable& b, float area, std::uint32_t count) {
+  CollapseTable table;
+  const float inner =
+      add_rounded(split_children(a, b, cwbvh_width).cost, multiply_rounded(area, costs.node));
+  table.cost[0] = fminf(inner, wide_leaf_cost(costs, area, count));
+  PT_UNROLL(6)
+  for (int j = 2; j < cwbvh_width; ++j) {
+    table.cost[j - 1] = fminf(table.cost[j - 2], split_children(a, b, j).cost);
+  }
+  table.cost[cwbvh_width - 1] = 0;
+  return table;
+}
+
+/// The cost of a subtree as a leaf of a binary tree; infinite when it has too many triangles.
+/// costs.leaf_max < many_primitives.
+PT_HD float binary_leaf_cost(const TreeCosts& costs, float area, std::uint32_t count) {
+  return count <= costs.leaf_max
+             ? multiply_rounded(multiply_rounded(area, static_cast<float>(count)), costs.triangle)
+             : HUGE_VALF;
+}
+
+/// The least cost of the node that joins two subtrees of costs `a` and `b`, as a node or a leaf.
+PT_HD float binary_cost(const TreeCosts& costs, float a, float b, float area, std::uint32_t count) {
+  const float inner = add_rounded(add_rounded(a, b), multiply_rounded(area, costs.node));
+  return fminf(inner, binary_leaf_cost(costs, area, count));
+}
+
+/// Whether a subtree, whose box has half the surface `area`, is to be a leaf of the binary tree.
+PT_HD bool is_binary_leaf(const BuildTree& tree, const TreeCosts& costs, TreeRef ref, float area) {
+  if (ref_count(ref) > costs.leaf_max) return false;
+  return is_primitive(ref) ||
+         binary_leaf_cost(costs, area, ref_count(ref)) <= tree.binary_costs[ref_index(ref)];
+}
 
 /// In any order.
 struct WideChildren {
@@ -29,43 +104,6 @@ PT_HD T get_at(const T (&array)[cwbvh_width], int index) {
 }
 
 }  // namespace detail
-
-/// Opens the largest child until there are eight; subtrees that may be leaves are leaves.
-PT_HD WideChildren greedy_children(const BuildTree& tree, const TreeCosts& costs, TreeRef root) {
-  const std::uint32_t leaf_max = wide_leaf_max(costs);
-  WideChildren children;
-  float area[cwbvh_width];  // negative: stays closed
-  PT_UNROLL(8)
-  for (int i = 0; i < cwbvh_width; ++i) children.ref[i] = root, area[i] = -1.0f;
-  children.count = 1;
-  area[0] = is_primitive(root) ? -1.0f : 0.0f;
-  while (children.count < cwbvh_width) {
-    int best = 0;
-    float best_area = area[0];
-    PT_UNROLL(8)
-    for (int i = 1; i < cwbvh_width; ++i) {
-      if (area[i] > best_area) best = i, best_area = area[i];
-    }
-    if (!(best_area >= 0.0f)) break;
-    const BuildNode node = load_node(tree, detail::get_at(children.ref, best));
-    const auto area_of = [&](TreeRef ref) {
-      if (ref_count(ref) <= leaf_max) return -1.0f;
-      return fmaxf(load_node(tree, ref).bounds().half_area(), 0.0f);  // NaN counts as 0
-    };
-    detail::set_at(children.ref, best, node.left);
-    detail::set_at(area, best, area_of(node.left));
-    detail::set_at(children.ref, children.count, node.right);
-    detail::set_at(area, children.count, area_of(node.right));
-    ++children.count;
-  }
-  PT_UNROLL(8)
-  for (int i = 0; i < cwbvh_width; ++i) {
-    if (i < children.count && ref_count(children.ref[i]) <= leaf_max) {
-      children.leaf_mask |= 1u << i;
-    }
-  }
-  return children;
-}
 
 PT_HD CollapseTable load_table(const BuildTree& tree, const TreeCosts& costs, TreeRef ref) {
   if (is_primitive(ref)) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "common/image/measure_exposure.h"
+#include "common/image/tone_mapping.h"
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/prepare/prepare_camera.h"

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "common/error/error.h"
-#include "common/error/quoted.h"
 
 namespace pt {
 namespace {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/error/quoted.h"
+#include "common/error/error.h"
 #include "common/math/vec.h"
 #include "common/scene/load/files/load_options.h"
 

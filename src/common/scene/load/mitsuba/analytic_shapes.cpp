@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "common/geometry/mesh.h"
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/math/vec.h"
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/geometry/primitive_bounds.h"
+#include "common/geometry/primitives.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 
 namespace pt::mitsuba {

@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "common/error/error.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/obj/mtl.h"
 

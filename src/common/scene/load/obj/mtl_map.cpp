@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/error/error.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/obj/mtl.h"
 

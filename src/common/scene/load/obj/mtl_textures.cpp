@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "common/error/error.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/obj/mtl.h"
 #include "common/texture/sample_texture.h"

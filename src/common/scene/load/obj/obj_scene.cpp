@@ -5,8 +5,7 @@
 #include <memory>
 #include <set>
 
-#include "common/error/error_context.h"
-#include "common/error/quoted.h"
+#include "common/error/error.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/obj.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"

@@ -6,7 +6,7 @@
 #include "common/light/light.h"
 #include "common/light/light_bounds.h"
 #include "common/light/spot_light.h"
-#include "common/math/frame.h"
+#include "common/math/transform.h"
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/pbrt/scene_parts.h"

@@ -4,11 +4,10 @@
 #include <cstring>
 #include <utility>
 
-#include "common/error/error_context.h"
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/image/codecs/image_codec.h"
-#include "common/image/codecs/integer_image.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/texture/sample_texture.h"
 

@@ -10,9 +10,7 @@
 #include <optional>
 
 #include "common/error/error.h"
-#include "common/error/error_context.h"
-#include "common/error/quoted.h"
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/files/whole_file.h"

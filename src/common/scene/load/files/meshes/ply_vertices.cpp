@@ -6,8 +6,8 @@
 #include <array>
 #include <limits>
 
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/meshes/ply.h"
 
 namespace pt {

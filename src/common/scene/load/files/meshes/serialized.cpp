@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/error/error_context.h"
+#include "common/error/error.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/whole_file.h"
 

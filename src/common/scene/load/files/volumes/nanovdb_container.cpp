@@ -6,8 +6,8 @@
 #include <cstring>
 #include <span>
 
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/volumes/nanovdb.h"
 
 namespace pt::nanovdb_files {

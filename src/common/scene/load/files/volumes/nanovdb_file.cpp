@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/error/error_context.h"
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/scene/load/files/volumes/nanovdb.h"
 #include "common/scene/load/files/volumes/volume_files.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "common/error/error_context.h"
+#include "common/error/error.h"
 #include "common/scene/load/files/volumes/volume_files.h"
 #include "common/scene/load/files/whole_file.h"
 

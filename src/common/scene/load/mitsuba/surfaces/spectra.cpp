@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "common/image/codecs/tone_mapping.h"
+#include "common/image/tone_mapping.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/mitsuba/surfaces/textures.h"
 #include "common/scene/load/mitsuba/xml/elements.h"

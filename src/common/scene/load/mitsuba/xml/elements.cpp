@@ -8,7 +8,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "common/error/quoted.h"
+#include "common/error/error.h"
 
 namespace pt::mitsuba {
 

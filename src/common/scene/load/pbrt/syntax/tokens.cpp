@@ -12,7 +12,6 @@
 
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
-#include "common/error/quoted.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/files/whole_file.h"
 
