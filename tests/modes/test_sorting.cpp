@@ -132,7 +132,7 @@ class SortedPaths {
       bool alive = true;
       for (int i = 0; i < rays && alive; ++i) {
         alive = follow_ray<Traits>(scene_, ray, path, radiance, limits_, random,
-                                   mask_key<Traits>(scene_, id));
+                                   path_hash<Traits>(scene_, id));
       }
       batch_.store(path, radiance);
       if (!alive) continue;
@@ -156,7 +156,7 @@ class SortedPaths {
     path.index = path_index;
     const Ray ray = begin_path(scene_, id, random);
     const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), limits_, random,
-                                               mask_key<Traits>(scene_, id));
+                                               path_hash<Traits>(scene_, id));
     return {radiance, path.packed_rays()};
   }
 

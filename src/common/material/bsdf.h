@@ -34,7 +34,7 @@ struct BsdfSample {
   float pdf = 0.0f;            ///< per solid angle; meaningless for a delta lobe
   std::uint8_t lobe = 0;       ///< of Lobe, one side and one kind
   float eta = 1.0f;            ///< index of refraction beyond over before; 1 for reflection
-  float outside = 1.0f;        ///< undoes the 1 / eta^2 of radiance inside, for Russian roulette
+  float eta_scale = 1.0f;      ///< undoes the 1 / eta^2 of radiance inside, for Russian roulette
 
   PT_HD bool is_delta() const { return (lobe & Lobe::delta) != 0; }
 };

@@ -48,7 +48,7 @@ PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, 
   PlainLight plain = is_triangle(light.kind) ? sample_triangle_light(scene, light, from, u0, u1)
                                              : sample_other_light(light, from, u0, u1);
   IncidentLight& incident = plain.incident;
-  incident.radiance = textured_apart(scene, incident.radiance, light.emission_texture, plain.uv);
+  incident.radiance = textured_noinline(scene, incident.radiance, light.emission_texture, plain.uv);
   return incident;
 }
 
@@ -75,8 +75,8 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver 
 }
 
 /// LightSelector::pmf, not inlined: few paths hit an emitter, and it is as long as sample().
-PT_NOINLINE inline float light_pmf_apart(LightSelector selector, Vec3 point, Receiver receiver,
-                                         std::uint32_t light) {
+PT_NOINLINE inline float light_pmf_noinline(LightSelector selector, Vec3 point, Receiver receiver,
+                                            std::uint32_t light) {
   return selector.pmf(point, receiver, light);
 }
 
@@ -100,7 +100,7 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
     const std::uint32_t light_index = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
     const Light light = load_wide(&selector.lights[light_index]);
-    return light_pmf_apart(selector, ray.origin, receiver, light_index) *
+    return light_pmf_noinline(selector, ray.origin, receiver, light_index) *
            TriangleSampler(light.a - ray.origin, light.b, light.c).pdf(ray.direction, hit.t);
   }
 }

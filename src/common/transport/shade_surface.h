@@ -42,7 +42,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   const Emission emission = scene.emission(surface.material);
   Color Le = emission.radiance;
   if constexpr (Traits::lighting == Lighting::full) {
-    Le = textured_apart(scene, Le, emission.texture, surface.uv);
+    Le = textured_noinline(scene, Le, emission.texture, surface.uv);
   }
   float pdf;
   if constexpr (Traits::has_media) {  // seen from where the path was scattered last
@@ -259,7 +259,7 @@ PT_HD_IN_KERNEL Scattering shade_surface(const Scene& scene, const Ray& ray, con
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  if (limits.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
+  if (limits.is_roulette(path.rays)) play_roulette(path.beta, choice, next.eta_scale);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
   if constexpr (Traits::has_media) {
