@@ -3,7 +3,7 @@
 
 #include "common/geometry/ray.h"
 #include "common/light/receiver.h"
-#include "common/medium/channel_densities.h"
+#include "common/medium/distance_sampling.h"
 #include "common/medium/medium.h"
 
 namespace pt {

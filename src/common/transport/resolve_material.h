@@ -12,7 +12,7 @@
 #pragma once
 
 #include "common/math/frame.h"
-#include "common/texture/texture_gradient.h"
+#include "common/texture/sample_texture.h"
 #include "common/transport/surface.h"
 
 namespace pt {

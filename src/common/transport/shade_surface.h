@@ -139,7 +139,7 @@ PT_HD bool is_pane(const Material& material) {
 /// The glass of a pane, with its textures in kernels of any kind.
 PT_HD ThinDielectric pane_at(const Scene& scene, const Surface& surface) {
   using WithTextures = Traits<Accel::brute, Geometry::triangles, Lighting::full>;
-  return ThinDielectric::make(SurfaceParameters<WithTextures>(scene, surface));
+  return make_bsdf<ThinDielectric>(SurfaceParameters<WithTextures>(scene, surface));
 }
 
 /// A surface that lets light through.
