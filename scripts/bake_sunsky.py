@@ -73,12 +73,12 @@ def main():
           "this\n// notice:\n//")
     for line in licence:
         print(wrap("// " + line, "// ").rstrip() or "//")
-    print('#include "common/light/sky/sunsky_data.h"\n\nnamespace pt {\n')
+    print('#include "common/light/sky/sunsky.h"\n\nnamespace pt::sunsky {\n')
     print("// clang-format off")
     print(array("sky_shapes", "10 * 2 * 6 * 3 * 9", fields["sky_params_rgb"]))
     print(array("sky_radiances", "10 * 2 * 6 * 3", fields["sky_rad_rgb"] / CIE_Y))
     print(array("sun_irradiances", "10 * sun_node_count * 3", suns))
-    print("// clang-format on\n\n}  // namespace pt")
+    print("// clang-format on\n\n}  // namespace pt::sunsky")
 
 
 if __name__ == "__main__":

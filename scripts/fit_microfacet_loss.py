@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Writes src/common/material/microfacet_loss_fit.h.
+"""Prints the coefficients of src/common/material/microfacet_loss.h.
 
-What microfacets of reflectance 1 lose by single scattering is integrated for many roughnesses and
-cosines, and fitted by polynomials, as microfacet_loss.h says. Prints the largest errors.
+The energy that microfacets of reflectance 1 lose by single scattering is integrated for many
+roughnesses and cosines and fitted by polynomials (microfacet_loss.h). Prints the largest errors.
 
-Usage: scripts/fit_microfacet_loss.py > FILE; clang-format-14 -i FILE. Takes a minute; needs numpy.
+Usage: scripts/fit_microfacet_loss.py. Takes a minute; needs numpy.
 """
 import math
 import sys
 
 import numpy as np
 
-POWERS, ROUGHNESSES, AVERAGES = 7, 6, 4  # terms
+POWERS, ROUGHNESSES, AVERAGES = 7, 6, 4  # terms, as in MicrofacetLossFit
 erf = np.vectorize(math.erf)
 
 
@@ -102,19 +102,6 @@ def text(numbers):
 
 
 def main():
-    print("""// Made by scripts/fit_microfacet_loss.py: the numbers of microfacet_loss.h.
-#pragma once
-
-#include "common/platform/platform.h"
-
-namespace pt {
-
-struct MicrofacetLossFit {
-  static constexpr int powers = %d, roughnesses = %d, averages = %d;
-  float loss[powers][roughnesses];
-  float log_average[averages], average[averages];
-};
-""" % (POWERS, ROUGHNESSES, AVERAGES))
     for name in ("ggx", "beckmann"):
         error, c = fit_loss(name == "beckmann")
         average_error, d = fit_average(c, name == "beckmann")
@@ -122,7 +109,6 @@ struct MicrofacetLossFit {
         rows = ", ".join(text(row) for row in c.reshape(POWERS, ROUGHNESSES))
         print(f"PT_HD constexpr MicrofacetLossFit {name}_loss_fit() {{")
         print(f"return {{{{{rows}}}, {text(d[:AVERAGES])}, {text(d[AVERAGES:])}}};\n}}\n")
-    print("}  // namespace pt")
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ PT_HD_IN_KERNEL void trace_paths(const Scene& scene, const Source& source,
   Color radiance(0.0f);
   Ray ray;
   Hit hit;
-  const auto path_key = [&] { return mask_key<Traits>(scene, id); };
+  const auto path_key = [&] { return path_hash<Traits>(scene, id); };
   PathRegisters<Traits, decltype(path_key)> registers{scene, path_key, radiance, ray};
   while (work.any(working)) {
     bool ended = false;

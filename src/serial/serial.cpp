@@ -31,7 +31,7 @@ class SerialRenderer : public CpuRenderer {
       path.index = i;
       const Ray ray = begin_path(scene_, id, random);
       batch.store(path, follow_path<Traits>(scene_, ray, path, Color(0.0f), path_settings_, random,
-                                            mask_key<Traits>(scene_, id)));
+                                            path_hash<Traits>(scene_, id)));
     }
   }
 };

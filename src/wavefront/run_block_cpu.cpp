@@ -19,7 +19,7 @@ void run_block(const PathRays& stage, const BlockTraits& traits, const SampleBuf
     std::uint32_t key = 0;
     if (traits.has_masks) {
       const PathState path = stage.pool.load_path_id(slots[i]);
-      key = next_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path.index)), path.rays);
+      key = next_ray_key(scene, path_hash<MaskedRays>(scene, samples.id_of(path.index)), path.rays);
       length = ray_length(scene, ray.direction, key);
     }
     rays.append(ray, length, key);
@@ -46,7 +46,7 @@ void run_block(const ShadowRays& stage, const BlockTraits& traits, const SampleB
     const ShadowRay shadow = stage.pool.load_shadow(slots[i], path_index);
     std::uint32_t key = 0;
     if (traits.has_masks) {
-      key = shadow_ray_key(scene, mask_key<MaskedRays>(scene, samples.id_of(path_index)),
+      key = shadow_ray_key(scene, path_hash<MaskedRays>(scene, samples.id_of(path_index)),
                            stage.pool.load_shadow_rays(slots[i]));
     }
     rays.append(shadow.ray, shadow.distance, key);

@@ -224,7 +224,7 @@ struct IntersectRays : PathRays {
     std::uint32_t key = 0;
     if constexpr (Traits::has_masks) {
       const PathState path = pool.load_path_id(slot);
-      key = next_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path.index)), path.rays);
+      key = next_ray_key(scene, path_hash<Traits>(scene, samples.id_of(path.index)), path.rays);
     }
     Ray ray = pool.load_ray(slot);
     set_lanes(ray, pool.path_lanes(lanes_of(scene), slot));
@@ -239,11 +239,11 @@ struct IntersectRays : PathRays {
   }
 };
 
-/// mask_key of scenes with media.
+/// path_hash of scenes with media.
 PT_HD std::uint32_t media_key(const Scene& scene, const SampleBuffer& samples,
                               std::uint32_t path_index) {
   using AnyWithMedia = Traits<Accel::brute, Geometry::mixed, Lighting::sky, true, true>;
-  return mask_key<AnyWithMedia>(scene, samples.id_of(path_index));
+  return path_hash<AnyWithMedia>(scene, samples.id_of(path_index));
 }
 
 /// The shading for which a path waits that has flown to `hit`.
@@ -452,7 +452,7 @@ struct TraceShadowRays : ShadowRays {
     ShadowRay shadow = pool.load_shadow(slot, path_index);
     set_lanes(shadow.ray, pool.shadow_lanes(lanes_of(scene), slot));
     if constexpr (Traits::has_masks) {
-      key = shadow_ray_key(scene, mask_key<Traits>(scene, samples.id_of(path_index)),
+      key = shadow_ray_key(scene, path_hash<Traits>(scene, samples.id_of(path_index)),
                            pool.load_shadow_rays(slot));
     }
     if constexpr (Traits::has_media) {
@@ -499,7 +499,7 @@ struct FollowPaths {
     lanes_of(ray).count(as == StageId::bounce ? LanePoint::bounce : LanePoint::finish);
     Color radiance(0.0f);
     if (has_lights && !starts_paths) radiance = load_wide(&samples.samples[path.index]).radiance;
-    const std::uint32_t key = mask_key<Traits>(scene, id_of_path);
+    const std::uint32_t key = path_hash<Traits>(scene, id_of_path);
     FreeFlight flight;
     if constexpr (Traits::has_media) {
       if (!starts_paths) flight = pool.load_flight(slot);

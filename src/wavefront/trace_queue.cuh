@@ -132,7 +132,7 @@ struct MaskedRays : Rays {
     const std::uint32_t first = Rays::fetch(lane, reserved, record, count);
     if (static_cast<int>(lane) < count) {
       const auto path_key = [this](std::uint32_t path_index) {
-        return mask_key<MaskedTraits>(scene, names.id_of(path_index));
+        return path_hash<MaskedTraits>(scene, names.id_of(path_index));
       };
       record.t_min =
           __uint_as_float(this->key_of(scene, this->rays.slot(first + lane), path_key, record));

@@ -222,7 +222,7 @@ TEST(FirstHit, AlbedoOfGlassFromWithin) {
     MaterialDescription glass = make_dielectric(glass_tint, 1.5f);
     if (roughness > 0) {
       glass =
-          describe_all<RoughDielectric>(glass_tint, glass_tint, 1.5f, roughness, roughness, 0.0f);
+          make_material<RoughDielectric>(glass_tint, glass_tint, 1.5f, roughness, roughness, 0.0f);
     }
     scene.add_sphere({0, 0, eye_z}, 20, scene.add_material(glass));
     scene.meshes.push_back(triangle_mesh({90, 0, 0}, {91, 0, 0}, {90, 1, 0}, 0));

@@ -6,7 +6,7 @@
 
 #include "common/geometry/primitives.h"
 #include "common/light/area_light.h"
-#include "common/light/sky/sky.h"
+#include "common/light/sky/environment.h"
 #include "statistics.h"
 
 namespace pt {

@@ -2,7 +2,7 @@
 // and the bounds of lamps, as geometry does.
 #include <gtest/gtest.h>
 
-#include "common/light/build_light_tree.h"
+#include "common/light/light_tree.h"
 #include "common/transport/sample_light.h"
 #include "scene/lamp_rooms.h"
 #include "statistics.h"
@@ -109,7 +109,7 @@ TEST(LightBounds, BoundsOfAProjector) {
       TestRandom random(2);
       for (int i = 0; i < 100'000; ++i) {
         const Vec3 way = normalize(Vec3(random.direction()));
-        if (project(light, way).factor <= 0) continue;
+        if (light.as<ProjectorLight>().project(way).factor <= 0) continue;
         widest = std::max(widest, std::acos(double{glm::dot(way, bounds.axis)}));
       }
       EXPECT_LE(widest, bounds.cone + bounds.emission);

@@ -1,5 +1,5 @@
 // What holds of every light of the list, a new one included.
-#include "common/light/build_light_tree.h"
+#include "common/light/light_tree.h"
 #include "common/transport/sample_light.h"
 #include "statistics.h"
 
@@ -11,9 +11,9 @@ template <class Test>
 void for_each_delta_kind(const Test& test) {
   int count = 0;
   for_each_type(Lights{}, [&]<class Type>(std::type_identity<Type>) {
-    if constexpr (requires(const DeltaLight& light) { Type::power(light, 1.0f); }) {
-      SCOPED_TRACE(testing::Message() << "kind " << static_cast<int>(Type::kind));
-      ++count, test(Type::kind);
+    if constexpr (requires(const DeltaLight& light) { Type::make(light); }) {
+      SCOPED_TRACE(testing::Message() << "kind " << static_cast<int>(Type::type));
+      ++count, test(Type::type);
     }
   });
   EXPECT_GE(count, 4);
@@ -39,14 +39,14 @@ TEST(Lights, ThoseWithoutExtentAreSampledAlone) {
     TestRandom random(3);
     int lit = 0;
     for (int i = 0; i < 2000; ++i) {
-      const Vec3 from = light.a + Vec3(5.0 * random.direction());
+      const Vec3 from = lamp_of(kind).position + Vec3(5.0 * random.direction());
       const IncidentLight s =
           sample_other_light(light, from, random.unit(), random.unit()).incident;
       ASSERT_EQ(s.pdf, 1.0f);
       ASSERT_TRUE(s.is_delta);
       ASSERT_NEAR(glm::length(s.wi), 1, 1e-6);
       if (has_position(kind)) {
-        ASSERT_LT(glm::length(s.end), glm::length(light.a - from));
+        ASSERT_LT(glm::length(s.end), glm::length(lamp_of(kind).position - from));
       } else {
         ASSERT_GE(glm::length(s.end), 0.99f * beyond_scene);
       }
@@ -63,12 +63,12 @@ TEST(Lights, ShineWithinTheirBounds) {
     const std::optional<LightBounds> bounds = bounds_of(light);
     ASSERT_EQ(bounds.has_value(), has_position(kind));
     if (!bounds) return;
-    EXPECT_EQ(bounds->box.min, light.a);
-    EXPECT_EQ(bounds->box.max, light.a);
+    EXPECT_EQ(bounds->box.min, lamp_of(kind).position);
+    EXPECT_EQ(bounds->box.max, lamp_of(kind).position);
     const double widest = double{bounds->cone} + bounds->emission + 1e-5;
     TestRandom random(4);
     for (int i = 0; i < 20'000; ++i) {
-      const Vec3 from = light.a + Vec3(random.uniform(0.1, 9) * random.direction());
+      const Vec3 from = lamp_of(kind).position + Vec3(random.uniform(0.1, 9) * random.direction());
       const IncidentLight s =
           sample_other_light(light, from, random.unit(), random.unit()).incident;
       if (is_black(s.radiance)) continue;

@@ -1,5 +1,5 @@
 // Triangles by their solid angle, against sums over their area in double precision.
-#include "common/light/spherical_triangle.h"
+#include "common/light/triangle_light.h"
 #include "statistics.h"
 
 namespace pt {

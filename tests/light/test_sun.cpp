@@ -1,6 +1,6 @@
 // The sun: a disk infinitely far away, and the sky's model, whose values are Mitsuba 3.9.1's.
+#include "common/light/distant_lights.h"
 #include "common/light/sky/sunsky.h"
-#include "common/light/sun.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "render_serial.h"
 #include "scene/lamp_rooms.h"

@@ -32,7 +32,7 @@ void expect_fine(const BsdfSample& s) {
   EXPECT_NEAR(glm::length(Vec3d(s.wi)), 1, 1e-5);
   EXPECT_TRUE(std::isfinite(s.pdf) && s.pdf >= 0) << s.pdf;
   EXPECT_TRUE(std::isfinite(s.eta) && s.eta > 0);
-  EXPECT_TRUE(std::isfinite(s.outside) && s.outside > 0);
+  EXPECT_TRUE(std::isfinite(s.eta_scale) && s.eta_scale > 0);
 }
 
 template <class Bsdf>

@@ -49,7 +49,7 @@ TEST(OrenNayar, IsThePapersQualitativeModel) {
 TEST(Phong, IsThePapersModel) {
   const Vec3d diffuse(0.25, 0.5, 0.1), specular(0.7, 0.4, 0.2);
   for (const double exponent : {1.0, 7.5, 200.0}) {
-    const Phong bsdf{{Color(diffuse), Color(specular)}, static_cast<float>(exponent)};
+    const Phong bsdf{Color(diffuse), Color(specular), static_cast<float>(exponent)};
     for_each_pair([&](const Vec3d& wo, const Vec3d& wi) {
       const Vec3d mirror(-wo.x, -wo.y, wo.z);
       const double cosine = std::max(0.0, glm::dot(mirror, wi));
@@ -64,8 +64,7 @@ TEST(Phong, IsThePapersModel) {
 TEST(Ward, IsThePapersModel) {
   const Vec3d diffuse(0.25, 0.5, 0.1), specular(0.7, 0.4, 0.2);
   const double ax = 0.15, ay = 0.6;
-  const Ward bsdf{
-      {Color(diffuse), Color(specular)}, static_cast<float>(ax), static_cast<float>(ay)};
+  const Ward bsdf{Color(diffuse), Color(specular), static_cast<float>(ax), static_cast<float>(ay)};
   for_each_pair([&](const Vec3d& wo, const Vec3d& wi) {
     const Vec3d h = glm::normalize(wo + wi);
     const Angles angles = angles_of(h);

@@ -146,7 +146,7 @@ double second_albedo(const CompensatedConductor& bsdf, const Vec3d& wo) {
   const double across = std::atan2(wo.y, wo.x) + pi_double / 2;
   return pi_double * mean_over_directions([&](double cosine) {
            const Vec3 o(wo), i(tilted(cosine, across));
-           const BsdfValue both = bsdf.evaluate(o, i), first = bsdf.single.evaluate(o, i);
+           const BsdfValue both = bsdf.evaluate(o, i), first = bsdf.Conductor::evaluate(o, i);
            return (static_cast<double>(both.f.x) - static_cast<double>(first.f.x)) / cosine;
          });
 }
@@ -193,10 +193,10 @@ TEST(CompensatedConductor, AnisotropyIsApproximate) {
 TEST(CompensatedConductor, IsWhatTheOptionMakesOfRoughConductors) {
   const auto kinds = [](bool option) {
     SceneData scene;
-    MaterialDescription rough = describe_all<Conductor>(1, 0, 1, 0.3f, 0.2f, 0), textured = rough;
+    MaterialDescription rough = make_material<Conductor>(1, 0, 1, 0.3f, 0.2f, 0), textured = rough;
     textured.parameters[3].texture = 0;
-    scene.materials = {rough, textured, describe_all<Conductor>(1, 0, 1, 0, 0, 0),
-                       describe_all<RoughDielectric>(1, 1, 1.5f, 0.3f, 0.3f, 0),
+    scene.materials = {rough, textured, make_material<Conductor>(1, 0, 1, 0, 0, 0),
+                       make_material<RoughDielectric>(1, 1, 1.5f, 0.3f, 0.3f, 0),
                        make_two_sided(0, 1)};
     prepare_materials(scene, option);
     std::vector<MaterialKind> result;
@@ -238,7 +238,7 @@ TEST(CompensatedConductor, ReflectsAboutWhatAMicrosurfaceDoes) {
         SCOPED_TRACE(testing::Message() << name << ", alpha " << alpha << ", cosine " << cosine);
         const Vec3d expected = walk.albedo(tilted(cosine), reflectance, 50'000).all;
         const Vec3d found = albedo_of(bsdf, tilted(cosine));
-        const Vec3d single = albedo_of(bsdf.single, tilted(cosine));
+        const Vec3d single = albedo_of<Conductor>(bsdf, tilted(cosine));
         for (int c = 0; c < 3; ++c) {
           EXPECT_NEAR(found[c], expected[c], alpha < 1 ? 0.045 : 0.12);
           EXPECT_LT(std::abs(found[c] - expected[c]),

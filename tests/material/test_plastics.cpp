@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/data/plastic_material.h"
-#include "common/scene/data/rough_boundary.h"
 #include "statistics.h"
 
 namespace pt {
@@ -73,7 +72,7 @@ TEST(Plastic, CoatIsMitsubas) {
     const Vec3 wo = direction(golden.cosine, 1);
     for (const float step : {-1e-5f, 1e-5f}) {
       const BsdfSample s =
-          Plastic::make(plastic).sample(wo, {0.3f, 0.4f, golden.probability + step});
+          make_bsdf<Plastic>(plastic).sample(wo, {0.3f, 0.4f, golden.probability + step});
       EXPECT_EQ(s.is_delta(), step < 0);
       if (!s.is_delta()) continue;
       EXPECT_EQ(s.wi, mirrored(wo));

@@ -1,7 +1,7 @@
 // Which channel samples a path's events, and what they then weigh.
 #include <gtest/gtest.h>
 
-#include "common/medium/channel_densities.h"
+#include "common/medium/distance_sampling.h"
 #include "statistics.h"
 
 namespace pt {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "common/medium/equiangular.h"
+#include "common/medium/distance_sampling.h"
 #include "statistics.h"
 
 namespace pt {

@@ -184,9 +184,9 @@ SceneData lamp_in_rough_glass(float inside) {
   scene.name = "lamp in glass";
   scene.media = {make_medium({0.3f, 1.0f, 2.0f}, Color(0.0f)),
                  make_medium(Color(0.1f), Color(0.0f))};
-  MaterialDescription glass = describe_all<RoughDielectric>(Color(1.0f), Color(1.0f), 1.2f);
-  glass.parameters[RoughDielectric::Index::alpha_x].value = Color(0.6f);
-  glass.parameters[RoughDielectric::Index::alpha_y].value = Color(0.6f);
+  MaterialDescription glass = make_material<RoughDielectric>(Color(1.0f), Color(1.0f), 1.2f);
+  glass[&RoughDielectric::alpha_x].value = Color(0.6f);
+  glass[&RoughDielectric::alpha_y].value = Color(0.6f);
   glass.is_boundary = true, glass.media = {1, 0};
   Mesh ball = make_ball(scene.add_material(glass));
   ball.normals.clear();
@@ -237,7 +237,7 @@ SceneData glossy_plate(bool is_before_camera) {
   scene.name = "glossy plate";
   scene.media.push_back(make_medium(Color(0.0f), Color(0.0f)));
   scene.add_quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2},
-                 scene.add_material(describe_all<Conductor>(1, 0, 1, 0.08f, 0.08f, 0)));
+                 scene.add_material(make_material<Conductor>(1, 0, 1, 0.08f, 0.08f, 0)));
   const float s = 0.15f * std::sqrt(0.5f);
   scene.add_quad({-0.15f, 0.8f - s, -0.8f - s}, {0.3f, 0, 0}, {0, 2 * s, 2 * s},
                  scene.add_material(make_diffuse(Color(0.0f), {5.0f, 6.0f, 7.0f})));

@@ -21,7 +21,7 @@ double slab_transmittance(double cosine, double eta) {
 }
 
 MaterialDescription make_pane(const Color& tint, float eta) {
-  MaterialDescription pane = describe_all<ThinDielectric>(Color(1.0f), tint, eta);
+  MaterialDescription pane = make_material<ThinDielectric>(Color(1.0f), tint, eta);
   pane.passes = true;
   return pane;
 }
@@ -163,7 +163,7 @@ TEST(Panes, HavePictures) {
   texture.width = texture.height = 1;
   texture.format = TextureFormat::linear8;
   scene.textures.push_back(texture);
-  scene.materials[1].parameters[ThinDielectric::Index::passed] = {Color(0.5f), 0};
+  scene.materials[1][&ThinDielectric::passed] = {Color(0.5f), 0};
   expect_mean(
       render_medium(scene, {{"max-depth", "2"}, {"spp", "4"}}),
       3 * 0.5 / pi_double * slab_transmittance(1, double{eta}) * 0.5 * glm::dvec3(1, 0, 0.2));

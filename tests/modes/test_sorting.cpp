@@ -131,7 +131,7 @@ class SortedPaths {
       bool alive = true;
       for (int i = 0; i < rays && alive; ++i) {
         alive = follow_ray<Traits>(scene_, ray, path, radiance, path_settings_, random,
-                                   mask_key<Traits>(scene_, id));
+                                   path_hash<Traits>(scene_, id));
       }
       batch_.store(path, radiance);
       if (!alive) continue;
@@ -155,7 +155,7 @@ class SortedPaths {
     path.index = path_index;
     const Ray ray = begin_path(scene_, id, random);
     const Color radiance = follow_path<Traits>(scene_, ray, path, Color(0.0f), path_settings_,
-                                               random, mask_key<Traits>(scene_, id));
+                                               random, path_hash<Traits>(scene_, id));
     return {radiance, path.packed_rays()};
   }
 

@@ -76,7 +76,7 @@ TEST(Dielectric, ReflectsWithFresnelsProbabilityElseRefractsBySnell) {
     const double passes = u.x < f ? 1 : 1 / (relative * relative);
     ASSERT_NEAR(s.weight.x, 0.5 * passes, 1e-6 * passes);
     // Roulette sees a path as it would be outside.
-    ASSERT_NEAR(s.outside, glm::dot(wi, n) < 0 ? double{eta} * eta : 1, 1e-5);
+    ASSERT_NEAR(s.eta_scale, glm::dot(wi, n) < 0 ? double{eta} * eta : 1, 1e-5);
     const Vec3d tangent_o = wo - cos_o * n, tangent_i = wi - glm::dot(wi, n) * n;
     if (u.x < f) {
       ++reflected;

@@ -181,7 +181,7 @@ struct BlockRays {
  private:
   __device__ std::uint32_t key_of(std::uint32_t ray_id) const {
     const PathSlot& slot = slots[ray_id / 2];
-    const std::uint32_t key = mask_key<Traits>(scene, samples.id_of(slot.load_path_index()));
+    const std::uint32_t key = path_hash<Traits>(scene, samples.id_of(slot.load_path_index()));
     return is_shadow(ray_id) ? shadow_ray_key(scene, key, slot.load_rays())
                              : next_ray_key(scene, key, slot.load_rays());
   }
@@ -529,7 +529,7 @@ class BlockWavefront {
   }
 
   __device__ std::uint32_t key_of(const PathState& path) const {
-    return mask_key<Traits>(scene_, samples_.id_of(path.index));
+    return path_hash<Traits>(scene_, samples_.id_of(path.index));
   }
 
   const Scene& scene_;

@@ -1,7 +1,10 @@
-// Sampling the primitives that emit (pbrt-v4, sections 6.2.4 and 12.4).
+// Spheres and quads that emit (pbrt-v4, sections 6.2.4 and 12.4).
 #pragma once
 
+#include <cmath>
+
 #include "common/geometry/primitives.h"
+#include "common/light/light.h"
 #include "common/light/light_sample.h"
 #include "common/math/transform.h"
 #include "common/sampling/warp.h"
@@ -80,5 +83,34 @@ PT_HD float primitive_pdf(const Primitives& primitives, std::uint32_t primitive,
              ? sphere_solid_angle_pdf(primitives.spheres[primitive], from)
              : quad_solid_angle_pdf(primitives.quad(primitive), wi, distance);
 }
+
+/// A sphere in scenes that list their lights.
+struct alignas(16) SphereLight {
+  static constexpr LightKind type = LightKind::sphere;
+  static constexpr bool has_position = true;
+
+  Vec3 center{0.0f};
+  LightKind kind = type;
+  float unused_a[3] = {};
+  float weight = 0.0f;
+  float radius_squared = 0.0f;
+  float unused_b[3] = {};
+  Color radiance{0.0f};
+  std::uint32_t emission_texture = no_texture;
+
+  PT_HD PlainLight sample(const Vec3& from, float u0, float u1) const {
+    const LightSample s = sample_sphere({center, radius_squared}, from, u0, u1);
+    return {{s.wi, s.end, radiance, s.pdf}};
+  }
+  LightBounds bounds() const {
+    LightBounds bounds;
+    const Vec3 radius(std::sqrt(radius_squared));
+    bounds.box.grow(center - radius), bounds.box.grow(center + radius);
+    bounds.cone = half_turn;
+    bounds.emission = quarter_turn;
+    bounds.intensity = 0.25f * weight;
+    return bounds;
+  }
+};
 
 }  // namespace pt

@@ -1,13 +1,13 @@
-// What sampling a light gives, and where a ray to it has to end.
+// Samples of lights, and the ends of shadow rays.
 //
-// All of it is as seen from the origin of a ray that BSDF sampling would spawn (spawn_origin), not
-// from the surface's own point: that origin lies off the surface by its error bound, which far
-// from the origin of the scene is no longer small. Then light sampling and BSDF sampling estimate
-// one and the same integral, wi and density included.
+// The reference point is the origin of a ray that BSDF sampling would spawn (spawn_origin), not the
+// surface's own point: the origin is offset from the surface by its error bound, which is not small
+// far from the scene's origin. So light sampling and BSDF sampling estimate the same integral, with
+// the same wi and density.
 //
-// Only the shadow ray's end differs from the sampled point: it lies off the light, on the side to
-// which the light emits, by all that may be rounded between the two (pbrt-v4, section 6.8.6). So
-// the ray cannot meet the light itself, and meets whatever lies below it by more than that.
+// The shadow ray ends off the sampled point, on the side to which the light emits, by the bound of
+// all rounding errors between the two (pbrt-v4, section 6.8.6). So the ray does not hit the light
+// itself, but hits a surface that covers the light by more than that.
 #pragma once
 
 #include "common/math/vec.h"
@@ -20,7 +20,7 @@ struct LightSample {
   Vec3 end = Vec3(0.0f);  ///< of a shadow ray, relative to its origin
 };
 
-/// What a light sends to a point, if nothing lies between.
+/// The light that arrives at a point, if it is not occluded.
 struct IncidentLight {
   Vec3 wi = Vec3(0.0f);
   Vec3 end = Vec3(0.0f);         ///< of a shadow ray, relative to its origin
@@ -29,13 +29,13 @@ struct IncidentLight {
   bool is_delta = false;         ///< no BSDF sample could have found it
 };
 
-/// Where a light was sampled, without its texture; `uv`: where in that.
+/// A sample without the light's texture; `uv`: where to look that up.
 struct PlainLight {
   IncidentLight incident;
   Vec2 uv = Vec2(0.0f);
 };
 
-/// How far the sampled point and the surface that a ray meets may be apart across the surface.
+/// Bound of the distance, across the surface, between the sampled point and a ray's hit point.
 struct LightError {
   float absolute = 0.0f;  ///< of the light's own size and position
   float relative = 0.0f;  ///< times the distance

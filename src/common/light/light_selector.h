@@ -18,8 +18,9 @@ struct LightChoice {
 
 /// A view. Without a tree the shading point does not matter: a light is chosen with a probability
 /// proportional to its weight. With a tree, lights that have a position are chosen by their
-/// estimated contribution at the shading point, and `table` has the others, which together get a
-/// fixed probability. So does the environment, whose power depends mostly on the size of the scene.
+/// estimated contribution at the shading point; `table` has the others, which together get a fixed
+/// probability. The environment always gets one, since its power depends mostly on the size of the
+/// scene.
 struct LightSelector {
   const Light* lights = nullptr;
   const AliasEntry* table = nullptr;  ///< [light - table_first]

@@ -3,14 +3,17 @@
 // Lights with Adaptive Tree Splitting'; bounds of the cosines as in pbrt-v4, section 12.6.3).
 #pragma once
 
+#include <vector>
+
+#include "common/light/light.h"
 #include "common/light/receiver.h"
 
 namespace pt {
 
-/// Some lights seen from afar, or one. 32 bytes: two loads. All bounds are rounded outwards, so
+/// A cluster of lights, or one light. 32 bytes: two loads. All bounds are rounded outwards, so
 /// that only lights without any contribution have importance 0.
 struct alignas(16) LightNode {
-  Vec3 center;             ///< of a ball around them
+  Vec3 center;             ///< of their bounding sphere
   float radius;            ///< 0: a point
   float intensity;         ///< luminance, W / sr, of all together in the direction that gets most
   std::uint32_t axis;      ///< packed: normals lie in a cone around it,
@@ -59,9 +62,9 @@ struct LightReceiver {
 /// Two of them can be added.
 inline constexpr float importance_max = 1e37f;
 
-/// The cosines that lights of a ball may have are bounded by the best point in it and estimated
-/// at its middle. The bound alone makes large lights near by too important (measured: 1.3 times the
-/// variance in rooms), the estimate alone is 0 for some that contribute.
+/// The cosines at the lights of a node are bounded by the best point of the bounding sphere and
+/// estimated at its centre. The bound alone makes large lights near by too important (measured: 1.3
+/// times the variance in rooms), the estimate alone is 0 for some that contribute.
 PT_HD float blend_cosine(float bound, float middle) {
   return fused_multiply_add(0.25f, bound, multiply_rounded(0.75f, fmaxf(middle, 0.0f)));
 }
@@ -99,18 +102,18 @@ PT_HD float light_importance(const LightNode& node, const LightReceiver& receive
   return dark ? 0.0f : fminf(fmaxf(importance, 0.0f), importance_max);
 }
 
-/// The share of a pair's first node; one half where neither has any importance worth the name.
+/// The share of a pair's first node; one half where the importance of both is next to 0.
 PT_HD float first_share(const LightPair& pair, const LightReceiver& receiver) {
   const float first = light_importance(pair.node[0], receiver);
   const float sum = first + light_importance(pair.node[1], receiver);
   return sum > 1e-30f ? divide(first, sum) : 0.5f;
 }
 
-/// A view. TreeOfLights (build_light_tree.h) owns the memory.
+/// A view. LightTreeData owns the memory.
 struct LightTree {
   const LightPair* pairs = nullptr;      ///< null: there is none
-  const std::uint32_t* trail = nullptr;  ///< [light]: which child, from the root on, first bit
-                                         ///< first; `outside` where the tree does not have it
+  const std::uint32_t* trail = nullptr;  ///< [light]: bit i is the child to take at depth i;
+                                         ///< `outside`: the light is not in the tree
   std::uint32_t root = 0;                ///< as LightNode::child
 
   static constexpr std::uint32_t outside = 0xffffffffu;
@@ -135,7 +138,7 @@ struct Interval {
 
   /// True with this probability.
   PT_HD bool choose(float probability) {
-    // Of 32 bits, so that each product is one instruction.
+    // 32 bits, so that each product is one instruction.
     const auto share =
         static_cast<std::uint32_t>(fminf(probability * 4294967296.0f, 4294967040.0f));
     const auto high = static_cast<std::uint32_t>(width >> 32);
@@ -177,5 +180,17 @@ PT_HD float light_tree_pmf(const LightTree& tree, const LightReceiver& receiver,
   }
   return pmf;
 }
+
+/// The memory behind a LightTree.
+struct LightTreeData {
+  std::vector<LightPair> pairs;
+  std::vector<std::uint32_t> trail;
+  std::uint32_t root = 0;
+};
+
+/// Builds the tree over all lights that have bounds, split by the surface area orientation
+/// heuristic. Without such lights there are no pairs; a single light gets a pair that is never
+/// visited.
+LightTreeData build_light_tree(const std::vector<Light>& lights);
 
 }  // namespace pt

@@ -1,6 +1,5 @@
-// The surface for which a light is chosen, as far as the choice depends on it, in 4 bytes: a path
-// brings it along to the emitter that it hits, so that the probability of the same choice can be
-// computed afterwards.
+// The orientation of the surface for which a light is chosen, in 4 bytes. A path carries it to the
+// emitter that it hits, where the probability of the same choice is computed.
 #pragma once
 
 #include "common/math/vec.h"

@@ -1,11 +1,50 @@
-// Sampling a triangle that emits, on the side to which cross(v1 - v0, v2 - v0) points.
+// A triangle that emits, on the side to which cross(v1 - v0, v2 - v0) points.
 #pragma once
 
-#include "common/light/area_light.h"
-#include "common/light/light_bounds.h"
-#include "common/light/spherical_triangle.h"
+#include "common/light/light.h"
+#include "common/math/functions.h"
+#include "common/math/vec.h"
 
 namespace pt {
+
+/// A triangle seen from the origin, sampled uniformly by solid angle (Arvo 1995, 'Stratified
+/// Sampling of Spherical Triangles'), with the half-angle form of Peters (2021, 'BRDF Importance
+/// Sampling for Polygonal Lights'), which needs one arc function only.
+struct SphericalTriangle {
+  Vec3 a, b, c;       ///< unit vectors to its corners
+  float volume;       ///< |det(a, b, c)|
+  float solid_angle;  ///< of either side
+
+  /// v: relative to the point that sees it, none of them at it. `normal` = cross(v1 - v0, v2 - v0):
+  /// of the difference, so that small triangles lose no digits.
+  PT_HD SphericalTriangle(const Vec3& v0, const Vec3& v1, const Vec3& v2, const Vec3& normal) {
+    const float la = inverse_sqrt(dot(v0, v0)), lb = inverse_sqrt(dot(v1, v1)),
+                lc = inverse_sqrt(dot(v2, v2));
+    a = la * v0, b = lb * v1, c = lc * v2;
+    volume = fabsf(dot(v0, normal)) * la * lb * lc;
+    // Van Oosterom and Strackee (1983).
+    solid_angle = 2.0f * atan2f(volume, add_rounded(1.0f + dot(a, b), dot(b, c) + dot(c, a)));
+  }
+
+  /// A unit vector into it, uniform in solid angle.
+  PT_HD Vec3 sample(float u0, float u1) const {
+    // The corner c moves towards a until the rest, between a, b and it, has the share u0.
+    const SinCos half = sincos_2pi(0.25f * inverse_pi * u0 * solid_angle);
+    const float to_a =
+        fused_multiply_add(volume, half.cos, -multiply_rounded(dot(b, c) + dot(c, a), half.sin));
+    const float to_c = (1.0f + dot(a, b)) * half.sin;
+    const Vec3 middle = add_scaled(to_a * a, to_c, c);
+    const float turn = divide(2.0f * dot(a, middle), fmaxf(dot(middle, middle), 1e-30f));
+    const Vec3 moved = add_scaled(-a, turn, middle);
+    // On the arc from b to it, uniform in the cosine of the angle to b.
+    const Vec3 apart = moved - b;
+    const float h = multiply_rounded(0.5f * u1, dot(apart, apart));  // 1 - cos
+    const Vec3 across = add_scaled(moved, -dot(moved, b), b);
+    const float sine = square_root(fmaxf(0.0f, h * (2.0f - h)));
+    const float scale = sine * inverse_sqrt(fmaxf(dot(across, across), 1e-30f));
+    return normalize(add_scaled(add_scaled(b, -h, b), scale, across));
+  }
+};
 
 /// A point of a triangle: b0 v0 + b1 v1 + b2 v2 with b0 = 1 - b1 - b2.
 struct TrianglePoint {
@@ -19,7 +58,7 @@ PT_HD TrianglePoint sample_triangle_point(float u0, float u1) {
                  : TrianglePoint{u0 - 0.5f * u1, 0.5f * u1};
 }
 
-/// How a triangle is sampled: by area or, where it covers much of the view, by solid angle
+/// How a triangle is sampled: by area or, where its solid angle is large, by solid angle
 /// (pbrt-v4, section 6.5.4). The choice depends on the triangle and the reference point alone, so
 /// that pdf() can repeat it.
 struct TriangleSampler {
@@ -37,18 +76,18 @@ struct TriangleSampler {
     return dot(normal, normal) > 0.04f * distance2 * distance2;
   }
 
-  PT_HD SphericalTriangle seen() const { return {v0, v0 + edge1, v0 + edge2, normal}; }
+  PT_HD SphericalTriangle spherical() const { return {v0, v0 + edge1, v0 + edge2, normal}; }
 
-  /// False for smaller ones, of a triangle seen edge-on, in which directions are rounded too much,
-  /// and where the reference point is a corner.
-  static PT_HD bool has_solid_angle(const SphericalTriangle& seen) {
-    return seen.solid_angle > 1e-3f;
+  /// False if the reference point is a corner, and for small solid angles (triangles seen edge-on),
+  /// in which directions are rounded too much.
+  static PT_HD bool has_solid_angle(const SphericalTriangle& triangle) {
+    return triangle.solid_angle > 1e-3f;
   }
 
   /// Density per solid angle at a point `distance` away along `wi`, from either side.
   PT_HD float pdf(const Vec3& wi, float distance) const {
     if (uses_solid_angle_sampling()) {
-      const SphericalTriangle s = seen();
+      const SphericalTriangle s = spherical();
       if (has_solid_angle(s)) return divide(1.0f, s.solid_angle);
     }
     const float cosine_times_area = 0.5f * fabsf(dot(normal, wi));
@@ -68,7 +107,7 @@ struct TriangleSampler {
 
   PT_HD TrianglePoint sample(float u0, float u1) const {
     if (uses_solid_angle_sampling()) {
-      const SphericalTriangle s = seen();
+      const SphericalTriangle s = spherical();
       if (has_solid_angle(s)) return point_along(s.sample(u0, u1));
     }
     return sample_triangle_point(u0, u1);
@@ -100,27 +139,64 @@ PT_HD TriangleLightSample sample_triangle(const Vec3& v0, const Vec3& edge1, con
   return {{wi, sampler.pdf(wi, distance), end}, point};
 }
 
-/// sample_triangle_light (transport/sample_light.h) samples it.
-struct TriangleLight {
-  static constexpr LightKind kind = LightKind::triangle;
+/// A LightError in three bytes, rounded up: the relative part to a power of two, by its exponent;
+/// the absolute one to the upper half of a float.
+struct PackedLightError {
+  std::uint8_t relative = 0;
+  std::uint16_t absolute = 0;
+
+  PT_HD LightError unpack() const {
+    return {bits_to_float(std::uint32_t{absolute} << 16),
+            bits_to_float(std::uint32_t{relative} << 23)};
+  }
+};
+
+/// `error` is neither negative nor NaN.
+inline PackedLightError pack_light_error(const LightError& error) {
+  const auto round_up = [](float x, int bits) {
+    const std::uint32_t unit = 1u << bits, largest = float_to_bits(3e38f) >> bits;
+    const std::uint32_t up = (float_to_bits(x) + (unit - 1)) >> bits;
+    return up < largest ? up : largest;
+  };
+  return {static_cast<std::uint8_t>(round_up(error.relative, 23)),
+          static_cast<std::uint16_t>(round_up(error.absolute, 16))};
+}
+
+/// sample_triangle_light (transport/sample_light.h) samples it. Edges, not vertices: far from the
+/// origin they are more precise.
+struct alignas(16) TriangleLight {
+  static constexpr LightKind type = LightKind::triangle;
   static constexpr bool has_position = true;
 
-  static LightBounds bounds(const Light& light) {
+  Vec3 vertex{0.0f};
+  LightKind kind = type;
+  std::uint8_t relative_error = 0;  ///< see PackedLightError
+  std::uint16_t absolute_error = 0;
+  Vec3 edge1{0.0f};  ///< to the second vertex
+  float weight = 0.0f;
+  Vec3 edge2{0.0f};                     ///< to the third vertex
+  std::uint32_t triangle = no_texture;  ///< its id, if it has texture coordinates, else no_texture
+  Color radiance{0.0f};
+  std::uint32_t emission_texture = no_texture;
+
+  PT_HD LightError error() const {
+    return PackedLightError{relative_error, absolute_error}.unpack();
+  }
+
+  LightBounds bounds() const {
     LightBounds bounds;
-    for (const Vec3& corner : {light.a, light.a + light.b, light.a + light.c}) {
-      bounds.box.grow(corner);
-    }
-    const Vec3 n = glm::cross(light.b, light.c);
+    for (const Vec3& corner : {vertex, vertex + edge1, vertex + edge2}) bounds.box.grow(corner);
+    const Vec3 n = glm::cross(edge1, edge2);
     if (!(glm::length(n) > 0.0f)) return bounds;
     bounds.axis = glm::normalize(n);
     bounds.emission = quarter_turn;
-    bounds.intensity = light.weight;
+    bounds.intensity = weight;
     return bounds;
   }
 };
 
-struct MirroredTriangleLight : TriangleLight {
-  static constexpr LightKind kind = LightKind::flipped_triangle;
+struct FlippedTriangleLight : TriangleLight {
+  static constexpr LightKind type = LightKind::flipped_triangle;
 };
 
 }  // namespace pt

@@ -1,4 +1,4 @@
-// Smooth glass: Fresnel reflection or Snell refraction, chosen at random (pbrt-v4, section 9.5).
+// Smooth glass: with a volume behind the surface, and a thin pane.
 #pragma once
 
 #include "common/material/bsdf.h"
@@ -6,26 +6,15 @@
 
 namespace pt {
 
+/// Smooth glass: Fresnel reflection or Snell refraction, chosen at random (pbrt-v4, section 9.5).
 struct Dielectric {
   static constexpr const char* name = "dielectric";
-  /// Indices of the material's parameters.
-  struct Index {
-    enum : int {
-      tint,  ///< in [0, 1]
-      eta,   ///< relative index of refraction, > 0
-      count
-    };
-  };
-  static constexpr int parameter_count = Index::count;
-  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
-
-  Color tint;  ///< multiplies what passes or is reflected; white for real glass
+  Color tint;  ///< multiplies reflected and transmitted light, in [0, 1]; white for real glass
   float eta;   ///< index of refraction inside over outside, > 0
 
-  template <class Parameters>
-  PT_HD static Dielectric make(const Parameters& p) {
-    return {p.color(Index::tint), p.scalar(Index::eta)};
-  }
+  static constexpr Field<Dielectric> fields[] = {{"tint", &Dielectric::tint},
+                                                 {"eta", &Dielectric::eta}};
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
 
   PT_HD bool is_delta() const { return true; }
 
@@ -50,6 +39,40 @@ struct Dielectric {
             Lobe::transmission | Lobe::delta,
             relative_eta,
             entering ? inside_eta2 : 1.0f};
+  }
+
+  PT_HD BsdfValue evaluate(const Vec3&, const Vec3&) const { return {}; }
+};
+
+/// A thin pane of smooth glass, a single surface: light is reflected or leaves undeflected, after
+/// any number of internal reflections (pbrt-v4, section 9.5.1).
+struct ThinDielectric {
+  static constexpr const char* name = "thin dielectric";
+  Color reflected;  ///< tint of reflected light, in [0, 1]; white for real glass
+  Color passed;     ///< tint of transmitted light, in [0, 1]; white for real glass
+  float eta;        ///< index of refraction inside over outside, > 0
+
+  static constexpr Field<ThinDielectric> fields[] = {{"reflected", &ThinDielectric::reflected},
+                                                     {"passed", &ThinDielectric::passed},
+                                                     {"eta", &ThinDielectric::eta}};
+  static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission;
+
+  PT_HD bool is_delta() const { return true; }
+
+  /// R + T R T + T R^3 T + ...
+  PT_HD float reflectance(float cosine) const {
+    const float once = fresnel_dielectric(fminf(fabsf(cosine), 1.0f), eta);
+    return divide(2.0f * once, 1.0f + once);
+  }
+  PT_HD Color transmittance(float cosine) const {
+    return multiply_rounded(passed, Color(1.0f - reflectance(cosine)));
+  }
+
+  PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
+    if (u.z < reflectance(wo.z)) {
+      return {mirrored(wo), reflected, 0.0f, Lobe::reflection | Lobe::delta};
+    }
+    return {-wo, passed, 0.0f, Lobe::transmission | Lobe::delta};
   }
 
   PT_HD BsdfValue evaluate(const Vec3&, const Vec3&) const { return {}; }

@@ -10,24 +10,11 @@ namespace pt {
 
 struct Metal {
   static constexpr const char* name = "metal";
-  /// Indices of the material's parameters.
-  struct Index {
-    enum : int {
-      albedo,  ///< reflectance, in [0, 1]
-      fuzz,    ///< radius of the ball, in [0, 1]
-      count
-    };
-  };
-  static constexpr int parameter_count = Index::count;
+  Color albedo;  ///< reflectance, in [0, 1]
+  float fuzz;    ///< radius of the ball, in [0, 1]; 0: a perfect mirror
+
+  static constexpr Field<Metal> fields[] = {{"albedo", &Metal::albedo}, {"fuzz", &Metal::fuzz}};
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::glossy;
-
-  Color albedo;
-  float fuzz;  ///< in [0, 1]; 0: a perfect mirror
-
-  template <class Parameters>
-  PT_HD static Metal make(const Parameters& p) {
-    return {p.color(Index::albedo), p.scalar(Index::fuzz)};
-  }
 
   PT_HD bool is_delta() const { return fuzz == 0.0f; }
 

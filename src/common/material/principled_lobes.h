@@ -1,4 +1,4 @@
-// What the two principled BSDFs share (Burley 2012, 'Physically Based Shading at Disney', and 2015,
+// Shared by the two principled BSDFs (Burley 2012, 'Physically Based Shading at Disney', and 2015,
 // 'Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering'), with the choices of
 // Mitsuba 3. Cosines here are not negative.
 #pragma once
@@ -44,11 +44,11 @@ PT_HD Microfacets principled_facets(float roughness, float anisotropic) {
 struct PrincipledBase {
   Color color;      ///< base colour, in [0, 1]
   float roughness;  ///< in [0, 1]
-  float flatness;   ///< in [0, 1]: weight of the fake subsurface scattering
+  float flatness;   ///< in [0, 1]: weight of the approximate subsurface scattering
   float sheen, sheen_tint;
 
-  /// f of diffuse, retro-reflection and sheen, with the fake subsurface scattering of Hanrahan
-  /// and Krueger; cos_d is that of the half vector and either direction.
+  /// f of diffuse, retro-reflection and sheen, with the approximate subsurface scattering of
+  /// Hanrahan and Krueger; cos_d is that of the half vector and either direction.
   PT_HD Color evaluate(float cos_o, float cos_i, float cos_d) const {
     const float Fo = schlick_weight(cos_o), Fi = schlick_weight(cos_i);
     const float Rr = 2.0f * roughness * cos_d * cos_d;
@@ -63,8 +63,41 @@ struct PrincipledBase {
                       inverse_pi * interpolate(diffuse, subsurface, flatness), color);
   }
 
-  /// Estimated reflectance, for the choice of lobes; 0 only where it reflects nothing.
+  /// Estimated reflectance, for the choice of lobes; 0 only if the base is black.
   PT_HD float albedo() const { return fmaxf(max_abs(color), sheen); }
+};
+
+/// The coat of Principled: a second, isotropic lobe with the long tail of GTR1 (Burley 2012,
+/// appendix B).
+struct Clearcoat {
+  float alpha2;  ///< roughness squared
+
+  /// `gloss` in [0, 1]: roughness from 0.1 to 0.001.
+  PT_HD static Clearcoat make(float gloss) {
+    const float alpha = fused_multiply_add(gloss, 0.001f - 0.1f, 0.1f);
+    return {alpha * alpha};
+  }
+
+  /// Density of the facets' area by their unit normal.
+  PT_HD float distribution(const Vec3& m) const {
+    const float sin2 = fused_multiply_add(m.x, m.x, multiply_rounded(m.y, m.y));
+    return (alpha2 - 1.0f) * inverse_pi /
+           (logf(alpha2) * fused_multiply_add(alpha2 * m.z, m.z, sin2));
+  }
+
+  /// Density distribution(m) m.z.
+  PT_HD Vec3 sample(float u0, float u1) const {
+    const SinCos phi = sincos_2pi(u0);
+    const float sin2 = (exp2f((1.0f - u1) * log2f(alpha2)) - alpha2) / (1.0f - alpha2);
+    const float sine = fast_sqrt(fmaxf(0.0f, sin2));
+    return {phi.cos * sine, phi.sin * sine, fast_sqrt(fmaxf(0.0f, 1.0f - sin2))};
+  }
+
+  /// Smith's G1 of both directions, with the roughness 0.25 whatever the gloss.
+  PT_HD static float visible(const Vec3& o, const Vec3& i) {
+    const Microfacets facets{0.25f, 0.25f, false};
+    return facets.visible_over_cosine(o) * facets.visible_over_cosine(i) * (o.z * i.z);
+  }
 };
 
 }  // namespace pt

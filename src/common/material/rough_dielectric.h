@@ -11,41 +11,23 @@ namespace pt {
 
 struct RoughDielectric {
   static constexpr const char* name = "rough dielectric";
-  /// Indices of the material's parameters.
-  struct Index {
-    enum : int {
-      reflected,    ///< tint of reflected light, in [0, 1]
-      passed,       ///< tint of transmitted light, in [0, 1]
-      eta,          ///< relative index of refraction, > 0
-      alpha_x,      ///< roughness along the tangent, >= 0
-      alpha_y,      ///< roughness along the bitangent, >= 0
-      is_beckmann,  ///< 0: GGX, else Beckmann
-      count
-    };
-  };
-  static constexpr int parameter_count = Index::count;
+  Color reflected;   ///< tint of reflected light, in [0, 1]; white for real glass
+  Color passed;      ///< tint of transmitted light, in [0, 1]; white for real glass
+  float eta;         ///< index of refraction inside over outside, > 0
+  float alpha_x;     ///< roughness along the tangent, >= 0
+  float alpha_y;     ///< roughness along the bitangent, >= 0; both 0: smooth
+  bool is_beckmann;  ///< distribution of the facets: Beckmann, else GGX
+
+  static constexpr Field<RoughDielectric> fields[] = {
+      {"reflected", &RoughDielectric::reflected},
+      {"passed", &RoughDielectric::passed},
+      {"eta", &RoughDielectric::eta},
+      {"alpha_x", &RoughDielectric::alpha_x},
+      {"alpha_y", &RoughDielectric::alpha_y},
+      {"is_beckmann", &RoughDielectric::is_beckmann}};
   static constexpr std::uint8_t lobes = Lobe::reflection | Lobe::transmission | Lobe::glossy;
 
-  Color reflected, passed;  ///< tints; white for real glass
-  float eta;                ///< index of refraction inside over outside, > 0
-  float alpha_x, alpha_y;   ///< roughness along the tangent and the bitangent; both 0: smooth
-  bool is_beckmann;         ///< the facets' distribution, else GGX
-
-  template <class Parameters>
-  PT_HD static RoughDielectric make(const Parameters& p) {
-    return {p.color(Index::reflected), p.color(Index::passed),
-            p.scalar(Index::eta),      p.scalar(Index::alpha_x),
-            p.scalar(Index::alpha_y),  p.scalar(Index::is_beckmann) != 0.0f};
-  }
-
-  template <class Parameter>
-  static bool uses_tangent(const Parameter* p) {
-    const auto& x = p[Index::alpha_x];
-    const auto& y = p[Index::alpha_y];
-    return x.value != y.value || x.texture != y.texture;
-  }
-
-  /// Without a change of index nothing is bent, whatever the facets.
+  /// Without a change of index light goes straight on, whatever the facets.
   PT_HD bool is_delta() const { return (alpha_x <= 0.0f && alpha_y <= 0.0f) || eta == 1.0f; }
 
   PT_HD BsdfSample sample(const Vec3& wo, const Vec3& u) const {
@@ -66,21 +48,21 @@ struct RoughDielectric {
     const bool reflects = u.z < fresnel;
     const Vec3 i = reflects ? mirrored_by(o, m, cos_o) : refracted(o, m, cos_o, relative_eta);
     if ((i.z > 0.0f) != reflects || i.z == 0.0f) return {};
-    const float shown = facets.visible_over_cosine(i) * fabsf(i.z);
-    const float seen = facets.distribution(m) * facets.visible_over_cosine(o);
+    const float g1_i = facets.visible_over_cosine(i) * fabsf(i.z);
+    const float dg1_o = facets.distribution(m) * facets.visible_over_cosine(o);
     const float inside_eta2 = eta * eta;
     if (reflects) {
       return {side * i,
-              reflected * shown,
-              multiply_rounded(0.25f * seen, fresnel),
+              reflected * g1_i,
+              multiply_rounded(0.25f * dg1_o, fresnel),
               Lobe::reflection | Lobe::glossy,
               1.0f,
               entering ? 1.0f : inside_eta2};
     }
     // Radiance inside is eta^2 times that outside (see dielectric.h).
     return {side * i,
-            passed * divide(shown, relative_eta * relative_eta),
-            multiply_rounded(seen * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel),
+            passed * divide(g1_i, relative_eta * relative_eta),
+            multiply_rounded(dg1_o * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel),
             Lobe::transmission | Lobe::glossy,
             relative_eta,
             entering ? inside_eta2 : 1.0f};
@@ -96,18 +78,18 @@ struct RoughDielectric {
     Vec3 m = normalize(add_scaled(o, reflects ? 1.0f : relative_eta, i));
     if (m.z < 0.0f) m = -m;
     const float cos_o = dot(o, m), cos_i = dot(i, m);
-    // Both sides of the facet are on the surface's sides, or it is seen from behind.
+    // Else one of the directions meets the facet from behind.
     if (!(cos_o > 0.0f && (cos_i > 0.0f) == reflects)) return {};
     const float fresnel = fresnel_dielectric(fminf(cos_o, 1.0f), relative_eta);
-    const float shown = facets.visible_over_cosine(i) * fabsf(i.z);
-    const float seen = facets.distribution(m) * facets.visible_over_cosine(o);
+    const float g1_i = facets.visible_over_cosine(i) * fabsf(i.z);
+    const float dg1_o = facets.distribution(m) * facets.visible_over_cosine(o);
     if (reflects) {
-      const float pdf = multiply_rounded(0.25f * seen, fresnel);
-      return {reflected * (pdf * shown), pdf};
+      const float pdf = multiply_rounded(0.25f * dg1_o, fresnel);
+      return {reflected * (pdf * g1_i), pdf};
     }
     const float pdf =
-        multiply_rounded(seen * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel);
-    return {passed * divide(pdf * shown, relative_eta * relative_eta), pdf};
+        multiply_rounded(dg1_o * transmission_jacobian(o, i, m, relative_eta), 1.0f - fresnel);
+    return {passed * divide(pdf * g1_i, relative_eta * relative_eta), pdf};
   }
 
  private:

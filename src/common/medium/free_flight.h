@@ -1,18 +1,17 @@
-// Tracking: how far light gets in a medium before it collides, and how much of it gets through.
+// Tracking: sampling the distance to a collision in a medium, and estimating transmittance.
 #pragma once
 
-#include "common/medium/channel_densities.h"
-#include "common/medium/equiangular.h"
+#include "common/medium/distance_sampling.h"
 #include "common/medium/majorant_walk.h"
 #include "common/medium/medium.h"
 #include "common/sampling/random.h"
 
 namespace pt {
 
-/// A flight along a ray, between two of its collisions; null collisions are those with matter that
-/// is not there.
+/// The state of a flight along a ray between two collisions. A null collision changes nothing: it
+/// comes from the majorant's excess over the density.
 struct alignas(8) FreeFlight {
-  float t = 0.0f;                ///< how far it has got
+  float t = 0.0f;                ///< distance travelled
   std::uint32_t collisions = 0;  ///< null ones so far
 
   PT_HD bool has_begun() const { return collisions > 0; }
@@ -26,7 +25,7 @@ PT_HD float sample_exponential(float rate, float u) {
   return rate > 0.0f ? divide(-logf(1.0f - u), rate) : HUGE_VALF;
 }
 
-/// Takes a flight in a homogeneous medium to its collision, or to `t_max`.
+/// Advances a flight in a homogeneous medium to its collision, or to `t_max`.
 PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_channel,
                                   float u_distance, FreeFlight& flight, ChannelDensities& densities,
                                   Color& beta) {
@@ -42,16 +41,17 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, float u_
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
 
-/// The same with a chance of `share` to place a collision by a light at a point; `u_technique`
-/// makes the choice.
+/// The same, but with probability `share` the distance is sampled equiangularly towards a light;
+/// `u_technique` makes the choice.
 PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Equiangular& towards,
                                   float share, float u_technique, float u_channel, float u_distance,
                                   FreeFlight& flight, ChannelDensities& densities, Color& beta) {
-  const bool is_drawn = u_technique < share;
+  const bool is_equiangular = u_technique < share;
   const float distance =
-      is_drawn ? towards.sample(u_distance)
-               : sample_exponential(channel(extinction, densities.choose(u_channel)), u_distance);
-  const bool collides = is_drawn || distance < t_max;
+      is_equiangular
+          ? towards.sample(u_distance)
+          : sample_exponential(channel(extinction, densities.choose(u_channel)), u_distance);
+  const bool collides = is_equiangular || distance < t_max;
   flight.t = fminf(distance, t_max);
   Color value = transmittance(extinction, flight.t);
   Color density = multiply_rounded(value, Color(1.0f - share));
@@ -64,10 +64,10 @@ PT_HD FlightEvent fly_homogeneous(const Color& extinction, float t_max, const Eq
   return collides ? FlightEvent::collides : FlightEvent::arrives;
 }
 
-/// What is drawn for the next collision of a flight, null or not, whose key is `flight_key`.
+/// The random numbers of the next collision, null or real, of the flight with this hash.
 struct CollisionDraw {
   std::uint32_t key;
-  int channel;  ///< that samples it
+  int channel;  ///< samples the collision
 
   PT_HD CollisionDraw(std::uint32_t flight_key, const FreeFlight& flight,
                       const ChannelDensities& densities)
@@ -75,13 +75,13 @@ struct CollisionDraw {
 
   PT_HD float unit(std::uint32_t index) const { return to_unit_float(combine_hash(key, index)); }
 
-  /// How much of the majorants' integral lies before it.
+  /// The integral of the majorants up to the collision.
   PT_HD float depth(const Medium& medium) const {
     return sample_exponential(pt::channel(medium.extinction, channel), unit(1));
   }
 };
 
-/// What becomes of a flight where its walk to a collision has ended: delta tracking (Woodcock et
+/// Decides between a real and a null collision at the end of a walk: delta tracking (Woodcock et
 /// al. 1965; Miller et al. 2019), with majorants that are constant in cells.
 PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                            const MajorantWalk& walk, const CollisionDraw& draw, FreeFlight& flight,
@@ -91,8 +91,8 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
   const bool same_for_all = is_grey(medium.extinction) && grid.channels == 1;  // the weight is 1
   if (walk.arrives) {
     if (!same_for_all) {
-      const Color passed = transmittance(medium.extinction, walk.depth);
-      beta = multiply_rounded(beta, densities.weigh(passed, passed));
+      const Color arrived = transmittance(medium.extinction, walk.depth);
+      beta = multiply_rounded(beta, densities.weigh(arrived, arrived));
     }
     return FlightEvent::arrives;
   }
@@ -113,7 +113,7 @@ PT_HD FlightEvent end_walk(const VolumeGrids& grids, const Medium& medium, const
   return FlightEvent::collides_with_nothing;
 }
 
-/// Takes a flight in a medium with a grid to its next collision, null or not, or to `t_max`.
+/// Advances a flight in a medium with a grid to its next collision, null or real, or to `t_max`.
 PT_HD FlightEvent fly_to_collision(const VolumeGrids& grids, const Medium& medium, const Ray& ray,
                                    float t_max, std::uint32_t key, FreeFlight& flight,
                                    ChannelDensities& densities, Color& beta) {
@@ -135,13 +135,13 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
   const float largest = fmaxf(fmaxf(e.x, e.y), e.z);
   if (!(largest > 0.0f)) return Color(1.0f);
   const Color relative = multiply_rounded(e, Color(divide(1.0f, largest)));
-  Color passed(1.0f);
+  Color estimate(1.0f);
   float t = 0.0f;
   for (std::uint32_t collisions = 0;; ++collisions) {
     const std::uint32_t event = combine_hash(key, collisions);
     const float depth = sample_exponential(largest, to_unit_float(combine_hash(event, 0)));
     const MajorantWalk walk = walk_majorants(grids, grid, ray, t, t_max, depth);
-    if (walk.arrives) return passed;
+    if (walk.arrives) return estimate;
     lanes_of(ray).count(LanePoint::flight);
     t = walk.t;
     const Color density = sample_grid(grids, grid, add_scaled(ray.origin, t, ray.direction));
@@ -150,11 +150,12 @@ PT_HD Color estimate_transmittance(const VolumeGrids& grids, const Medium& mediu
       return fmaxf(1.0f - multiply_rounded(multiply_rounded(of_density, inverse), of_channel),
                    0.0f);
     };
-    passed = multiply_rounded(passed, {missed(density.x, relative.x), missed(density.y, relative.y),
-                                       missed(density.z, relative.z)});
-    if (max_abs(passed) < little) {
+    estimate =
+        multiply_rounded(estimate, {missed(density.x, relative.x), missed(density.y, relative.y),
+                                    missed(density.z, relative.z)});
+    if (max_abs(estimate) < little) {
       if (!(to_unit_float(combine_hash(event, 1)) < survival)) return Color(0.0f);
-      passed = multiply_rounded(passed, Color(1.0f / survival));
+      estimate = multiply_rounded(estimate, Color(1.0f / survival));
     }
   }
 }

@@ -5,25 +5,25 @@
 
 namespace pt {
 
-/// Where a walk has ended.
+/// The end of a walk.
 struct MajorantWalk {
   float t;         ///< distance from the ray's origin
   float depth;     ///< integral of the majorants over the distance walked
   float majorant;  ///< of the last cell
-  bool arrives;    ///< at `t_max`, and not where the integral is what was wanted
+  bool arrives;    ///< at `t_max`, before the integral reached the given depth
 };
 
 /// Walks along one ray from cell to cell (Amanatides and Woo 1987, 'A fast voxel traversal
-/// algorithm for ray tracing'; pbrt-v4, section 11.4.2). Each ends where the integral of the
-/// majorants over the distance is what is wanted, or where the ray ends, and can stop between any
-/// two steps.
+/// algorithm for ray tracing'; pbrt-v4, section 11.4.2). A walk ends where the integral of the
+/// majorants over the distance reaches a given depth, or at the end of the ray. It can pause
+/// between any two steps.
 class CellWalk {
  public:
   enum class State { idle, walks, reaches_depth, arrives };
 
   CellWalk() = default;
 
-  /// Of a ray to `t_max`; one without end is walked only in the grid's cube.
+  /// Walks along a ray to `t_max`; if that is infinite, only in the grid's cube.
   PT_HD CellWalk(const VolumeGrid& grid, const Ray& ray, float t_max) : last_(t_max) {
     const Vec3 size(static_cast<float>(grid.cells[0]), static_cast<float>(grid.cells[1]),
                     static_cast<float>(grid.cells[2]));
@@ -44,9 +44,9 @@ class CellWalk {
     clip(origin_.z, inverse_.z, size.z);
   }
 
-  /// From a distance of `t` on.
-  PT_HD State begin(const VolumeGrid& grid, float t, float depth_wanted) {
-    t_ = fmaxf(t, first_), depth_ = 0.0f, depth_wanted_ = depth_wanted, majorant_ = 0.0f;
+  /// Starts at a distance of `t`.
+  PT_HD State begin(const VolumeGrid& grid, float t, float depth_goal) {
+    t_ = fmaxf(t, first_), depth_ = 0.0f, depth_goal_ = depth_goal, majorant_ = 0.0f;
     if (!(t_ < last_)) return State::arrives;
     const Vec3 at = add_scaled(origin_, t_, direction_);
     x_ = detail::clamp_voxel(floorf(at.x), grid.cells[0]);
@@ -58,14 +58,14 @@ class CellWalk {
     return State::walks;
   }
 
-  /// Through the present cell.
+  /// Goes through the present cell.
   PT_HD State step(const VolumeGrids& grids, const VolumeGrid& grid) {
     const float cell_end = fmaxf(fminf(fminf(end_.x, end_.y), fminf(end_.z, last_)), t_);
     majorant_ = grids.majorants[grid.first_cell + x_ + grid.cells[0] * (y_ + grid.cells[1] * z_)];
     const float deeper = fused_multiply_add(majorant_, cell_end - t_, depth_);
-    if (deeper > depth_wanted_) {
-      t_ = fminf(t_ + divide(depth_wanted_ - depth_, majorant_), cell_end);
-      depth_ = depth_wanted_;
+    if (deeper > depth_goal_) {
+      t_ = fminf(t_ + divide(depth_goal_ - depth_, majorant_), cell_end);
+      depth_ = depth_goal_;
       return State::reaches_depth;
     }
     depth_ = fminf(deeper, infinite_distance);
@@ -108,16 +108,16 @@ class CellWalk {
   Vec3 end_{};                           ///< where it leaves the present cell along each axis
   std::uint32_t x_ = 0, y_ = 0, z_ = 0;  ///< the present cell
   float t_ = 0.0f;                       ///< distance from the ray's origin
-  float depth_ = 0.0f, depth_wanted_ = 0.0f;
+  float depth_ = 0.0f, depth_goal_ = 0.0f;
   float majorant_ = 0.0f;  ///< of the last cell
 };
 
-/// Walks from `t` until the integral of the majorants over the distance is `depth_wanted`, or to
-/// `t_max`. It depends on nothing but its arguments: a flight may pause at any collision.
+/// Walks from `t` until the integral of the majorants over the distance is `depth_goal`, or to
+/// `t_max`. It depends only on its arguments, so a flight may pause at any collision.
 PT_HD MajorantWalk walk_majorants(const VolumeGrids& grids, const VolumeGrid& grid, const Ray& ray,
-                                  float t, float t_max, float depth_wanted) {
+                                  float t, float t_max, float depth_goal) {
   CellWalk walk(grid, ray, t_max);
-  CellWalk::State state = walk.begin(grid, t, depth_wanted);
+  CellWalk::State state = walk.begin(grid, t, depth_goal);
   while (state == CellWalk::State::walks) state = walk.step(grids, grid);
   return walk.result(state, t_max);
 }

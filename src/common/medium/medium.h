@@ -1,4 +1,4 @@
-// A participating medium: what absorbs, scatters and emits light between surfaces.
+// A participating medium: it absorbs, scatters and emits light between surfaces.
 #pragma once
 
 #include "common/medium/phase_function.h"
@@ -9,7 +9,7 @@ namespace pt {
 /// No medium: a vacuum.
 inline constexpr std::uint32_t no_medium = 0xffffu;
 
-/// In a scene where they may overlap.
+/// The most media in a scene in which they may overlap.
 inline constexpr std::size_t overlapping_media_max = 16;
 
 /// 64 bytes: four loads.
@@ -18,13 +18,13 @@ struct alignas(16) Medium {
   PhaseKind phase{};
   Color albedo = Color(0.0f);  ///< sigma_s / sigma_t, in [0, 1]
   float phase_parameter = 0.0f;
-  Color emission = Color(0.0f);  ///< radiance of what absorbs, W / (m^2 sr): a unit of length adds
-                                 ///< sigma_a times as much
-  // Grids whose values the above are multiplied by, or no_grid:
+  Color emission = Color(0.0f);  ///< radiance of the absorbing matter, W / (m^2 sr): a unit of
+                                 ///< length adds sigma_a times as much
+  // Grids that multiply the above, or no_grid:
   std::uint32_t density_grid = no_grid;  ///< of the extinction; >= 0
   std::uint32_t albedo_grid = no_grid;
   std::uint32_t emission_grid = no_grid;
-  std::int32_t priority = 0;  ///< where shapes overlap, that of the highest is there
+  std::int32_t priority = 0;  ///< where shapes overlap, the medium of highest priority fills them
   std::uint32_t unused = 0;
 
   PT_HD bool is_homogeneous() const { return density_grid == no_grid; }
@@ -34,34 +34,34 @@ struct alignas(16) Medium {
 struct MediumBoundary {
   std::uint16_t outside = no_medium, inside = no_medium;
 
-  /// Behind the surface, as seen by who travels along `direction` away from it.
+  /// The medium of a path that leaves the surface along `direction`.
   PT_HD std::uint16_t towards(const Vec3& direction, const Vec3& normal) const {
     return dot(direction, normal) > 0.0f ? outside : inside;
   }
   bool operator==(const MediumBoundary&) const = default;
 };
 
-/// The media of a scene. What is around a point is a number of 16 bits: the index of the medium or,
-/// where media may overlap (Schmidt and Budge 2002, 'Simple Nested Dielectrics in Ray Traced
-/// Images'), a set of them in the order of their priorities: bit i is 0 within a shape of medium i.
-/// No_medium is a vacuum in either case.
+/// The media of a scene. The medium at a point is a number of 16 bits: an index or, where media may
+/// overlap (Schmidt and Budge 2002, 'Simple Nested Dielectrics in Ray Traced Images'), a set of
+/// them in the order of their priorities: bit i is 0 within a shape of medium i. In either case
+/// no_medium is a vacuum.
 struct Media {
   const Medium* list = nullptr;
   const MediumBoundary* boundaries = nullptr;  ///< [material]
-  bool overlap = false;                        ///< what is around a point is a set
+  bool overlap = false;                        ///< the medium at a point is a set
 
-  /// The medium that is there, where one is.
+  /// `medium_id` is not no_medium.
   PT_HD const Medium* at(std::uint32_t medium_id) const {
     return list + (overlap ? highest_bit(inverted(medium_id)) : medium_id);
   }
 
-  /// The sides of a surface that is no boundary.
+  /// The sides of a surface in `medium_id` that is not a boundary.
   PT_HD MediumBoundary same_on_both_sides(std::uint16_t medium_id) const {
     if (overlap) return {};
     return {medium_id, medium_id};
   }
 
-  /// What is around who was in `medium_id` and leaves a surface along `direction`.
+  /// The medium of a path that arrived in `medium_id` and leaves a surface along `direction`.
   PT_HD std::uint16_t behind(const MediumBoundary& boundary, const Vec3& direction,
                              const Vec3& normal, std::uint16_t medium_id) const {
     if (!overlap) return boundary.towards(direction, normal);
@@ -70,7 +70,7 @@ struct Media {
                                                                     : medium_id & ~shape);
   }
 
-  /// Whether a surface is within a medium of a higher priority than its own, where it is nothing.
+  /// Whether a surface lies in a medium of a higher priority than its own: then rays ignore it.
   PT_HD bool hides(std::uint32_t material, std::uint16_t medium_id) const {
     if (!overlap) return false;
     const std::uint32_t shape = bit_of(boundaries[material]);
@@ -91,7 +91,7 @@ PT_HD Color albedo_at(const VolumeGrids& grids, const Medium& medium, const Vec3
                           sample_grid(grids, grids.grids[medium.albedo_grid], point));
 }
 
-/// The radiance of what absorbs there.
+/// The radiance of the absorbing matter at a point.
 PT_HD Color emission_at(const VolumeGrids& grids, const Medium& medium, const Vec3& point) {
   if (medium.emission_grid == no_grid) return medium.emission;
   return multiply_rounded(medium.emission,

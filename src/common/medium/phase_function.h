@@ -1,8 +1,9 @@
-// Phase functions: how a medium scatters. The closed list of them, and its dispatch.
+// Phase functions: the list of their types, and its dispatch.
 //
-// One depends on the angle alone between the directions in which a path travels before and after,
-// whose cosine is 1 where it goes straight on. Its integral over the sphere is 1, so its value is
-// the density of a direction sampled by it, and the weight of such a sample is 1. A type has
+// A phase function depends only on the angle between the directions in which a path travels before
+// and after scattering; a path that continues straight has cosine 1. Its integral over the sphere
+// is 1, so its value is the density of a direction sampled by it, and the weight of such a sample
+// is 1. A type has
 //   static constexpr const char* name          as scene files call it
 //   static T make(float parameter)
 //   float value(float cosine) const            per steradian
@@ -42,8 +43,8 @@ struct HenyeyGreenstein {
   }
 };
 
-/// Of particles smaller than the wavelength. Sampled by Frisvad 2011, 'Importance sampling the
-/// Rayleigh phase function', JOSA A 28(12).
+/// Scattering by particles smaller than the wavelength. Sampled by Frisvad 2011, 'Importance
+/// sampling the Rayleigh phase function', JOSA A 28(12).
 struct Rayleigh {
   static constexpr const char* name = "rayleigh";
 

@@ -1,4 +1,4 @@
-// Regular grids of what varies in a medium, and bounds of it that make empty space cheap.
+// Regular grids of values that vary in a medium, and their bounds, which make empty space cheap.
 #pragma once
 
 #include "common/geometry/ray.h"
@@ -8,18 +8,18 @@ namespace pt {
 
 inline constexpr std::uint32_t no_grid = 0xffffffffu;
 
-/// How a grid lies in space and in memory. Beyond its cube the outermost voxels go on, but not
-/// along a ray without end.
+/// A grid's place in space and in memory. Beyond its cube the outermost voxels continue, but not
+/// along an infinite ray.
 struct alignas(16) VolumeGrid {
   Affine to_unit;                ///< from the world to the cube [0, 1]^3, which the voxels fill
   std::uint32_t size[3] = {};    ///< voxels, each at least 1
   std::uint32_t first = 0;       ///< index of its first value; x varies fastest, then y
-  std::uint32_t cells[3] = {};   ///< of majorants; 0: it has none
+  std::uint32_t cells[3] = {};   ///< number of cells of majorants; 0: none
   std::uint32_t first_cell = 0;  ///< index of the first of them, in the same order
   std::uint32_t channels = 1;    ///< 1, or 3 that stand side by side
   std::uint32_t interpolates =
       1;                   ///< trilinear between the middles of voxels; else constant in each
-  std::uint32_t ends = 0;  ///< its outermost voxels are 0: it has nothing beyond its cube
+  std::uint32_t ends = 0;  ///< its outermost voxels are 0: it is empty beyond its cube
   std::uint32_t unused = 0;
 };
 
@@ -27,7 +27,7 @@ struct alignas(16) VolumeGrid {
 struct VolumeGrids {
   const VolumeGrid* grids = nullptr;
   const float* values = nullptr;
-  const float* majorants = nullptr;  ///< of a cell, at least the grid's largest value in it
+  const float* majorants = nullptr;  ///< per cell, an upper bound of the grid's values in it
 };
 
 namespace detail {

@@ -137,7 +137,7 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   is_negative = scene.filter.is_negative(u.x, u.y);
   Ray ray = generate_camera_path(scene, id.pixel, u);
   const float near_plane = scene.camera.distance_of_near_plane(ray.direction);
-  const std::uint32_t key = mask_key<Traits>(scene, id);
+  const std::uint32_t key = path_hash<Traits>(scene, id);
   if constexpr (Traits::has_media) {
     ViewThroughMedia view = look_through_media<Traits>(scene, ray, key);
     FirstHit first = first_hit<Traits>(scene, view.ray, view.hit, random.draw(scatter_block(1)));

@@ -6,7 +6,7 @@
 namespace pt {
 
 /// Traces one ray of a path, shades its hit, and adds to the path's radiance. Returns whether
-/// the path continues: `ray` is then its next one. `path_key` is mask_key(), `flight` where the
+/// the path continues: `ray` is then its next one. `path_key` is path_hash(), `flight` where the
 /// ray's has got already.
 template <class Traits, class Stream>
 PT_HD_IN_KERNEL bool follow_ray(const Scene& scene, Ray& ray, PathState& path, Color& radiance,

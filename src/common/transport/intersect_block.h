@@ -22,7 +22,7 @@ inline constexpr bool traces_blocks = (Traits::has_masks ? Traits::accel == Acce
                                                          : Traits::accel == Accel::brute ||
                                                                Traits::accel == Accel::cwbvh_avx2);
 
-/// Rays that have a key for masks (mask_key).
+/// Rays that have a key for masks (path_hash).
 using MaskedRays = Traits<Accel::cwbvh, Geometry::mixed, Lighting::sky, true>;
 
 /// The closest hits of rays whose t_max is infinite_distance; hits[i] is ray i's. `rays` is filled

@@ -17,9 +17,10 @@ inline std::uint32_t mask_seed(std::uint64_t seed) {
   return combine_hash(static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
 }
 
-/// A hash of the path; 0 in scenes with neither masks nor media.
+/// A path's hash, from which its rays' keys and its free flights derive; 0 in scenes with neither
+/// masks nor media.
 template <class Traits>
-PT_HD std::uint32_t mask_key(const Scene& scene, const PathId& id) {
+PT_HD std::uint32_t path_hash(const Scene& scene, const PathId& id) {
   if constexpr (!Traits::has_masks && !Traits::has_media) return 0;
   return combine_hash(combine_hash(scene.mask_seed, id.pixel), id.sample);
 }

@@ -5,7 +5,7 @@
 #include "common/geometry/ray.h"
 #include "common/light/receiver.h"
 #include "common/math/vec.h"
-#include "common/medium/channel_densities.h"
+#include "common/medium/distance_sampling.h"
 #include "common/medium/medium.h"
 
 namespace pt {
@@ -58,14 +58,14 @@ struct PathSettings {
   }
 };
 
-/// Russian roulette (pbrt-v4, section 2.2.4): a path of low throughput ends, or is weighted for
-/// those that did. `u` in [0, 1) decides. The probability to continue is at most 0.95, so that no
-/// path between perfect mirrors lives for ever. `outside` times beta is what it is judged by: in
-/// glass, what beta would be outside of it, known from the surface alone, so that a path need not
-/// keep it. (Where the path hits something else inside, the probability is smaller than needed; the
-/// mean is the same.)
-PT_HD void play_roulette(Color& beta, float u, float outside = 1.0f) {
-  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * outside, 0.95f);
+/// Russian roulette (pbrt-v4, section 2.2.4): a path of low throughput ends, or its weight grows by
+/// the inverse of the probability to continue. `u` in [0, 1) decides. The probability is at most
+/// 0.95, so that no path between perfect mirrors lives for ever. It depends on eta_scale * beta:
+/// for a path in glass, its beta outside. The surface alone gives eta_scale, so that a path need
+/// not store it. (Where the path hits something else inside, the probability is smaller than
+/// needed; the mean is the same.)
+PT_HD void play_roulette(Color& beta, float u, float eta_scale = 1.0f) {
+  const float survival = fminf(fmaxf(fmaxf(beta.x, beta.y), beta.z) * eta_scale, 0.95f);
   const float scale = u < survival ? divide(1.0f, survival) : 0.0f;
   beta = multiply_rounded(beta, Color(scale));
 }

@@ -114,7 +114,7 @@ PT_HD EagerShading eager_shading(Stream& random, const PathState& path) {
 }
 
 /// The sink of a thread that follows a path alone: its shadow rays are traced at once. `PathKey` is
-/// a function that returns mask_key().
+/// a function that returns path_hash().
 template <class Traits, class PathKey>
 struct PathRegisters {
   const Scene& scene;

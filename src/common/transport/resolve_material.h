@@ -12,7 +12,7 @@
 #pragma once
 
 #include "common/math/transform.h"
-#include "common/texture/texture_gradient.h"
+#include "common/texture/sample_texture.h"
 #include "common/transport/surface.h"
 
 namespace pt {
@@ -83,7 +83,7 @@ PT_NOINLINE inline TurnedNormal turned_normal(Surface surface, Parameter map,
 PT_HD std::uint32_t choose_blended(const Scene& scene, const Surface& surface, float& u) {
   const Parameter p = load_wide(&scene.parameters[surface.material_index]);
   const float weight =
-      fminf(fmaxf(grey_of(textured_apart(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
+      fminf(fmaxf(grey_of(textured_noinline(scene, p.value, p.texture, surface.uv)), 0.0f), 1.0f);
   const bool second = u < weight;
   u = fminf(second ? u / weight : (u - weight) / (1.0f - weight), one_minus_ulp);
   return second ? surface.material.second : surface.material.first();

@@ -22,10 +22,10 @@ PT_HD float emitter_pdf(const Scene& scene, const Ray& ray, const Hit& hit) {
          static_cast<float>(scene.light_count);
 }
 
-PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, const Vec3& from,
-                                       float u0, float u1) {
+PT_HD PlainLight sample_triangle_light(const Scene& scene, const TriangleLight& light,
+                                       const Vec3& from, float u0, float u1) {
   const TriangleLightSample s =
-      sample_triangle(light.a, light.b, light.c, light.error(), from, u0, u1);
+      sample_triangle(light.vertex, light.edge1, light.edge2, light.error(), from, u0, u1);
   PlainLight result = {{s.light.wi, s.light.end, light.radiance, s.light.pdf}};
   if (light.emission_texture != no_texture) {
     Vec3 b(1.0f - s.point.b1 - s.point.b2, s.point.b1, s.point.b2);
@@ -38,17 +38,19 @@ PT_HD PlainLight sample_triangle_light(const Scene& scene, const Light& light, c
 /// Any light but triangles and the environment. Not inlined, and by value: scenes have few of them,
 /// and their code is long.
 PT_NOINLINE inline PlainLight sample_other_light(Light light, Vec3 from, float u0, float u1) {
-  return visit_light(OtherLights{}, light.kind,
-                     [&](auto type) { return decltype(type)::type::sample(light, from, u0, u1); });
+  return visit_light(OtherLights{}, light.kind, [&]<class Type>(std::type_identity<Type>) {
+    return light.as<Type>().sample(from, u0, u1);
+  });
 }
 
 /// Any light but the environment.
 PT_HD IncidentLight sample_listed_light(const Scene& scene, const Light& light, const Vec3& from,
                                         float u0, float u1) {
-  PlainLight plain = is_triangle(light.kind) ? sample_triangle_light(scene, light, from, u0, u1)
-                                             : sample_other_light(light, from, u0, u1);
+  PlainLight plain = is_triangle(light.kind)
+                         ? sample_triangle_light(scene, light.as<TriangleLight>(), from, u0, u1)
+                         : sample_other_light(light, from, u0, u1);
   IncidentLight& incident = plain.incident;
-  incident.radiance = textured_apart(scene, incident.radiance, light.emission_texture, plain.uv);
+  incident.radiance = textured_noinline(scene, incident.radiance, light.emission_texture, plain.uv);
   return incident;
 }
 
@@ -75,8 +77,8 @@ PT_HD IncidentLight sample_light(const Scene& scene, const Vec3& from, Receiver 
 }
 
 /// LightSelector::pmf, not inlined: few paths hit an emitter, and it is as long as sample().
-PT_NOINLINE inline float light_pmf_apart(LightSelector selector, Vec3 point, Receiver receiver,
-                                         std::uint32_t light) {
+PT_NOINLINE inline float light_pmf_noinline(LightSelector selector, Vec3 point, Receiver receiver,
+                                            std::uint32_t light) {
   return selector.pmf(point, receiver, light);
 }
 
@@ -99,9 +101,10 @@ PT_HD float light_pdf(const Scene& scene, const Ray& ray, Receiver receiver, con
         is_placed<Traits>(scene) ? scene.triangles.instances[hit.instance].index : 0;
     const std::uint32_t light_index = scene.light_map.of_triangle(hit_triangle.id, instance);
     // As it was sampled: in the world, relative to its own first corner.
-    const Light light = load_wide(&selector.lights[light_index]);
-    return light_pmf_apart(selector, ray.origin, receiver, light_index) *
-           TriangleSampler(light.a - ray.origin, light.b, light.c).pdf(ray.direction, hit.t);
+    const auto light = load_wide(&selector.lights[light_index]).as<TriangleLight>();
+    return light_pmf_noinline(selector, ray.origin, receiver, light_index) *
+           TriangleSampler(light.vertex - ray.origin, light.edge1, light.edge2)
+               .pdf(ray.direction, hit.t);
   }
 }
 

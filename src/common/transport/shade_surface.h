@@ -41,7 +41,7 @@ PT_HD Color emitted_radiance(const Scene& scene, const Ray& ray, const Hit& hit,
   const Emission emission = scene.emission(surface.material);
   Color Le = emission.radiance;
   if constexpr (Traits::lighting == Lighting::full) {
-    Le = textured_apart(scene, Le, emission.texture, surface.uv);
+    Le = textured_noinline(scene, Le, emission.texture, surface.uv);
   }
   float pdf;
   if constexpr (Traits::has_media) {  // seen from where the path was scattered last
@@ -138,7 +138,7 @@ PT_HD bool is_pane(const Material& material) {
 /// The glass of a pane, with its textures in kernels of any kind.
 PT_HD ThinDielectric pane_at(const Scene& scene, const Surface& surface) {
   using WithTextures = Traits<Accel::brute, Geometry::triangles, Lighting::full>;
-  return ThinDielectric::make(SurfaceParameters<WithTextures>(scene, surface));
+  return make_bsdf<ThinDielectric>(SurfaceParameters<WithTextures>(scene, surface));
 }
 
 /// A surface that lets light through.
@@ -258,7 +258,7 @@ PT_HD_IN_KERNEL Scattering surface_scattering(const Scene& scene, const Ray& ray
     if (!is_black(result.shadow.radiance)) ++path.shadow_rays;
   }
   path.beta = multiply_rounded(path.beta, next.weight);
-  if (settings.is_roulette(path.rays)) play_roulette(path.beta, choice, next.outside);
+  if (settings.is_roulette(path.rays)) play_roulette(path.beta, choice, next.eta_scale);
   result.alive = !is_black(path.beta);
   result.ray = spawn_ray(surface.point, normalize(wi));
   if constexpr (Traits::has_media) {

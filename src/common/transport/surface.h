@@ -33,8 +33,8 @@ PT_NOINLINE inline Color multiply_texture(Color c, const Texture* texture, const
                                           Vec2 uv) {
   return c * sample_texture(texture - texture->index, texture->index, texels, uv);
 }
-PT_HD Color textured_apart(const Scene& scene, const Color& c, std::uint32_t texture,
-                           const Vec2& uv) {
+PT_HD Color textured_noinline(const Scene& scene, const Color& c, std::uint32_t texture,
+                              const Vec2& uv) {
   if (texture == no_texture) return c;
   return multiply_texture(c, &scene.textures[texture], scene.texels, uv);
 }
@@ -57,7 +57,7 @@ class SurfaceParameters {
   PT_HD Color read(int i) const {
     const Parameter p = load_wide(&scene_.parameters[surface_.material.parameters + (i - 1)]);
     if constexpr (Traits::lighting != Lighting::full) return p.value;
-    return textured_apart(scene_, p.value, p.texture, surface_.uv);
+    return textured_noinline(scene_, p.value, p.texture, surface_.uv);
   }
 
   PT_HD Color value_of(const Parameter& p) const {

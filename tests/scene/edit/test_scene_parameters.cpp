@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "common/scene/data/plastic_material.h"
-#include "common/scene/edit/bsdf_parameters.h"
-#include "common/scene/edit/material_names.h"
+#include "common/scene/edit/material_parameters.h"
 #include "common/scene/edit/scene_parameters.h"
-#include "common/scene/edit/set_material.h"
 #include "load/mitsuba_scene.h"
 
 namespace {
@@ -29,20 +28,39 @@ void set(SceneData& scene, const std::string& name, const std::vector<float>& va
   FAIL() << "no " << name;
 }
 
-TEST(BsdfParameters, HaveTheNamesOfTheirIndices) {
-  const auto principled = bsdf_parameters(kind_of<Principled>);
-  ASSERT_EQ(principled.size(), 12u);
-  EXPECT_EQ(principled[Principled::Index::spec_tint].name, "spec_tint");
-  EXPECT_TRUE(principled[Principled::Index::base_color].is_color);
-  EXPECT_FALSE(principled[Principled::Index::clearcoat_gloss].is_color);
-  for (int kind = 0; kind < Bsdfs::size; ++kind) {
-    std::set<std::string> names;
-    for (const BsdfParameter& p : bsdf_parameters(MaterialKind(kind))) {
-      EXPECT_TRUE(names.insert(p.name).second) << kind << ": " << p.name << " twice";
-      EXPECT_NE(p.name, "count") << kind;
-      EXPECT_EQ(p.name.find_first_of(":;] ("), std::string::npos) << kind << ": " << p.name;
+/// Names are the keys of scene.params: they stay.
+TEST(BsdfParameters, HaveTheirNames) {
+  const std::map<std::string, std::string> names = {
+      {"diffuse", "albedo*"},
+      {"metal", "albedo* fuzz"},
+      {"dielectric", "tint* eta"},
+      {"oren-nayar", "albedo* sigma"},
+      {"plastic", "diffuse* specular* (coat*)"},
+      {"rough plastic",
+       "diffuse* specular* alpha (coat*) (transmittance_0*) (transmittance_1*) (transmittance_2*) "
+       "is_beckmann"},
+      {"phong", "diffuse* specular* exponent"},
+      {"ward", "diffuse* specular* alpha_x alpha_y"},
+      {"conductor", "tint* eta* k* alpha_x alpha_y is_beckmann"},
+      {"compensated conductor", "tint* eta* k* alpha_x alpha_y is_beckmann"},
+      {"rough dielectric", "reflected* passed* eta alpha_x alpha_y is_beckmann"},
+      {"thin dielectric", "reflected* passed* eta"},
+      {"principled",
+       "base_color* roughness metallic spec_trans eta anisotropic spec_tint sheen sheen_tint "
+       "flatness clearcoat clearcoat_gloss"},
+      {"thin principled",
+       "base_color* roughness spec_trans eta anisotropic spec_tint sheen sheen_tint flatness "
+       "diff_trans"}};
+  for_each_type(Bsdfs{}, [&]<class Bsdf>(std::type_identity<Bsdf>) {
+    std::string text;
+    for (const BsdfParameter& p : bsdf_parameters(kind_of<Bsdf>)) {
+      const std::string name = std::string(p.name) + (p.is_color ? "*" : "");
+      text += (text.empty() ? "" : " ") + (p.is_precomputed ? "(" + name + ")" : name);
     }
-  }
+    if (names.contains(Bsdf::name)) {
+      EXPECT_EQ(text, names.at(Bsdf::name));
+    }
+  });
 }
 
 /// Sets one value of a material.

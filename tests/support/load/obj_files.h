@@ -83,7 +83,7 @@ inline std::string text_of(const SceneData& scene, const MaterialDescription& m)
     visit(m.kind, m, [&](const auto& bsdf) {
       using Bsdf = std::decay_t<decltype(bsdf)>;
       text = Bsdf::name;
-      for (int i = 0; i < Bsdf::parameter_count; ++i) text += parameter(m.parameters[i]);
+      for (int i = 0; i < parameter_count<Bsdf>; ++i) text += parameter(m.parameters[i]);
     });
   } else {
     text = m.node == MaterialNode::blend      ? "blend"

@@ -54,7 +54,7 @@ inline std::vector<BsdfCase> bsdf_cases<Dielectric>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<OrenNayar>() {
   const auto rough = [](const Color& albedo, float sigma) {
-    return describe_all<OrenNayar>(albedo, sigma);
+    return make_material<OrenNayar>(albedo, sigma);
   };
   return {{"oren-nayar, sigma 0", rough(white_case, 0), true, true, true},
           {"oren-nayar, sigma 0.2, white", rough(white_case, 0.2f), true, false, true},
@@ -99,7 +99,7 @@ inline std::vector<BsdfCase> bsdf_cases<RoughPlastic>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Phong>() {
   const auto phong = [](const Color& diffuse, const Color& specular, float exponent) {
-    return describe_all<Phong>(diffuse, specular, exponent);
+    return make_material<Phong>(diffuse, specular, exponent);
   };
   const Color white = white_case, black(0.0f);
   return {{"phong, diffuse", phong(white, black, 10), true, true, true},
@@ -113,7 +113,7 @@ inline std::vector<BsdfCase> bsdf_cases<Phong>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Ward>() {
   const auto ward = [](const Color& diffuse, const Color& specular, float x, float y) {
-    return describe_all<Ward>(diffuse, specular, x, y);
+    return make_material<Ward>(diffuse, specular, x, y);
   };
   const Color white = white_case, black(0.0f);
   return {{"ward, diffuse", ward(white, black, 0.1f, 0.1f), true, true, true},
@@ -129,7 +129,7 @@ inline std::vector<BsdfCase> bsdf_cases<Conductor>() {
   const Color eta(0.2f, 0.92f, 1.1f), k(3.9f, 2.45f, 2.14f), none(0.0f);
   const auto conductor = [](const Color& tint, const Color& e, const Color& kappa, float ax,
                             float ay, int is_beckmann) {
-    return describe_all<Conductor>(tint, e, kappa, ax, ay, is_beckmann);
+    return make_material<Conductor>(tint, e, kappa, ax, ay, is_beckmann);
   };
   return {{"smooth copper", conductor(coloured_case, eta, k, 0, 0, 0)},
           {"GGX 0.02, white", conductor(white_case, none, white_case, 0.02f, 0.02f, 0)},
@@ -156,26 +156,26 @@ inline std::vector<BsdfCase> bsdf_cases<CompensatedConductor>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<RoughDielectric>() {
   const auto glass = [](float eta, float ax, float ay, int is_beckmann) {
-    return describe_all<RoughDielectric>(white_case, white_case, eta, ax, ay, is_beckmann);
+    return make_material<RoughDielectric>(white_case, white_case, eta, ax, ay, is_beckmann);
   };
   return {
       {"smooth glass of two tints",
-       describe_all<RoughDielectric>(coloured_case, white_case, 1.5f, 0, 0, 0), false},
+       make_material<RoughDielectric>(coloured_case, white_case, 1.5f, 0, 0, 0), false},
       {"GGX glass 0.1", glass(1.5f, 0.1f, 0.1f, 0), false},
       {"GGX glass 0.5, 0.2", glass(1.33f, 0.5f, 0.2f, 0), false},
       {"GGX diamond 1", glass(2.4f, 1, 1, 0), false},
       {"GGX air in glass 0.3", glass(1 / 1.5f, 0.3f, 0.3f, 0), false},
       {"Beckmann glass 0.15", glass(1.5f, 0.15f, 0.15f, 1), false},
       {"Beckmann glass of two tints 0.4, 0.7",
-       describe_all<RoughDielectric>(coloured_case, Color(0.9f, 0.3f, 0.6f), 1.5f, 0.4f, 0.7f, 1),
+       make_material<RoughDielectric>(coloured_case, Color(0.9f, 0.3f, 0.6f), 1.5f, 0.4f, 0.7f, 1),
        false}};
 }
 
 template <>
 inline std::vector<BsdfCase> bsdf_cases<ThinDielectric>() {
-  return {{"pane", describe_all<ThinDielectric>(white_case, white_case, 1.5f)},
-          {"stained pane", describe_all<ThinDielectric>(white_case, coloured_case, 1.5f)},
-          {"pane of nothing", describe_all<ThinDielectric>(white_case, white_case, 1)}};
+  return {{"pane", make_material<ThinDielectric>(white_case, white_case, 1.5f)},
+          {"stained pane", make_material<ThinDielectric>(white_case, coloured_case, 1.5f)},
+          {"pane of nothing", make_material<ThinDielectric>(white_case, white_case, 1)}};
 }
 
 /// Base colour, roughness, metallic, transmission, eta, anisotropic, specular tint, sheen and its
@@ -183,7 +183,7 @@ inline std::vector<BsdfCase> bsdf_cases<ThinDielectric>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<Principled>() {
   const auto all = [](const auto&... parameters) {
-    return describe_all<Principled>(parameters...);
+    return make_material<Principled>(parameters...);
   };
   const Color c = coloured_case;
   return {
@@ -200,7 +200,7 @@ inline std::vector<BsdfCase> bsdf_cases<Principled>() {
 template <>
 inline std::vector<BsdfCase> bsdf_cases<PrincipledThin>() {
   const auto all = [](const auto&... parameters) {
-    return describe_all<PrincipledThin>(parameters...);
+    return make_material<PrincipledThin>(parameters...);
   };
   const Color c = coloured_case;
   return {{"thin principled", all(c, 0.5f, 0, 1.5f)},

@@ -11,7 +11,7 @@
 namespace pt {
 namespace {
 
-/// Of linear sRGB (Rec. 709).
+/// The luminance of linear sRGB (Rec. 709).
 double luminance(const Color& c) {
   return 0.2126 * double{c.x} + 0.7152 * double{c.y} + 0.0722 * double{c.z};
 }

@@ -1,4 +1,5 @@
-// Light from infinitely far: an environment map, sampled by its luminance (pbrt-v4, section 12.5).
+// Light from infinitely far: a gradient, and an environment map that is sampled by its luminance
+// (pbrt-v4, section 12.5).
 //
 // The picture is a map by latitude and longitude: in its own space the middle column's border is -z
 // and u grows towards +x. Columns are centred in their share of the turn, as texels are; rows reach
@@ -21,6 +22,18 @@
 
 namespace pt {
 
+/// A vertical gradient, the paper's background; equal colours give a constant sky.
+struct Sky {
+  Color nadir = Color(0.0f);   ///< radiance from straight below, W / (m^2 sr)
+  Color zenith = Color(0.0f);  ///< radiance from straight above, W / (m^2 sr)
+};
+
+/// `direction` has unit length and points away from the scene.
+PT_HD Color sky_radiance(const Sky& sky, const Vec3& direction) {
+  const float t = 0.5f * (direction.y + 1.0f);
+  return interpolate(sky.nadir, sky.zenith, t);
+}
+
 /// One 16-byte load.
 struct alignas(16) EnvironmentTexel {
   Color radiance = Color(0.0f);  ///< at the middle of the column, on the row
@@ -36,7 +49,7 @@ struct Environment {
   Affine to_world;                           ///< orthogonal
 
   PT_HD bool is_empty() const { return width == 0; }
-  /// Of cells; a picture of one row is one band from pole to pole.
+  /// Rows of cells; a picture of one row is one band from pole to pole.
   PT_HD std::uint32_t bands() const { return height > 1 ? height - 1 : 1; }
 };
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/light/sky/sunsky_data.h"
-
 namespace pt {
 namespace {
 
@@ -33,7 +31,7 @@ Step turbidity_step(double turbidity) {
   return {index, t - index};
 }
 
-/// Of a table by turbidity, albedo, six control points and `size` numbers: the i-th number.
+/// The i-th number of a table by turbidity, albedo, six control points and `size` numbers.
 double tabulated(const float* table, int size, int i, double turbidity, double albedo, double x) {
   const Step step = turbidity_step(turbidity);
   const auto at = [&](int t, int a) {
@@ -52,9 +50,9 @@ SkyModel::SkyModel(double turbidity, const Color& albedo, double elevation) {
     const double a = std::clamp(double{albedo[c]}, 0.0, 1.0);
     for (int i = 0; i < 9; ++i) {
       channel.shape[static_cast<std::size_t>(i)] =
-          tabulated(sky_shapes, 27, 9 * c + i, turbidity, a, x);
+          tabulated(sunsky::sky_shapes, 27, 9 * c + i, turbidity, a, x);
     }
-    channel.radiance = tabulated(sky_radiances, 3, c, turbidity, a, x);
+    channel.radiance = tabulated(sunsky::sky_radiances, 3, c, turbidity, a, x);
   }
 }
 
@@ -75,14 +73,15 @@ Color SkyModel::radiance(double cos_zenith, double sun_angle) const {
 
 Color sun_irradiance(double turbidity, double elevation) {
   if (elevation < 0) return Color(0.0f);
-  const double x = std::cbrt(std::min(elevation / quarter_turn, 1.0)) * (sun_node_count - 1);
-  const int node = std::min(static_cast<int>(x), sun_node_count - 2);
+  const double x =
+      std::cbrt(std::min(elevation / quarter_turn, 1.0)) * (sunsky::sun_node_count - 1);
+  const int node = std::min(static_cast<int>(x), sunsky::sun_node_count - 2);
   const double t = x - node;
   const Step step = turbidity_step(turbidity);
   Color result;
   for (int c = 0; c < 3; ++c) {
     const auto at = [&](int row, int i) {
-      return double{sun_irradiances[(row * sun_node_count + i) * 3 + c]};
+      return double{sunsky::sun_irradiances[(row * sunsky::sun_node_count + i) * 3 + c]};
     };
     const auto between = [&](int row) { return (1 - t) * at(row, node) + t * at(row, node + 1); };
     const double sum = (1 - step.rest) * between(step.index) + step.rest * between(step.index + 1);
@@ -106,7 +105,7 @@ Vec3 sun_direction(const SunTime& t) {
                            0.00034894 * std::sin(2 * anomaly) - 0.0001134 -
                            0.0000203 * std::sin(node);
   const double obliquity = 0.4090928 - 6.2140e-9 * days + 0.0000396 * std::cos(node);
-  // On the equator's sphere, and as seen from here.
+  // In equatorial, then in horizontal coordinates.
   const double ascension =
       std::atan2(std::cos(obliquity) * std::sin(longitude), std::cos(longitude));
   const double declination = std::asin(std::sin(obliquity) * std::sin(longitude));

@@ -33,9 +33,9 @@
 // ON ANY THEORY OF LIABILITY, WHETHER IN CONTRACT, STRICT LIABILITY, OR TORT
 // (INCLUDING NEGLIGENCE OR OTHERWISE) ARISING IN ANY WAY OUT OF THE USE OF THIS
 // SOFTWARE, EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE.
-#include "common/light/sky/sunsky_data.h"
+#include "common/light/sky/sunsky.h"
 
-namespace pt {
+namespace pt::sunsky {
 
 // clang-format off
 const float sky_shapes[10 * 2 * 6 * 3 * 9] = {-1.099459, -0.1335146, -4.083223, 5.919603,
@@ -1028,4 +1028,4 @@ const float sun_irradiances[10 * sun_node_count * 3] = {0.48476674, 0.13815483, 
 
 // clang-format on
 
-}  // namespace pt
+}  // namespace pt::sunsky

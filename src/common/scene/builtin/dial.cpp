@@ -72,8 +72,8 @@ using Maker = MaterialDescription (*)(const Look&);
 constexpr Maker makers[] = {
     [](const Look& l) { return make_diffuse(0.75f * l.hue); },
     [](const Look& l) {
-      return describe_all<Conductor>(0.79f * l.hue, 0.0f, 1.0f, l.roughness, l.roughness,
-                                     l.is_beckmann);
+      return make_material<Conductor>(0.79f * l.hue, 0.0f, 1.0f, l.roughness, l.roughness,
+                                      l.is_beckmann);
     },
     [](const Look& l) { return make_plastic(0.73f * l.hue, Color(1.0f), {l.index}); },
     [](const Look& l) {
@@ -83,25 +83,25 @@ constexpr Maker makers[] = {
     // Roughness, metallic, transmission, index, anisotropic, specular tint, sheen and its tint,
     // flatness, coat and its gloss.
     [](const Look& l) {
-      return describe_all<Principled>(0.69f * l.hue, std::sqrt(l.roughness), 0.0f, 0.0f, l.index,
-                                      0.0f, 0.2f, 0.2f, 0.5f, 0.2f, 0.3f, 0.5f);
+      return make_material<Principled>(0.69f * l.hue, std::sqrt(l.roughness), 0.0f, 0.0f, l.index,
+                                       0.0f, 0.2f, 0.2f, 0.5f, 0.2f, 0.3f, 0.5f);
     },
-    [](const Look& l) { return describe_all<Phong>(0.5f * l.hue, Color(0.37f), l.exponent); },
+    [](const Look& l) { return make_material<Phong>(0.5f * l.hue, Color(0.37f), l.exponent); },
     [](const Look& l) {
-      return describe_all<Ward>(0.45f * l.hue, Color(0.33f), l.roughness, l.roughness);
+      return make_material<Ward>(0.45f * l.hue, Color(0.33f), l.roughness, l.roughness);
     },
-    [](const Look& l) { return describe_all<OrenNayar>(0.78f * l.hue, l.roughness); },
+    [](const Look& l) { return make_material<OrenNayar>(0.78f * l.hue, l.roughness); },
     [](const Look& l) { return make_metal(0.76f * l.hue, l.roughness); },
     // Roughness, transmission, index, anisotropic, specular tint, sheen and its tint, flatness.
     [](const Look& l) {
-      return describe_all<PrincipledThin>(0.75f * l.hue, std::sqrt(l.roughness), 0.0f, l.index,
-                                          0.0f, 0.2f, 0.1f, 0.5f, 0.2f, 0.0f);
+      return make_material<PrincipledThin>(0.75f * l.hue, std::sqrt(l.roughness), 0.0f, l.index,
+                                           0.0f, 0.2f, 0.1f, 0.5f, 0.2f, 0.0f);
     },
-    [](const Look& l) { return describe_all<ThinDielectric>(Color(1.0f), Color(1.0f), l.index); },
+    [](const Look& l) { return make_material<ThinDielectric>(Color(1.0f), Color(1.0f), l.index); },
     [](const Look& l) { return make_dielectric(Color(1.0f), l.index - 0.3f); },
     [](const Look& l) {
-      return describe_all<RoughDielectric>(Color(1.0f), Color(1.0f), l.index - 0.3f, l.roughness,
-                                           l.roughness, l.is_beckmann);
+      return make_material<RoughDielectric>(Color(1.0f), Color(1.0f), l.index - 0.3f, l.roughness,
+                                            l.roughness, l.is_beckmann);
     },
 };
 static_assert(std::size(makers) == dial_kinds);

@@ -24,8 +24,8 @@ struct CameraParameters {
   Vec2 principal_point{0, 0};    ///< how far the axis lies left of and above the image's centre, in
                                  ///< parts of the image's width and height
   bool orthographic = false;     ///< parallel rays; neither angle of view nor lens
-  Vec2 orthographic_size{1, 1};  ///< half the width of what is seen; half the height of what a
-                                 ///< square image would see
+  Vec2 orthographic_size{1, 1};  ///< half the visible width; half the visible height of a square
+                                 ///< image
   float near_clip = 0.0f;        ///< distance of the plane where camera rays begin
   float far_clip = infinite_distance;  ///< camera rays hit nothing behind the plane there
   bool hides_emitters = false;         ///< camera rays pass through emitters and see no environment

@@ -9,7 +9,7 @@ namespace pt {
 
 namespace {
 
-/// None of empty bounds.
+/// Empty bounds have none.
 std::vector<Vec3> corners(const Bounds& bounds) {
   std::vector<Vec3> result;
   if (bounds.is_empty()) return result;
@@ -35,7 +35,7 @@ class Framing {
     const Vec3 from_center = p - center_;
     const float off =
         std::max(std::abs(glm::dot(from_center, right_)), std::abs(glm::dot(from_center, up_)));
-    // So far the planes through the camera and the image's edges are from the point.
+    // The distance at which the planes through the camera and the image's edges touch the point.
     const float distance = (off + radius * secant_) / tangent_ + glm::dot(from_center, backward_);
     distance_ = std::max(distance_, distance);
   }

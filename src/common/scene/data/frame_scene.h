@@ -1,4 +1,4 @@
-// Where a scene lies, and what a viewer needs to see it that its file does not give.
+// The bounds of a scene, and a camera for scenes without one.
 #pragma once
 
 #include "common/geometry/bounds.h"
@@ -6,12 +6,12 @@
 
 namespace pt {
 
-/// Of everything in world space, instances included. Those may be larger than need be: the boxes of
-/// their groups, turned.
+/// The bounds of everything in world space. Those of instances may be too large: they are the
+/// transformed boxes of their groups.
 Bounds scene_bounds(const SceneData& scene);
 
 /// A camera that sees all of the scene from the front, right and above (+z, +x and +y) in an image
-/// of any shape, whose smaller side the scene all but fills. It looks at the middle of the bounds.
+/// of any shape: the scene nearly fills the smaller side. It looks at the middle of the bounds.
 CameraParameters frame_scene(const SceneData& scene);
 
 }  // namespace pt

@@ -2,9 +2,7 @@
 // and built-in scenes fill it in, one of them on the device: so it is plain data of fixed size.
 #pragma once
 
-#include "common/light/emission.h"
 #include "common/material/material.h"
-#include "common/material/opacity.h"
 #include "common/medium/medium.h"
 
 namespace pt {
@@ -16,14 +14,24 @@ struct MaterialDescription {
   bool one_sided = false;  ///< black when seen from behind
   Parameter parameters[parameters_max] = {{Color(0.5f)}};
   Emission emission;  ///< on the side to which the normal points
-  Opacity opacity;    ///< of the whole, whatever it is made of
+  Opacity opacity;    ///< of the material with its children
   MaterialNode node = MaterialNode::none;
-  std::uint32_t children[2] = {};  ///< of a node: earlier materials of the scene
+  std::uint32_t children[2] = {};  ///< node: earlier materials of the scene
   bool is_boundary = false;        ///< `media` are on its two sides; else the same on both
-  bool passes = false;             ///< of a boundary: it has no BSDF, and light goes through
+  bool passes = false;             ///< boundary without a BSDF: light goes through
   MediumBoundary media;
 
-  // What a BSDF makes itself of, without textures.
+  /// The parameter that becomes a member of the BSDF: material[&Conductor::eta].
+  template <class Bsdf, class Type>
+  Parameter& operator[](Type Bsdf::*member) {
+    return parameters[index_of(member)];
+  }
+  template <class Bsdf, class Type>
+  const Parameter& operator[](Type Bsdf::*member) const {
+    return parameters[index_of(member)];
+  }
+
+  // For make_bsdf, without textures.
   PT_HD const Color& color(int i) const { return parameters[i].value; }
   PT_HD float scalar(int i) const { return parameters[i].value.x; }
 
@@ -34,30 +42,30 @@ struct MaterialDescription {
   }
 };
 
-/// Whether the BSDF depends on the direction in which u grows.
+namespace detail {
+template <class Bsdf>
+bool is_anisotropic(const Parameter* p) {
+  if constexpr (requires { &Bsdf::alpha_x; }) {
+    const Parameter &x = p[index_of(&Bsdf::alpha_x)], &y = p[index_of(&Bsdf::alpha_y)];
+    return x.value != y.value || x.texture != y.texture;
+  } else if constexpr (requires { &Bsdf::anisotropic; }) {
+    return !is_black(p[index_of(&Bsdf::anisotropic)].value);
+  }
+  return false;
+}
+}  // namespace detail
+
+/// Whether the BSDF depends on the direction in which u grows (see bsdf.h).
 inline bool uses_tangent(const MaterialDescription& material) {
-  return visit(material.kind, material, [&](const auto& bsdf) {
-    if constexpr (requires { bsdf.uses_tangent(material.parameters); }) {
-      return bsdf.uses_tangent(material.parameters);
-    }
-    return false;
+  return visit(material.kind, material, [&]<class Bsdf>(const Bsdf&) {
+    return detail::is_anisotropic<Bsdf>(material.parameters);
   });
 }
 
-/// Of a BSDF whose parameters are a colour and, perhaps, a number.
-template <class Bsdf>
-PT_HD MaterialDescription describe(const Color& color, float second = 0.0f) {
-  MaterialDescription m;
-  m.kind = kind_of<Bsdf>;
-  m.parameters[0].value = color;
-  m.parameters[1].value = Color(second);
-  return m;
-}
-
-/// Of a BSDF with these parameters; the others are 0.
+/// A material with this BSDF and its parameters in their order; the others are 0.
 template <class Bsdf, class... Parameters>
-PT_HD MaterialDescription describe_all(const Parameters&... parameters) {
-  static_assert(sizeof...(Parameters) <= parameters_max);
+PT_HD MaterialDescription make_material(const Parameters&... parameters) {
+  static_assert(sizeof...(Parameters) <= parameter_count<Bsdf>);
   MaterialDescription m;
   m.kind = kind_of<Bsdf>;
   int i = 0;
@@ -66,15 +74,15 @@ PT_HD MaterialDescription describe_all(const Parameters&... parameters) {
 }
 
 PT_HD MaterialDescription make_diffuse(const Color& albedo, const Color& emission = Color(0.0f)) {
-  MaterialDescription m = describe<Diffuse>(albedo);
+  MaterialDescription m = make_material<Diffuse>(albedo);
   m.emission.radiance = emission;
   return m;
 }
 PT_HD MaterialDescription make_metal(const Color& albedo, float fuzz) {
-  return describe<Metal>(albedo, fuzz);
+  return make_material<Metal>(albedo, fuzz);
 }
 PT_HD MaterialDescription make_dielectric(const Color& tint, float eta) {
-  return describe<Dielectric>(tint, eta);
+  return make_material<Dielectric>(tint, eta);
 }
 
 /// A node over materials with these numbers; `parameter` is its weight or its map.

@@ -1,6 +1,6 @@
 #include "common/scene/data/plastic_material.h"
 
-#include "common/scene/data/rough_boundary.h"
+#include <cmath>
 
 namespace pt {
 namespace {
@@ -24,10 +24,10 @@ double diffuse_reflectance(double eta) {
 }
 
 MaterialDescription make_plastic(const Color& diffuse, const Color& specular, PlasticCoat coat) {
-  MaterialDescription m = describe<Plastic>(diffuse);
-  m.parameters[Plastic::Index::specular].value = specular;
+  MaterialDescription m = make_material<Plastic>(diffuse);
+  m[&Plastic::specular].value = specular;
   const double inside = diffuse_reflectance(1.0 / static_cast<double>(coat.eta));
-  m.parameters[Plastic::Index::coat].value = packed(coat, static_cast<float>(inside));
+  m[&Plastic::coat].value = packed(coat, static_cast<float>(inside));
   return m;
 }
 
@@ -35,16 +35,14 @@ MaterialDescription make_rough_plastic(const Color& diffuse, const Color& specul
                                        PlasticCoat coat, float alpha, bool is_beckmann) {
   const RoughBoundary boundary = measure_rough_boundary(coat.eta, alpha, is_beckmann);
   const auto& t = boundary.transmittance;
-  MaterialDescription m = describe<RoughPlastic>(diffuse);
-  using Index = RoughPlastic::Index;
-  Parameter* p = m.parameters;
-  p[Index::specular].value = specular;
-  p[Index::alpha].value = Color(alpha);
-  p[Index::coat].value = packed(coat, boundary.internal_reflectance);
-  p[Index::transmittance_0].value = {t[0], t[1], t[2]};
-  p[Index::transmittance_1].value = {t[3], t[4], t[5]};
-  p[Index::transmittance_2].value = {t[6], t[7], t[8]};
-  p[Index::is_beckmann].value = Color(is_beckmann ? 1.0f : 0.0f);
+  MaterialDescription m = make_material<RoughPlastic>(diffuse);
+  m[&RoughPlastic::specular].value = specular;
+  m[&RoughPlastic::alpha].value = Color(alpha);
+  m[&RoughPlastic::coat].value = packed(coat, boundary.internal_reflectance);
+  m[&RoughPlastic::transmittance_0].value = {t[0], t[1], t[2]};
+  m[&RoughPlastic::transmittance_1].value = {t[3], t[4], t[5]};
+  m[&RoughPlastic::transmittance_2].value = {t[6], t[7], t[8]};
+  m[&RoughPlastic::is_beckmann].value = Color(is_beckmann ? 1.0f : 0.0f);
   return m;
 }
 

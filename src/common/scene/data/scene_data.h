@@ -1,4 +1,4 @@
-// A scene in memory, owned: what the built-in scenes and loaders fill in.
+// A scene in memory, owned: filled in by built-in scenes and loaders.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 #include "common/accel/build/triangle_tree_data.h"
 #include "common/geometry/mesh.h"
-#include "common/light/build_light_tree.h"
-#include "common/light/delta_light.h"
+#include "common/light/light.h"
+#include "common/light/light_tree.h"
 #include "common/math/transform.h"
 #include "common/options/options.h"
 #include "common/plan/render_properties.h"
@@ -29,20 +29,19 @@ struct EnvironmentData {
   Affine to_world;  ///< a rotation
 };
 
-/// What a scene file asks for where the command line does not.
+/// Options in a scene file; the command line overrides them.
 struct SceneDefaults {
   std::optional<int> width, height, spp, max_depth, rr_depth;
   std::optional<CropWindow> crop;
   std::optional<FilterChoice> filter;
-  /// The file's radiance has no relation to a display's white: photometric units, or a light that
-  /// it does not bring.
+  /// The file's radiance is unrelated to a display's white: photometric units, or default lighting.
   bool measure_exposure = false;
 };
 
-/// What files call their parts; those without a name are not in it.
+/// Names in files; parts without a name are missing.
 struct SceneNames {
   std::map<std::uint32_t, std::string> materials;     ///< by material
-  std::map<std::uint32_t, std::string> emitters;      ///< what a material emits, by material
+  std::map<std::uint32_t, std::string> emitters;      ///< emitters, by their material
   std::map<std::uint32_t, std::string> delta_lights;  ///< by its index
 };
 
@@ -59,13 +58,13 @@ struct LightListData {
 };
 
 struct SceneData {
-  std::string source_hash;                ///< of the files that it was read from; empty: of none
+  std::string source_hash;                ///< of the files that it was read from; empty: none
   std::vector<std::string> source_files;  ///< by absolute path
   std::string name;
   SceneNames names;
   SceneDefaults defaults;
   CameraParameters camera;
-  float camera_extent = 0.0f;  ///< set_camera: within this distance of look_from camera rays begin
+  float camera_extent = 0.0f;  ///< camera rays begin within this distance of look_from: set_camera
   Sky sky;
   EnvironmentData environment;  ///< besides the sky, whose radiance it adds to
   Sun sun;                      ///< likewise

@@ -31,7 +31,7 @@ void append_count(std::string& text, std::uint64_t count, const char* what) {
   text += fmt::format("{}{} {}{}", text.empty() ? "" : ", ", count, what, count == 1 ? "" : "s");
 }
 
-/// Of all nodes' visits and triangles' tests, as the builders weigh them.
+/// The expected cost of a ray: visits of nodes and tests of triangles, weighted as by the builders.
 constexpr double triangle_cost = 1.0;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a scene consists of, for reports.
+// Counts and memory of a scene, for reports.
 #pragma once
 
 #include <string>
@@ -12,11 +12,10 @@ namespace pt {
 /// `scene` is prepared.
 void describe_scene(const SceneData& scene, SceneFacts& facts);
 
-/// Of the tree over the scene's `triangles`.
+/// Facts of the tree over the scene's `triangles`.
 TreeFacts tree_facts(const TreeSummary& tree, std::uint64_t triangles);
 
-/// Two or three lines for a person: counts, memory, the tree. Empty for the paper's scenes, which
-/// have nothing to say.
+/// Two or three lines of text: counts, memory, the tree. Empty for the paper's scenes.
 std::string scene_text(const SceneFacts& facts);
 
 /// The line about the tree; empty where there is none. Part of scene_text().

@@ -6,9 +6,7 @@
 #include <cmath>
 
 #include "common/error/error.h"
-#include "common/scene/edit/bsdf_parameters.h"
-#include "common/scene/edit/material_names.h"
-#include "common/scene/edit/set_material.h"
+#include "common/scene/edit/material_parameters.h"
 
 namespace pt {
 namespace {
@@ -63,7 +61,7 @@ class Lister {
         [part](SceneData& scene, Values v) { part(scene) = v[0]; });
   }
 
-  /// What a light gives off.
+  /// The radiance or intensity of a light.
   template <class Part>
   void add_radiance(const std::string& name, Part part) {
     add(

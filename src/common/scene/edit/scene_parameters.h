@@ -1,4 +1,4 @@
-// What of a scene can be changed while it stays in memory, by name: "camera.fov",
+// The parameters of a scene in memory that can be changed, by name: "camera.fov",
 // "materials.red.albedo", "lights.lamp.radiance", "instances.3.to_world".
 #pragma once
 
@@ -13,16 +13,16 @@ namespace pt {
 
 struct SceneParameter {
   std::string name;
-  /// Of an array, row by row; empty: one number.
+  /// Shape of an array, row by row; empty: one number.
   std::vector<std::size_t> shape;
   bool is_of_camera = false;
   std::function<std::vector<float>(const SceneData&)> get;
-  /// Of as many numbers as get() returns. Throws Error for what the parameter cannot be.
+  /// Takes as many numbers as get() returns. Throws Error for values that are not possible.
   std::function<void(SceneData&, std::span<const float>)> set;
 };
 
-/// Of a scene that is not prepared: its camera, the parameters of its materials, what its lights
-/// radiate, where its instances are. Materials without a name are "material_N".
+/// The parameters of an unprepared scene: its camera, the parameters of its materials, the radiance
+/// of its lights, the places of its instances.
 std::vector<SceneParameter> scene_parameters(const SceneData& scene);
 
 }  // namespace pt

@@ -173,15 +173,15 @@ class Lister {
       Vec3 v[3];
       for (int k = 0; k < 3; ++k) v[k] = mesh.positions[mesh.triangles[i].v[k]];
       Vec3 edge1 = v[1] - v[0], edge2 = v[2] - v[0];
-      Light light{};
-      light.a = v[0];
+      TriangleLight light;
+      light.vertex = v[0];
       if (to_world != nullptr) {
-        light.a = to_world->point(v[0]);
+        light.vertex = to_world->point(v[0]);
         edge1 = to_world->vector(edge1), edge2 = to_world->vector(edge2);
       }
       const bool turned = to_world != nullptr && to_world->determinant() < 0.0f;
       light.kind = turned ? LightKind::flipped_triangle : LightKind::triangle;
-      light.b = turned ? edge2 : edge1, light.c = turned ? edge1 : edge2;
+      light.edge1 = turned ? edge2 : edge1, light.edge2 = turned ? edge1 : edge2;
       const PackedLightError error = pack_light_error(errors.of_triangle(v, edge1, edge2));
       light.relative_error = error.relative, light.absolute_error = error.absolute;
       light.weight = emitter_weight(emission.radiance, 0.5f * glm::length(glm::cross(edge1, edge2)),
@@ -192,7 +192,7 @@ class Lister {
           mesh.uvs.empty() ? no_texture : first_triangle + static_cast<std::uint32_t>(i);
       light.radiance = emission.radiance;
       light.emission_texture = emission.texture;
-      data_.lights.push_back(light);
+      data_.lights.push_back(Light::of(light));
     }
     finish_emitter(data_.lights.size() - mesh.triangles.size());
   }
@@ -202,14 +202,12 @@ class Lister {
     const Color& radiance = scene_.materials[scene_.sphere_material[i]].emission.radiance;
     if (is_black(radiance)) return;
     const Sphere& sphere = scene_.spheres[i];
-    Light light{};
-    light.kind = LightKind::sphere;
-    light.a = sphere.center;
-    light.c.x = sphere.radius_squared;
+    SphereLight light;
+    light.center = sphere.center;
+    light.radius_squared = sphere.radius_squared;
     light.weight = emitter_weight(radiance, sphere_area(sphere));
     light.radiance = radiance;
-    light.triangle = light.emission_texture = no_texture;
-    data_.lights.push_back(light);
+    data_.lights.push_back(Light::of(light));
     finish_emitter(data_.lights.size() - 1);
   }
 
@@ -221,15 +219,13 @@ class Lister {
   void add_sun() {
     data_.sun = static_cast<std::uint32_t>(data_.lights.size());
     const Sun& sun = scene_.sun;
-    Light light{};
-    light.kind = LightKind::sun;
-    light.b = sun.direction;
-    light.c.x = sun.one_minus_cos;
+    SunLight light;
+    light.direction = sun.direction;
+    light.one_minus_cos = sun.one_minus_cos;
     light.radiance = sun.radiance;
-    light.triangle = light.emission_texture = no_texture;
     // As a directional light of its irradiance.
     light.weight = 2 * pi * sun.one_minus_cos * radius_ * radius_ * luminance(sun.radiance);
-    data_.lights.push_back(light);
+    data_.lights.push_back(Light::of(light));
     finish_emitter(data_.lights.size() - 1);
   }
 

@@ -79,7 +79,8 @@ namespace {
 
 /// How many of the description's parameters its BSDF has.
 int parameter_count(const MaterialDescription& material) {
-  return visit(material.kind, material, [](const auto& bsdf) { return bsdf.parameter_count; });
+  return visit(material.kind, material,
+               []<class Bsdf>(const Bsdf&) { return pt::parameter_count<Bsdf>; });
 }
 
 bool is_delta(const MaterialDescription& material) {

@@ -6,17 +6,15 @@
 namespace pt {
 namespace {
 
-using Index = Principled::Index;
-
 /// What a property is read into.
 using Read = float (*)(const SceneData&);
 
 const MaterialDescription& of_mesh(const SceneData& scene) {
   return scene.materials.at(scene.meshes.at(0).material);
 }
-template <int index>
+template <auto member>
 float scalar(const SceneData& scene) {
-  return of_mesh(scene).scalar(index);
+  return of_mesh(scene)[member].value.x;
 }
 float opacity(const SceneData& scene) { return of_mesh(scene).opacity.offset; }
 float green_of_base(const SceneData& scene) { return of_mesh(scene).color(0).y; }
@@ -26,7 +24,7 @@ float green_of_absorption(const SceneData& scene) {
 }
 /// Of the base's reflectance at normal incidence.
 float reflectance(const SceneData& scene) {
-  return normal_reflectance(of_mesh(scene).scalar(Index::eta));
+  return normal_reflectance(of_mesh(scene)[&Principled::eta].value.x);
 }
 
 struct Property {
@@ -65,12 +63,12 @@ const Property properties[] = {
       {"[1,-1,1,1]", 0}}},
     {"metallicFactor",
      PBR(R"("metallicFactor":VALUE)"),
-     scalar<Index::metallic>,
+     scalar<&Principled::metallic>,
      1,
      {{"0", 0}, {"0.25", 0.25f}, {"1", 1}, {"1.5", 1}, {"-1", 0}}},
     {"roughnessFactor",
      PBR(R"("roughnessFactor":VALUE)"),
-     scalar<Index::roughness>,
+     scalar<&Principled::roughness>,
      1,
      {{"0", 0}, {"0.25", 0.25f}, {"1", 1}, {"1.5", 1}, {"-1", 0}}},
     {"emissiveFactor",
@@ -106,7 +104,7 @@ const Property properties[] = {
      {{"0", 1}, {"0.374", 1}, {"0.375", 1}, {"0.376", 0}, {"1", 0}, {"2", 0}}},
     {"ior",
      EXTENSION("KHR_materials_ior", R"("ior":VALUE)"),
-     scalar<Index::eta>,
+     scalar<&Principled::eta>,
      1.5f,
      {{"1", 1.001f},
       {"1.0005", 1.001f},
@@ -126,23 +124,23 @@ const Property properties[] = {
      {{"[1,1,1]", 0.04f}, {"[0.5,0.5,0.5]", 0.02f}, {"[2,2,2]", 0.08f}}},
     {"sheenColorFactor",
      EXTENSION("KHR_materials_sheen", R"("sheenColorFactor":VALUE)"),
-     scalar<Index::sheen>,
+     scalar<&Principled::sheen>,
      0,
      {{"[0,0,0]", 0}, {"[0,0.5,0]", 0.5f}, {"[0,2,0]", 1}}},
     {"clearcoatFactor",
      EXTENSION("KHR_materials_clearcoat", R"("clearcoatFactor":VALUE)"),
-     scalar<Index::clearcoat>,
+     scalar<&Principled::clearcoat>,
      0,
      {{"0", 0}, {"0.5", 0.5f}, {"2", 1}, {"-1", 0}}},
     {"clearcoatRoughnessFactor",
      EXTENSION("KHR_materials_clearcoat",
                R"("clearcoatFactor":1,"clearcoatRoughnessFactor":VALUE)"),
-     scalar<Index::clearcoat_gloss>,
+     scalar<&Principled::clearcoat_gloss>,
      1,
      {{"0", 1}, {"0.2", 0.606061f}, {"0.4", 0}, {"1", 0}, {"-1", 1}}},
     {"transmissionFactor",
      R"({"pbrMetallicRoughness":{"metallicFactor":0},"extensions":{"KHR_materials_volume":{"thicknessFactor":1},"KHR_materials_transmission":{"transmissionFactor":VALUE}}})",
-     scalar<Index::spec_trans>,
+     scalar<&Principled::spec_trans>,
      0,
      {{"0", 0}, {"0.25", 0.25f}, {"1", 1}, {"1.5", 1}, {"-1", 0}}},
     {"thicknessFactor, which parts walls from solids",
@@ -267,9 +265,9 @@ TEST(GltfProperties, EverySlotLivesWithoutItsPicture) {
   };
   const Slot slots[] = {
       {PBR(R"("baseColorFactor":[1,0.5,1,1],"baseColorTexture":VALUE)"), green_of_base, 0.5f},
-      {PBR(R"("roughnessFactor":0.5,"metallicRoughnessTexture":VALUE)"), scalar<Index::roughness>,
-       0.5f},
-      {R"({"normalTexture":VALUE})", scalar<Index::roughness>, 1},
+      {PBR(R"("roughnessFactor":0.5,"metallicRoughnessTexture":VALUE)"),
+       scalar<&Principled::roughness>, 0.5f},
+      {R"({"normalTexture":VALUE})", scalar<&Principled::roughness>, 1},
       {R"({"emissiveFactor":[1,0.5,1],"emissiveTexture":VALUE})", green_of_emission, 0.5f},
       {R"({"alphaMode":"BLEND","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5],"baseColorTexture":VALUE}})",
        opacity, 0.5f},
@@ -277,19 +275,19 @@ TEST(GltfProperties, EverySlotLivesWithoutItsPicture) {
        green_of_emission, 1},
       {EXTENSION("KHR_materials_sheen",
                  R"("sheenColorFactor":[0,0.5,0],"sheenColorTexture":VALUE)"),
-       scalar<Index::sheen>, 0.5f},
+       scalar<&Principled::sheen>, 0.5f},
       {EXTENSION("KHR_materials_clearcoat", R"("clearcoatFactor":0.5,"clearcoatTexture":VALUE)"),
-       scalar<Index::clearcoat>, 0.5f},
+       scalar<&Principled::clearcoat>, 0.5f},
       {EXTENSION(
            "KHR_materials_clearcoat",
            R"("clearcoatFactor":1,"clearcoatRoughnessFactor":0.2,"clearcoatRoughnessTexture":VALUE)"),
-       scalar<Index::clearcoat_gloss>, 0.606061f},
+       scalar<&Principled::clearcoat_gloss>, 0.606061f},
       {EXTENSION("KHR_materials_pbrSpecularGlossiness",
                  R"("diffuseFactor":[1,0.5,1,1],"diffuseTexture":VALUE)"),
        green_of_base, 0.5f},
       {VOLUME(
            R"("thicknessFactor":1},"KHR_materials_transmission":{"transmissionFactor":0.5,"transmissionTexture":VALUE)"),
-       scalar<Index::spec_trans>, 0.5f}};
+       scalar<&Principled::spec_trans>, 0.5f}};
   const Json images[] = {{{"uri", "absent.png"}},
                          {{"uri", "data:image/png;base64,AAAA"}},
                          {{"uri", "data:image/ktx2;base64,AAAA"}},

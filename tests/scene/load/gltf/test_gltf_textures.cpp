@@ -291,7 +291,6 @@ std::vector<float> values_of(const SceneData& scene, const Parameter& parameter)
 // Red, green, blue, white: a coat is as strong as its texture is red (KHR_materials_clearcoat). The
 // sheen's three colours are one number, their mean.
 TEST(GltfTextures, CoatsAreRedAndSheenIsTheMean) {
-  using Index = Principled::Index;
   GltfMaker maker = with_texture();
   maker.root["materials"][0]["extensions"] = {
       {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}},
@@ -299,9 +298,8 @@ TEST(GltfTextures, CoatsAreRedAndSheenIsTheMean) {
        {{"sheenColorFactor", {1, 1, 1}}, {"sheenColorTexture", {{"index", 0}}}}}};
   const SceneData scene = Loaded(maker).scene;
   const MaterialDescription& material = scene.materials.at(0);
-  EXPECT_EQ(values_of(scene, material.parameters[Index::clearcoat]),
-            (std::vector<float>{1, 0, 0, 1}));
-  const std::vector<float> sheen = values_of(scene, material.parameters[Index::sheen]);
+  EXPECT_EQ(values_of(scene, material[&Principled::clearcoat]), (std::vector<float>{1, 0, 0, 1}));
+  const std::vector<float> sheen = values_of(scene, material[&Principled::sheen]);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(sheen[i], i == 3 ? 1.0f : 1.0f / 3.0f, 1e-6f) << i;
 }
 
@@ -317,7 +315,7 @@ TEST(GltfTextures, TheMeanOfACoatsRoughness) {
                                                   {"clearcoatRoughnessFactor", 0.4},
                                                   {"clearcoatRoughnessTexture", {{"index", 0}}}}}};
     // The gloss of alpha = 0.2^2.
-    EXPECT_NEAR(Loaded(maker).scene.materials.at(0).scalar(Principled::Index::clearcoat_gloss),
+    EXPECT_NEAR(Loaded(maker).scene.materials.at(0)[&Principled::clearcoat_gloss].value.x,
                 (0.1 - 0.04) / 0.099, 4e-3)
         << bits;
   }

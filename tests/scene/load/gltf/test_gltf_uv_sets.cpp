@@ -141,7 +141,7 @@ TEST(GltfUvSets, TexturesWithinExtensions) {
         {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}, {"clearcoatTexture", coat}}}}}},
       square, {0, 0, 0.5f, 0, 0.5f, 0.5f, 0, 0.5f}));
   const auto clearcoat = [](const MaterialDescription& m) {
-    return m.parameters[Principled::Index::clearcoat].texture;
+    return m[&Principled::clearcoat].texture;
   };
   expect_lookups(lookups(coated.scene, clearcoat), {{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}});
 }

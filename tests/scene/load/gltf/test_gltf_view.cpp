@@ -1,5 +1,5 @@
 // The glTF loader: lights and cameras.
-#include "common/light/spot_light.h"
+#include "common/light/point_lights.h"
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
 

@@ -64,7 +64,7 @@ TEST(GltfVolumes, ABadDistanceAbsorbsNothing) {
     const Loaded loaded(with_material(glass_with(volume)));
     EXPECT_TRUE(loaded.scene.media.empty());
     EXPECT_EQ(loaded.count("attenuationDistance"), 1u);
-    EXPECT_EQ(loaded.scene.materials.at(0).scalar(Principled::Index::spec_trans), 1.0f);
+    EXPECT_EQ(loaded.scene.materials.at(0)[&Principled::spec_trans].value.x, 1.0f);
   }
 }
 

@@ -122,8 +122,8 @@ TEST(GltfWalls, RoughWallsScatter) {
   const Loaded loaded = wall(clear(1, {{"roughnessFactor", 0.5}}), false, false);
   const MaterialDescription& m = loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
   EXPECT_EQ(m.kind, kind_of<PrincipledThin>);
-  EXPECT_EQ(m.scalar(PrincipledThin::Index::roughness), 0.5f);
-  EXPECT_EQ(m.scalar(PrincipledThin::Index::spec_trans), 1.0f);
+  EXPECT_EQ(m[&PrincipledThin::roughness].value.x, 0.5f);
+  EXPECT_EQ(m[&PrincipledThin::spec_trans].value.x, 1.0f);
   EXPECT_FALSE(m.one_sided);
   expect_near(seen(loaded, Color(1.0f)), Color(1.0f), 0.03f);
 }
@@ -133,7 +133,7 @@ TEST(GltfWalls, VolumesStaySolid) {
       wall(clear(1, Json::object(), {{"KHR_materials_volume", {{"thicknessFactor", 0.01}}}}))
           .scene.materials.at(0);
   EXPECT_EQ(m.kind, kind_of<Principled>);
-  EXPECT_EQ(m.scalar(Principled::Index::spec_trans), 1.0f);
+  EXPECT_EQ(m[&Principled::spec_trans].value.x, 1.0f);
 }
 
 // KHR_materials_ior: an index of 0 makes Fresnel's term 1, times what KHR_materials_specular asks.
@@ -171,8 +171,8 @@ TEST(GltfWalls, AnIndexOfZeroReflectsAll) {
   }
   const auto index_of = [&](const Json& ior) {
     return wall(surface(grey, {{"KHR_materials_ior", {{"ior", ior}}}}))
-        .scene.materials.at(0)
-        .scalar(Principled::Index::eta);
+        .scene.materials.at(0)[&Principled::eta]
+        .value.x;
   };
   EXPECT_EQ(index_of(1), 1.001f);  // at 1 metals would reflect nothing
   EXPECT_EQ(index_of(1.5), 1.5f);
@@ -237,7 +237,7 @@ TEST(GltfWalls, MetalHasItsShareUnderPartialTransmission) {
     return loaded.scene.materials.at(loaded.scene.meshes.at(0).material);
   };
   const auto metallic = [](const MaterialDescription& m) {
-    return m.scalar(Principled::Index::metallic);
+    return m[&Principled::metallic].value.x;
   };
   const Loaded both = wall(clear(0.5, {{"metallicFactor", 0.5}}));
   const MaterialDescription& of_both = top_of(both);

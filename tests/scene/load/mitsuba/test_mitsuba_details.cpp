@@ -285,9 +285,9 @@ TEST(MitsubaTexture, OneCheckerboardIsAColourAndANumber) {
     return sample_texture(scene.textures.data(), top_of(scene).parameters[parameter].texture,
                           scene.texels.data(), {0.1f, 0.9f});
   };
-  expect_near(at(Conductor::Index::tint), Color(0.1f));
-  expect_near(at(Conductor::Index::alpha_x), Color(0.6f));
-  expect_near(at(Conductor::Index::alpha_y), Color(0.6f));
+  expect_near(at(index_of(&Conductor::tint)), Color(0.1f));
+  expect_near(at(index_of(&Conductor::alpha_x)), Color(0.6f));
+  expect_near(at(index_of(&Conductor::alpha_y)), Color(0.6f));
 }
 
 // Mitsuba's names of a brushed metal's coordinates: without them it has no directions.

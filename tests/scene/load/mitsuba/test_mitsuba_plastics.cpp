@@ -81,7 +81,7 @@ TEST(MitsubaPhong, OfVersion06) {
   const LoadedScene scene =
       load_bsdf("phong", rgb("diffuseReflectance", "0.3") + number_of("exponent", "50"), "0.6.0");
   EXPECT_TRUE(scene.warnings.empty());
-  expect_same(scene.scene.materials[0], describe_all<Phong>(0.3f, 0.2f, 50.0f));
+  expect_same(scene.scene.materials[0], make_material<Phong>(0.3f, 0.2f, 50.0f));
 }
 
 TEST(MitsubaWard, OfVersion06) {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "common/light/build_light_tree.h"
+#include "common/light/light_tree.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/transport/sample_light.h"
 #include "load/expect_near.h"

@@ -168,7 +168,7 @@ TEST(MtlMaps, OpacityAndNumbersByChannel) {
   EXPECT_NEAR(opacity("-imfchan m rgb.tga"), 1, 1e-5);
   const auto roughness = [&](const std::string& map) {
     const LoadedObj file = folder.load_m("Kd 1 1 1\nmap_Pr " + map);
-    const Parameter& p = file.material("m").parameters[Principled::Index::roughness];
+    const Parameter& p = file.material("m")[&Principled::roughness];
     return p.value.x * file.texture_at(p.texture, {}).x;
   };
   EXPECT_NEAR(roughness("rgb.tga"), 0.212671 + 0.2 * 0.072169, 1e-5);

@@ -106,11 +106,12 @@ TEST(PbrtEarlier, UnitsAndDefaultsOfMaterials) {
   const MaterialDescription metal = earlier_material("\"metal\"");
   EXPECT_EQ(metal.kind, kind_of<Conductor>);
   // RoughnessToAlpha of 0.01: 1.62142 - 3.77604 + 3.67736 - 1.67206 + 0.28818.
-  EXPECT_NEAR(metal.parameters[Conductor::Index::alpha_x].value.x, 0.13886f, 2e-4f);
-  EXPECT_NEAR(earlier_material("\"metal\" \"float roughness\" .2 \"bool remaproughness\" false")
-                  .parameters[Conductor::Index::alpha_x]
-                  .value.x,
-              0.2f, 1e-6f);
+  EXPECT_NEAR(metal[&Conductor::alpha_x].value.x, 0.13886f, 2e-4f);
+  EXPECT_NEAR(
+      earlier_material(
+          "\"metal\" \"float roughness\" .2 \"bool remaproughness\" false")[&Conductor::alpha_x]
+          .value.x,
+      0.2f, 1e-6f);
   EXPECT_EQ(earlier_material("\"glass\"").kind, kind_of<Dielectric>);
   EXPECT_EQ(earlier_material("\"glass\"").parameters[1].value.x, 1.5f);
   EXPECT_EQ(earlier_material("\"glass\" \"float index\" 1.3").parameters[1].value.x, 1.3f);
@@ -123,22 +124,21 @@ TEST(PbrtEarlier, UnitsAndDefaultsOfMaterials) {
   EXPECT_EQ(gold.warnings.size(), 1u);
   const MaterialDescription named = earlier_material(
       "\"conductor\" \"spectrum eta\" \"metal-Au-eta\" \"spectrum k\" \"metal-Au-k\"");
-  for (const int i : {Conductor::Index::eta, Conductor::Index::k}) {
+  for (const int i : {index_of(&Conductor::eta), index_of(&Conductor::k)}) {
     expect_near(gold.scene.materials.back().parameters[i].value, named.parameters[i].value);
   }
   const MaterialDescription disney = earlier_material(
       "\"disney\" \"rgb color\" [.1 .2 .3] \"float metallic\" .4 \"float roughness\" .6 \"float "
       "speculartint\" .7 \"float clearcoat\" .8 \"float clearcoatgloss\" .9");
-  using Index = Principled::Index;
   EXPECT_EQ(disney.kind, kind_of<Principled>);
-  expect_near(disney.parameters[Index::base_color].value, {0.1f, 0.2f, 0.3f});
-  EXPECT_EQ(disney.parameters[Index::metallic].value.x, 0.4f);
-  EXPECT_EQ(disney.parameters[Index::roughness].value.x, 0.6f);
-  EXPECT_EQ(disney.parameters[Index::spec_tint].value.x, 0.7f);
-  EXPECT_EQ(disney.parameters[Index::clearcoat].value.x, 0.8f);
-  EXPECT_EQ(disney.parameters[Index::clearcoat_gloss].value.x, 0.9f);
-  EXPECT_EQ(disney.parameters[Index::sheen_tint].value.x, 0.5f);
-  EXPECT_EQ(disney.parameters[Index::eta].value.x, 1.5f);
+  expect_near(disney[&Principled::base_color].value, {0.1f, 0.2f, 0.3f});
+  EXPECT_EQ(disney[&Principled::metallic].value.x, 0.4f);
+  EXPECT_EQ(disney[&Principled::roughness].value.x, 0.6f);
+  EXPECT_EQ(disney[&Principled::spec_tint].value.x, 0.7f);
+  EXPECT_EQ(disney[&Principled::clearcoat].value.x, 0.8f);
+  EXPECT_EQ(disney[&Principled::clearcoat_gloss].value.x, 0.9f);
+  EXPECT_EQ(disney[&Principled::sheen_tint].value.x, 0.5f);
+  EXPECT_EQ(disney[&Principled::eta].value.x, 1.5f);
   EXPECT_EQ(earlier_material("\"disney\" \"bool thin\" true").kind, kind_of<PrincipledThin>);
 }
 

@@ -74,16 +74,14 @@ TEST(PbrtSurfaces, AreThoseOfMitsuba) {
 TEST(PbrtSurfaces, AMetalMayBeGivenByWhatItReflects) {
   const MaterialDescription m =
       pbrt_material("Material \"conductor\" \"rgb reflectance\" [.2 .5 .9]");
-  const Color reflected = fresnel_conductor(1.0f, m.parameters[Conductor::Index::eta].value,
-                                            m.parameters[Conductor::Index::k].value);
+  const Color reflected = fresnel_conductor(1.0f, m[&Conductor::eta].value, m[&Conductor::k].value);
   expect_near(reflected, {0.2f, 0.5f, 0.9f});
 }
 
 TEST(PbrtSurfaces, NamedMetalsReflectAsTheirSpectraDo) {
   const auto reflected = [](const std::string& metal) {
     const MaterialDescription m = pbrt_material("Material \"conductor\" " + metal);
-    return fresnel_conductor(1.0f, m.parameters[Conductor::Index::eta].value,
-                             m.parameters[Conductor::Index::k].value);
+    return fresnel_conductor(1.0f, m[&Conductor::eta].value, m[&Conductor::k].value);
   };
   // Fresnel's reflectance by wavelength, of pbrt's data, in daylight to sRGB.
   const Color copper(0.954f, 0.637f, 0.537f), silver(0.971f, 0.959f, 0.914f);

@@ -387,22 +387,21 @@ TEST(PbrtValues, MetalsUnderACoatHaveTheirIndexOverTheCoats) {
     EXPECT_EQ(blend.node, MaterialNode::blend);
     return scene.materials[blend.children[0]];
   };
-  using Index = Conductor::Index;
   const MaterialDescription given =
       metal("\"rgb conductor.eta\" [.3 .6 .9] \"rgb conductor.k\" [3 6 9]");
-  expect_near(given.parameters[Index::eta].value, {0.2f, 0.4f, 0.6f});
-  expect_near(given.parameters[Index::k].value, {2, 4, 6});
+  expect_near(given[&Conductor::eta].value, {0.2f, 0.4f, 0.6f});
+  expect_near(given[&Conductor::k].value, {2, 4, 6});
   const MaterialDescription other = metal(
       "\"rgb conductor.eta\" [.3 .6 .9] \"rgb conductor.k\" [3 6 9] \"float interface.eta\" 2");
-  expect_near(other.parameters[Index::eta].value, {0.15f, 0.3f, 0.45f});
-  expect_near(other.parameters[Index::k].value, {1.5f, 3, 4.5f});
+  expect_near(other[&Conductor::eta].value, {0.15f, 0.3f, 0.45f});
+  expect_near(other[&Conductor::k].value, {1.5f, 3, 4.5f});
   // pbrt's eta of 1 and k = 2 sqrt(r / (1 - r)), over the coat's 1.5.
   const MaterialDescription reflecting = metal("\"rgb reflectance\" [.5 .2 .8]");
-  expect_near(reflecting.parameters[Index::eta].value, Color(1 / 1.5f));
-  expect_near(reflecting.parameters[Index::k].value, {2 / 1.5f, 1 / 1.5f, 4 / 1.5f}, 1e-4f);
+  expect_near(reflecting[&Conductor::eta].value, Color(1 / 1.5f));
+  expect_near(reflecting[&Conductor::k].value, {2 / 1.5f, 1 / 1.5f, 4 / 1.5f}, 1e-4f);
   // Roughness is the root of what is given; each surface has its own.
   const MaterialDescription rough = metal("\"float conductor.roughness\" .04");
-  EXPECT_NEAR(rough.parameters[Index::alpha_x].value.x, 0.2f, 1e-5f);
+  EXPECT_NEAR(rough[&Conductor::alpha_x].value.x, 0.2f, 1e-5f);
 }
 
 TEST(PbrtValues, DefaultsOfMaterials) {
@@ -411,8 +410,7 @@ TEST(PbrtValues, DefaultsOfMaterials) {
   EXPECT_NEAR(
       default_material("\"dielectric\" \"spectrum eta\" \"glass-BK7\"").parameters[1].value.x,
       1.5168f, 1e-6f);
-  EXPECT_EQ(default_material("\"thindielectric\"").parameters[ThinDielectric::Index::eta].value.x,
-            1.5f);
+  EXPECT_EQ(default_material("\"thindielectric\"")[&ThinDielectric::eta].value.x, 1.5f);
   EXPECT_EQ(default_material("\"conductor\"").kind, kind_of<Conductor>);
   // A boundary of facets below alpha 1e-3 is smooth: of roughness below 1e-6.
   EXPECT_EQ(default_material("\"dielectric\" \"float roughness\" .9e-6").kind, kind_of<Dielectric>);
@@ -424,8 +422,8 @@ TEST(PbrtValues, DefaultsOfMaterials) {
       kind_of<Dielectric>);
   const MaterialDescription own =
       default_material("\"dielectric\" \"float roughness\" .04 \"float uroughness\" .09");
-  EXPECT_NEAR(own.parameters[RoughDielectric::Index::alpha_x].value.x, 0.3f, 1e-5f);
-  EXPECT_NEAR(own.parameters[RoughDielectric::Index::alpha_y].value.x, 0.2f, 1e-5f);
+  EXPECT_NEAR(own[&RoughDielectric::alpha_x].value.x, 0.3f, 1e-5f);
+  EXPECT_NEAR(own[&RoughDielectric::alpha_y].value.x, 0.2f, 1e-5f);
   EXPECT_NEAR(default_material("\"coateddiffuse\"").parameters[0].value.x, 0.5f * std::exp(-0.03f),
               1e-5f);
   EXPECT_NEAR(default_material("\"coateddiffuse\" \"float thickness\" 0").parameters[0].value.x,

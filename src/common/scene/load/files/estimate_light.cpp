@@ -62,7 +62,7 @@ void follow(const Scene& scene, const PathId& id, PixelSums& sums) {
   PathState path;
   Color reflected(0.0f);
   Ray ray = begin_path(scene, id, random);
-  const std::uint32_t mask = mask_key<Traits>(scene, id);
+  const std::uint32_t mask = path_hash<Traits>(scene, id);
   const auto key = [&] { return mask; };
   GlimpseSink<Traits, decltype(key)> sink{{scene, key, reflected, ray}, sums};
   do {

@@ -157,24 +157,23 @@ Parameter Materials::number_of(float factor, const TextureUse& use, const std::s
 
 bool Materials::set_metallic_roughness(const tinygltf::Material& source, const std::string& place,
                                        MaterialDescription& result) {
-  result = with_surface_of(result, describe_all<Principled>(0));
+  result = with_surface_of(result, make_material<Principled>(0));
   set_base(source, place, result);
   const auto& pbr = source.pbrMetallicRoughness;
   const TextureUse use = texture_use(pbr.metallicRoughnessTexture);
   const std::string at = place + ".pbrMetallicRoughness.metallicRoughnessTexture";
-  Parameter* p = result.parameters;
-  p[Principled::Index::roughness] = number_of(unit(pbr.roughnessFactor), use, at, green);
-  p[Principled::Index::metallic] = number_of(unit(pbr.metallicFactor), use, at, blue);
+  result[&Principled::roughness] = number_of(unit(pbr.roughnessFactor), use, at, green);
+  result[&Principled::metallic] = number_of(unit(pbr.metallicFactor), use, at, blue);
   const Parameter clear = transmission(source, place);
   bool passes = !is_black(clear.value);
   const bool is_thin = !has_thickness(source);
   const Base base = base_of(source, place, passes && !is_thin);
-  p[Principled::Index::eta].value = Color(base.eta);
+  result[&Principled::eta].value = Color(base.eta);
   const bool mirrors = !is_black(base.mirror);
   passes = passes && !mirrors;  // Fresnel's term is 1
   result.one_sided = !passes && !source.doubleSided;
   if (passes && !is_thin) {
-    p[Principled::Index::spec_trans] = clear;
+    result[&Principled::spec_trans] = clear;
     set_volume(source, place, result);
   }
   set_sheen(source, place, result);
@@ -187,29 +186,28 @@ bool Materials::set_metallic_roughness(const tinygltf::Material& source, const s
 std::uint32_t Materials::add_part(MaterialDescription part, float metallic) {
   part.opacity = {};
   if (part.kind == kind_of<Principled> && part.node == MaterialNode::none) {
-    part.parameters[Principled::Index::metallic] = {Color(metallic), no_texture};
+    part[&Principled::metallic] = {Color(metallic), no_texture};
   }
   return scene_.add_material(part);
 }
 
 MaterialDescription Materials::with_metal(const MaterialDescription& principled,
                                           const MaterialDescription& base) {
-  const Parameter& metallic = principled.parameters[Principled::Index::metallic];
+  const Parameter& metallic = principled[&Principled::metallic];
   if (is_black(metallic.value)) return with_surface_of(principled, base);
   if (metallic.texture == no_texture && metallic.value.x >= 1.0f) return principled;
   // A base that mirrors is metal itself.
-  const std::uint32_t below = add_part(base, base.scalar(Principled::Index::metallic));
+  const std::uint32_t below = add_part(base, base[&Principled::metallic].value.x);
   return with_surface_of(principled, make_blend(metallic, below, add_part(principled, 1.0f)));
 }
 
 void Materials::make_thin(const Parameter& clear, MaterialDescription& result) {
-  using Thin = PrincipledThin::Index;
-  MaterialDescription wall = describe_all<PrincipledThin>(0);
-  wall.parameters[Thin::base_color] = result.parameters[Principled::Index::base_color];
-  wall.parameters[Thin::roughness] = result.parameters[Principled::Index::roughness];
-  wall.parameters[Thin::eta] = result.parameters[Principled::Index::eta];
-  wall.parameters[Thin::spec_trans].value = Color(1.0f);
-  const Parameter& metallic = result.parameters[Principled::Index::metallic];
+  MaterialDescription wall = make_material<PrincipledThin>(0);
+  wall[&PrincipledThin::base_color] = result[&Principled::base_color];
+  wall[&PrincipledThin::roughness] = result[&Principled::roughness];
+  wall[&PrincipledThin::eta] = result[&Principled::eta];
+  wall[&PrincipledThin::spec_trans].value = Color(1.0f);
+  const Parameter& metallic = result[&Principled::metallic];
   if (clear.texture == no_texture && clear.value.x >= 1.0f) {
     result = with_metal(result, wall);
   } else if (clear.texture == no_texture && metallic.texture == no_texture) {
@@ -228,7 +226,7 @@ void Materials::make_mirror(const Color& reflectance, MaterialDescription& resul
   const float weight = max_abs(reflectance);
   MaterialDescription mirror = result;
   mirror.parameters[color_parameter] = {reflectance / weight, no_texture};
-  mirror.parameters[Principled::Index::metallic] = {Color(1.0f), no_texture};
+  mirror[&Principled::metallic] = {Color(1.0f), no_texture};
   if (weight < 1.0f) {
     const std::uint32_t diffuse = add_part(result, 0.0f);
     mirror = make_blend({Color(weight), no_texture}, diffuse, add_part(mirror, 1.0f));
@@ -328,7 +326,7 @@ void Materials::set_sheen(const tinygltf::Material& source, const std::string& p
   file_.report(
       place,
       "KHR_materials_sheen: that of the principled BSDF is used, white and without roughness");
-  result.parameters[Principled::Index::sheen] =
+  result[&Principled::sheen] =
       number_of(max_abs(color), texture_use(member(*sheen, "sheenColorTexture")),
                 place + ".extensions.KHR_materials_sheen.sheenColorTexture", Color(1.0f / 3.0f));
 }
@@ -345,9 +343,9 @@ void Materials::set_clearcoat(const tinygltf::Material& source, const std::strin
   if (const TextureUse use = texture_use(member(*coat, "clearcoatRoughnessTexture"))) {
     roughness *= textures_.mean(use, at + "clearcoatRoughnessTexture").y;
   }
-  result.parameters[Principled::Index::clearcoat] = number_of(
-      factor, texture_use(member(*coat, "clearcoatTexture")), at + "clearcoatTexture", red);
-  result.parameters[Principled::Index::clearcoat_gloss].value = Color(gloss_of_coat(roughness));
+  result[&Principled::clearcoat] = number_of(factor, texture_use(member(*coat, "clearcoatTexture")),
+                                             at + "clearcoatTexture", red);
+  result[&Principled::clearcoat_gloss].value = Color(gloss_of_coat(roughness));
 }
 
 void Materials::set_emission(const tinygltf::Material& source, const std::string& place,

@@ -72,7 +72,7 @@ MaterialDescription glass_of(const MtlMaterial& m) {
   const float eta = index_of(m), alpha = m.Pr ? *m.Pr * *m.Pr : 0.0f;
   const Color filter = m.Tf && !is_black(*m.Tf) ? *m.Tf : Color(1.0f);
   if (filter == Color(1.0f) && alpha == 0.0f) return make_dielectric(Color(1.0f), eta);
-  return describe_all<RoughDielectric>(1.0f, filter, eta, alpha, alpha, 0.0f);
+  return make_material<RoughDielectric>(1.0f, filter, eta, alpha, alpha, 0.0f);
 }
 
 class Conversion {
@@ -153,9 +153,9 @@ class Conversion {
   /// reflectance, as the height itself would say how bright lamps look and not what is reflected.
   MaterialDescription phong(const Parameter& kd, const Color& ks) {
     const float exponent = m_.Ns.value_or(1.0f);
-    auto result = describe_all<Phong>(kd.value, ks, exponent / 4.0f);
-    result.parameters[Phong::Index::diffuse].texture = kd.texture;
-    result.parameters[Phong::Index::specular].texture = specular_map();
+    auto result = make_material<Phong>(kd.value, ks, exponent / 4.0f);
+    result[&Phong::diffuse].texture = kd.texture;
+    result[&Phong::specular].texture = specular_map();
     return result;
   }
 
@@ -177,33 +177,31 @@ class Conversion {
   }
 
   MaterialDescription principled(const Parameter& kd, float metallic) {
-    using I = Principled::Index;
-    MaterialDescription result = describe_all<Principled>(0);
-    Parameter* p = result.parameters;
-    p[I::base_color] = kd;
-    p[I::roughness] =
+    MaterialDescription result = make_material<Principled>(0);
+    result[&Principled::base_color] = kd;
+    result[&Principled::roughness] =
         number(roughness_of(m_), m_.map_Pr, "map_Pr", m_.Pr.value_or(usual_roughness));
-    p[I::metallic] = number(m_.Pm.value_or(m_.map_Pm ? 1.0f : metallic), m_.map_Pm, "map_Pm",
-                            m_.Pm.value_or(metallic));
-    p[I::eta].value = Color(index_of_highlight());
-    p[I::anisotropic].value = Color(m_.aniso.value_or(0.0f));
-    p[I::sheen] =
+    result[&Principled::metallic] = number(m_.Pm.value_or(m_.map_Pm ? 1.0f : metallic), m_.map_Pm,
+                                           "map_Pm", m_.Pm.value_or(metallic));
+    result[&Principled::eta].value = Color(index_of_highlight());
+    result[&Principled::anisotropic].value = Color(m_.aniso.value_or(0.0f));
+    result[&Principled::sheen] =
         number(m_.Ps.value_or(m_.map_Ps ? 1.0f : 0.0f), m_.map_Ps, "map_Ps", m_.Ps.value_or(0.0f));
-    p[I::clearcoat].value = Color(m_.Pc.value_or(0.0f));
-    p[I::clearcoat_gloss].value = Color(gloss_of_coat(m_.Pcr.value_or(0.03f)));
+    result[&Principled::clearcoat].value = Color(m_.Pc.value_or(0.0f));
+    result[&Principled::clearcoat_gloss].value = Color(gloss_of_coat(m_.Pcr.value_or(0.03f)));
     return m_.map_Ks ? with_specular_map(result) : result;
   }
 
   /// A blend, by the map, of the material without and with its highlight.
   MaterialDescription with_specular_map(const MaterialDescription& shiny) {
-    if (shiny.parameters[Principled::Index::metallic].value.x > 0.0f) {
+    if (shiny[&Principled::metallic].value.x > 0.0f) {
       warn("map_Ks of a metal is ignored");
       return shiny;
     }
     const std::uint32_t map = specular_map();
     if (map == no_texture) return shiny;
     MaterialDescription matte = shiny;
-    matte.parameters[Principled::Index::eta].value = Color(1.0f);
+    matte[&Principled::eta].value = Color(1.0f);
     const std::uint32_t first = scene_.add_material(matte);
     return make_blend({Color(1.0f), map}, first, scene_.add_material(shiny));
   }

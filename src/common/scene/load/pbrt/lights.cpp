@@ -2,10 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/light/delta_light.h"
 #include "common/light/light.h"
-#include "common/light/light_bounds.h"
-#include "common/light/spot_light.h"
+#include "common/light/point_lights.h"
 #include "common/math/transform.h"
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"

@@ -101,7 +101,7 @@ TEST(MitsubaExporters, BlenderMtsblend) {
   ASSERT_NE(floor.parameters[0].texture, no_texture);
   EXPECT_EQ(scene.textures.at(floor.parameters[0].texture).u_row[0], 2.0f);
   const MaterialDescription& cube = material_called(scene, "Material.Cube-material");
-  EXPECT_EQ(cube.scalar(RoughPlastic::Index::alpha), 0.2f);
+  EXPECT_EQ(cube[&RoughPlastic::alpha].value.x, 0.2f);
   expect_near(scene.delta_lights.at(0).direction, glm::normalize(Vec3(1, 1, -2)));
   EXPECT_EQ(scene.delta_lights.at(0).intensity, Color(2.0f, 1.9f, 1.8f));
 }

@@ -33,6 +33,11 @@ Probe parameter(int index, int component = 0) {
   };
 }
 
+template <class Bsdf, class Type>
+Probe parameter(Type Bsdf::*member) {
+  return parameter(index_of(member));
+}
+
 /// Of anything.
 template <class Get>
 Probe of(Get get) {
@@ -70,10 +75,6 @@ std::string bsdf(const std::string& type, const std::string& inside = "") {
 }
 
 TEST(MitsubaParameters, OfSurfaces) {
-  using P = Principled::Index;
-  using T = PrincipledThin::Index;
-  using C = Conductor::Index;
-  using R = RoughDielectric::Index;
   const double bk7 = 1.5046 / 1.000277, plastic = 1.49 / 1.000277;  // golden: 1.504183, 1.489587
   std::vector<Row> rows = {
       {bsdf("diffuse"), parameter(0), 0.5},
@@ -91,73 +92,82 @@ TEST(MitsubaParameters, OfSurfaces) {
       {bsdf("plastic"), parameter(1), 1},
       {bsdf("plastic", number("specular_reflectance", 0.3)), parameter(1), 0.3},
       {bsdf("plastic", number("diffuse_reflectance", 0.3)), parameter(0), 0.3},
-      {bsdf("roughplastic"), parameter(RoughPlastic::Index::alpha), 0.1},
-      {bsdf("roughplastic", number("alpha", 0.3)), parameter(RoughPlastic::Index::alpha), 0.3},
+      {bsdf("roughplastic"), parameter(&RoughPlastic::alpha), 0.1},
+      {bsdf("roughplastic", number("alpha", 0.3)), parameter(&RoughPlastic::alpha), 0.3},
       {bsdf("phong"), parameter(0), 0.5, "", "0.6.0"},
       {bsdf("phong"), parameter(1), 0.2, "", "0.6.0"},
-      {bsdf("phong", number("exponent", 50)), parameter(Phong::Index::exponent), 50, "", "0.6.0"},
+      {bsdf("phong", number("exponent", 50)), parameter(&Phong::exponent), 50, "", "0.6.0"},
       {bsdf("ward"), parameter(1), 0.2, "", "0.6.0"},
-      {bsdf("ward"), parameter(Ward::Index::alpha_y), 0.1, "", "0.6.0"},
+      {bsdf("ward"), parameter(&Ward::alpha_y), 0.1, "", "0.6.0"},
       {bsdf("ward", text("variant", "ward")), parameter(1), 0.2, "variant 'ward'", "0.6.0"},
-      {bsdf("ward", number("alpha", 0.3) + number("alpha_u", 0.4)), parameter(Ward::Index::alpha_y),
-       0.3, "", "0.6.0"},
+      {bsdf("ward", number("alpha", 0.3) + number("alpha_u", 0.4)), parameter(&Ward::alpha_y), 0.3,
+       "", "0.6.0"},
       {bsdf("dielectric"), parameter(1), bk7},
       {bsdf("dielectric", number("int_ior", 1.8)), parameter(1), 1.8 / 1.000277},
       {bsdf("dielectric", number("ext_ior", 1.25)), parameter(1), 1.5046 / 1.25},
       {bsdf("dielectric", text("int_ior", "Diamond") + text("ext_ior", "water")), parameter(1),
        2.419 / 1.333},
-      {bsdf("dielectric", number("specular_transmittance", 0.5)), parameter(R::passed), 0.5},
-      {bsdf("dielectric", number("specular_reflectance", 0.5)), parameter(R::reflected), 0.5},
-      {bsdf("dielectric", number("specular_reflectance", 0.5)), parameter(R::passed), 1},
-      {bsdf("dielectric", number("specular_reflectance", 0.5)), parameter(R::eta), bk7},
-      {bsdf("roughdielectric"), parameter(R::alpha_x), 0.1},
-      {bsdf("roughdielectric"), parameter(R::eta), bk7},
-      {bsdf("roughdielectric"), parameter(R::is_beckmann), 1},
-      {bsdf("roughdielectric", text("distribution", "GGX")), parameter(R::is_beckmann), 0},
-      {bsdf("roughdielectric", number("alpha", 0)), parameter(R::alpha_y), 1e-4},
-      {bsdf("roughdielectric", number("alpha", 1e-3)), parameter(R::alpha_y), 1e-3},
-      {bsdf("thindielectric"), parameter(ThinDielectric::Index::eta), bk7},
+      {bsdf("dielectric", number("specular_transmittance", 0.5)),
+       parameter(&RoughDielectric::passed), 0.5},
+      {bsdf("dielectric", number("specular_reflectance", 0.5)),
+       parameter(&RoughDielectric::reflected), 0.5},
+      {bsdf("dielectric", number("specular_reflectance", 0.5)), parameter(&RoughDielectric::passed),
+       1},
+      {bsdf("dielectric", number("specular_reflectance", 0.5)), parameter(&RoughDielectric::eta),
+       bk7},
+      {bsdf("roughdielectric"), parameter(&RoughDielectric::alpha_x), 0.1},
+      {bsdf("roughdielectric"), parameter(&RoughDielectric::eta), bk7},
+      {bsdf("roughdielectric"), parameter(&RoughDielectric::is_beckmann), 1},
+      {bsdf("roughdielectric", text("distribution", "GGX")),
+       parameter(&RoughDielectric::is_beckmann), 0},
+      {bsdf("roughdielectric", number("alpha", 0)), parameter(&RoughDielectric::alpha_y), 1e-4},
+      {bsdf("roughdielectric", number("alpha", 1e-3)), parameter(&RoughDielectric::alpha_y), 1e-3},
+      {bsdf("thindielectric"), parameter(&ThinDielectric::eta), bk7},
       {bsdf("thindielectric", number("specular_transmittance", 0.4)),
-       parameter(ThinDielectric::Index::passed), 0.4},
+       parameter(&ThinDielectric::passed), 0.4},
       {bsdf("thindielectric", number("specular_reflectance", 0.4)),
-       parameter(ThinDielectric::Index::reflected), 0.4},
-      {bsdf("conductor"), parameter(C::eta), 0},
-      {bsdf("conductor"), parameter(C::k), 1},
-      {bsdf("conductor"), parameter(C::tint), 1},
-      {bsdf("conductor", number("eta", 2)), parameter(C::k), 1},
-      {bsdf("conductor", number("eta", 2)), parameter(C::eta), 2},
-      {bsdf("conductor", number("k", 2)), parameter(C::eta), 0},
-      {bsdf("conductor", number("k", 2)), parameter(C::k), 2},
-      {bsdf("conductor", number("eta", -2)), parameter(C::eta), 0, "an index of refraction"},
-      {bsdf("conductor", text("material", "none")), parameter(C::k), 1},
-      {bsdf("conductor", text("material", "Unobtainium")), parameter(C::tint), 1,
+       parameter(&ThinDielectric::reflected), 0.4},
+      {bsdf("conductor"), parameter(&Conductor::eta), 0},
+      {bsdf("conductor"), parameter(&Conductor::k), 1},
+      {bsdf("conductor"), parameter(&Conductor::tint), 1},
+      {bsdf("conductor", number("eta", 2)), parameter(&Conductor::k), 1},
+      {bsdf("conductor", number("eta", 2)), parameter(&Conductor::eta), 2},
+      {bsdf("conductor", number("k", 2)), parameter(&Conductor::eta), 0},
+      {bsdf("conductor", number("k", 2)), parameter(&Conductor::k), 2},
+      {bsdf("conductor", number("eta", -2)), parameter(&Conductor::eta), 0,
+       "an index of refraction"},
+      {bsdf("conductor", text("material", "none")), parameter(&Conductor::k), 1},
+      {bsdf("conductor", text("material", "Unobtainium")), parameter(&Conductor::tint), 1,
        "the conductor 'Unobtainium'"},
-      {bsdf("conductor", number("specular_reflectance", 0.3)), parameter(C::tint), 0.3},
-      {bsdf("conductor"), parameter(C::alpha_x), 0},
-      {bsdf("roughconductor"), parameter(C::alpha_x), 0.1},
-      {bsdf("roughconductor"), parameter(C::is_beckmann), 1},
-      {bsdf("roughconductor", number("alpha", 0.3)), parameter(C::alpha_y), 0.3},
+      {bsdf("conductor", number("specular_reflectance", 0.3)), parameter(&Conductor::tint), 0.3},
+      {bsdf("conductor"), parameter(&Conductor::alpha_x), 0},
+      {bsdf("roughconductor"), parameter(&Conductor::alpha_x), 0.1},
+      {bsdf("roughconductor"), parameter(&Conductor::is_beckmann), 1},
+      {bsdf("roughconductor", number("alpha", 0.3)), parameter(&Conductor::alpha_y), 0.3},
       {bsdf("roughconductor", number("alpha_u", 0.2) + number("alpha_v", 0.3)),
-       parameter(C::alpha_x), 0.2},
+       parameter(&Conductor::alpha_x), 0.2},
       {bsdf("roughconductor", number("alpha_u", 0.2) + number("alpha_v", 0.3)),
-       parameter(C::alpha_y), 0.3},
-      {bsdf("roughconductor", number("alpha_u", 0.2)), parameter(C::alpha_y), 0.1},
-      {bsdf("roughconductor", text("distribution", "ggx")), parameter(C::is_beckmann), 0},
-      {bsdf("roughconductor", text("distribution", "phong")), parameter(C::is_beckmann), 1,
+       parameter(&Conductor::alpha_y), 0.3},
+      {bsdf("roughconductor", number("alpha_u", 0.2)), parameter(&Conductor::alpha_y), 0.1},
+      {bsdf("roughconductor", text("distribution", "ggx")), parameter(&Conductor::is_beckmann), 0},
+      {bsdf("roughconductor", text("distribution", "phong")), parameter(&Conductor::is_beckmann), 1,
        "distribution 'phong'", "0.6.0"},
-      {bsdf("principled"), parameter(P::base_color), 0.5},
-      {bsdf("principled"), parameter(P::roughness), 0.5},
-      {bsdf("principled"), parameter(P::eta), 1.5},
-      {bsdf("principled", number("specular", 0)), parameter(P::eta), 1},
-      {bsdf("principled", number("specular", 1)), parameter(P::eta), 2 / (1 - std::sqrt(0.08)) - 1},
-      {bsdf("principled", number("specular", 12.5)), parameter(P::eta), 1.5, "specular 12.5"},
-      {bsdf("principled", number("eta", 1.8)), parameter(P::eta), 1.8},
-      {bsdf("principled", number("spec_trans", 1) + number("eta", 1)), parameter(P::eta), 1.001},
-      {bsdf("principled", number("eta", 1)), parameter(P::eta), 1},
-      {bsdf("principledthin"), parameter(T::base_color), 0.5},
-      {bsdf("principledthin"), parameter(T::roughness), 0.5},
-      {bsdf("principledthin"), parameter(T::eta), 1.5},
-      {bsdf("principledthin", number("eta", 1.2)), parameter(T::eta), 1.2},
+      {bsdf("principled"), parameter(&Principled::base_color), 0.5},
+      {bsdf("principled"), parameter(&Principled::roughness), 0.5},
+      {bsdf("principled"), parameter(&Principled::eta), 1.5},
+      {bsdf("principled", number("specular", 0)), parameter(&Principled::eta), 1},
+      {bsdf("principled", number("specular", 1)), parameter(&Principled::eta),
+       2 / (1 - std::sqrt(0.08)) - 1},
+      {bsdf("principled", number("specular", 12.5)), parameter(&Principled::eta), 1.5,
+       "specular 12.5"},
+      {bsdf("principled", number("eta", 1.8)), parameter(&Principled::eta), 1.8},
+      {bsdf("principled", number("spec_trans", 1) + number("eta", 1)), parameter(&Principled::eta),
+       1.001},
+      {bsdf("principled", number("eta", 1)), parameter(&Principled::eta), 1},
+      {bsdf("principledthin"), parameter(&PrincipledThin::base_color), 0.5},
+      {bsdf("principledthin"), parameter(&PrincipledThin::roughness), 0.5},
+      {bsdf("principledthin"), parameter(&PrincipledThin::eta), 1.5},
+      {bsdf("principledthin", number("eta", 1.2)), parameter(&PrincipledThin::eta), 1.2},
       {bsdf("coating", bsdf("diffuse", number("reflectance", 0.25))), parameter(0), 0.25,
        "bsdf 'coating'", "0.6.0"},
       {bsdf("mask", bsdf("diffuse")), of([](const auto& s) { return top_of(s).opacity.offset; }),
@@ -179,22 +189,22 @@ TEST(MitsubaParameters, OfSurfaces) {
     rows.push_back({bsdf(type), parameter(index), 0});
     rows.push_back({bsdf(type, number(name, 0.375)), parameter(index), 0.375});
   };
-  zero_and_given("principled", "metallic", P::metallic);
-  zero_and_given("principled", "spec_trans", P::spec_trans);
-  zero_and_given("principled", "anisotropic", P::anisotropic);
-  zero_and_given("principled", "spec_tint", P::spec_tint);
-  zero_and_given("principled", "sheen", P::sheen);
-  zero_and_given("principled", "sheen_tint", P::sheen_tint);
-  zero_and_given("principled", "flatness", P::flatness);
-  zero_and_given("principled", "clearcoat", P::clearcoat);
-  zero_and_given("principled", "clearcoat_gloss", P::clearcoat_gloss);
-  zero_and_given("principledthin", "spec_trans", T::spec_trans);
-  zero_and_given("principledthin", "anisotropic", T::anisotropic);
-  zero_and_given("principledthin", "spec_tint", T::spec_tint);
-  zero_and_given("principledthin", "sheen", T::sheen);
-  zero_and_given("principledthin", "sheen_tint", T::sheen_tint);
-  zero_and_given("principledthin", "flatness", T::flatness);
-  zero_and_given("principledthin", "diff_trans", T::diff_trans);
+  zero_and_given("principled", "metallic", index_of(&Principled::metallic));
+  zero_and_given("principled", "spec_trans", index_of(&Principled::spec_trans));
+  zero_and_given("principled", "anisotropic", index_of(&Principled::anisotropic));
+  zero_and_given("principled", "spec_tint", index_of(&Principled::spec_tint));
+  zero_and_given("principled", "sheen", index_of(&Principled::sheen));
+  zero_and_given("principled", "sheen_tint", index_of(&Principled::sheen_tint));
+  zero_and_given("principled", "flatness", index_of(&Principled::flatness));
+  zero_and_given("principled", "clearcoat", index_of(&Principled::clearcoat));
+  zero_and_given("principled", "clearcoat_gloss", index_of(&Principled::clearcoat_gloss));
+  zero_and_given("principledthin", "spec_trans", index_of(&PrincipledThin::spec_trans));
+  zero_and_given("principledthin", "anisotropic", index_of(&PrincipledThin::anisotropic));
+  zero_and_given("principledthin", "spec_tint", index_of(&PrincipledThin::spec_tint));
+  zero_and_given("principledthin", "sheen", index_of(&PrincipledThin::sheen));
+  zero_and_given("principledthin", "sheen_tint", index_of(&PrincipledThin::sheen_tint));
+  zero_and_given("principledthin", "flatness", index_of(&PrincipledThin::flatness));
+  zero_and_given("principledthin", "diff_trans", index_of(&PrincipledThin::diff_trans));
   expect_rows(rows, lit_square);
   // The coat's index, seen in what make_plastic() derives from it.
   const auto coat = [](const std::string& inside) {
@@ -356,8 +366,8 @@ TEST(MitsubaParameters, OfACheckerboardThatIsBoth) {
                                    "</shape>")
                               .scene;
   const MaterialDescription& metal = top_of(scene);
-  const Texture& color = scene.textures.at(metal.parameters[Conductor::Index::tint].texture);
-  const Texture& alpha = scene.textures.at(metal.parameters[Conductor::Index::alpha_x].texture);
+  const Texture& color = scene.textures.at(metal[&Conductor::tint].texture);
+  const Texture& alpha = scene.textures.at(metal[&Conductor::alpha_x].texture);
   EXPECT_EQ(color.color0, Color(0.4f));
   EXPECT_EQ(alpha.color0, Color(0.2f));
 }

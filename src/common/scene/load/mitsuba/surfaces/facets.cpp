@@ -70,9 +70,9 @@ Surface read_dielectric(Context& context, const Object& bsdf) {
   if (is_plain(reflected, passed)) {
     surface.material = make_dielectric(passed.color, eta);
   } else {
-    surface.material = describe_all<RoughDielectric>(0, 0, eta, 0, 0, 0);
-    surface.material.parameters[RoughDielectric::Index::reflected] = parameter_of(reflected);
-    surface.material.parameters[RoughDielectric::Index::passed] = parameter_of(passed);
+    surface.material = make_material<RoughDielectric>(0, 0, eta, 0, 0, 0);
+    surface.material[&RoughDielectric::reflected] = parameter_of(reflected);
+    surface.material[&RoughDielectric::passed] = parameter_of(passed);
   }
   return surface;
 }
@@ -80,22 +80,20 @@ Surface read_dielectric(Context& context, const Object& bsdf) {
 Surface read_rough_dielectric(Context& context, const Object& bsdf) {
   const Roughness roughness = read_roughness(context, bsdf);
   Surface surface;
-  surface.material = describe_all<RoughDielectric>(0, 0, relative_ior(bsdf));
-  using Index = RoughDielectric::Index;
-  Parameter* parameters = surface.material.parameters;
-  parameters[Index::reflected] = parameter_of(tint(context, bsdf, "specular_reflectance"));
-  parameters[Index::passed] = parameter_of(tint(context, bsdf, "specular_transmittance"));
-  roughness.store(parameters + Index::alpha_x);
+  surface.material = make_material<RoughDielectric>(0, 0, relative_ior(bsdf));
+  MaterialDescription& m = surface.material;
+  m[&RoughDielectric::reflected] = parameter_of(tint(context, bsdf, "specular_reflectance"));
+  m[&RoughDielectric::passed] = parameter_of(tint(context, bsdf, "specular_transmittance"));
+  roughness.store(&m[&RoughDielectric::alpha_x]);
   return surface;
 }
 
 Surface read_thin_dielectric(Context& context, const Object& bsdf) {
   Surface surface;
-  surface.material = describe_all<ThinDielectric>(0, 0, relative_ior(bsdf));
-  using Index = ThinDielectric::Index;
-  surface.material.parameters[Index::reflected] =
+  surface.material = make_material<ThinDielectric>(0, 0, relative_ior(bsdf));
+  surface.material[&ThinDielectric::reflected] =
       parameter_of(tint(context, bsdf, "specular_reflectance"));
-  surface.material.parameters[Index::passed] =
+  surface.material[&ThinDielectric::passed] =
       parameter_of(tint(context, bsdf, "specular_transmittance"));
   return surface;
 }
@@ -161,10 +159,10 @@ void read_index(Context& context, const Object& bsdf, Parameter* eta_and_k) {
 
 Surface conductor_of(Context& context, const Object& bsdf) {
   Surface surface;
-  surface.material = describe_all<Conductor>(0);
-  surface.material.parameters[Conductor::Index::tint] =
+  surface.material = make_material<Conductor>(0);
+  surface.material[&Conductor::tint] =
       parameter_of(read_color_texture(context, bsdf, "specular_reflectance", Color(1.0f)));
-  read_index(context, bsdf, surface.material.parameters + Conductor::Index::eta);
+  read_index(context, bsdf, &surface.material[&Conductor::eta]);
   surface.material.one_sided = true;
   return surface;
 }
@@ -187,7 +185,7 @@ Surface read_conductor(Context& context, const Object& bsdf) { return conductor_
 
 Surface read_rough_conductor(Context& context, const Object& bsdf) {
   Surface surface = conductor_of(context, bsdf);
-  read_roughness(context, bsdf).store(surface.material.parameters + Conductor::Index::alpha_x);
+  read_roughness(context, bsdf).store(&surface.material[&Conductor::alpha_x]);
   return surface;
 }
 
@@ -196,10 +194,10 @@ namespace {
 // Diffuse surfaces under a highlight: plastics, Phong's and Ward's.
 
 /// The second parameter of all of them.
-constexpr int specular_parameter = Plastic::Index::specular;
-static_assert(specular_parameter == RoughPlastic::Index::specular &&
-              specular_parameter == Phong::Index::specular &&
-              specular_parameter == Ward::Index::specular);
+constexpr int specular_parameter = index_of(&Plastic::specular);
+static_assert(specular_parameter == index_of(&RoughPlastic::specular) &&
+              specular_parameter == index_of(&Phong::specular) &&
+              specular_parameter == index_of(&Ward::specular));
 
 /// Reads the first two parameters of all of them; they scatter on the side of the normal alone.
 Surface glossy_of(Context& context, const Object& bsdf, const MaterialDescription& material,
@@ -237,14 +235,14 @@ Surface read_rough_plastic(Context& context, const Object& bsdf) {
                               make_rough_plastic(Color(0.0f), Color(0.0f), read_coat(bsdf),
                                                  alpha.color.x, roughness.is_beckmann),
                               1.0f);
-  surface.material.parameters[RoughPlastic::Index::alpha].texture = alpha.texture;
+  surface.material[&RoughPlastic::alpha].texture = alpha.texture;
   return surface;
 }
 
 /// Of Mitsuba 0.x, as `ward`.
 Surface read_phong(Context& context, const Object& bsdf) {
-  Surface surface = glossy_of(context, bsdf, describe_all<Phong>(), 0.2f);
-  surface.material.parameters[Phong::Index::exponent] =
+  Surface surface = glossy_of(context, bsdf, make_material<Phong>(), 0.2f);
+  surface.material[&Phong::exponent] =
       parameter_of(read_number_texture(context, bsdf, "exponent", 30.0f));
   return surface;
 }
@@ -255,13 +253,13 @@ Surface read_ward(Context& context, const Object& bsdf) {
     context.warn_once("ward " + variant, bsdf.element(),
                       "variant '{}' of bsdf 'ward' is not supported: balanced is used", variant);
   }
-  Surface surface = glossy_of(context, bsdf, describe_all<Ward>(), 0.2f);
+  Surface surface = glossy_of(context, bsdf, make_material<Ward>(), 0.2f);
   const auto alpha = [&](std::string_view axis) {
     const bool own = bsdf.find(axis) || bsdf.child_named(axis);
     return parameter_of(read_number_texture(context, bsdf, own ? axis : "alpha", 0.1f));
   };
-  surface.material.parameters[Ward::Index::alpha_x] = alpha("alpha_u");
-  surface.material.parameters[Ward::Index::alpha_y] = alpha("alpha_v");
+  surface.material[&Ward::alpha_x] = alpha("alpha_u");
+  surface.material[&Ward::alpha_y] = alpha("alpha_v");
   return surface;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <type_traits>
 
 namespace pt::mitsuba {
 
@@ -9,7 +10,7 @@ namespace pt::mitsuba {
 
 Surface diffuse_of(const ColorTexture& reflectance) {
   Surface surface;
-  surface.material.parameters[Diffuse::Index::albedo] = {reflectance.color, reflectance.texture};
+  surface.material[&Diffuse::albedo] = {reflectance.color, reflectance.texture};
   surface.material.one_sided = true;
   return surface;
 }
@@ -26,7 +27,7 @@ Surface read_diffuse(Context& context, const Object& bsdf) {
 Surface read_rough_diffuse(Context& context, const Object& bsdf) {
   Surface surface = read_diffuse(context, bsdf);
   surface.material.kind = kind_of<OrenNayar>;
-  Parameter& sigma = surface.material.parameters[OrenNayar::Index::sigma];
+  Parameter& sigma = surface.material[&OrenNayar::sigma];
   sigma = parameter_of(read_number_texture(context, bsdf, "alpha", 0.2f));
   sigma.value *= std::sqrt(0.5f);
   bsdf.ignore({"use_fast_approx"});
@@ -37,15 +38,23 @@ namespace {
 
 // principled and principledthin.
 
-/// Reads numbers, which may be textures, into the parameters that follow.
-struct NumberReader {
-  Context& context;
-  const Object& bsdf;
-
-  void operator()(Parameter& to, std::string_view name, float fallback = 0.0f) const {
-    to = parameter_of(read_number_texture(context, bsdf, name, fallback));
+/// Reads the base colour and the numbers: the BSDF's parameters have Mitsuba's names.
+template <class Bsdf>
+Surface read_parameters(Context& context, const Object& bsdf) {
+  Surface surface;
+  surface.material = make_material<Bsdf>(0);
+  for (int i = 0; i < parameter_count<Bsdf>; ++i) {
+    const Field<Bsdf>& field = Bsdf::fields[i];
+    Parameter& parameter = surface.material.parameters[i];
+    if (field.is_color) {
+      parameter = parameter_of(read_color_texture(context, bsdf, field.name, Color(0.5f)));
+    } else if (!std::is_same_v<Bsdf, Principled> || !field.is(&Bsdf::eta)) {  // see read_eta
+      const float fallback = field.is(&Bsdf::roughness) ? 0.5f : field.is(&Bsdf::eta) ? 1.5f : 0.0f;
+      parameter = parameter_of(read_number_texture(context, bsdf, field.name, fallback));
+    }
   }
-};
+  return surface;
+}
 
 /// `eta`, or that of `specular`: 0.08 times it is the reflectance at normal incidence.
 float read_eta(Context& context, const Object& bsdf) {
@@ -77,39 +86,18 @@ bool is_zero(const Parameter& p) { return p.texture == no_texture && is_black(p.
 }  // namespace
 
 Surface read_principled(Context& context, const Object& bsdf) {
-  const NumberReader read{context, bsdf};
-  Surface surface;
-  surface.material = describe_all<Principled>(0);
-  using Index = Principled::Index;
-  Parameter* p = surface.material.parameters;
-  p[Index::eta].value = Color(read_eta(context, bsdf));
-  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
-  read(p[Index::roughness], "roughness", 0.5f);
-  read(p[Index::metallic], "metallic"), read(p[Index::spec_trans], "spec_trans");
-  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
-  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
-  read(p[Index::flatness], "flatness");
-  read(p[Index::clearcoat], "clearcoat"), read(p[Index::clearcoat_gloss], "clearcoat_gloss");
+  const float eta = read_eta(context, bsdf);
+  Surface surface = read_parameters<Principled>(context, bsdf);
   ignore_sampling_rates(bsdf);
-  const bool opaque = is_zero(p[Index::spec_trans]);
+  const bool opaque = is_zero(surface.material[&Principled::spec_trans]);
   surface.material.one_sided = opaque;
-  // As Mitsuba: light that passes must be bent.
-  if (!opaque && p[Index::eta].value.x == 1.0f) p[Index::eta].value = Color(1.001f);
+  // As Mitsuba: transmitted light must be refracted.
+  surface.material[&Principled::eta].value = Color(!opaque && eta == 1.0f ? 1.001f : eta);
   return surface;
 }
 
 Surface read_principled_thin(Context& context, const Object& bsdf) {
-  const NumberReader read{context, bsdf};
-  Surface surface;
-  surface.material = describe_all<PrincipledThin>(0);
-  using Index = PrincipledThin::Index;
-  Parameter* p = surface.material.parameters;
-  p[Index::base_color] = parameter_of(read_color_texture(context, bsdf, "base_color", Color(0.5f)));
-  read(p[Index::roughness], "roughness", 0.5f);
-  read(p[Index::spec_trans], "spec_trans"), read(p[Index::eta], "eta", 1.5f);
-  read(p[Index::anisotropic], "anisotropic"), read(p[Index::spec_tint], "spec_tint");
-  read(p[Index::sheen], "sheen"), read(p[Index::sheen_tint], "sheen_tint");
-  read(p[Index::flatness], "flatness"), read(p[Index::diff_trans], "diff_trans");
+  Surface surface = read_parameters<PrincipledThin>(context, bsdf);
   ignore_sampling_rates(bsdf);
   return surface;
 }

@@ -58,7 +58,7 @@ class LobeSum {
 
 Surface diffuse_of(const ColorTexture& albedo) {
   Surface surface;
-  surface.material.parameters[Diffuse::Index::albedo] = parameter_of(albedo);
+  surface.material[&Diffuse::albedo] = parameter_of(albedo);
   return surface;
 }
 
@@ -66,11 +66,10 @@ Surface diffuse_of(const ColorTexture& albedo) {
 Surface facets_of(const ColorTexture& reflected, const ColorTexture& passed, float eta,
                   const Roughness& roughness) {
   Surface surface;
-  using Index = RoughDielectric::Index;
-  surface.material = describe_all<RoughDielectric>(1.0f, 1.0f, eta);
-  surface.material.parameters[Index::reflected] = parameter_of(reflected);
-  surface.material.parameters[Index::passed] = parameter_of(passed);
-  roughness.store(surface.material.parameters + Index::alpha_x);
+  surface.material = make_material<RoughDielectric>(1.0f, 1.0f, eta);
+  surface.material[&RoughDielectric::reflected] = parameter_of(reflected);
+  surface.material[&RoughDielectric::passed] = parameter_of(passed);
+  roughness.store(&surface.material[&RoughDielectric::alpha_x]);
   return surface;
 }
 
@@ -132,7 +131,7 @@ Surface read_metal(Context& context, const Parameters& parameters) {
 
 Surface read_mirror(Context& context, const Parameters& parameters) {
   Surface surface = conductor_of({Color(0.0f)}, {Color(1.0f)}, smooth_facets);
-  surface.material.parameters[Conductor::Index::tint] =
+  surface.material[&Conductor::tint] =
       parameter_of(read_color_texture(context, parameters, "Kr", Color(0.9f)));
   return surface;
 }
@@ -236,32 +235,30 @@ Surface read_disney(Context& context, const Parameters& parameters) {
       parameter_of(read_color_texture(context, parameters, "color", Color(0.5f)));
   const float eta = read_plain_number(context, parameters, "eta", 1.5f);
   parameters.ignore({"scatterdistance", "difftrans", "metallic", "clearcoat", "clearcoatgloss"});
-  const auto set_common = [&](auto index, pt::Parameter* p) {
-    using Index = decltype(index);
-    p[Index::base_color] = color;
-    p[Index::eta].value = Color(std::max(eta, 1.001f));
-    p[Index::roughness] = number("roughness", 0.5f);
-    p[Index::spec_trans] = number("spectrans");
-    p[Index::anisotropic] = number("anisotropic");
-    p[Index::spec_tint] = number("speculartint");
-    p[Index::sheen] = number("sheen");
-    p[Index::sheen_tint] = number("sheentint", 0.5f);
-    p[Index::flatness] = number("flatness");
+  const auto make_common = [&]<class Bsdf>(std::type_identity<Bsdf>) {
+    MaterialDescription m = make_material<Bsdf>(0);
+    m[&Bsdf::base_color] = color;
+    m[&Bsdf::eta].value = Color(std::max(eta, 1.001f));
+    m[&Bsdf::roughness] = number("roughness", 0.5f);
+    m[&Bsdf::spec_trans] = number("spectrans");
+    m[&Bsdf::anisotropic] = number("anisotropic");
+    m[&Bsdf::spec_tint] = number("speculartint");
+    m[&Bsdf::sheen] = number("sheen");
+    m[&Bsdf::sheen_tint] = number("sheentint", 0.5f);
+    m[&Bsdf::flatness] = number("flatness");
+    return m;
   };
   if (parameters.boolean("thin", false)) {
-    surface.material = describe_all<PrincipledThin>(0);
-    set_common(PrincipledThin::Index{}, surface.material.parameters);
-    surface.material.parameters[PrincipledThin::Index::diff_trans] = number("difftrans", 1.0f);
+    surface.material = make_common(std::type_identity<PrincipledThin>{});
+    surface.material[&PrincipledThin::diff_trans] = number("difftrans", 1.0f);
     return surface;
   }
-  surface.material = describe_all<Principled>(0);
-  pt::Parameter* p = surface.material.parameters;
-  set_common(Principled::Index{}, p);
-  p[Principled::Index::metallic] = number("metallic");
-  p[Principled::Index::clearcoat] = number("clearcoat");
-  p[Principled::Index::clearcoat_gloss] = number("clearcoatgloss", 1.0f);
-  const pt::Parameter& passes = p[Principled::Index::spec_trans];
-  surface.material.one_sided = passes.texture == no_texture && is_black(passes.value);
+  MaterialDescription& m = surface.material = make_common(std::type_identity<Principled>{});
+  m[&Principled::metallic] = number("metallic");
+  m[&Principled::clearcoat] = number("clearcoat");
+  m[&Principled::clearcoat_gloss] = number("clearcoatgloss", 1.0f);
+  const pt::Parameter& passes = m[&Principled::spec_trans];
+  m.one_sided = passes.texture == no_texture && is_black(passes.value);
   return surface;
 }
 

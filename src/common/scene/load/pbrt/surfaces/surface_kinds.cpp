@@ -16,8 +16,8 @@ Surface read_dielectric(Context& context, const Parameters& parameters) {
   if (roughness.is_smooth()) {
     surface.material = make_dielectric(Color(1.0f), eta);
   } else {
-    surface.material = describe_all<RoughDielectric>(1.0f, 1.0f, eta);
-    roughness.store(surface.material.parameters + RoughDielectric::Index::alpha_x);
+    surface.material = make_material<RoughDielectric>(1.0f, 1.0f, eta);
+    roughness.store(&surface.material[&RoughDielectric::alpha_x]);
   }
   return surface;
 }
@@ -25,7 +25,7 @@ Surface read_dielectric(Context& context, const Parameters& parameters) {
 Surface read_thin_dielectric(Context& context, const Parameters& parameters) {
   Surface surface;
   surface.material =
-      describe_all<ThinDielectric>(1.0f, 1.0f, read_index(context, parameters, "eta", 1.5f));
+      make_material<ThinDielectric>(1.0f, 1.0f, read_index(context, parameters, "eta", 1.5f));
   return surface;
 }
 
@@ -96,7 +96,7 @@ Surface coated(const ColorTexture& body, float eta, const Roughness& roughness) 
   } else {
     surface.material =
         make_rough_plastic(Color(0.0f), Color(1.0f), coat, std::clamp(alpha, 1e-3f, 1.0f), false);
-    surface.material.parameters[RoughPlastic::Index::alpha].texture = roughness.alpha_u.texture;
+    surface.material[&RoughPlastic::alpha].texture = roughness.alpha_u.texture;
   }
   surface.material.parameters[color_parameter] = parameter_of(body);
   return surface;
@@ -104,7 +104,7 @@ Surface coated(const ColorTexture& body, float eta, const Roughness& roughness) 
 
 Surface read_diffuse(Context& context, const Parameters& parameters) {
   Surface surface;
-  surface.material.parameters[Diffuse::Index::albedo] =
+  surface.material[&Diffuse::albedo] =
       parameter_of(read_color_texture(context, parameters, "reflectance", Color(0.5f)));
   return surface;
 }
@@ -133,13 +133,12 @@ Surface diffuse_both_ways(Context& context, const ColorTexture& reflected,
   const float r = largest(reflected), t = largest(passed);
   const float share = t > 0.0f ? t / (r + t) : 0.0f;
   Surface front, through;
-  front.material.parameters[Diffuse::Index::albedo] =
+  front.material[&Diffuse::albedo] =
       parameter_of(scaled(reflected, share < 1.0f ? 1.0f / (1.0f - share) : 0.0f));
-  through.material = describe_all<PrincipledThin>(0, 0.5f, 0, 1.0f);
-  using Index = PrincipledThin::Index;
-  through.material.parameters[Index::base_color] =
+  through.material = make_material<PrincipledThin>(0, 0.5f, 0, 1.0f);
+  through.material[&PrincipledThin::base_color] =
       parameter_of(scaled(passed, share > 0.0f ? 1.0f / share : 0.0f));
-  through.material.parameters[Index::diff_trans].value = Color(2.0f);
+  through.material[&PrincipledThin::diff_trans].value = Color(2.0f);
   return blend(context, {Color(share)}, front, through);
 }
 
@@ -165,7 +164,7 @@ Surface read_hair(Context& context, const Parameters& parameters) {
   report_replaced(context, parameters, "a diffuse surface of its colour (or brown) is used");
   const char* name = parameters.find("color") ? "color" : "reflectance";
   Surface surface;
-  surface.material.parameters[Diffuse::Index::albedo] =
+  surface.material[&Diffuse::albedo] =
       parameter_of(read_color_texture(context, parameters, name, Color(0.25f, 0.12f, 0.06f)));
   parameters.ignore_all();
   return surface;
@@ -229,11 +228,10 @@ MetalIndex read_metal_index(Context& context, const Parameters& parameters,
 
 Surface conductor_of(const ColorTexture& eta, const ColorTexture& k, const Roughness& roughness) {
   Surface surface;
-  surface.material = describe_all<Conductor>(1.0f);
-  using Index = Conductor::Index;
-  surface.material.parameters[Index::eta] = parameter_of(eta);
-  surface.material.parameters[Index::k] = parameter_of(k);
-  if (!roughness.is_smooth()) roughness.store(surface.material.parameters + Index::alpha_x);
+  surface.material = make_material<Conductor>(1.0f);
+  surface.material[&Conductor::eta] = parameter_of(eta);
+  surface.material[&Conductor::k] = parameter_of(k);
+  if (!roughness.is_smooth()) roughness.store(&surface.material[&Conductor::alpha_x]);
   return surface;
 }
 
@@ -290,8 +288,7 @@ Surface read_coated_conductor(Context& context, const Parameters& parameters) {
       conductor_of(metal.eta, metal.k, read_roughness(context, parameters, "conductor."));
   const float T = std::exp(-2.0f * read_thickness(context, parameters));
   const Color R = T * fresnel_conductor(1.0f, metal.eta.color, metal.k.color);
-  below.material.parameters[Conductor::Index::tint].value =
-      T * Color(1.0f - F) / (Color(1.0f) - F * R);
+  below.material[&Conductor::tint].value = T * Color(1.0f - F) / (Color(1.0f) - F * R);
   // eta 0 and k 1 reflect everything.
   const Surface coat =
       conductor_of({Color(0.0f)}, {Color(1.0f)}, read_roughness(context, parameters, "interface."));

@@ -1,4 +1,4 @@
-#include "common/light/build_light_tree.h"
+#include "common/light/light_tree.h"
 
 #include <algorithm>
 #include <array>
