@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <chrono>
 
-#include "app/render/render_devices.h"
+#include "app/render/rank_setup.h"
 #include "app/render/render_outputs.h"
 #include "common/error/host_memory.h"
 #include "common/options/option_names.h"
 #include "common/platform/steady_seconds.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

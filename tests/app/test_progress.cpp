@@ -3,7 +3,7 @@
 
 #include <csignal>
 
-#include "app/render/measure.h"
+#include "app/render/rendering.h"
 #include "app/terminal/process.h"
 #include "app/terminal/progress.h"
 #include "temp_folder.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "common/error/error.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "statistics.h"
 #include "temp_folder.h"

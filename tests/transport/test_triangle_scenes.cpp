@@ -7,7 +7,7 @@
 #include "common/image/compare/compare.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "common/scene/prepare/prepare_triangles.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "mode_cases.h"
 #include "render_serial.h"
 #include "scene/mixed_scene.h"

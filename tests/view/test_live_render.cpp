@@ -8,7 +8,7 @@
 
 #include "common/image/compare/compare.h"
 #include "common/platform/steady_seconds.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "view/live_render.h"
 
 namespace {

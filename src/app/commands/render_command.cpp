@@ -5,7 +5,6 @@
 #include "app/commands/commands.h"
 #include "app/render/make_renderer.h"
 #include "app/render/rank_setup.h"
-#include "app/render/render_devices.h"
 #include "app/render/render_outputs.h"
 #include "app/render/rendering.h"
 #include "app/report/film_header.h"

@@ -14,7 +14,7 @@
 #include "common/image/atomic_file.h"
 #include "common/rays/trace_rays.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
 
 namespace pt {

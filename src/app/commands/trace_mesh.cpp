@@ -7,7 +7,7 @@
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/rays/ray_file.h"
-#include "common/scene/prepare/prepare_triangles.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 

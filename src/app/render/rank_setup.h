@@ -1,9 +1,10 @@
-// The ranks of a job agree on devices, options and scene before they render together.
+// The devices of a render and, in a job of several ranks, what these need of each other first.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "app/options/check_options.h"
 #include "app/render/make_renderer.h"
 #include "common/device/devices.h"
 #include "common/mpi/ranks.h"
@@ -26,5 +27,11 @@ void check_ranks(Ranks& ranks, const Options& options, const DeviceInfo& device)
 /// get their bytes, unless Options::scene_from_disk.
 SceneData load_shared_scene(Ranks& ranks, const Options& options, const DeviceInfo& device,
                             const Warn& warn);
+
+/// Finds the devices for the options, which then name these. `ranks`: of a job, whose ranks share
+/// them; may be null. Throws Error where a device is not there, or where a given option has no
+/// effect on it.
+std::vector<DeviceInfo> choose_render_devices(Options& options, const GivenOptions& given,
+                                              const Ranks* ranks = nullptr);
 
 }  // namespace pt

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "common/scene/data/volume_data.h"
-#include "common/scene/prepare/prepare_media.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "statistics.h"
 
 namespace pt {

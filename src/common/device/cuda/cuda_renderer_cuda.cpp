@@ -17,7 +17,7 @@
 #include "common/scene/data/scene_arrays.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/prepare_scene.h"
-#include "common/scene/prepare/prepare_triangles.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/transport/mask.h"
 
 namespace pt {

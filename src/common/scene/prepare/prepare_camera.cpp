@@ -1,5 +1,3 @@
-#include "common/scene/prepare/prepare_camera.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include "common/error/error.h"
 #include "common/geometry/primitives.h"
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

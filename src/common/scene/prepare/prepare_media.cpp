@@ -1,5 +1,3 @@
-#include "common/scene/prepare/prepare_media.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include "common/error/error.h"
 #include "common/scene/data/volume_data.h"
 #include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

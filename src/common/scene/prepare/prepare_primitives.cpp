@@ -1,5 +1,3 @@
-#include "common/scene/prepare/prepare_primitives.h"
-
 #include <algorithm>
 #include <numeric>
 
@@ -7,6 +5,7 @@
 #include "common/accel/traverse_brute.h"
 #include "common/geometry/primitives.h"
 #include "common/scene/prepare/prepare_half_spheres.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

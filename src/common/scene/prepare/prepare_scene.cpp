@@ -8,12 +8,9 @@
 #include "common/geometry/sphere.h"
 #include "common/scene/data/scene_arrays.h"
 #include "common/scene/prepare/list_lights.h"
-#include "common/scene/prepare/prepare_camera.h"
 #include "common/scene/prepare/prepare_filter.h"
 #include "common/scene/prepare/prepare_materials.h"
-#include "common/scene/prepare/prepare_media.h"
-#include "common/scene/prepare/prepare_primitives.h"
-#include "common/scene/prepare/prepare_triangles.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 

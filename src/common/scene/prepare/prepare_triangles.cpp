@@ -1,5 +1,3 @@
-#include "common/scene/prepare/prepare_triangles.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +10,7 @@
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_materials.h"
-#include "common/scene/prepare/prepare_media.h"
-#include "common/scene/prepare/prepare_primitives.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/scene/prepare/prepare_media.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

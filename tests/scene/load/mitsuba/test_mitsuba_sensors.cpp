@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/light/sky/environment.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_modes.h"

@@ -10,7 +10,7 @@
 #include "common/image/tone_mapping.h"
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/prepare_camera.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_materials.h"
 
 namespace pt {
