@@ -74,18 +74,22 @@ inline constexpr bool precomputed = true;
 /// 0). Its place in Bsdf::fields is the parameter's index in a material.
 template <class Bsdf>
 struct Field : BsdfParameter {
-  Color Bsdf::*color = nullptr;
-  float Bsdf::*number = nullptr;
-  bool Bsdf::*flag = nullptr;
+  using ColorMember = Color Bsdf::*;
+  using NumberMember = float Bsdf::*;
+  using FlagMember = bool Bsdf::*;
 
-  constexpr Field(const char* n, Color Bsdf::*member, bool is_made = false)
+  ColorMember color = nullptr;
+  NumberMember number = nullptr;
+  FlagMember flag = nullptr;
+
+  constexpr Field(const char* n, ColorMember member, bool is_made = false)
       : BsdfParameter{n, true, is_made}, color(member) {}
-  constexpr Field(const char* n, float Bsdf::*member) : BsdfParameter{n}, number(member) {}
-  constexpr Field(const char* n, bool Bsdf::*member) : BsdfParameter{n}, flag(member) {}
+  constexpr Field(const char* n, NumberMember member) : BsdfParameter{n}, number(member) {}
+  constexpr Field(const char* n, FlagMember member) : BsdfParameter{n}, flag(member) {}
 
-  constexpr bool is(Color Bsdf::*member) const { return color == member; }
-  constexpr bool is(float Bsdf::*member) const { return number == member; }
-  constexpr bool is(bool Bsdf::*member) const { return flag == member; }
+  constexpr bool is(ColorMember member) const { return color == member; }
+  constexpr bool is(NumberMember member) const { return number == member; }
+  constexpr bool is(FlagMember member) const { return flag == member; }
 };
 
 template <class Bsdf>
