@@ -8,10 +8,10 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SRC = ROOT / "src"
 
-FILES_MAX = 700
-LINES_MAX = 80_000
+FILES_MAX = 640
+LINES_MAX = 79_000
 FOLDER_FILES_MAX = 25
-MEDIAN_LINES_MIN = 75
+MEDIAN_LINES_MIN = 95
 LOOP_LINES_MAX = 60
 
 
