@@ -38,7 +38,9 @@ TEST_P(DevicesOf, SeveralMakeTheImageOfOne) {
   std::vector<DeviceInfo> devices = choose_devices({DeviceChoice::Kind::cuda, 0, {}, true}, 0);
   devices.push_back(device);
   const auto bell = std::make_shared<ResultBell>();
-  GroupRenderer group(options, scene.filter, make_workers(options, scene, devices, *bell), bell);
+  GroupRenderer group(options, scene.filter,
+                      make_workers(plan_render(options, scene, devices), scene, devices, *bell),
+                      bell);
   const RenderRun run = group.render(RenderHooks{});
   EXPECT_EQ(run.samples_done, 40);
   Film whole = group.film().take(expected.window);

@@ -47,7 +47,9 @@ struct Group {
       infos[static_cast<std::size_t>(i)].properties.threads = 1;
     }
     renderer = std::make_unique<GroupRenderer>(
-        options, scene.filter, make_workers(options, scene, infos, *bell), bell, std::move(hooks));
+        options, scene.filter,
+        make_workers(plan_render(options, scene, infos), scene, infos, *bell), bell,
+        std::move(hooks));
   }
 };
 
@@ -583,7 +585,7 @@ TEST(Parts, WorkersOfMoreThreadsWantMorePaths) {
   devices[0].properties.threads = 1, devices[1].properties.threads = 3;
   const SceneData scene = make_scene_for(options, devices[0]);
   ResultBell bell;
-  const auto workers = make_workers(options, scene, devices, bell);
+  const auto workers = make_workers(plan_render(options, scene, devices), scene, devices, bell);
   EXPECT_EQ(workers[0]->least_paths(), 4096u);
   EXPECT_EQ(workers[1]->least_paths(), 3u * 4096);
 }

@@ -94,7 +94,7 @@ TEST(DirectLight, FollowsTheFormFactors) {
   quad.add_quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, 1);  // faces down
   const double x = 1 / std::sqrt(1.0 + 4), quarter = 2 * x * std::atan(x) / (2 * pi_double);
   for (const auto& [scene, factor] : {std::pair{&sphere, sphere_factor}, {&quad, 4 * quarter}}) {
-    prepare_scene(*scene, {});
+    prepare_scene(*scene);
     for (const int depth : {2, 50}) {
       const Render r = render(*scene, image_options(16, 16, 256, depth));
       EXPECT_GT(r.counts.shadow_rays, r.counts.paths * 9 / 10);
