@@ -176,9 +176,22 @@ TEST_F(TraceFiles, PrintTheNumbersOfTheRow) {
   std::map<std::string, std::string> row;
   std::string names, values;
   std::getline(file, names), std::getline(file, values);
-  std::istringstream all_names(names), all_values(values);
-  for (std::string name, value; std::getline(all_names, name, ',');)
-    std::getline(all_values, value, ','), row[name] = value;
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> result(1);
+    bool is_quoted = false;  // then a comma, as in "13.0.88, architectures 90", is no border
+    for (const char c : line) {
+      if (c == '"') is_quoted = !is_quoted;
+      if (c == ',' && !is_quoted) {
+        result.emplace_back();
+      } else {
+        result.back() += c;
+      }
+    }
+    return result;
+  };
+  const auto all_names = cells(names), all_values = cells(values);
+  ASSERT_EQ(all_names.size(), all_values.size());
+  for (std::size_t i = 0; i < all_names.size(); ++i) row[all_names[i]] = all_values[i];
   const auto number = [&](const char* name) { return std::stod(row.at(name)); };
   std::smatch found;
   ASSERT_TRUE(std::regex_search(

@@ -443,7 +443,9 @@ TEST(ExecutionPlan, ReasonsHaveTheirNumbers) {
             "51 spheres, up to 64 are scanned fastest there");
   EXPECT_EQ(reason("scene-memory", spheres(65), gpu()), "more than 64 spheres");
   EXPECT_EQ(reason("light-selection", lit_by(30), gpu()),
-            "30 of at least 17 lights that a tree pays for");
+            "30 lights; a light tree pays off from 17 lights on");
+  EXPECT_EQ(reason("light-selection", lit_by(1), gpu()),
+            "1 light; a light tree pays off from 17 lights on");
   EXPECT_EQ(reason("light-selection", lit_by(3), gpu(), {{"light-selection", "tree"}}),
             "asked for");
   EXPECT_EQ(reason("order-surfaces", mesh(), gpu()), "1 kind of BSDFs");
