@@ -258,7 +258,7 @@ class Planner {
                : !is_possible    ? "--branching and --order-surfaces apply to split stages"
                : device_.is_cuda ? "threads of one kernel would wait for each other"
                : is_cheap        ? "stages take blocks of rays, which save more"
-                                 : "rays and surfaces are dear: stages take them in blocks";
+                                 : "tracing and shading are expensive: stages take blocks of paths";
     }
     decide("stages", plan_.fused ? "fused" : "split", reason);
   }
@@ -297,16 +297,16 @@ class Planner {
       plan_.finish_paths = *o_.finish_paths;
       return decide("finish-paths", std::to_string(plan_.finish_paths), asked);
     }
-    const bool is_dear = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
+    const bool is_expensive = scene_.instances > 0 || order_pays_for(scene_.bsdf_kinds);
     plan_.finish_paths = is_specialized()           ? 1u << 17
                          : plan_.finishes_in_blocks ? finish_paths_of_blocks
-                         : is_dear                  ? 1u << 13
+                         : is_expensive             ? 1u << 13
                                                     : 1u << 15;
     decide("finish-paths", std::to_string(plan_.finish_paths),
            is_specialized()           ? "a path is cheap to follow alone"
            : plan_.finishes_in_blocks ? "block-local wavefronts follow them"
-           : is_dear ? "instances or many kinds of BSDFs: paths are dear to follow alone"
-                     : "triangles");
+           : is_expensive ? "instances or many kinds of BSDFs: a path alone is expensive"
+                          : "triangles");
   }
 
   /// Where the kernel of --kernel sort knows all that the scene has.
