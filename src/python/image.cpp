@@ -61,21 +61,21 @@ namespace {
 namespace nb = nanobind;
 
 /// (height, width, 3), in memory of a device type.
-ArrayOut array_of(ImageObject& self, float* rgb, int device_type, int device) {
+ArrayOut pixels_of(ImageObject& self, float* rgb, int device_type, int device) {
   const std::size_t shape[] = {static_cast<std::size_t>(self.frame().height),
                                static_cast<std::size_t>(self.frame().width), 3};
   return ArrayOut(rgb, 3, shape, nb::find(self), nullptr, nb::dtype<float>(), device_type, device);
 }
 
 ArrayOut pixels(ImageObject& self) {
-  return array_of(self, self.image().rgb.data(), nb::device::cpu::value, 0);
+  return pixels_of(self, self.image().rgb.data(), nb::device::cpu::value, 0);
 }
 
 /// In the memory of the device that rendered them.
 ArrayOut device_pixels(ImageObject& self) {
   const DeviceImage* const image = self.device_image();
   if (image == nullptr) return pixels(self);
-  return array_of(self, image->rgb(), nb::device::cuda::value, image->device());
+  return pixels_of(self, image->rgb(), nb::device::cuda::value, image->device());
 }
 
 /// 0 if the image is in the host's memory.
