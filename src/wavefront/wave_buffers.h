@@ -40,7 +40,7 @@ struct WavePolicy {
   std::uint32_t wave_collisions = to_the_end;  ///< null collisions of a flight in a wave
   bool only_triangles = false;                 ///< no instances, no spheres
   bool has_media = false;
-  bool has_volumes = false;    ///< media with grids of densities
+  bool has_volumes = false;      ///< media with grids of densities
   PathPool::Fields fields = {};  ///< what a path's slot stores
 
   WavePolicy() = default;
@@ -54,13 +54,13 @@ struct WavePolicy {
         has_media(traits.has_media),
         has_volumes(has_grids),
         fields{.lights = traits.has_lights() && !plan.fused,
-              .instances = traits.geometry == Geometry::mixed,
-              .tags = !compaction.appends,
-              .receivers = scene.light_selector.has_tree(),
-              .layout = plan.layout,
-              .hits = !plan.fused,
-              .media = traits.has_media,
-              .flights = traits.has_media && plan.wave_collisions > 0} {
+               .instances = traits.geometry == Geometry::mixed,
+               .tags = !compaction.appends,
+               .receivers = scene.light_selector.has_tree(),
+               .layout = plan.layout,
+               .hits = !plan.fused,
+               .media = traits.has_media,
+               .flights = traits.has_media && plan.wave_collisions > 0} {
     if (plan.wave_collisions > 0)
       wave_collisions = static_cast<std::uint32_t>(plan.wave_collisions);
   }

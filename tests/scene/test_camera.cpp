@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "common/error/error.h"
-#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "statistics.h"
 #include "temp_folder.h"
 

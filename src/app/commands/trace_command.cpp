@@ -14,8 +14,8 @@
 #include "common/image/atomic_file.h"
 #include "common/rays/trace_rays.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

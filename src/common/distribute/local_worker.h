@@ -31,7 +31,8 @@ class ResultBell {
 
 class LocalWorker : public Worker {
  public:
-  /// A renderer that takes its device's free memory / 2^halvings (ExecutionSettings::memory_halvings).
+  /// A renderer that takes its device's free memory / 2^halvings
+  /// (ExecutionSettings::memory_halvings).
   using MakeRenderer = std::function<std::unique_ptr<Renderer>(int halvings)>;
 
   /// Begins to make the renderer, in the thread in which it will be used; where its device runs out

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "common/light/sky/environment.h"
-#include "common/scene/prepare/prepare_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_modes.h"
 #include "render_serial.h"
