@@ -147,7 +147,7 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
     print_warning(text);
   if (is_first) end_on_signal(": no sample was finished, no image written");
   std::optional<DeviceOpening> opening;
-  if (options.mode != Mode::serial) opening.emplace(devices);
+  if (options.mode != Mode::serial && !options.explain) opening.emplace(devices);
 
   RenderReport report;
   SceneData scene;

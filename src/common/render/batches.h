@@ -66,6 +66,8 @@ BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const Rend
                         const std::function<bool(int first_sample, int samples)>& run_batch,
                         const std::function<double()>& error = {}, BatchPace* pace = nullptr);
 
+/// Decides when a render ends that has a limit of time or of error, and how large its batches are
+/// until then. It always ends between two batches: what it has is the image of so many samples.
 class StopClock {
  public:
   /// Starts to measure. `rule` must live as long.

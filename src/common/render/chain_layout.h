@@ -28,7 +28,7 @@ struct ChainLayout {
   SampleBuffer batch(std::uint32_t paths) const { return {samples, Window{0, 0, paths, 1}, 0, 1}; }
 };
 
-/// The sums of the film that chains walk over.
+/// The number of sums in the film that chains walk over.
 inline std::uint64_t sum_count(const ChainWindow& window) {
   return std::uint64_t{3} * window.width * window.height;
 }

@@ -235,7 +235,7 @@ struct PathPool {
     const PathRecord r = load_wide(at(shadow_radiance, slot));
     store_wide(at(shadow_radiance, slot), pack(multiply_rounded(vec(r), transmittance), r.w));
   }
-  /// The path's count of shadow rays when it cast this one.
+  /// The rays that the path had traced when it cast the shadow ray.
   PT_HD std::uint32_t load_shadow_rays(std::uint32_t slot) const {
     return at(shadow_radiance, slot)->w & 0xffffu;
   }
