@@ -562,17 +562,18 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
 }
 
 TEST(ExecutionPlan, TogglesAreForScansOnCuda) {
-  expect_refused(mega({{"rng", "xorwow"}, {"accel", "bvh2"}}), spheres(51), gpu(),
-                 "--accel bvh2: no kernel on CUDA renders scene '' (spheres and quads) so; "
-                 "expected --accel brute");
+  expect_refused(
+      mega({{"rng", "xorwow"}, {"accel", "bvh2"}}), spheres(51), gpu(),
+      "--accel bvh2: no kernel on CUDA renders scene '' (spheres and quads, --rng xorwow) so; "
+      "expected --accel brute");
   expect_refused(
       {{"branching", "reduced"}, {"scene-memory", "constant"}}, spheres(51), gpu(),
-      "--scene-memory constant: no kernel on CUDA renders scene '' (spheres and quads) so; "
-      "expected --scene-memory global");
-  expect_refused(
-      {{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
-      "--rng xorwow: no kernel on CUDA renders scene '' (spheres and quads) so; expected --rng "
-      "philox");
+      "--scene-memory constant: no kernel on CUDA renders scene '' (spheres and quads, --branching "
+      "reduced) so; expected --scene-memory global");
+  expect_refused({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), gpu(),
+                 "--rng xorwow: no kernel on CUDA renders scene '' (spheres and quads, --branching "
+                 "reduced) so; "
+                 "expected --rng philox");
   EXPECT_NO_THROW(plan_of({{"branching", "reduced"}, {"rng", "xorwow"}}, spheres(51), cpu()));
 }
 

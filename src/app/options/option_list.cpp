@@ -257,10 +257,11 @@ void add_execution(std::vector<OptionEntry>& list) {
            "binary BVH, a compressed 8-wide BVH (triangles only), or\n"
            "Embree's (CPU, triangles only); auto: by scene and device")
       .add(choice("builder", &Options::builder),
-           "Builder of BVHs over triangles: binned SAH or SBVH on the CPU,\n"
-           "LBVH or H-PLOC on the GPU; auto: SBVH or SAH improved by\n"
-           "reinsertion. BVHs over instances and spheres are always built\n"
-           "on the CPU")
+           "Builder of BVHs over triangles: on the CPU binned SAH, also\n"
+           "with reinsertion, SBVH, or the best of these by trial rays; on\n"
+           "the GPU LBVH or H-PLOC; auto: the one with which building and\n"
+           "rendering end first. BVHs over instances and spheres are\n"
+           "always built on the CPU")
       .add(choice("work", &Options::work),
            "megakernel: work of a thread: a pixel, a sample, or samples\n"
            "that it fetches from a global counter (persistent threads)")

@@ -78,12 +78,18 @@ std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& 
                                        const std::vector<DeviceInfo>& devices) {
   check_film(options, scene.properties, scene.filter);
   SceneProperties properties = scene.properties;
+  std::vector<DeviceProperties> machines;
+  for (const DeviceInfo& device : devices)
+    machines.push_back(properties_for(options, device, devices.size() == 1));
+  const bool has_cpu = !std::ranges::all_of(machines, &DeviceProperties::is_cuda);
   std::vector<ExecutionPlan> plans;
-  for (const DeviceInfo& device : devices) {
-    plans.push_back(
-        plan_execution(options, properties, properties_for(options, device, devices.size() == 1)));
+  for (DeviceProperties& machine : machines) {
+    machine.needs_host_tree = has_cpu;
+    machine.host_threads = cpu_threads(options.threads);
+    plans.push_back(plan_execution(options, properties, machine));
     properties.structure = plans.front().accel;
     properties.why_structure = plans.front().why_accel;
+    properties.builder = plans.front().builder;
   }
   return plans;
 }

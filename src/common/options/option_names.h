@@ -103,7 +103,9 @@ template <>
 inline constexpr auto enum_names<TreeBuilder> =
     std::to_array<EnumName<TreeBuilder>>({{TreeBuilder::automatic, "auto"},
                                           {TreeBuilder::sah, "sah"},
+                                          {TreeBuilder::sah_reinsert, "sah-reinsert"},
                                           {TreeBuilder::sbvh, "sbvh"},
+                                          {TreeBuilder::best, "best"},
                                           {TreeBuilder::lbvh, "lbvh"},
                                           {TreeBuilder::hploc, "hploc"},
                                           {TreeBuilder::hploc_reinsert, "hploc-reinsert"}});

@@ -28,7 +28,8 @@ enum class SceneMemory { automatic, global, shared, constant };
 enum class IntegratorKind { path, mlt };
 enum class Branching { divergent, reduced };
 enum class RngKind { philox, xorwow };
-enum class TreeBuilder { automatic, sah, sbvh, lbvh, hploc, hploc_reinsert };
+/// `best`: by sah_reinsert or sbvh, whichever rays on trial find cheaper.
+enum class TreeBuilder { automatic, sah, sah_reinsert, sbvh, best, lbvh, hploc, hploc_reinsert };
 enum class LightSelection { automatic, uniform, power, tree };
 enum class WorldBuilder { host, device };
 enum class DefaultLighting { automatic, on, off };

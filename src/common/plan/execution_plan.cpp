@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "common/accel/build/build_nodes.h"
 #include "common/accel/trace_cpu/ray_block.h"
 #include "common/accel/traverse_triangles.h"
 #include "common/material/material.h"
 #include "common/options/option_names.h"
 #include "common/plan/plan_rules.h"
 #include "common/plan/render_properties.h"
+#include "common/plan/tree_times.h"
 
 namespace pt {
 namespace {
@@ -55,6 +57,7 @@ class Planner {
     choose_mode();
     if (is_on_gpu(Mode::megakernel)) choose_megakernel();
     choose_structure();
+    if (has_nodes(accel_kind_of(plan_.accel)) && !is_specialized()) choose_builder();
     if (plan_.mode == Mode::wavefront) choose_stages();
     if (device_.is_cuda && is_specialized()) choose_scene_memory();
     if (plan_.mode == Mode::wavefront) choose_waves();
@@ -159,6 +162,39 @@ class Planner {
     const bool by_vectors = !device_.is_cuda && device_.has_avx2 && !scene_.has_masked_kernels();
     plan_.traversal = plan_.accel == Accel::cwbvh && by_vectors ? Accel::cwbvh_avx2 : plan_.accel;
   }
+
+  /// The builder with which building and rendering end first. A tree is worth the more time the
+  /// more rays are traced in it.
+  void choose_builder() {
+    if (scene_.builder) {
+      plan_.builder = *scene_.builder;
+      return decide("builder", to_string(plan_.builder), "as the scene is built");
+    }
+    if (o_.builder != TreeBuilder::automatic)
+      return decide("builder", to_string(plan_.builder), asked);
+    const TreeWork work{double(scene_.triangles + 2 * scene_.quads), double(scene_.tree_groups),
+                        expected_rays(rendered_pixels(), o_)};
+    const std::vector<TreeTimes> all = expected_tree_times(work, device_, double(o_.time_limit));
+    const TreeTimes& first = *std::ranges::min_element(all, {}, &TreeTimes::total_s);
+    plan_.builder = first.builder;
+    std::string reason = fmt::format("expected {} to build, {} to render", seconds(first.build_s),
+                                     seconds(first.trace_s));
+    for (const TreeTimes& other : all) {
+      if (other.builder != first.builder)
+        reason += fmt::format("; {} {} + {}", to_string(other.builder), seconds(other.build_s),
+                              seconds(other.trace_s));
+    }
+    decide("builder", to_string(first.builder), reason);
+  }
+
+  double rendered_pixels() const {
+    const double image = double(o_.width) * o_.height;
+    const double window =
+        o_.crop ? double(o_.crop->x1 - o_.crop->x0) * (o_.crop->y1 - o_.crop->y0) : image;
+    return window / o_.part.count;
+  }
+
+  static std::string seconds(double s) { return fmt::format("{:.{}f} s", s, s < 1 ? 3 : 1); }
 
   /// Whether testing every primitive is faster than walking a tree.
   std::pair<Accel, std::string> automatic_scan() const {
@@ -389,7 +425,7 @@ DeviceProperties cpu_properties(int threads) {
   DeviceProperties cpu;
   cpu.has_avx2 = has_avx2();
   cpu.has_ray_blocks = brute_block() != nullptr;
-  cpu.threads = threads;
+  cpu.threads = cpu.host_threads = threads;
   return cpu;
 }
 

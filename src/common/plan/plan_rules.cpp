@@ -93,8 +93,9 @@ EnumSet<KernelChoice> asked_choices(const Options& o) {
   return asked;
 }
 
-/// "triangles, masks": what decides which kernels a scene has.
-std::string scene_text(const KernelNeed& need, const Options& o, const SceneProperties& scene) {
+/// "triangles, masks": what decides which kernels a scene has, besides what is refused.
+std::string scene_text(const KernelNeed& need, const Options& o, const SceneProperties& scene,
+                       const std::string& refused) {
   const bool is_specialized = need.scene.geometry == Geometry::spheres_and_quads;
   if (!is_specialized && scene.is_primitive_only)
     return "spheres and quads by general kernels, because of " + why_general(o, scene);
@@ -108,6 +109,11 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
       {scene.has_open_boundaries, "boundaries without a BSDF"}};
   for (const auto& [has, name] : more)
     if (has) text += std::string(", ") + name;
+  const std::pair<bool, std::string> toggles[] = {
+      {o.branching == Branching::reduced, "--branching reduced"},
+      {o.rng == RngKind::xorwow, "--rng xorwow"}};
+  for (const auto& [is_on, name] : toggles)
+    if (is_on && refused.find(name) == std::string::npos) text += ", " + name;
   return text;
 }
 
@@ -125,8 +131,8 @@ void check_kernels(const ExecutionPlan& plan, const Options& o, const ScenePrope
     if (has_kernel(need)) continue;
     const auto [refused, expected] = nearest_kernel(need, asked_choices(o));
     throw Error(fmt::format("{}: no kernel on {} renders scene '{}' ({}) so; expected {}", refused,
-                            on_cuda ? "CUDA" : "the CPU", scene.name, scene_text(need, o, scene),
-                            expected));
+                            on_cuda ? "CUDA" : "the CPU", scene.name,
+                            scene_text(need, o, scene, refused), expected));
   }
 }
 

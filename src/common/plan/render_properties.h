@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/choices/accel.h"
+#include "common/options/options.h"
 
 namespace pt {
 
@@ -15,6 +16,7 @@ struct SceneProperties {
   std::size_t spheres = 0, quads = 0;
   std::size_t triangles = 0;  ///< of the meshes
   std::size_t instances = 0;
+  std::size_t tree_groups = 1;       ///< of meshes; each gets a tree
   bool is_primitive_only = false;    ///< nothing that the paper's scenes have not
   bool has_masks = false;            ///< triangles that not all rays meet
   bool has_media = false;            ///< between surfaces
@@ -27,6 +29,7 @@ struct SceneProperties {
   // Known once the scene has been built:
   std::optional<Accel> structure;
   std::string why_structure;  ///< as the plan said
+  std::optional<TreeBuilder> builder;
 
   bool has_masked_kernels() const { return has_masks || has_media; }
   bool has_only_triangles() const { return spheres == 0 && instances == 0; }
@@ -36,6 +39,8 @@ struct SceneProperties {
 
 struct DeviceProperties {
   bool is_cuda = false;
+  int host_threads = 1;          ///< build what the host builds
+  bool needs_host_tree = false;  ///< another device of the render, too, traces the scene's tree
   // CPU:
   bool has_avx2 = false;        ///< wide trees are traced by vectors
   bool has_ray_blocks = false;  ///< brute force scans for blocks of rays
@@ -43,6 +48,7 @@ struct DeviceProperties {
   // CUDA device:
   std::size_t block_shared_bytes = 227 * 1024;  ///< most shared memory of a block
   int block_threads_max = 1024;
+  int multiprocessors = 132;
 };
 
 /// This machine's processor.

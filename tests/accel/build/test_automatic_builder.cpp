@@ -1,4 +1,4 @@
-// What the automatic builder takes, and what its predictor says.
+// What the builder `best` takes, and what its predictor says.
 #include <gtest/gtest.h>
 
 #include "accel/tree_kinds.h"
@@ -117,37 +117,48 @@ TEST(OverlapShare, GrowsByTheCostOfTheCheaperHalf) {
   EXPECT_NEAR(overlap_share(tree), 3.0 * 1 / (9 + 15 + 3), 1e-6);
 }
 
-TEST(AutomaticBuilder, SplitsBeamsAcrossARoom) {
+TEST(BestBuilder, SplitsBeamsAcrossARoom) {
   const std::vector<Mesh> meshes = {make_beams(300)};
   for (const AccelKind accel : structures) {
-    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::automatic);
+    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::best);
     EXPECT_EQ(tree.builder, "sbvh");
     EXPECT_TRUE(all_bytes(tree) == all_bytes(build(meshes, accel, TreeBuilder::sbvh)));
     EXPECT_LT(sah_cost(tree), 0.75 * sah_cost(build(meshes, accel, TreeBuilder::sah)));
   }
 }
 
-TEST(AutomaticBuilder, LeavesARoomWholeAndReinsertsItsNodes) {
+TEST(BestBuilder, LeavesARoomWholeAndReinsertsItsNodes) {
   const std::vector<Mesh> meshes = make_boxes_scene(1).meshes;
   for (const AccelKind accel : structures) {
-    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::automatic);
+    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::best);
     EXPECT_EQ(tree.builder, "sah-reinsert");
     EXPECT_EQ(tree.triangles.size(), MeshTriangles(meshes).count());
     EXPECT_LT(sah_cost(tree), 0.96 * sah_cost(build(meshes, accel, TreeBuilder::sah)));
   }
 }
 
-TEST(AutomaticBuilder, KeepsWhatReinsertionDoesNotImprove) {
+TEST(BestBuilder, IsThatByReinsertionWhereSplitsAreNotTried) {
+  for (const Mesh& mesh : {make_boxes_scene(1).meshes.front(), make_closed_sphere(40)}) {
+    for (const AccelKind accel : structures) {
+      const TriangleTreeData tree = build({mesh}, accel, TreeBuilder::sah_reinsert);
+      EXPECT_TRUE(all_bytes(tree) == all_bytes(build({mesh}, accel, TreeBuilder::best)));
+    }
+  }
+  const std::vector<Mesh> beams = {make_beams(300)};
+  EXPECT_NE(build(beams, AccelKind::bvh2, TreeBuilder::sah_reinsert).builder, "sbvh");
+}
+
+TEST(BestBuilder, KeepsWhatReinsertionDoesNotImprove) {
   const std::vector<Mesh> meshes = {make_closed_sphere(40)};
   for (const AccelKind accel : structures) {
-    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::automatic);
+    const TriangleTreeData tree = build(meshes, accel, TreeBuilder::best);
     EXPECT_EQ(tree.builder, "sah");
     EXPECT_TRUE(all_bytes(tree) == all_bytes(build(meshes, accel, TreeBuilder::sah)));
   }
 }
 
 // The predictor says of both that splits may pay; rays say of which they do.
-TEST(AutomaticBuilder, TracesRaysToDecide) {
+TEST(BestBuilder, TracesRaysToDecide) {
   const std::vector<Mesh> small = {make_soup(60'000, 0.3)}, large = {make_soup(20'000, 1)};
   for (const std::vector<Mesh>& meshes : {small, large}) {
     const MeshTriangles triangles(meshes);
@@ -156,23 +167,23 @@ TEST(AutomaticBuilder, TracesRaysToDecide) {
     EXPECT_GT(overlap_share(whole), 1.6);
   }
   for (const AccelKind accel : structures) {
-    EXPECT_EQ(build(small, accel, TreeBuilder::automatic).builder.substr(0, 3), "sah");
-    EXPECT_EQ(build(large, accel, TreeBuilder::automatic).builder, "sbvh");
+    EXPECT_EQ(build(small, accel, TreeBuilder::best).builder.substr(0, 3), "sah");
+    EXPECT_EQ(build(large, accel, TreeBuilder::best).builder, "sbvh");
   }
 }
 
-TEST(AutomaticBuilder, DecidesForEachGroup) {
+TEST(BestBuilder, DecidesForEachGroup) {
   std::vector<Mesh> meshes = {make_beams(300), make_closed_sphere(40)};
   meshes[0].group = 1, meshes[1].group = 2;
   const std::vector<Instance> instances = {{1, {}}, {2, translate({100, 0, 0})}};
-  const TriangleTreeData tree = build(meshes, AccelKind::cwbvh, TreeBuilder::automatic, instances);
+  const TriangleTreeData tree = build(meshes, AccelKind::cwbvh, TreeBuilder::best, instances);
   EXPECT_EQ(tree.builder, "sah+sbvh");
   ASSERT_EQ(tree.groups.size(), 2u);
   EXPECT_GT(tree.groups[0].slot_count, meshes[0].triangles.size());
   EXPECT_EQ(tree.groups[1].slot_count, meshes[1].triangles.size());
 }
 
-TEST(AutomaticBuilder, FindsWhatBruteForceFinds) {
+TEST(BestBuilder, FindsWhatBruteForceFinds) {
   for (const bool is_split : {false, true}) {
     const std::vector<Mesh> meshes =
         is_split ? std::vector<Mesh>{make_beams(300)} : make_boxes_scene(1).meshes;
@@ -182,7 +193,7 @@ TEST(AutomaticBuilder, FindsWhatBruteForceFinds) {
     const Target target(all);
     TestRandom random(3);
     for (const AccelKind accel : structures) {
-      const TriangleTreeData tree = build(meshes, accel, TreeBuilder::automatic);
+      const TriangleTreeData tree = build(meshes, accel, TreeBuilder::best);
       ASSERT_EQ(tree.builder, is_split ? "sbvh" : "sah-reinsert");
       for (const RayKind& kind : ray_kinds) {
         for (int i = 0; i < 50; ++i) {

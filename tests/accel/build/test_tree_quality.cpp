@@ -159,7 +159,7 @@ double sah_cost(const TriangleTreeData& tree) {
 // A wide tree is a binary one collapsed: its cost is that of a binary tree less what eight children
 // save, which the stored shares say.
 TEST(TreeQuality, TrianglesCostAsMuchAsByAnExactSweep) {
-  const TreeKind automatic = {"automatic", AccelKind::bvh2, TreeBuilder::automatic};
+  const TreeKind automatic = {"automatic", AccelKind::bvh2, TreeBuilder::best};
   struct {
     const char* name;
     std::vector<Triangle> triangles;
@@ -189,8 +189,8 @@ TEST(TreeQuality, RaysVisitFewNodesOverTriangles) {
                      {tree_kinds[1], 23.97, 44.18},
                      {tree_kinds[2], 8.07, 13.23},
                      {tree_kinds[3], 8.06, 13.2},
-                     {{"bvh2_auto", AccelKind::bvh2, TreeBuilder::automatic}, 23.97, 44.24},
-                     {{"cwbvh_auto", AccelKind::cwbvh, TreeBuilder::automatic}, 8.07, 13.23}};
+                     {{"bvh2_auto", AccelKind::bvh2, TreeBuilder::best}, 23.97, 44.24},
+                     {{"cwbvh_auto", AccelKind::cwbvh, TreeBuilder::best}, 8.07, 13.23}};
   for (const auto& c : cases) {
     for (const Mesh* mesh : {&hills, &soup}) {
       const TriangleTreeData tree = c.kind.build({*mesh});

@@ -103,6 +103,26 @@ TEST(TrialRays, StayInARoom) {
   }
 }
 
+// Each ray visits every node; all 8192 paths would take a second for each thousand triangles.
+TEST(TrialRays, AreFewAmongCoincidentTriangles) {
+  Mesh mesh = row_of_triangles(1);
+  mesh.triangles.resize(20'000, mesh.triangles.front());
+  for (const AccelKind accel : structures) {
+    const Built built = build(mesh, accel);
+    const auto rays = [&](double cost_max) {
+      return trial_rays(built.nodes, built.data.triangles, built.data.groups.front().bounds, 512,
+                        cost_max);
+    };
+    constexpr double most = 1e5;
+    const std::size_t few = rays(most).size();
+    EXPECT_LE(few, 32u);  // those of 16 paths, which cost more than that already
+    const std::vector<TrialRay> all = rays(infinite_distance);
+    EXPECT_GT(all.size(), 10 * few);
+    EXPECT_LE(all.size(), 1024u);
+    for (std::size_t i = 0; i < few; ++i) EXPECT_EQ(rays(most)[i].ray.origin, all[i].ray.origin);
+  }
+}
+
 TEST(TrialRays, AreNoneWhereThereIsNothingToMeet) {
   const Built built = build(row_of_triangles(1), AccelKind::cwbvh);
   const Bounds elsewhere{{100, 100, 100}, {101, 101, 101}};

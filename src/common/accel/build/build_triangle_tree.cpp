@@ -61,29 +61,49 @@ constexpr double large_split_share = 2.0;  // the same from large_count triangle
 constexpr std::uint32_t large_count = 1u << 21;
 constexpr std::uint32_t trial_paths = 1u << 13;
 constexpr double split_gain = 0.97;  // of what trial rays cost, to be taken
+// Visits of trial rays, by far more than 2^13 paths make in scenes that people model.
+constexpr double trial_visits_min = 1u << 23;
+constexpr double trial_visits_per_triangle = 16;
+
+const char* improve(BinaryTree& binary) {
+  std::optional<BinaryTree> improved = reinsert_nodes(binary);
+  if (!improved) return "sah";
+  binary = std::move(*improved);
+  return "sah-reinsert";
+}
 
 /// The tree by `sah`, improved by reinsertion if it can be, or one by `sbvh` in which rays cost
 /// less.
-BuiltGroup build_cheapest(const MeshTriangles& triangles, const TreeOptions& options) {
+BuiltGroup build_best(const MeshTriangles& triangles, const TreeOptions& options) {
   BinaryTree binary = build_whole(triangles);
-  std::optional<BinaryTree> improved = reinsert_nodes(binary);
-  const char* const builder = improved ? "sah-reinsert" : "sah";
-  if (improved) binary = std::move(*improved);
+  const char* const builder = improve(binary);
   const bool is_large = triangles.count() >= large_count;
   const bool tries = overlap_share(binary) >= (is_large ? large_split_share : split_share);
   BuiltGroup whole = finish_tree(std::move(binary), builder, options);
   if (!tries) return whole;
-  const std::vector<TrialRay> rays =
-      trial_rays(whole.nodes, by_slot(triangles, whole.nodes.order), whole.bounds, trial_paths);
+  const double visits =
+      std::max(trial_visits_min, trial_visits_per_triangle * double(triangles.count()));
+  const std::vector<TrialRay> rays = trial_rays(whole.nodes, by_slot(triangles, whole.nodes.order),
+                                                whole.bounds, trial_paths, visits);
   BuiltGroup split = build_split(triangles, options);
   const bool pays = trial_cost(split.nodes, rays) < split_gain * trial_cost(whole.nodes, rays);
   return pays ? split : whole;
 }
 
 BuiltGroup build_tree(const MeshTriangles& triangles, const TreeOptions& options) {
-  if (options.builder == TreeBuilder::automatic) return build_cheapest(triangles, options);
-  if (options.builder == TreeBuilder::sbvh) return build_split(triangles, options);
-  return finish_tree(build_whole(triangles), "sah", options);
+  switch (options.builder) {
+    case TreeBuilder::sah:
+      return finish_tree(build_whole(triangles), "sah", options);
+    case TreeBuilder::sah_reinsert: {
+      BinaryTree binary = build_whole(triangles);
+      const char* const builder = improve(binary);
+      return finish_tree(std::move(binary), builder, options);
+    }
+    case TreeBuilder::sbvh:
+      return build_split(triangles, options);
+    default:
+      return build_best(triangles, options);
+  }
 }
 
 BuiltGroup list_triangles(const MeshTriangles& triangles) {
@@ -158,8 +178,9 @@ void check_builder(TreeBuilder builder, AccelKind accel, bool on_cuda) {
   if (!is_device_builder(builder)) return;
   const std::string name = to_string(builder);
   if (!on_cuda) {
-    throw Error(
-        fmt::format("--builder {}: needs a CUDA device; on the CPU expected sah or sbvh", name));
+    throw Error(fmt::format(
+        "--builder {}: needs a CUDA device; on the CPU expected sah, sah-reinsert, sbvh or best",
+        name));
   }
   if (accel != AccelKind::bvh2 && accel != AccelKind::cwbvh) {
     throw Error(fmt::format(

@@ -13,8 +13,8 @@
 namespace pt {
 
 struct TreeOptions {
-  AccelKind accel = AccelKind::cwbvh;            ///< automatic: cwbvh
-  TreeBuilder builder = TreeBuilder::automatic;  ///< sah, sbvh, automatic
+  AccelKind accel = AccelKind::cwbvh;       ///< automatic: cwbvh
+  TreeBuilder builder = TreeBuilder::best;  ///< one of the CPU's; automatic: best
   SbvhOptions sbvh;
   TreeCosts bvh2_costs = default_bvh2_costs;
   TreeCosts cwbvh_costs = default_cwbvh_costs;
@@ -31,9 +31,10 @@ void check_geometry(std::span<const Mesh> meshes, std::span<const Instance> inst
 /// tree for each group that is used and one over the instances, the meshes of group 0 being an
 /// instance too (see TriangleTreeData::instances). With AccelKind::brute there are no nodes, and
 /// slots are in the order of the triangles' numbers.
-/// The automatic builder takes, group by group, the cheaper of the tree by sah and the same after
-/// reinsert_nodes() ("sah-reinsert"); or, where overlap_share() promises something and rays are
-/// found to cost less (try_splits.h), the one by sbvh.
+/// `best` takes, group by group, the tree by sah, after reinsert_nodes() where that helps
+/// ("sah-reinsert"); or, where overlap_share() promises something and rays are found to cost less
+/// (try_splits.h), the one by sbvh. The time of each builder grows with the triangles' number times
+/// its logarithm at most, wherever they lie.
 /// Throws Error as check_geometry, and for builders that are not the CPU's.
 TriangleTreeData build_triangle_tree(std::span<const Mesh> meshes,
                                      std::span<const Instance> instances,

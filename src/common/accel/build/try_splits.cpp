@@ -55,7 +55,8 @@ namespace {
 
 constexpr double leaf_cost = 1.5;
 constexpr std::uint32_t kept = 2;  // of a path: its first ray begins nowhere, as none of a render
-constexpr float start_offset = 1e-5f;  // of a triangle's largest coordinate, from its surface
+constexpr std::uint32_t first_paths = 16;  // before their cost is looked at; then as many again
+constexpr float start_offset = 1e-5f;      // of a triangle's largest coordinate, from its surface
 
 Vec3 normal_of(const Triangle& t) { return cross(t.v1 - t.v0, t.v2 - t.v0); }
 
@@ -123,27 +124,46 @@ struct Visits {
   }
 };
 
+struct TrialPath {
+  TrialRay rays[kept] = {{{}, -1}, {{}, -1}};
+  double cost = 0;  // of all three
+};
+
 }  // namespace
 
 std::vector<TrialRay> trial_rays(const BuiltNodes& nodes, std::span<const Triangle> triangles,
-                                 const Bounds& bounds, std::uint32_t paths) {
+                                 const Bounds& bounds, std::uint32_t paths, double cost_max) {
   const TriangleTree tree = view_of(nodes, triangles);
   const bool is_wide = !nodes.cwbvh.empty();
-  std::vector<TrialRay> rays(kept * std::size_t{paths}, {{}, -1});
-  tbb::parallel_for(0u, paths, [&](std::uint32_t i) {
-    const Vec4 u = draw(i, 0), v = draw(i, 1);
+  const auto follow = [&](std::uint32_t path) {
+    TrialPath result;
+    const Vec4 u = draw(path, 0), v = draw(path, 1);
     const Vec3 place(u.x, u.y, u.z);
     Ray ray = {bounds.min + place * (bounds.max - bounds.min), sample_unit_sphere(v.x, v.y)};
     Hit hit = closest(tree, is_wide, ray);
+    result.cost += Visits{nodes, {ray, hit.t}}.cost();
     for (std::uint32_t k = 0; k < kept && !hit.is_miss(); ++k) {
-      const Vec4 w = draw(i, 2 + k);
+      const Vec4 w = draw(path, 2 + k);
       ray = diffuse_ray(triangles[hit.primitive], ray.origin + hit.t * ray.direction,
                         -ray.direction, w.x, w.y);
       hit = closest(tree, is_wide, ray);
-      rays[kept * i + k] = {ray, hit.t};
+      result.cost += Visits{nodes, {ray, hit.t}}.cost();
+      result.rays[k] = {ray, hit.t};
     }
-  });
-  std::erase_if(rays, [](const TrialRay& ray) { return ray.t < 0 || !is_traceable(ray.ray); });
+    return result;
+  };
+  std::vector<TrialRay> rays;
+  double cost = 0;
+  for (std::uint32_t first = 0, end = std::min(first_paths, paths);
+       first < paths && cost < cost_max; first = end, end = std::min(2 * end, paths)) {
+    std::vector<TrialPath> more(end - first);
+    tbb::parallel_for(first, end, [&](std::uint32_t i) { more[i - first] = follow(i); });
+    for (const TrialPath& path : more) {
+      cost += path.cost;
+      for (const TrialRay& ray : path.rays)
+        if (ray.t >= 0 && is_traceable(ray.ray)) rays.push_back(ray);
+    }
+  }
   return rays;
 }
 

@@ -26,10 +26,13 @@ struct TrialRay {
 };
 
 /// Rays among the triangles, the same in each call: the second and third ones of `paths` diffuse
-/// paths that begin anywhere in `bounds`, as far as these meet anything. `nodes` is a tree over the
-/// triangles, which are given by slot; the root comes first.
+/// paths that begin anywhere in `bounds`, as far as these hit anything. There are fewer paths where
+/// their rays cost more than `cost_max` in all (trial_cost()): among coincident triangles each ray
+/// visits all nodes. `nodes` is a tree over the triangles, which are given by slot; the root comes
+/// first.
 std::vector<TrialRay> trial_rays(const BuiltNodes& nodes, std::span<const Triangle> triangles,
-                                 const Bounds& bounds, std::uint32_t paths);
+                                 const Bounds& bounds, std::uint32_t paths,
+                                 double cost_max = infinite_distance);
 
 /// What a ray costs on average, in units of one node's visit: all nodes and leaves whose boxes it
 /// enters before its hit, which any order of traversal visits. A leaf counts 1.5: with that the

@@ -128,6 +128,7 @@ inline DeviceProperties plan_properties(const cudaDeviceProp& device) {
   result.is_cuda = true;
   result.block_shared_bytes = device.sharedMemPerBlockOptin;
   result.block_threads_max = device.maxThreadsPerBlock;
+  result.multiprocessors = device.multiProcessorCount;
   return result;
 }
 

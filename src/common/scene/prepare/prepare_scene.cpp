@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/accel/build/instance_tree.h"
 #include "common/error/error.h"
 #include "common/geometry/sphere.h"
 #include "common/scene/data/scene_arrays.h"
@@ -40,6 +41,7 @@ SceneProperties properties_of(const SceneData& scene) {
   properties.quads = scene.quads.size();
   properties.triangles = scene.triangle_count();
   properties.instances = scene.instances.size();
+  if (!scene.instances.empty()) properties.tree_groups = groups_in_use(scene.instances).size();
   properties.is_primitive_only = has_primitives_only(scene);
   properties.has_masks =
       is_limited(scene.camera) || std::ranges::any_of(scene.materials, is_masked);
@@ -100,6 +102,7 @@ void prepare_scene(SceneData& scene, const ExecutionPlan& plan) {
   }
   scene.properties.structure = plan.accel;
   scene.properties.why_structure = plan.why_accel;
+  scene.properties.builder = plan.builder;
 }
 
 void prepare_scene(SceneData& scene, const Options& options) {

@@ -15,6 +15,10 @@ namespace {
 constexpr int passes = 3;
 constexpr std::size_t upper_max = 1u << 16;  // nodes that can change
 constexpr double least_saving = 0.0225;      // of these nodes' areas
+// Nodes that the search for one subtree's best place looks at. It ends after less than 128 in the
+// scenes measured, after less than 1,024 among long needles; where all boxes are alike it would
+// look at all.
+constexpr std::uint32_t visits_max = 1u << 12;
 constexpr std::uint32_t nothing = 0xffffffffu;
 
 /// A node of the upper part of the tree, or a subtree below, which stays as it is.
@@ -206,6 +210,7 @@ class Reinserter {
     const float area = box.half_area();
     const std::uint32_t parent = nodes_[moved].parent;
     Move best;
+    std::uint32_t visits = 0;
     float saved = nodes_[parent].bounds.half_area();
     Bounds without;  // the pivot's child without what is moved
     for (std::uint32_t below = moved, pivot = parent; pivot != nothing;
@@ -213,7 +218,7 @@ class Reinserter {
       if (below != moved && below != parent) {
         saved += nodes_[below].bounds.half_area() - without.half_area();
       }
-      search_down(sibling(below), pivot == parent, box, saved - area, best);
+      search_down(sibling(below), pivot == parent, box, saved - area, best, visits);
       without.grow(nodes_[sibling(below)].bounds);
     }
     return best;
@@ -221,7 +226,7 @@ class Reinserter {
 
   // `limit` is what could be gained at most. Beside the old sibling nothing would change.
   void search_down(std::uint32_t from, bool is_old_sibling, const Bounds& box, float limit,
-                   Move& best) const {
+                   Move& best, std::uint32_t& visits) const {
     struct Candidate {
       std::uint32_t node;
       float grown;  // of the ancestors below the pivot
@@ -230,7 +235,8 @@ class Reinserter {
     std::size_t depth = 0;
     const float area = box.half_area();
     stack[depth++] = {from, 0};
-    while (depth > 0) {
+    while (depth > 0 && visits < visits_max) {
+      ++visits;
       const Candidate candidate = stack[--depth];
       if (limit - candidate.grown <= best.gain) continue;
       const Node& node = nodes_[candidate.node];

@@ -1,0 +1,38 @@
+// What a tree over triangles is expected to cost, built and traced: the choice of --builder auto.
+#pragma once
+
+#include <vector>
+
+#include "common/options/options.h"
+#include "common/plan/render_properties.h"
+
+namespace pt {
+
+/// How much there is to build and to trace.
+struct TreeWork {
+  double triangles = 0;
+  double groups = 1;  ///< of meshes; each has a tree of its own
+  double rays = 0;    ///< shadow rays included
+};
+
+/// Seconds, as expected.
+struct TreeTimes {
+  TreeBuilder builder = TreeBuilder::best;
+  double build_s = 0;
+  double trace_s = 0;  ///< all of the rendering, which tracing dominates
+
+  double total_s() const { return build_s + trace_s; }
+};
+
+/// Rays of an image of `spp` samples, shadow rays included: an estimate, since nobody knows how
+/// many paths leave the scene. As many pixels as are rendered.
+double expected_rays(double pixels, const ImageSettings& image);
+
+/// What each builder that --builder auto may take is expected to cost. `limit_s`: the rendering
+/// ends then, 0: it does not. The rates were measured on a host of 16 cores with an H200
+/// (results/log/2026-11-whole-process.md) and are scaled by a device's multiprocessors or threads;
+/// they are to choose by, not to plan a day with.
+std::vector<TreeTimes> expected_tree_times(const TreeWork& work, const DeviceProperties& device,
+                                           double limit_s);
+
+}  // namespace pt
