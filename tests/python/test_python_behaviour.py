@@ -93,6 +93,8 @@ class Errors(TestCase):
         with self.assertWarnsRegex(ptexp.SceneWarning, "hair") as caught:
             ptexp.load(path)
         self.assertEqual(caught.filename, __file__)
+        with self.assertWarns(ptexp.SceneWarning):
+            ptexp.load(path, strict=False)
         with self.assertRaisesRegex(ptexp.Error, "hair"):
             ptexp.load(path, strict=True)
         with warnings.catch_warnings():
@@ -373,6 +375,9 @@ class Indices(TestCase):
                 with self.subTest(wrong), self.assertRaisesRegex(ValueError, "expected whole numbers from 0 to"):
                     ptexp.Scene.from_dict({"type": "scene", "m": {"type": "mesh", "vertices": vertices,
                                                                   "triangles": made(wrong)}})
+        for many in ([[0, 1, 2], [3, -4, 5]], [[0, 1, 2], [3, 2**70, 5]], [[0, 1, 2], [3, 0.5, 5]]):
+            with self.assertRaisesRegex(ValueError, f"the index {many[1][1]}; expected"):
+                ptexp.Mesh(np.zeros((9, 3)), many, device="cpu")
         for wrong in (np.array([[0, 1, 2j]]), np.array([["0", "1", "2"]])):
             with self.assertRaisesRegex(ValueError, "expected numbers"):
                 ptexp.Mesh(vertices, wrong, device="cpu")

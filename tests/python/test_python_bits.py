@@ -22,6 +22,7 @@ class Bits(TestCase):
 
     def test_a_file_decides_what_nobody_else_does(self):
         path = self.write("room.xml", room())
+        self.assertEqual(ptexp.load(path).defaults, {"width": 40, "height": 32, "spp": 8, "max_depth": 6})
         image = ptexp.render(path)
         self.assertEqual(image.shape, (32, 40, 3))
         self.assertEqual(image.stats["samples_done"], 8)
