@@ -1,6 +1,6 @@
 """Scenes in memory, and rendering them."""
 import os
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Union
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 from . import _ptexp
 from ._dict import to_elements
@@ -98,7 +98,14 @@ def load(scene: PathLike, **options: Any) -> Scene:
         SceneWarning: what the file asks for and ptexp does otherwise (``strict=True``: an Error).
     """
     given = {**options, "scene": text_of_path(scene)}
-    return Scene(_ptexp.load(to_words(given)), given)
+    return Scene(_ptexp.load(_words(given, given.get("output"))), given)
+
+
+def _words(options: Dict[str, Any], output: Optional[PathLike]) -> List[Tuple[str, str]]:
+    """The words of a render. Whether an exposure applies is a matter of the file, or of a later save."""
+    if options.get("exposure") is not None:
+        options = {**options, "output": "image.png" if output is None else output}
+    return to_words(options)
 
 
 def render(
@@ -147,7 +154,7 @@ def render(
     quiet = merged.pop("quiet", True)
     if merged.pop("explain", False):
         raise TypeError("render has no use for explain: ptexp.explain(scene, ...) returns the plan")
-    words = to_words(merged)
+    words = _words(merged, output)
     if output is not None:
         _ptexp.check_output(text_of_path(output))
     native, raised, messages = scene._native.render(words, progress, on_device)
@@ -197,9 +204,10 @@ def explain(scene: Union[Scene, PathLike], **options: Any) -> List[Dict[str, str
         return explain(load(scene, **options))
     check_of_render(options)
     merged = {**scene._options, **options}
-    for name in ("output", "quiet", "explain"):
+    output = merged.pop("output", None)
+    for name in ("quiet", "explain"):
         merged.pop(name, None)
-    return scene._native.plan(to_words(merged))
+    return scene._native.plan(_words(merged, output))
 
 
 class SceneInfo(NamedTuple):

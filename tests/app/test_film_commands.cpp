@@ -207,6 +207,29 @@ TEST(Merge, NamesThePlacesOfACropWindow) {
   EXPECT_EQ(read_checkpoint(out).film.samples(), 2u * 23 * 19);
 }
 
+// Of pixels that two files have all must be the same: which samples, statistics and layers, too.
+TEST(Merge, RefusesOtherSamplesAndLayersOfAPixel) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr"), out = folder.file("o.exr");
+  render({"--scene", "boxes", "--device", "cpu", "--width", "40", "--height", "30", "--spp", "2",
+          "--max-depth", "3", "--aov", "depth,variance", "--checkpoint", a});
+  const Checkpoint checkpoint = read_checkpoint(a);
+  const auto expect_refused = [&](const auto& change, const std::string& message) {
+    Checkpoint other = checkpoint;
+    change(other.film);
+    write_checkpoint(b, other, {}, {0, 0, 40, 30});
+    expect_error([&] { merge_command({out, {a, b}}); }, message);
+  };
+  expect_refused([](ImageFilm& film) { film.features.back() += 1; }, b + ": other layers than in");
+  expect_refused([](ImageFilm& film) { ++film.moments.back().rays; }, b + ": other layers than in");
+  expect_refused(
+      [](ImageFilm& film) {
+        for (FilmPart& part : film.parts) part.first_sample = 1;
+        for (FilmPixel& pixel : film.pixels) pixel.samples = 1;
+      },
+      b + ": has 1 samples of 40x30 pixels at 0,0, but " + a + " has 2");
+}
+
 // Counts of two parts together are those of the whole.
 TEST(Merge, AddsTheCountsOfItsFiles) {
   const TempFolder folder;

@@ -300,6 +300,15 @@ TEST(ReportCsv, Row) {
   EXPECT_EQ(fields["kernels"], "intersect:61:16:128:256:0.7500;shadow:40:0:0:128:1.0000");
 }
 
+TEST(ReportCsv, OtherStagesAreOne) {
+  RenderReport report = make_report();
+  for (RenderRun& run : report.runs) run.stages.push_back({"tone", 0.5, 3});
+  auto fields = as_map(report_csv_row(make_options(), report));
+  EXPECT_EQ(fields["other_ms_median"], "0.750000");
+  EXPECT_EQ(fields["other_launches"], "4");
+  EXPECT_EQ(fields["launches"], "46");
+}
+
 TEST(ReportJson, Counters) {
   RenderReport report = make_report();
   EXPECT_TRUE(nlohmann::json::parse(report_json(Options(), report))["counters"].is_null());

@@ -105,6 +105,10 @@ TEST_F(TraceFiles, ComparesWithAReference) {
   for (HitRecord& hit : hits.hits) hit.t *= 1.001f;
   write_hits(command_.hits, hits);
   EXPECT_EQ(trace_command(command_), 1);
+  hits.type = RayType::any;
+  write_hits(command_.hits, hits);
+  expect_error([&] { trace_command(command_); }, "is not of the rays");
+  hits.type = RayType::closest;
   hits.hits.pop_back();
   write_hits(command_.hits, hits);
   expect_error([&] { trace_command(command_); }, "is not of the rays");

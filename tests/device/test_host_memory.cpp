@@ -1,11 +1,15 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "common/error/host_memory.h"
+#include "common/image/codecs/image_codec.h"
+#include "load/png_bytes.h"
 #include "temp_folder.h"
 
 namespace pt {
@@ -73,22 +77,59 @@ TEST(HostMemory, IsWhatTheFirstVersionOfGroupsHas) {
   EXPECT_EQ(machine.free_bytes(), 1600000u);
 }
 
-// The limit leaves the process, and a sanitizer's shadow memory in it, 256 MiB more than it has.
+/// Leaves the process, and a sanitizer's shadow memory in it, so much more than it has.
+class MemoryLimit {
+ public:
+  explicit MemoryLimit(std::uint64_t margin_bytes) {
+    EXPECT_EQ(::getrlimit(RLIMIT_AS, &old_), 0);
+    std::uint64_t pages = 0;
+    EXPECT_TRUE(std::ifstream("/proc/self/statm") >> pages);
+    const rlimit small{pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + margin_bytes,
+                       old_.rlim_max};
+    EXPECT_EQ(::setrlimit(RLIMIT_AS, &small), 0);
+  }
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+  ~MemoryLimit() { ::setrlimit(RLIMIT_AS, &old_); }
+
+ private:
+  rlimit old_{};
+};
+
 TEST(HostMemory, IsWhatTheProcessMayTake) {
   constexpr std::uint64_t margin = 256 << 20;
   const std::uint64_t before = free_host_memory();
-  rlimit old{};
-  ASSERT_EQ(::getrlimit(RLIMIT_AS, &old), 0);
-  std::uint64_t pages = 0;
-  ASSERT_TRUE(std::ifstream("/proc/self/statm") >> pages);
-  const rlimit small{pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + margin,
-                     old.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_AS, &small), 0);
-  const std::uint64_t within = free_host_memory();
-  ::setrlimit(RLIMIT_AS, &old);
+  std::uint64_t within = 0;
+  {
+    const MemoryLimit limit(margin);
+    within = free_host_memory();
+  }
   EXPECT_GT(before, margin);
   EXPECT_LE(within, margin);
   EXPECT_GT(within, margin / 2) << "what this test itself may have taken since";
+}
+
+// Of 2^23 pixels: a texture takes four channels of one or two bytes, which are what is announced
+// before they are read.
+TEST(HostMemory, PicturesSayWhatTheyTake) {
+  const std::string samples(48 << 20, '\0');
+  const auto ppm = [&](const char* kind, int maximum) {
+    return std::string(kind) + " 4096 2048 " + std::to_string(maximum) + "\n" + samples;
+  };
+  const auto png = [](int depth, int type) {
+    return png_file(4096, 2048, depth, type, std::string(2048, '\0'));
+  };
+  const auto expect = [](const std::string& file, auto decode, int needed_mib) {
+    const MemoryLimit limit(16 << 20);
+    expect_error([&] { decode(file); },
+                 fmt::format("an image of 4096x2048 pixels needs {} MiB", needed_mib));
+  };
+  expect(ppm("P6", 255), decode_ppm_integers, 32);
+  expect(ppm("P6", 256), decode_ppm_integers, 64);
+  expect(ppm("P5", 65535), decode_ppm_integers, 64);
+  expect(png(8, 2), decode_png_integers, 32);
+  expect(png(16, 0), decode_png_integers, 64);
+  expect(png(16, 6), decode_png_integers, 64);
 }
 
 TEST(HostMemory, TheErrorTellsWhatIsNeededAndFree) {

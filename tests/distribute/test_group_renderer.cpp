@@ -5,6 +5,7 @@
 #include <ctime>
 #include <functional>
 #include <future>
+#include <map>
 #include <set>
 #include <thread>
 #include <utility>
@@ -278,6 +279,51 @@ TEST(GroupRenderer, SamplesThatAreAddedAreThoseOfTheCall) {
   EXPECT_EQ(group.film().least_samples(), 28u);
   EXPECT_EQ(group.render(RenderHooks{}).samples_done, 50);
   EXPECT_EQ(group.film().least_samples(), 50u) << "a render begins anew";
+}
+
+/// Number `number` of three: the later, the quicker. Two stages, one of which no other has.
+class StagedWorker : public FakeWorker {
+ public:
+  explicit StagedWorker(int number) : FakeWorker(0), number_(number) {}
+  std::optional<UnitResult> poll() override {
+    std::optional<UnitResult> result = FakeWorker::poll();
+    if (!result) return result;
+    result->wall_ms = 8 - number_, result->run.kernel_ms = 4 - number_;
+    result->run.waves = 3;
+    result->run.stages = {{"shared", 0.5, 4}, {"of " + std::to_string(number_), 0.25, 1}};
+    return result;
+  }
+
+ private:
+  int number_;
+};
+
+// Times and counts of all units, of each device and of all of them.
+TEST(GroupRenderer, AddsUpWhatItsUnitsTook) {
+  const Options options = small({{"width", "60"}, {"height", "40"}, {"spp", "50"}});
+  GroupRenderer::Workers workers;
+  for (int i = 1; i <= 3; ++i) workers.push_back(std::make_unique<StagedWorker>(i));
+  GroupRenderer group(options, {}, std::move(workers), nullptr);
+  const RenderRun run = group.render(RenderHooks{});
+  ASSERT_EQ(run.devices.size(), 3u);
+  std::map<std::string, std::pair<double, double>> stages;
+  for (const StageTime& stage : run.stages) {
+    EXPECT_TRUE(stages.emplace(stage.stage, std::pair(stage.time_ms, stage.launches)).second);
+  }
+  ASSERT_EQ(stages.size(), 4u);
+  double all = 0, longest = 0;
+  for (int i = 1; i <= 3; ++i) {
+    const DeviceShare& share = run.devices[static_cast<std::size_t>(i - 1)];
+    const auto units = static_cast<double>(share.units);
+    EXPECT_GT(units, 2);
+    EXPECT_EQ(share.kernel_ms, (4 - i) * units);
+    EXPECT_EQ(share.wall_ms, (8 - i) * units);
+    EXPECT_EQ(stages["of " + std::to_string(i)], std::pair(0.25 * units, units));
+    all += units, longest = std::max(longest, share.kernel_ms);
+  }
+  EXPECT_EQ(stages["shared"], std::pair(0.5 * all, 4 * all));
+  EXPECT_EQ(static_cast<double>(run.waves), 3 * all);
+  EXPECT_EQ(run.kernel_ms, longest);
 }
 
 TEST(GroupRenderer, AWindowsFilmHasItsOwnTally) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <queue>
+#include <utility>
 
 #include "common/distribute/unit_queue.h"
 
@@ -24,6 +25,10 @@ void expect_division(const std::vector<Window>& where, const std::vector<Window>
     EXPECT_TRUE(
         std::ranges::any_of(where, [&](const Window& w) { return w.contains(windows[i]); }));
     EXPECT_GT(windows[i].pixel_count(), 0u);
+    if (i > 0) {  // from the image's head to its foot
+      EXPECT_LT(std::pair(windows[i - 1].y, windows[i - 1].x),
+                std::pair(windows[i].y, windows[i].x));
+    }
     for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(windows[i].overlaps(windows[j]));
   }
 }

@@ -240,5 +240,22 @@ TEST(FirstHit, AlbedoOfGlassFromWithin) {
   }
 }
 
+TEST(FirstHit, AlbedoOfWhatIsBlackFromBehind) {
+  for (const bool is_one_sided : {false, true}) {
+    for (const float z : {eye_z, -eye_z}) {
+      SceneData scene;
+      scene.meshes.push_back(wall_mesh(add_diffuse(scene, {0.2f, 0.4f, 0.6f}, is_one_sided)));
+      scene.sky = {behind, behind};
+      scene.camera = {{0, 0, z}, {0, 0, 0}, {0, 1, 0}, 20.0f, 0.0f, eye_z};
+      const Image image = picture_of(scene, "bvh2");
+      const Color expected = is_one_sided && z < 0 ? Color(0.0f) : Color(0.2f, 0.4f, 0.6f);
+      for (std::size_t i = 0; i < width * height; ++i) {
+        expect_close(found_at(image, i).albedo, expected, "albedo");
+        if (HasFailure()) return;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pt

@@ -160,6 +160,8 @@ TEST(ImageFilm, SamplesAreCountedFromTheFirst) {
   EXPECT_EQ(film.least_samples(), 3u);
   EXPECT_EQ(film.least_samples({{0, 0, 4, 1}}), 5u);
   EXPECT_EQ(film.samples(), 4u * 5 + 4 * 3);
+  EXPECT_EQ(film.take({1, 0, 2, 1}).first_sample, 3u);
+  EXPECT_EQ(film.take({0, 1, 4, 1}).first_sample, 6u);
   film.plan.aovs = aov_bit<aov::Bounces>;
   const Image image = develop(film, {});
   ASSERT_EQ(image.layers.size(), 1u);

@@ -244,6 +244,22 @@ TEST(QuadSpawn, RaysNeverMeetTheQuadAgain) {
   }
 }
 
+TEST(Bounds, OfNothingAndOfFlatThings) {
+  Bounds bounds;
+  EXPECT_TRUE(bounds.is_empty());
+  EXPECT_EQ(bounds.half_area(), 0.0f);
+  bounds.grow(Bounds());
+  EXPECT_EQ(bounds.half_area(), 0.0f);
+  bounds.grow(Vec3(1, 2, 3));
+  EXPECT_FALSE(bounds.is_empty());
+  EXPECT_EQ(bounds.half_area(), 0.0f);
+  bounds.grow(Vec3(3, -1, 3));
+  EXPECT_EQ(bounds.half_area(), 6.0f);
+  bounds.grow(Vec3(2, 0, 7));
+  EXPECT_EQ(bounds.half_area(), 6.0f + 12 + 8);
+  EXPECT_EQ(bounds.center(), Vec3(2, 0.5f, 5));
+}
+
 TEST(KeepNearer, OrderDoesNotMatter) {
   const std::vector<std::pair<float, std::uint32_t>> found = {
       {2, 7}, {2, 3}, {-1, 0}, {0, 1}, {3, 2}, {2, 5}, {std::nanf(""), 4}, {infinite_distance, 9}};

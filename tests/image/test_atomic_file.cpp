@@ -96,6 +96,14 @@ TEST(AtomicFile, WritesAndReplaces) {
   EXPECT_EQ(folder.entries(), Names{"a.json"});
 }
 
+TEST(AtomicFile, RoomIsWhatTheProcessMayWrite) {
+  const TempFolder folder;
+  const FileSizeLimit limit(2'000'000);
+  check_room(folder.file("a"), 2'000'000);
+  expect_error([&] { check_room(folder.file("a"), 2'000'001); }, "3 MB are needed, 2 MB are free");
+  check_room("/dev/null", 2'000'001);
+}
+
 TEST(AtomicFile, FailureInTheMiddleKeepsTheOldFileAndLeavesNoTemporary) {
   const TempFolder folder;
   const std::string path = folder.file("a.json");

@@ -11,7 +11,7 @@ namespace {
 
 /// From left to right: two instances of a group of two lamps, a lamp by itself, a sphere. A mesh
 /// that does not shine comes before each.
-SceneData lamp_row() {
+SceneData lamp_row(LightSelection selection) {
   SceneData scene;
   const std::uint32_t black = scene.add_material(make_diffuse(Color(0.0f)));
   const std::uint32_t glow[] = {scene.add_material(make_diffuse(Color(0.0f), {5, 1, 1})),
@@ -30,6 +30,7 @@ SceneData lamp_row() {
   scene.add_sphere({5, 1, 0}, 0.4f, glow[0]);
   Options options;
   options.accel = AccelKind::bvh2;  // as the kernels' traits below
+  options.light_selection = selection;
   prepare_scene(scene, options);
   return scene;
 }
@@ -48,7 +49,7 @@ TEST(LightMap, EmittersAreCountedBeforeTheyAreListed) {
     EXPECT_EQ(counted, expected);
     EXPECT_NEAR(listed, std::max(expected, 1.0), 1e-5);  // it is a divisor
   };
-  SceneData scene = lamp_row();
+  SceneData scene = lamp_row(LightSelection::automatic);
   expect_count(scene, 6);
   const std::uint32_t dark = scene.add_material(make_diffuse(Color(1.0f)));
   const std::uint32_t glow = scene.add_material(make_diffuse(Color(0.0f), Color(1.0f)));
@@ -74,9 +75,9 @@ TEST(LightMap, EmittersAreCountedBeforeTheyAreListed) {
   expect_count(scene, 9);
 }
 
-TEST(LightMap, NamesTheLampThatWasSampled) {
+void expect_sampled_lamps(LightSelection selection) {
   using AllTraits = Traits<Accel::bvh2, Geometry::mixed, Lighting::full>;
-  const SceneData data = lamp_row();
+  const SceneData data = lamp_row(selection);
   ASSERT_EQ(data.light_list.lights.size(), 2 * 2 * 2 + 2 + 1u);
   const Scene scene = host_view(data, 8, 8);
   TestRandom random(5);
@@ -101,6 +102,13 @@ TEST(LightMap, NamesTheLampThatWasSampled) {
   }
   EXPECT_GT(compared, 10'000);
   for (const int count : found) EXPECT_GT(count, 50);
+}
+
+TEST(LightMap, NamesTheLampThatWasSampled) {
+  for (const LightSelection selection : {LightSelection::power, LightSelection::tree}) {
+    SCOPED_TRACE(static_cast<int>(selection));
+    expect_sampled_lamps(selection);
+  }
 }
 
 }  // namespace

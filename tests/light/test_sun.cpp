@@ -102,6 +102,21 @@ TEST(Sun, GivesItsIrradiance) {
   }
 }
 
+// As likely as parallel rays of its irradiance.
+TEST(Sun, IsChosenByItsIrradiance) {
+  const double half_angle = 0.01;
+  SceneData with_sun = floor_in_the_sun(make_sun({0, 1, 0}, half_angle, {3, 2, 1}), false);
+  SceneData with_rays = floor_in_the_sun({}, false);
+  DeltaLight far;
+  far.kind = LightKind::directional, far.direction = {0, -1, 0};
+  far.intensity = static_cast<float>(pi_double * half_angle * half_angle) * Color(3, 2, 1);
+  with_rays.delta_lights.push_back(far);
+  prepare_scene(with_sun), prepare_scene(with_rays);
+  const float expected = with_rays.light_list.lights.at(0).weight;
+  EXPECT_GT(expected, 0.0f);
+  EXPECT_NEAR(with_sun.light_list.lights.at(0).weight / expected, 1, 1e-3);
+}
+
 // A camera that looks at it, and one beside it.
 TEST(Sun, IsSeen) {
   const Sun sun = make_sun({0.0f, 0.6f, 0.8f}, 0.1, {3, 2, 1});

@@ -223,7 +223,11 @@ TEST(DeltaLight, EverySpotFallsFromOneToZero) {
 TEST(DeltaLight, PowerIsTheIntegralOfTheIntensity) {
   DeltaLight point;
   point.intensity = Color(2.0f);
-  for (const DeltaLight& light : {point, spot(SpotFalloff::smooth, 20, 50)}) {
+  DeltaLight wide = point, high = point;  // than half a turn at its corners, both on one side
+  wide.kind = high.kind = LightKind::projector;
+  wide.right = {0.8f, 0, 0}, wide.aspect = 2.0f;
+  high.right = {0, 1.5f, 0}, high.aspect = -0.5f;
+  for (const DeltaLight& light : {point, spot(SpotFalloff::smooth, 20, 50), wide, high}) {
     TestRandom random(5);
     MeanEstimate estimate;
     for (int i = 0; i < 200'000; ++i) {

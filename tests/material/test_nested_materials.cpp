@@ -187,7 +187,7 @@ TEST(Maps, GltfNormalMapsAreScaledAndHanded) {
 // Heights that grow evenly make a slope: the wall is 20 wide, so a height of h at u = 1 has the
 // slope h / 20.
 TEST(Maps, ABumpMapIsItsSlope) {
-  SceneData scene;
+  SceneData scene, mirrored;
   std::vector<Color> ramp;
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
@@ -199,7 +199,58 @@ TEST(Maps, ABumpMapIsItsSlope) {
       make_mapped(MaterialNode::bump_map, {{24, 1, 0}, picture}, add_diffuse(scene, red)));
   const Vec3 normal = glm::normalize(Vec3(-24 * 0.5f / 20, -24 * 0.25f / 20, 1));
   const Vec3 to_light = glm::normalize(Vec3(-0.4f, 0.3f, 0.8f));
+  mirrored = scene;
   expect_color(lit_wall(scene, map, to_light), glm::dot(normal, to_light) * red, 1e-5f);
+  // Heights stay heights where the picture is mirrored.
+  Mesh wall = wall_mesh(map);
+  for (Vec2& uv : wall.uvs) uv.y = 1.0f - uv.y;
+  mirrored.meshes.push_back(wall);
+  DeltaLight sun;
+  sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
+  mirrored.delta_lights.push_back(sun);
+  look_at_wall(mirrored);
+  prepare_scene(mirrored);
+  expect_color(mean_of(render(mirrored, image_options(8, 8, 4, 2)).image),
+               glm::dot(Vec3(normal.x, -normal.y, normal.z), to_light) * red, 1e-5f);
+}
+
+// Seen from aside a map's normal may look away: it is turned about the surface's, or, where the map
+// says so, the surface is black there.
+TEST(Maps, NormalsThatLookAwayAreTurnedOrBlack) {
+  const Vec3 to_light = glm::normalize(Vec3(0.3f, 0.2f, 0.9f));
+  for (const bool stays : {false, true}) {
+    SceneData scene;
+    const std::uint32_t picture = add_picture(scene, 1, 1, {{0.1f, 0.5f, 0.8f}});  // -0.8, 0, 0.6
+    scene.meshes.push_back(wall_mesh(scene.add_material(
+        make_mapped(MaterialNode::normal_map, {{1, 1, stays ? 1.0f : 0.0f}, picture},
+                    add_diffuse(scene, red)))));
+    DeltaLight sun;
+    sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
+    scene.delta_lights.push_back(sun);
+    scene.camera = {{9, 0, 4.4f}, {0, 0, 0}, {0, 1, 0}, 2.0f, 0.0f, 10.0f};
+    prepare_scene(scene);
+    const float cosine = stays ? 0.0f : glm::dot(Vec3(0.8f, 0, 0.6f), to_light);
+    expect_color(mean_of(render(scene, image_options(8, 8, 4, 2)).image), cosine * red, 1e-5f);
+  }
+}
+
+// From behind a map's y goes where it goes from the front: the normal there is that of the front,
+// mirrored at the surface.
+TEST(Maps, OfTwoSidesAreMirroredAtTheSurface) {
+  const Vec3 normal = glm::normalize(Vec3(0.3f, 0.5f, 0.9f));
+  const Vec3 to_light = glm::normalize(Vec3(0.4f, 0.2f, -0.8f));
+  SceneData scene;
+  const std::uint32_t picture = add_picture(scene, 1, 1, {0.5f * normal + 0.5f});
+  const std::uint32_t map = scene.add_material(
+      make_mapped(MaterialNode::normal_map, {{1, 1, 0}, picture}, add_diffuse(scene, red)));
+  scene.meshes.push_back(wall_mesh(scene.add_material(make_two_sided(map, map))));
+  DeltaLight sun;
+  sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
+  scene.delta_lights.push_back(sun);
+  look_at_wall(scene, -5.0f);
+  prepare_scene(scene);
+  const float cosine = glm::dot(Vec3(normal.x, normal.y, -normal.z), to_light);
+  expect_color(mean_of(render(scene, image_options(8, 8, 4, 2)).image), cosine * red, 1e-5f);
 }
 
 // A mirror turned so far that it sends light into the wall: nothing comes from there.

@@ -7,9 +7,9 @@
 namespace pt {
 namespace {
 
-/// In fog, above a plate that the camera sees; many point lights around it lie below its horizon
-/// and shine on the fog above it. Points, which no direction finds: what the tree leaves out is
-/// lost.
+/// In fog, a plate close to the camera. Of the point lights around it strong ones lie below its
+/// horizon and shine on the fog above it, weak ones above. Points, which no direction finds: what
+/// the tree leaves out is lost.
 SceneData plate_and_lamps() {
   SceneData scene;
   scene.name = "plate";
@@ -17,14 +17,15 @@ SceneData plate_and_lamps() {
   scene.camera_medium = 0;
   scene.add_quad({-0.5f, 0, 0.5f}, {1, 0, 0}, {0, 0, -1},
                  scene.add_material(make_diffuse(Color(0.8f))));
-  for (int i = 0; i < 24; ++i) {
-    const float angle = 0.2617994f * static_cast<float>(i);
+  for (int i = 0; i < 48; ++i) {
+    const float angle = 0.1308997f * static_cast<float>(i);
+    const bool is_weak = i % 2 == 1;
     DeltaLight lamp;
-    lamp.position = {2 * std::cos(angle), -0.5f, 2 * std::sin(angle)};
-    lamp.intensity = {3.0f, 4.0f, 2.0f};
+    lamp.position = {2 * std::cos(angle), is_weak ? 0.5f : -0.5f, 2 * std::sin(angle)};
+    lamp.intensity = (is_weak ? 0.01f : 1.0f) * Color(3.0f, 4.0f, 2.0f);
     scene.delta_lights.push_back(lamp);
   }
-  scene.camera = {{0, 2, 0}, {0, 0, 0}, {0, 0, -1}, 20.0f, 0.0f, 2.0f};
+  scene.camera = {{0, 0.1f, 0}, {0, 0, 0}, {0, 0, -1}, 60.0f, 0.0f, 0.1f};
   return scene;
 }
 
@@ -227,6 +228,25 @@ TEST(HiddenLamps, AreSeenInMirrors) {
         EXPECT_EQ(value, 0.0f);
       }
     }
+  }
+}
+
+// Camera rays alone do not see the sky: it lights a floor, and its picture in a mirror is there.
+TEST(HiddenLamps, SkiesLightWhatIsSeen) {
+  for (const bool is_map : {false, true}) {
+    SceneData scene;
+    scene.name = "floor under a hidden sky";
+    scene.sky = {Color(1.0f), Color(1.0f)};
+    if (is_map) set_environment(scene);
+    scene.camera = {{0, 1, 0}, {0, 0, 0}, {0, 0, -1}, 40.0f, 0.0f, 1.0f};
+    scene.camera.hides_emitters = true;
+    scene.add_quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6},
+                   scene.add_material(make_diffuse(Color(0.5f))));
+    expect_mean(render_medium(scene, {{"spp", "256"}}), glm::dvec3(0.5));
+    scene.materials[0] = make_metal(Color(0.9f), 0.0f);
+    expect_mean(render_medium(scene), glm::dvec3(0.9));
+    scene.camera.look_at.y = 2;
+    for (const float value : render_medium(scene).rgb) EXPECT_EQ(value, 0.0f);
   }
 }
 

@@ -58,6 +58,9 @@ class Memory(TestCase):
             self.assertEqual((other.dtype, other.shape), (np.float32, (24, 32, 3)))
         self.assertEqual(np.asarray(image, dtype=np.float64).dtype, np.float64)
         self.assertFalse(np.shares_memory(np.array(image, copy=True), image.array))
+        self.assertTrue(np.shares_memory(image.__array__(np.float32, copy=False), image.array))
+        with self.assertRaisesRegex(ValueError, "needs a copy"):
+            image.__array__(np.float64, copy=False)
         self.assertEqual(tuple(image.__dlpack_device__()), (1, 0))
 
 
@@ -90,6 +93,8 @@ class Errors(TestCase):
         with self.assertWarnsRegex(ptexp.SceneWarning, "hair") as caught:
             ptexp.load(path)
         self.assertEqual(caught.filename, __file__)
+        with self.assertWarns(ptexp.SceneWarning):
+            ptexp.load(path, strict=False)
         with self.assertRaisesRegex(ptexp.Error, "hair"):
             ptexp.load(path, strict=True)
         with warnings.catch_warnings():
@@ -136,6 +141,10 @@ class Work(TestCase):
         calls = []
         ptexp.render("cornell", **SMALL, progress=lambda done, total: calls.append((done, total)))
         self.assertEqual(calls[-1], (32 * 24 * 2, 32 * 24 * 2))
+        calls.clear()
+        ptexp.render("cornell", width=64, height=64, time_limit=0.7, spp=10**6,
+                     progress=lambda done, total: calls.append((done, total)))
+        self.assertEqual(len(calls), len(set(calls)), "told twice")
 
         def refuse(done, total):
             raise ZeroDivisionError("enough")
@@ -366,6 +375,9 @@ class Indices(TestCase):
                 with self.subTest(wrong), self.assertRaisesRegex(ValueError, "expected whole numbers from 0 to"):
                     ptexp.Scene.from_dict({"type": "scene", "m": {"type": "mesh", "vertices": vertices,
                                                                   "triangles": made(wrong)}})
+        for many in ([[0, 1, 2], [3, -4, 5]], [[0, 1, 2], [3, 2**70, 5]], [[0, 1, 2], [3, 0.5, 5]]):
+            with self.assertRaisesRegex(ValueError, f"the index {many[1][1]}; expected"):
+                ptexp.Mesh(np.zeros((9, 3)), many, device="cpu")
         for wrong in (np.array([[0, 1, 2j]]), np.array([["0", "1", "2"]])):
             with self.assertRaisesRegex(ValueError, "expected numbers"):
                 ptexp.Mesh(vertices, wrong, device="cpu")
@@ -421,6 +433,16 @@ class Rays(TestCase):
             self.assertEqual(ptexp.trace(mesh, rays).t[0], np.float32(expected))
             self.assertEqual(np.isfinite(ptexp.trace(mesh, rays, any_hit=True).t[0]), np.isfinite(expected))
 
+    def test_what_is_missed(self):
+        mesh = ptexp.Mesh(self.VERTICES, self.TRIANGLES, device="cpu")
+        rays = np.array([[0.2, 0.3, 1, 0, 0, -1], [9, 9, 1, 0, 0, -1]], dtype=np.float32)
+        hits = ptexp.trace(mesh, rays)
+        self.assertEqual((hits.t.tolist(), hits.primitive.tolist()), ([1, np.inf], [0, 0xFFFFFFFF]))
+        np.testing.assert_allclose(hits.uv[0], (0.2, 0.3), atol=1e-6)
+        self.assertEqual(ptexp.trace(mesh, rays, any_hit=True).t.tolist(), [0, np.inf])
+        with self.assertRaisesRegex(TypeError, "when it is made"):
+            ptexp.trace(mesh, rays, accel="bvh2")
+
     def test_errors(self):
         for vertices, triangles, rays, message in (
                 (self.VERTICES, [[0, 1, 9]], np.ones((1, 6)), "vertex 9"),
@@ -446,6 +468,32 @@ class Compare(TestCase):
         self.assertEqual(ptexp.compare(b, b).flip, 0)
         with self.assertRaises(ptexp.Error):
             ptexp.compare(a, b[:3])
+
+    def test_by_the_formulas(self):
+        generator = np.random.default_rng(3)
+        a, b = generator.uniform(0, 2, (2, 6, 7, 3)).astype(np.float32)
+        a[0] = b[0]
+        found = ptexp.compare(a, b, tolerance=0.5)
+        error = a.astype(float) - b
+        self.assertAlmostEqual(found.rmse, np.sqrt((error**2).mean()))
+        self.assertAlmostEqual(found.relative_mse, (error**2 / (b.astype(float) ** 2 + 0.01)).mean())
+        self.assertAlmostEqual(found.largest, np.abs(error).max())
+        self.assertEqual(found.differing_pixels, 35)
+        self.assertEqual(found.pixels_past_tolerance, (np.abs(error) > 0.5).any(axis=2).sum())
+        self.assertNotEqual(found.relative_mse, ptexp.compare(b, a).relative_mse)
+        for wrong in (-1, float("nan")):
+            with self.assertRaisesRegex(ValueError, "tolerance"):
+                ptexp.compare(a, b, tolerance=wrong)
+
+    def test_what_is_radiance(self):
+        a, b = ptexp.render("cornell", **SMALL), ptexp.render("cornell", **SMALL, seed=2)
+        a.save(self.folder / "a.png"), b.save(self.folder / "b.PNG"), b.save(self.folder / "b.exr")
+        png, png_b, exr = (self.folder / name for name in ("a.png", "b.PNG", "b.exr"))
+        for pair, hdr in (((png, png_b), False), ((png, exr), True), ((exr, png), True), ((png, b), True),
+                          ((a, b), True)):
+            flips = {wanted: ptexp.compare(*pair, hdr=wanted).flip for wanted in (None, False, True)}
+            self.assertEqual(flips[None], flips[hdr])
+            self.assertNotEqual(flips[None], flips[not hdr])
 
     def test_images_and_files(self):
         image = ptexp.render("cornell", **SMALL)

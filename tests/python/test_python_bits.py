@@ -1,4 +1,6 @@
 """The Python module gives the bits of the program: modes, scenes, options, one scene again and again."""
+import contextlib
+import io
 import json
 import subprocess
 import unittest
@@ -20,6 +22,7 @@ class Bits(TestCase):
 
     def test_a_file_decides_what_nobody_else_does(self):
         path = self.write("room.xml", room())
+        self.assertEqual(ptexp.load(path).defaults, {"width": 40, "height": 32, "spp": 8, "max_depth": 6})
         image = ptexp.render(path)
         self.assertEqual(image.shape, (32, 40, 3))
         self.assertEqual(image.stats["samples_done"], 8)
@@ -83,7 +86,58 @@ class Bits(TestCase):
         self.assert_same_bits(ptexp.read_image(self.folder / "b.png"), ptexp.read_image(self.folder / "c.png"))
         subprocess.run([PTEXP, "verify", self.folder / "a.exr"], check=True)
 
+    def test_what_a_file_knows(self):
+        path = self.folder / "a.exr"
+        image = ptexp.render("cornell", **SMALL, output=path)
+        self.assertEqual(image.metadata["ptexp.samples_done"], "4")
+        self.assertEqual(image.metadata["ptexp.option.width"], "48")
+        read = ptexp.read_image(path)
+        self.assertEqual(read.metadata, image.metadata)
+        self.assertEqual((read.width, read.height, read.shape, read.stats), (48, 32, (32, 48, 3), {}))
+
+    def test_exposures(self):
+        image = ptexp.render("cornell", **SMALL, exposure=1.5)
+        for given, word in ((None, "1.5"), (2, "2"), (0.0, "0"), (np.float32(-1.25), "-1.25"), ("auto", "auto")):
+            with self.subTest(given):
+                path = self.folder / "program.png"
+                subprocess.run([PTEXP, "--scene", "cornell", *map(str, WORDS), "--exposure", word, "-q", "-o", path],
+                               check=True)
+                image.save(self.folder / "a.png", exposure=given)
+                self.assert_same_bits(ptexp.read_image(self.folder / "a.png"), ptexp.read_image(path))
+        ptexp.render("cornell", **SMALL, exposure="auto", output=self.folder / "a.png")
+        self.assert_same_bits(ptexp.read_image(self.folder / "a.png"), ptexp.read_image(path))
+        with self.assertRaisesRegex(ptexp.OptionError, r"applies to \.png and \.ppm"):
+            ptexp.render("cornell", **SMALL, exposure=1, output=self.folder / "a.exr")
+        image.save(self.folder / "a.ppm", exposure=-2)
+        self.assertEqual(image.stats["used"]["exposure"], -2)  # of the file that was written last
+
+    def test_a_render_overrides_what_its_scene_was_loaded_with(self):
+        scene = ptexp.load("cornell", **SMALL, seed=3, max_depth=2)
+        expected = self.program("--scene", "cornell", *WORDS, "--seed", 5, "--max-depth", 2)
+        self.assert_same_bits(ptexp.render(scene, seed=5, rr=None), expected)
+        other = self.program("--scene", "cornell", *WORDS, "--seed", 3, "--max-depth", 2)
+        self.assert_same_bits(ptexp.render(scene), other)
+
+    def test_the_table_is_printed_where_it_is_asked_for(self):
+        for options, is_printed in (({}, False), ({"quiet": True}, False), ({"quiet": False}, True)):
+            with contextlib.redirect_stdout(io.StringIO()) as printed:
+                ptexp.render("cornell", **SMALL, **options)
+            self.assertEqual("48x32, 4 samples per pixel" in printed.getvalue(), is_printed)
+            self.assertEqual(bool(printed.getvalue()), is_printed)
+
+    def test_the_table_of_options(self):
+        table = {option["keyword"]: option for option in ptexp.options()}
+        self.assertEqual(table["max_depth"]["default"], "50")
+        self.assertEqual(table["nee"]["default"], "on")
+        self.assertEqual((table["max_depth"]["name"], table["seed"]["default"]), ("max-depth", "1"))
+
     def test_the_plan(self):
+        for choice in ptexp.explain("cornell", mode="wavefront"):
+            self.assertTrue(choice["option"] and choice["value"], choice)
+            self.assertNotEqual(choice["reason"], choice["value"])
+        path = self.folder / "none.exr"
+        self.assertTrue(ptexp.explain("cornell", output=path, quiet=False))
+        self.assertFalse(path.exists())
         plan = ptexp.explain("cornell", mode="wavefront")
         self.assertIn("accel", [choice["option"] for choice in plan])
         self.assertTrue(all(choice["reason"] for choice in plan))

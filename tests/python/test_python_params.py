@@ -82,7 +82,12 @@ class Params(TestCase):
             params["materials.green.albedo"] = 1
         with self.assertRaises(TypeError):
             del params["camera.fov"]
-        for name, value in (("camera.origin", (1, 2)), ("camera.origin", (1, 2, float("nan"))),
+        self.assertEqual(params["instances.0.to_world"], [list(map(float, row)) for row in matrix(-1, np.float32(0.4))])
+        params["materials.red.albedo"] = 0.25
+        self.assertEqual(params["materials.red.albedo"], (0.25, 0.25, 0.25))
+        self.assertIn("materials.red.albedo = (0.25, 0.25, 0.25)", repr(params).splitlines())
+        for name, value in (("camera.origin", (1, 2)), ("camera.origin", (1, 2, 3, 4)), ("camera.fov", (40, 50)),
+                            ("instances.0.to_world", np.zeros(17)), ("camera.origin", (1, 2, float("nan"))),
                             ("lights.lamp.radiance", -1), ("instances.0.to_world", np.zeros((4, 4)))):
             with self.assertRaises(ptexp.Error, msg=name):
                 params[name] = value
@@ -129,7 +134,73 @@ class Dictionaries(TestCase):
         scene = ptexp.Scene.from_dict(self.scene(type="mesh", vertices=vertices, triangles=triangles, face_normals=True))
         self.assert_same_bits(ptexp.render(scene), ptexp.render(path))
 
+    def test_normals_and_coordinates_are_those_of_a_file(self):
+        vertices = np.array([[-1, 0, 0], [1, 0, 0], [1, 2, -1], [-1, 2, -1]], dtype=np.float32)
+        normals = np.array([[-0.6, 0, 0.8], [0.6, 0, 0.8], [0, 0.6, 0.8], [0, 0, 1]], dtype=np.float32)
+        uvs = np.array([[0, 0], [2, 0], [2, 1], [0, 1]], dtype=np.float32)
+        # v is 0 at a picture's foot, as in OBJ.
+        lines = [f"{key} " + " ".join(map(repr, row)) for key, rows in (("v", vertices), ("vn", normals), ("vt", uvs))
+                 for row in rows.astype(float).tolist()]
+        self.write("wall.obj", "\n".join([*lines, "f 1/1/1 2/2/2 3/3/3", "f 1/1/1 3/3/3 4/4/4"]) + "\n")
+        board = '<bsdf type="diffuse"><texture name="reflectance" type="checkerboard"/></bsdf>'
+        lamp = ('<emitter type="point"><transform name="to_world"><translate x="1" y="2" z="3"/></transform>'
+                "</emitter></scene>")
+        path = self.write("wall.xml", (self.XML % ("obj", '<string name="filename" value="wall.obj"/>'))
+                          .replace('<ref id="red"/>', board).replace("</scene>", lamp))
+        mesh = {"type": "mesh", "vertices": vertices, "faces": [[0, 1, 2], [0, 2, 3]], "normals": normals, "uvs": uvs,
+                "bsdf": {"type": "diffuse", "reflectance": {"type": "checkerboard"}}}
+
+        def image(**changed):
+            point = {"type": "point", "to_world": [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]}
+            return ptexp.render(ptexp.Scene.from_dict({**self.scene(**{**mesh, **changed}), "lamp": point}))
+
+        expected = ptexp.render(path)
+        self.assert_same_bits(image(), expected)
+        self.assert_other_image(image(normals=None), expected)
+        self.assert_other_image(image(uvs=2 * uvs), expected)
+        self.assert_same_bits(image(face_normals=True), image(face_normals=True, normals=None))
+        self.assert_same_bits(image(face_normals=False), expected)
+
+    def test_a_value_has_many_forms(self):
+        class Wrapped:
+            def __init__(self, matrix):
+                self.matrix = matrix
+
+        place = [[2.0, 0, 0, 0.5], [0, 1, 0, 0.25], [0, 0, 1, 0], [0, 0, 0, 1]]
+
+        def image(to_world=place, reflectance=(0.8, 0.2, 0.1), **more):
+            scene = self.scene(type="cube", to_world=to_world)
+            scene["red"] = {"type": "diffuse", "reflectance": reflectance}
+            return ptexp.render(ptexp.Scene.from_dict({**scene, **more}))
+
+        expected = image()
+        self.assert_other_image(expected, image(to_world=np.eye(4)))
+        for same in (np.array(place), place[:3], [x for row in place for x in row], Wrapped(np.array(place)),
+                     [np.array(row) for row in place]):
+            self.assert_same_bits(image(to_world=same), expected)
+        for same in (np.array([0.8, 0.2, 0.1]), {"type": "rgb", "value": "0.8, 0.2, 0.1"},
+                     {"type": "rgb", "value": (0.8, 0.2, 0.1)}):
+            self.assert_same_bits(image(reflectance=same), expected)
+        grey = image(reflectance=0.5)
+        for same in ({"type": "rgb", "value": 0.5}, np.float64(0.5), {"type": "spectrum", "value": 0.5}):
+            self.assert_same_bits(image(reflectance=same), grey)
+        self.assert_same_bits(image(reflectance={"type": "rgb", "value": 1}), image(reflectance=(1, 1, 1)))
+        paint = {"type": "diffuse", "id": "paint", "reflectance": (0.8, 0.2, 0.1)}
+        named = {"type": "cube", "to_world": place, "bsdf": {"type": "ref", "id": "paint"}}
+        self.assert_same_bits(image(floor=named, any=paint), expected)
+
     def test_errors_say_where(self):
+        deep = {"type": "twosided", "bsdf": {"type": "diffuse"}}
+        for _ in range(70):
+            deep = {"type": "mask", "bsdf": deep}
+        with self.assertRaisesRegex(ptexp.Error, "nested deeper than 64"):
+            ptexp.Scene.from_dict({"type": "scene", "a": deep})
+        mesh = {"type": "mesh", "vertices": np.eye(3), "triangles": [[0, 1, 2]]}
+        for part, width in (("normals", 3), ("uvs", 2)):
+            with self.assertRaisesRegex(ptexp.Error, f"2 {part} for 3 vertices"):
+                ptexp.Scene.from_dict(self.scene(**mesh, **{part: np.ones((2, width))}))
+            with self.assertRaisesRegex(ptexp.Error, f"{part}: 4 columns"):
+                ptexp.Scene.from_dict(self.scene(**mesh, **{part: np.ones((3, 4))}))
         cases = [
             (self.scene(type="cubic"), r"scene\['floor'\]: type 'cubic'"),
             (self.scene(type="mesh", vertices=np.zeros((3, 3))), "triangles"),

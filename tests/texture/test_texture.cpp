@@ -384,6 +384,43 @@ TEST(Texture, TransformComesFirst) {
             sample_texture(plain, image.texels.data(), mapped));
 }
 
+// A bump map's slopes: by the surface's u and v, whatever the texture does with these.
+TEST(Texture, TheGradientIsTheSlopeOfWhatIsShown) {
+  const Image8 image = make_image(5, 7);
+  Texture texture = make_texture(image);
+  texture.format = TextureFormat::linear8;
+  texture.color0 = Color(0.75f);
+  const float u_row[3] = {0.8f, -0.6f, 0.1f}, v_row[3] = {0.9f, 1.2f, 0.3f};
+  std::copy(u_row, u_row + 3, texture.u_row);
+  std::copy(v_row, v_row + 3, texture.v_row);
+  constexpr float step = 1.0f / 512;
+  for (const TextureWrap wrap : {TextureWrap::repeat, TextureWrap::mirror}) {
+    texture.wrap_u = texture.wrap_v = wrap;
+    int compared = 0;
+    for (int i = 0; i < 500; ++i) {
+      const Vec2 uv(static_cast<float>((i * 97) % 512 - 256) / 100.0f,
+                    static_cast<float>((i * 61) % 512 - 256) / 100.0f);
+      const auto cell = [&](const Vec2& by) {  // between four texels
+        const Vec2 at = map_coordinates(texture, uv + by);
+        return std::pair(std::floor(5 * at.x - 0.5f), std::floor(7 * at.y - 0.5f));
+      };
+      const auto slope = [&](const Vec2& by) {
+        const auto height = [&](const Vec2& to) {
+          return grey_of(sample_texture(texture, image.texels.data(), uv + to));
+        };
+        return (height(by) - height(-by)) / (2 * step);
+      };
+      const Vec2 u(step, 0), v(0, step);
+      if (cell(u) != cell(-u) || cell(v) != cell(-v) || cell(u) != cell(v)) continue;
+      ++compared;
+      const Vec2 found = texture_gradient(texture, image.texels.data(), uv);
+      ASSERT_NEAR(found.x, slope(u), 3e-3) << uv.x << ", " << uv.y;
+      ASSERT_NEAR(found.y, slope(v), 3e-3) << uv.x << ", " << uv.y;
+    }
+    EXPECT_GT(compared, 300);
+  }
+}
+
 TEST(Texture, CheckerboardAgreesWithMitsuba) {
   Texture texture;
   texture.kind = TextureKind::checkerboard;

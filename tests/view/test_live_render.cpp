@@ -1,6 +1,7 @@
 // A render that somebody watches: its images are those of a render at once.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
@@ -174,6 +175,28 @@ TEST(LiveRender, ShowsImagesWhileTheCameraMoves) {
   EXPECT_EQ(seen, 3) << "images while the camera moves";
 }
 
+TEST(LiveRender, TwoModesShowImagesByTurnsWhileTheCameraMoves) {
+  WatchedRender live(settings_of({{"width", "320"}, {"height", "240"}}), {});
+  const std::vector<Mode> modes{Mode::serial, Mode::wavefront};
+  live.change({modes, {}});
+  live.set_watched(true);
+  std::uint64_t last[2] = {};
+  int seen[2] = {};
+  const double begin_s = steady_seconds();
+  for (int i = 1; std::min(seen[0], seen[1]) < 2; ++i) {
+    live.change({modes, {i * 0.5, 0, 1}});
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const LiveState state = live.state();
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (state.views[k].image_number == last[k]) continue;
+      last[k] = state.views[k].image_number;
+      ++seen[k];
+    }
+    ASSERT_LT(steady_seconds() - begin_s, patience_s / 4)
+        << seen[0] << " and " << seen[1] << " images while the camera moves";
+  }
+}
+
 TEST(LiveRender, MeasuresItsPasses) {
   WatchedRender live(settings_of(), {});
   EXPECT_EQ(live.state().views.front().msamples_per_s, 0);
@@ -238,6 +261,20 @@ TEST(LiveRender, TwoModesRenderTheSameImageByTurns) {
     EXPECT_EQ(view.samples, 13);
     expect_same(*view.image, rendered({}));
   }
+}
+
+// While the page waits for the first pass of other settings.
+TEST(LiveRender, KeepsTheImagesOfModesThatStay) {
+  WatchedRender live(settings_of({{"mode", "wavefront"}}), {});
+  live.set_watched(true);
+  const LiveState before = wait_until(live, is_done);
+  live.set_watched(false);
+  live.change({{Mode::serial, Mode::wavefront}, {20, 5, 1}});
+  const LiveState after = live.state();
+  ASSERT_EQ(after.views.size(), 2u);
+  EXPECT_EQ(after.views.front().image, nullptr);
+  EXPECT_EQ(after.views.back().image, before.views.front().image);
+  EXPECT_EQ(after.views.back().samples, 0);
 }
 
 TEST(LiveRender, TakesOptionsOfOneModeInAll) {

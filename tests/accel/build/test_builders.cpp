@@ -215,7 +215,9 @@ TEST_P(Builders, TheTopTreeCanBeNumberedFromAnyNode) {
 
 TEST_P(Builders, SummariesGoThroughInstances) {
   Mesh mesh = make_soup(500, 3);
-  const TreeSummary single = summarize(GetParam().build({mesh}));
+  const TriangleTreeData own = GetParam().build({mesh});
+  const TreeSummary single = summarize(own);
+  EXPECT_EQ(single.quality.slots, own.triangles.size());
   mesh.group = 1;
   const TreeSummary placed = summarize(GetParam().build({mesh}, {{1, {}}}));
   EXPECT_EQ(placed.quality.nodes, single.quality.nodes + 1);

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "common/image/codecs/image_io.h"
 #include "common/scene/load/files/studio.h"
@@ -227,6 +229,54 @@ TEST(DefaultLighting, OtherFilesStayDarkAndSayIt) {
   const std::string pbrt = "WorldBegin\nShape \"sphere\"\n";
   EXPECT_TRUE(said("a.pbrt", pbrt + "LightSource \"point\" \"rgb I\" [0 0 0]\n"));
   EXPECT_FALSE(said("a.pbrt", pbrt + "LightSource \"point\" \"rgb I\" [1 1 1]\n"));
+}
+
+// Each kind of light counts by itself, however little it gives; one that is black does not.
+TEST(DefaultLighting, WhatCountsAsALight) {
+  using Change = std::function<void(SceneData&, const Color&)>;
+  const auto emitting = [](SceneData& scene, const Color& radiance) {
+    return scene.add_material(make_diffuse(Color(0.0f), radiance));
+  };
+  const std::map<std::string, Change> kinds = {
+      {"nadir", [](SceneData& s, const Color& c) { s.sky.nadir = c; }},
+      {"zenith", [](SceneData& s, const Color& c) { s.sky.zenith = c; }},
+      {"sun",
+       [](SceneData& s, const Color& c) { s.sun.radiance = c, s.sun.one_minus_cos = 1e-5f; }},
+      {"picture",
+       [](SceneData& s, const Color& c) {
+         s.environment.width = 2, s.environment.height = 1;
+         s.environment.pixels = {Color(0.0f), c};
+       }},
+      {"medium",
+       [](SceneData& s, const Color& c) {
+         s.media.resize(2);
+         s.media[1].emission = c;
+       }},
+      {"lamp",
+       [](SceneData& s, const Color& c) {
+         s.delta_lights.resize(2);
+         s.delta_lights[0].intensity = Color(0.0f), s.delta_lights[1].intensity = c;
+       }},
+      {"quad",
+       [&](SceneData& s, const Color& c) {
+         s.add_quad({}, {1, 0, 0}, {0, 1, 0}, emitting(s, c));
+       }},
+      {"sphere", [&](SceneData& s, const Color& c) { s.add_sphere({}, 1, emitting(s, c)); }},
+      {"mesh", [&](SceneData& s, const Color& c) {
+         Mesh mesh;
+         mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, mesh.triangles = {{{0, 1, 2}}};
+         mesh.material = emitting(s, c);
+         s.meshes.push_back(mesh);
+       }}};
+  for (const auto& [name, change] : kinds) {
+    for (const float blue : {0.0f, 1e-6f}) {
+      SceneData scene;
+      scene.add_quad({}, {1, 0, 0}, {0, 1, 0}, scene.add_material(make_diffuse(Color(0.5f))));
+      change(scene, {0, 0, blue});
+      EXPECT_EQ(light_scene({}, scene).empty(), blue > 0) << name;
+      EXPECT_EQ(scene.environment.width, name == "picture" ? 2 : 0) << name;
+    }
+  }
 }
 
 /// The triangle of triangle_file(), two-sided, with a point light of this intensity at z.

@@ -115,6 +115,11 @@ TEST(Serialized, BrokenFilesAreRefused) {
   expect_error([&] { decode_serialized(file_of({.version = 5}), "a.serialized", 0); }, "version 5");
   expect_error([&] { decode_serialized(file_of({.last_index = 3}), "a.serialized", 0); },
                "triangle 0: indices 0, 1 and 3 into 3 vertices");
+  // The first shape's last four bytes are its checksum; the second one begins behind them.
+  std::string damaged = good;
+  damaged[shape({}, 0).size() - 1] ^= 1;
+  expect_error([&] { decode_serialized(damaged, "a.serialized", 0); }, "data are wrong");
+  EXPECT_EQ(decode_serialized(damaged, "a.serialized", 1).positions.size(), 3u);
   for (const std::uint64_t huge : {std::uint64_t{4'000'000'000}, ~std::uint64_t{0}}) {
     expect_error([&] { decode_serialized(file_of({.vertices = huge}), "a.serialized", 0); }, "");
     expect_error([&] { decode_serialized(file_of({.triangles = huge}), "a.serialized", 0); }, "");

@@ -112,12 +112,12 @@ TEST(VolFile, SizesBeyondTheFileAreRefused) {
 
 TEST(VolFile, WrongValuesAreRefused) {
   VolKind kind;
-  kind.x = 2, kind.y = 3, kind.z = 2, kind.channels = 3;
+  kind.x = 2, kind.y = 5, kind.z = 3, kind.channels = 3;
   for (const float wrong :
        {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    std::vector<float> values = counted(36);
-    values[3 * (1 + 2 * (2 + 3 * 1)) + 2] = wrong;
-    expect_refused(kind, values, fmt::format("the value {} in voxel (1, 2, 1)", wrong));
+    std::vector<float> values = counted(90);
+    values[3 * (1 + 2 * (3 + 5 * 2)) + 2] = wrong;
+    expect_refused(kind, values, fmt::format("the value {} in voxel (1, 3, 2)", wrong));
   }
 }
 

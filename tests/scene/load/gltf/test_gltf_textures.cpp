@@ -85,6 +85,15 @@ TEST(GltfTextures, FactorsMultiplyTheirTextures) {
   EXPECT_EQ(loaded.scene.textures.at(textured.emission.texture).color0, Color(1.0f));
 }
 
+TEST(GltfTextures, UnlitOnesShine) {
+  GltfMaker maker = with_texture();
+  maker.root["materials"][0]["extensions"] = {{"KHR_materials_unlit", Json::object()}};
+  const Loaded loaded(maker);
+  const MaterialDescription& material = loaded.scene.materials.at(0);
+  EXPECT_NE(material.emission.texture, no_texture);
+  EXPECT_EQ(material.parameters[0].texture, no_texture);
+}
+
 TEST(GltfTextures, SamplersSayWrapAndFilter) {
   const Loaded loaded(
       with_texture(Json::object(), {{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}));

@@ -2,6 +2,7 @@
 // shine on both sides, by what is seen.
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
+#include "load/png_bytes.h"
 #include "load/render_loaded.h"
 
 namespace pt {
@@ -16,7 +17,8 @@ std::string half_picture() {
 
 /// A square of the material in the plane z = 0, seen along its axis from z = 5 (or -5: from
 /// behind), and at z = -4 (or 4) a black square that emits 1 towards it.
-Loaded wall(const Json& material, bool from_behind = false, bool has_lamp = true) {
+Loaded wall(const Json& material, bool from_behind = false, bool has_lamp = true,
+            const std::string& picture = half_picture()) {
   GltfMaker maker;
   const int positions = maker.floats({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, "VEC3");
   const int uvs = maker.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2");
@@ -31,7 +33,7 @@ Loaded wall(const Json& material, bool from_behind = false, bool has_lamp = true
       {"emissiveFactor", {1, 1, 1}},
       {"extensions", {{"KHR_materials_ior", {{"ior", 1}}}}}};
   maker.root["materials"] = {material, black};
-  maker.root["images"] = {{{"uri", "data:image/bmp;base64," + base64(half_picture())}}};
+  maker.root["images"] = {{{"uri", "data:image/bmp;base64," + base64(picture)}}};
   maker.root["textures"] = {{{"source", 0}}};
   maker.root["cameras"] = {
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.002}, {"znear", 0.1}}}}};
@@ -204,6 +206,16 @@ TEST(GltfWalls, DoubleSidedLampsShineOnBothSides) {
                                  {{"baseColorFactor", {0, 0, 0, 0.36}}, {"metallicFactor", 0}}}});
   for (const bool behind : {false, true}) {
     expect_near(seen(wall(veil, behind)), 0.36f * full + Color(0.64f), 0.02f);
+  }
+  // The same by a picture's alpha; types of data URIs do not matter.
+  const Json by_picture = lamp(true, {{"alphaMode", "BLEND"},
+                                      {"pbrMetallicRoughness",
+                                       {{"baseColorFactor", {0, 0, 0, 1}},
+                                        {"baseColorTexture", {{"index", 0}}},
+                                        {"metallicFactor", 0}}}});
+  const std::string alpha = png_file(1, 1, 8, 6, "\xff\xff\xff\x5c");  // 92 / 255
+  for (const bool behind : {false, true}) {
+    expect_near(seen(wall(by_picture, behind, true, alpha)), 0.36f * full + Color(0.64f), 0.02f);
   }
   // Unlit materials are lamps here.
   const Json unlit = {{"doubleSided", true},

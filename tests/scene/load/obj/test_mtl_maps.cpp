@@ -56,6 +56,7 @@ TEST(MtlMaps, Options) {
       {"-clamp on t.ppm", {0.25f, 1.25f}, red},
       {"-clamp off t.ppm", {1.25f, 0.25f}, blue},
       {"-clamp maybe t.ppm", {1.25f, 0.25f}, blue, "-clamp: expected on or off, found 'maybe'"},
+      {"-clamp on -clamp maybe t.ppm", {1.25f, 0.25f}, white, "found 'maybe'"},
       {"-mm 0 0.5 t.ppm", {0.25f, 0.75f}, {0.5f, 0, 0}},
       {"-mm 0.25 0.5 t.ppm", {0.25f, 0.75f}, {0.75f, 0.25f, 0.25f}},
       {"-mm -0.5 2 t.ppm", {0.25f, 0.75f}, red},

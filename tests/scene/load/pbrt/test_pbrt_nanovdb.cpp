@@ -79,6 +79,10 @@ TEST_F(PbrtNanovdb, TemperaturesAreBlackbodies) {
             Color(0));  // its surface
   expect_near(grid_value(scene, medium.density_grid, point_of_known_density + Vec3(7, 0, 0)),
               Color(known_density), 2e-5f);
+  const std::string hot = world_of_gas(gas("two.nvdb", "\"float temperaturescale\" 5000"));
+  expect_near(
+      load_pbrt_silently(pbrt_world(hot, "Film \"rgb\" \"float iso\" 300")).media.at(0).emission,
+      3.0f * load_pbrt_silently(pbrt_world(hot)).media.at(0).emission);
   EXPECT_EQ(load_pbrt_silently(pbrt_world(world_of_gas(gas("two.nvdb", "\"float Lescale\" 0 "))))
                 .media.at(0)
                 .emission_grid,

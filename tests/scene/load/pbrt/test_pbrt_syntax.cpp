@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "common/scene/load/pbrt/syntax/tokens.h"
 #include "load/expect_near.h"
 #include "load/pbrt_scene.h"
 
@@ -144,6 +145,15 @@ TEST(PbrtSyntax, CompressedFilesAreRead) {
   gzclose(file);
   write_text(folder.file("scene.pbrt"), pbrt_world(lit + "Include \"part.pbrt.gz\""));
   EXPECT_EQ(load_pbrt_file(folder.file("scene.pbrt")).scene.spheres.size(), 1u);
+  // Its last eight bytes are its checksum and its length.
+  const std::string bytes = read_text(folder.file("part.pbrt.gz"));
+  for (const std::size_t from_end : {8u, 5u, 4u, 1u}) {
+    std::string damaged = bytes;
+    damaged[bytes.size() - from_end] ^= 1;
+    write_text(folder.file("part.pbrt.gz"), damaged);
+    expect_error([&] { pbrt::read_source(folder.file("part.pbrt.gz")); },
+                 "corrupted compressed data");
+  }
 }
 
 TEST(PbrtSyntax, AttributesAreParametersOfWhatFollows) {
