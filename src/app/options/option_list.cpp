@@ -400,10 +400,6 @@ void add_measurement(std::vector<OptionEntry>& list) {
       .add(text("csv", "FILE", &Options::csv_file),
            "Appends the same as one row, below a header if the file is\n"
            "new; a file with other columns is refused")
-      .add(value("display", OptionForm::text, "HOST[:PORT]", &Options::display, parse_display,
-                 display_text),
-           "Shows the render at work in the viewer tev, which listens\n"
-           "there, by default at port 14158")
       .add(flag("explain", &Options::explain),
            "Prints how the render would be executed, and why, instead\nof rendering")
       .add(flag("quiet", &Options::quiet),

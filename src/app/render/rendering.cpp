@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
-#include "app/display/display.h"
 #include "app/render/make_renderer.h"
 #include "app/report/film_header.h"
 #include "common/error/error.h"
@@ -27,8 +24,7 @@ std::string label(const Options& options, int index) {
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& own) {
   const auto& stop = own.stop;
-  const RenderHooks hooks{
-      own.progress, stop, {options.time_limit, options.target_error, {}}, stop, own.watch};
+  const RenderHooks hooks{own.progress, stop, {options.time_limit, options.target_error, {}}, stop};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {
@@ -59,7 +55,7 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& wo
 Rendering::Rendering(const Options& options, const std::vector<ExecutionPlan>& plans,
                      const SceneData& scene, const std::vector<DeviceInfo>& devices,
                      const Surroundings& surroundings)
-    : options_(options), warn_(surroundings.warn) {
+    : options_(options) {
   const Ranks* const ranks = surroundings.ranks;
   const bool has_ranks = ranks != nullptr && ranks->count() > 1;
   if (needs_group(options, devices) || has_ranks) {
@@ -104,9 +100,7 @@ void Rendering::make_group(const std::vector<ExecutionPlan>& plans, const SceneD
 
 Measurement Rendering::measure(const MeasureHooks& hooks) {
   try {
-    Measurement measurement = options_.display.host.empty()
-                                  ? pt::measure(renderer(), options_, hooks)
-                                  : measure_shown(hooks);
+    Measurement measurement = pt::measure(renderer(), options_, hooks);
     keep();
     return measurement;
   } catch (const std::exception& error) {
@@ -117,17 +111,6 @@ Measurement Rendering::measure(const MeasureHooks& hooks) {
                      ? fmt::format("ptexp resume {} goes on", options_.checkpoint.file)
                      : checkpoint_problem_));
   }
-}
-
-Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
-  Display display(options_.display, std::filesystem::path(options_.output).filename().string(),
-                  warn_);
-  MeasureHooks shown = hooks;
-  shown.watch = [&](const std::function<Image()>& image) { display.watch(image); };
-  Measurement measurement = pt::measure(renderer(), options_, shown);
-  if (!measurement.runs.empty() && measurement.runs.back().samples_done > 0)
-    display.finish([this] { return renderer().image(); });
-  return measurement;
 }
 
 void Rendering::keep() {

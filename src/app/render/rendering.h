@@ -29,7 +29,6 @@ struct MeasureHooks {
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< as RenderHooks
   /// Asked between batches and between renders, and while a batch is traced, by any thread.
   std::function<bool()> stop;
-  std::function<void(const std::function<Image()>& image)> watch{};  ///< as RenderHooks
 };
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& hooks);
@@ -66,13 +65,10 @@ class Rendering {
  private:
   void make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
                   const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
-  /// In a viewer, too.
-  Measurement measure_shown(const MeasureHooks& hooks);
   void save(const ImageFilm& film) const;
   void keep();
 
   const Options options_;
-  const std::function<void(const std::string&)> warn_;
   PixelFilter filter_{};
   ImageMetadata header_;
   std::unique_ptr<Renderer> single_;

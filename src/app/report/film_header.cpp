@@ -28,7 +28,7 @@ std::string value_in(const ImageMetadata& header, const std::string& key) {
 std::string shown(const std::string& value) { return value.empty() ? "none" : value; }
 
 /// Options of earlier programs that never changed an image.
-constexpr std::string_view former_options[] = {"ptexp.option.shade"};
+constexpr std::string_view former_options[] = {"ptexp.option.display", "ptexp.option.shade"};
 
 }  // namespace
 
