@@ -86,7 +86,4 @@ struct ConductorIndex {
 /// All that Mitsuba knows, and "none", which reflects everything.
 extern const std::vector<ConductorIndex> conductors;
 
-/// By the property `material`; one that is not known becomes aluminium with a warning.
-const ConductorIndex& read_named_metal(Context& context, const Object& bsdf);
-
 }  // namespace pt::mitsuba
