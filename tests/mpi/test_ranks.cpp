@@ -4,6 +4,7 @@
 #include "common/error/error.h"
 #include "common/mpi/serve_units.h"
 #include "fake_worker.h"
+#include "film_cases.h"
 #include "gtest/gtest.h"
 #include "thread_channels.h"
 

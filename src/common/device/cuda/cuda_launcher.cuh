@@ -123,12 +123,4 @@ class CudaLauncher {
 /// Throws Error where there is no such device.
 cudaDeviceProp read_properties(int device);
 
-inline DeviceProperties plan_properties(const cudaDeviceProp& device) {
-  DeviceProperties result;
-  result.is_cuda = true;
-  result.block_shared_bytes = device.sharedMemPerBlockOptin;
-  result.block_threads_max = device.maxThreadsPerBlock;
-  return result;
-}
-
 }  // namespace pt
