@@ -8,7 +8,7 @@ namespace pt {
 /// Whether --multiple-scattering changes it.
 bool is_rough_conductor(const MaterialDescription& material);
 
-/// Camera rays do not meet it.
+/// Camera rays do not hit it.
 bool is_hidden_light(const SceneData& scene, const MaterialDescription& material);
 
 /// Whether its triangles are there in part, or not for all rays.

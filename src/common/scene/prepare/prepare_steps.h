@@ -27,7 +27,7 @@ float camera_extent(const CameraParameters& parameters, int width, int height);
 void prepare_media(SceneData& scene);
 
 /// Moves the boundaries of media off the surfaces that they touch, by what rays can tell apart, so
-/// that a ray meets both and in the right order (docs/design/media.md). What touches nothing keeps
+/// that a ray hits both and in the right order (docs/design/media.md). What touches nothing keeps
 /// its bits. After convert_quads() and prepare_media().
 void separate_boundaries(SceneData& scene);
 

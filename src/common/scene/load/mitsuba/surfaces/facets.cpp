@@ -244,7 +244,7 @@ Surface read_rough_plastic(Context& context, const Object& bsdf) {
   return surface;
 }
 
-/// Of Mitsuba 0.x, as `ward`.
+/// Only in Mitsuba 0.x, as `ward`.
 Surface read_phong(Context& context, const Object& bsdf) {
   Surface surface = glossy_of(context, bsdf, make_material<Phong>(), 0.2f);
   surface.material[&Phong::exponent] =

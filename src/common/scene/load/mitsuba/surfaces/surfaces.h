@@ -30,7 +30,7 @@ std::vector<std::string> surface_types();
 /// Reports, once for its type, that a bsdf is replaced `by` something.
 void report_replaced(Context& context, const Object& bsdf, std::string_view by);
 
-/// Of microfacets.
+/// Roughness of microfacets.
 struct Roughness {
   ColorTexture alpha_u, alpha_v;
   bool is_beckmann;

@@ -40,7 +40,7 @@ EntityPointer shared(Entity entity) { return std::make_shared<const Entity>(std:
 
 }  // namespace
 
-void Interpreter::note_earlier(const Place& place, const std::string& what) {
+void Interpreter::note_earlier(const FileLocation& place, const std::string& what) {
   if (std::exchange(description_.is_earlier, true)) return;
   reporter_.note(
       place,
