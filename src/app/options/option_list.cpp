@@ -314,9 +314,9 @@ void add_execution(std::vector<OptionEntry>& list) {
       .expert()
       .only(wavefront, any_device)
       .add(integer("wave-collisions", &Options::wave_collisions, 0, 65535),
-           "wavefront, in media with grids: a path that has collided with\n"
-           "nothing so often waits for the next wave; 0: it loops until its\n"
-           "flight ends")
+           "wavefront, in media with grids: suspends delta tracking after N\n"
+           "null collisions until the next wave; 0: a flight is never\n"
+           "suspended")
       .expert()
       .only(wavefront, any_device)
       .add(integer("wave-rays", &Options::wave_rays, 1, 65535),

@@ -114,7 +114,7 @@ PT_HD MediumBoundary media_beside(const Scene& scene, const Surface& surface,
                                                  : scene.media.same_on_both_sides(medium_id);
 }
 
-/// `medium_id`: what is around the ray's origin.
+/// `medium_id`: the medium at the ray's origin.
 PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                       std::uint16_t medium_id) {
   const Ray next = spawn_ray(surface.point, ray.direction);

@@ -184,7 +184,7 @@ void Interpreter::medium(const Directive& directive) {
   const std::string name = entity->type;
   if (!description_.media.try_emplace(name, entity).second) {
     reporter_.warn_once("medium named " + name, directive.place,
-                        "a medium '{}' was defined before: that holds", name);
+                        "a medium '{}' was defined before: the new one is ignored", name);
   }
 }
 
