@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "app/options/option_values.h"
-#include "app/report/run_summary.h"
+#include "app/report/report.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"

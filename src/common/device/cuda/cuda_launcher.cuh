@@ -16,7 +16,6 @@
 #include "common/cuda/cuda_check.cuh"
 #include "common/device/cuda/counter_session_cuda.h"
 #include "common/device/cuda/stage_clock.h"
-#include "common/plan/render_properties.h"
 #include "common/render/renderer.h"
 
 namespace pt {

@@ -10,7 +10,6 @@
 #include "common/image/tone_mapping.h"
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
