@@ -41,6 +41,8 @@ install_relocatable(ptexp program libraries)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
               ${PROJECT_SOURCE_DIR}/CITATION.cff
         DESTINATION share/doc/ptexp COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/data/sunsky/LICENSE DESTINATION share/doc/ptexp/sunsky
+        COMPONENT program)
 install_printed(ptexp.1 share/man/man1 --reference man)
 install_printed(ptexp share/bash-completion/completions --completion bash)
 install_printed(_ptexp share/zsh/site-functions --completion zsh)

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
-"""Writes src/common/light/sky/sunsky_data.cpp.
+"""Writes data/sunsky.
 
 The sky is the RGB data set of Hosek and Wilkie (2012, 'An Analytic Model for Full Spectral Sky-Dome
 Radiance'), which the Python package `mitsuba` brings along with its licence. The sun's irradiance
 is measured: the radiance that the package's `sunsky` plugin shows in the sun's middle, times the
 sun's solid angle.
 
-Usage: scripts/bake_sunsky.py > src/common/light/sky/sunsky_data.cpp; clang-format-14 -i that file
+Usage: scripts/bake_sunsky.py
 """
 import struct
-import textwrap
 from pathlib import Path
 
 import mitsuba
@@ -19,6 +18,7 @@ mitsuba.set_variant("scalar_rgb")
 
 FOLDER = Path(mitsuba.__file__).parent / "data" / "sunsky"
 CIE_Y = 106.7502593994  # the plugin divides by this: the integral of y(lambda), nearly
+OUTPUT = Path(__file__).resolve().parent.parent / "data" / "sunsky"
 APERTURE = 0.5358  # degrees
 NODES = 129
 
@@ -53,32 +53,30 @@ def sun_irradiance(turbidity, elevation):
     return np.array(plugin.eval(point)) * 2 * np.pi * (1 - np.cos(np.radians(APERTURE / 2)))
 
 
-def wrap(text, indent):
-    return "\n".join(textwrap.wrap(text, 99, subsequent_indent=indent))
-
-
-def array(name, dimensions, values):
-    numbers = ", ".join(f"{v:.8g}" for v in np.asarray(values).ravel())
-    # A plain list: aggregates of many dimensions are slow to compile.
-    numbers = ", ".join(n if any(c in n for c in ".en") else n + ".0" for n in numbers.split(", "))
-    return wrap(f"const float {name}[{dimensions}] = {{{numbers}}};", "    ") + "\n"
+def write(name, what, values):
+    numbers = [f"{v:.8g}" for v in np.asarray(values).ravel()]
+    numbers = [n if any(c in n for c in ".en") else n + ".0" for n in numbers]
+    rows = [" ".join(numbers[i:i + 9]) for i in range(0, len(numbers), 9)]
+    (OUTPUT / f"{name}.txt").write_text("\n".join([what, *rows]) + "\n")
 
 
 def main():
-    licence = (FOLDER / "LICENSE").read_text().strip().splitlines()
     fields = read_fields(FOLDER / "sunsky_datasets.bin")
     suns = [[sun_irradiance(t, 0.5 * np.pi * (i / (NODES - 1)) ** 3) for i in range(NODES)]
             for t in range(1, 11)]
-    print("// Made by scripts/bake_sunsky.py, which says from what. The sky's numbers come under "
-          "this\n// notice:\n//")
-    for line in licence:
-        print(wrap("// " + line, "// ").rstrip() or "//")
-    print('#include "common/light/sky/sunsky.h"\n\nnamespace pt::sunsky {\n')
-    print("// clang-format off")
-    print(array("sky_shapes", "10 * 2 * 6 * 3 * 9", fields["sky_params_rgb"]))
-    print(array("sky_radiances", "10 * 2 * 6 * 3", fields["sky_rad_rgb"] / CIE_Y))
-    print(array("sun_irradiances", "10 * sun_node_count * 3", suns))
-    print("// clang-format on\n\n}  // namespace pt::sunsky")
+    (OUTPUT / "LICENSE").write_text((FOLDER / "LICENSE").read_text().strip() + "\n")
+    theirs = "# Written by scripts/bake_sunsky.py. LICENSE holds for it."
+    write("sky_shapes", f"""\
+# The nine parameters of the sky's distribution, by turbidity (1 to 10), albedo of the ground (0, 1),
+# control point over the sun's elevation (6) and channel (3).
+{theirs}""", fields["sky_params_rgb"])
+    write("sky_radiances", f"""\
+# The sky's mean radiance, by turbidity (1 to 10), albedo of the ground (0, 1), control point over the
+# sun's elevation (6) and channel (3).
+{theirs}""", fields["sky_rad_rgb"] / CIE_Y)
+    write("sun_irradiances", """\
+# The sun's irradiance, by turbidity (1 to 10), elevation pi / 2 (i / 128)^3 and channel (3).
+# Written by scripts/bake_sunsky.py.""", suns)
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ class Mesh:
 
 
 class Hits(NamedTuple):
-    """What rays met, by ray."""
+    """What rays hit, by ray."""
 
     t: Any  #: (k,) float32, in units of the direction's length; inf: nothing
     primitive: Any  #: (k,) uint32, the triangle; 0xffffffff: none
@@ -38,7 +38,7 @@ class Hits(NamedTuple):
 
 
 def trace(mesh: Union[Mesh, Tuple[Any, Any]], rays: Any, *, any_hit: bool = False, **options: Any) -> Hits:
-    """Finds the first triangle that each ray meets.
+    """Finds the first triangle that each ray hits.
 
     Args:
         mesh: a :class:`Mesh`, or (vertices, triangles) to make one of.

@@ -78,8 +78,8 @@ RaySet ray_set(const FloatsIn& rays, bool any) {
   return set;
 }
 
-/// Barycentric coordinates of the second and third vertex where the ray meets the triangle's plane
-/// (Moeller and Trumbore 1997), in double precision.
+/// Barycentric coordinates of the second and third vertex where the ray intersects the triangle's
+/// plane (Moeller and Trumbore 1997), in double precision.
 void barycentrics(const Mesh& mesh, const RayRecord& ray, std::uint32_t triangle, float* uv) {
   using DVec3 = glm::dvec3;
   const auto& v = mesh.triangles[triangle].v;

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "app/render/render_session.h"
-#include "view/orbit.h"
+#include "view/change_settings.h"
 
 namespace pt {
 

@@ -20,7 +20,7 @@ void prefetch(const T* p) {
   asm volatile("" : : "r"(p));
 }
 
-/// The triangle that a ray has met, or null.
+/// The triangle that a ray has hit, or null.
 inline const Triangle* triangle_of(const Scene& scene, const Hit& hit) {
   const std::uint32_t primitives = scene.primitives.count();
   if (hit.is_miss() || hit.primitive < primitives) return nullptr;

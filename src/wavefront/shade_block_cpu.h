@@ -21,7 +21,7 @@ inline constexpr bool shades_in_blocks = false;
 template <class Traits, Branching branching, StatelessSource Source>
 inline constexpr bool shades_in_blocks<ShadeSurface<Traits, branching, Source>> = true;
 
-/// Draws the numbers with which `count` paths leave the surfaces that they have met.
+/// Draws the numbers with which `count` paths leave the surfaces that they have hit.
 template <bool has_lights, class Source, class Slots>
 void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, std::uint32_t count,
                        DrawnBlock& scatter, DrawnBlock& light) {
@@ -30,7 +30,7 @@ void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, 
   for (std::uint32_t i = 0; i < count; ++i) {
     const PathState path = context.pool.load_path_id(slots[i]);
     const PathId id = context.samples.id_of(path.index);
-    const std::uint32_t rays = path.rays + 1u;  // with the one that has met the surface
+    const std::uint32_t rays = path.rays + 1u;  // with the one that has hit the surface
     names.pixel[i] = id.pixel, names.sample[i] = id.sample, names.block[i] = scatter_block(rays);
     if (together) continue;
     auto stream = context.source.open(id);

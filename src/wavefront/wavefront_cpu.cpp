@@ -21,9 +21,6 @@
 namespace pt {
 namespace {
 
-// Enough that what a wave costs by itself does not show, few enough for a thread's own cache.
-constexpr std::uint64_t auto_slots_per_thread = 1024;
-
 /// The paths of a batch, handed out in runs of neighbours.
 class PathRuns {
  public:

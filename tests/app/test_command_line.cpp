@@ -98,7 +98,6 @@ const std::map<std::string, std::string>& other_values() {
       {"counters", "on"},
       {"stats", "run.json"},
       {"csv", "runs.csv"},
-      {"display", "localhost:5000"},
       {"explain", "on"},
       {"quiet", "on"}};
   return values;
@@ -188,7 +187,6 @@ TEST(CommandLine, DefaultsAreTheDocumentedOnes) {
   }
   EXPECT_EQ(found, expected);
   EXPECT_EQ(parse_options("--checkpoint c.exr").checkpoint.interval_s, 300);
-  EXPECT_EQ(parse_options("--display tev").display.port, 14158);
 }
 
 // The samples of two renders may be added if they differ in no other option.

@@ -339,6 +339,7 @@ TEST(FilmHeaders, NameWhatDiffersAndWhere) {
                    build_info().version + ", has 1 and gives other bits");
   ImageMetadata former = a;
   former["ptexp.option.shade"] = "material";
+  former["ptexp.option.display"] = "localhost:14158";
   EXPECT_EQ(film_header(options_in_header(former, "f.exr"), "abc", "cpu"), a);
   former["ptexp.option.shades"] = "material";
   expect_error([&] { options_in_header(former, "f.exr"); },

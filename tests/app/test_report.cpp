@@ -9,7 +9,6 @@
 #include "app/report/csv_file.h"
 #include "app/report/film_header.h"
 #include "app/report/report.h"
-#include "app/report/run_summary.h"
 #include "common/platform/build_info.h"
 #include "common/platform/lane_counter.h"
 #include "temp_folder.h"

@@ -8,7 +8,6 @@
 #include "app/options/option_list.h"
 #include "app/report/film_header.h"
 #include "app/report/report.h"
-#include "app/report/run_summary.h"
 #include "common/platform/build_info.h"
 #include "common/scene/data/scene_facts.h"
 

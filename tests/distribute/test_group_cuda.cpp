@@ -1,7 +1,7 @@
 // Several renderers of CUDA make the image of one, also where they share a device.
 #include <fmt/format.h>
 
-#include "app/render/make_group.h"
+#include "app/render/rendering.h"
 #include "common/film/develop.h"
 #include "cuda_test.h"
 #include "film_cases.h"

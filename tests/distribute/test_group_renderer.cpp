@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/render/make_group.h"
+#include "app/render/rendering.h"
 #include "common/distribute/group_renderer.h"
 #include "common/film/develop.h"
 #include "film_cases.h"

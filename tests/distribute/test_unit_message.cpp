@@ -2,6 +2,7 @@
 #include <random>
 
 #include "common/distribute/unit_message.h"
+#include "film_cases.h"
 #include "gtest/gtest.h"
 
 namespace pt {

@@ -80,10 +80,13 @@ TEST(Ward, IsThePapersModel) {
 
 // A file may say more than a surface can do; the ratio of the lobes stays.
 TEST(TwoLobes, ReflectAtMostWhatTheyGet) {
-  const TwoLobes lobes = TwoLobes::make({0.5f, 1, 0}, {0.5f, 0.25f, 1});
+  TwoLobes lobes{{0.5f, 1, 0}, {0.5f, 0.25f, 1}};
+  TwoLobes::limit(lobes.diffuse, lobes.specular);
   EXPECT_EQ(lobes.diffuse, Color(0.4f, 0.8f, 0));
   EXPECT_EQ(lobes.specular, Color(0.4f, 0.2f, 0.8f));
-  EXPECT_EQ(TwoLobes::make(Color(0.25f), Color(0.5f)).specular, Color(0.5f));
+  lobes = {Color(0.25f), Color(0.5f)};
+  TwoLobes::limit(lobes.diffuse, lobes.specular);
+  EXPECT_EQ(lobes.specular, Color(0.5f));
 }
 
 }  // namespace

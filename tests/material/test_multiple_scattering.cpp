@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
-#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "material/bsdf_integral.h"
 #include "material/microsurface_walk.h"
 

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "common/error/error.h"
-#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/transport/resolve_material.h"
 #include "material/bsdf_cases.h"
 #include "render_serial.h"

@@ -2,7 +2,7 @@
 // what is refused.
 #include <gtest/gtest.h>
 
-#include "mode_cases.h"
+#include "film_cases.h"
 
 namespace pt {
 namespace {

@@ -9,7 +9,7 @@
 #include <ctime>
 
 #include "common/error/error.h"
-#include "common/mpi/serve_units.h"
+#include "common/mpi/ranks.h"
 #include "fake_worker.h"
 #include "thread_channels.h"
 

@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include "common/error/error.h"
-#include "common/mpi/serve_units.h"
+#include "common/mpi/ranks.h"
 #include "fake_worker.h"
+#include "film_cases.h"
 #include "gtest/gtest.h"
 #include "thread_channels.h"
 

@@ -7,7 +7,7 @@
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
-#include "common/scene/prepare/prepare_materials.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

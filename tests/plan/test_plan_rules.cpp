@@ -7,8 +7,8 @@
 #include "common/options/option_names.h"
 #include "common/plan/plan_rules.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
 namespace {

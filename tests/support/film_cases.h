@@ -6,6 +6,13 @@
 
 namespace pt {
 
+/// Every pixel of an image, without samples.
+inline Film blank_film(int width, int height) {
+  Film film;
+  film.window = {0, 0, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+  return film;
+}
+
 /// Divides an image of `width` x `height` pixels; the parts are neither sorted nor alike.
 inline std::vector<std::vector<Window>> divisions(std::uint32_t width, std::uint32_t height) {
   std::vector<Window> columns, rows;

@@ -8,7 +8,9 @@ namespace pt {
 
 inline ExecutionPlan plan_for(const Options& options, const SceneData& scene,
                               const DeviceInfo& device) {
-  return plan_render(options, scene, {device}).front();
+  DeviceChoice choice = device.choice;
+  if (options.mode == Mode::serial) choice = {DeviceChoice::Kind::cpu, 0};
+  return plan_render(options, scene, choose_devices(choice, options.threads)).front();
 }
 
 inline void prepare_scene_for(SceneData& scene, const Options& options, const DeviceInfo& device) {

@@ -18,8 +18,8 @@
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
 #include "common/scene/builtin/builtin_scenes.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "make_render.h"
 #include "statistics.h"
 

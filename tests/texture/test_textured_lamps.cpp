@@ -1,8 +1,8 @@
 // Lamps whose emission comes from a texture: how often they are asked, and that it changes nothing.
 #include <cstring>
 
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "render_serial.h"
 #include "scene/lamp_rooms.h"
 #include "statistics.h"

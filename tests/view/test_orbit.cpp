@@ -4,7 +4,7 @@
 #include <cstring>
 #include <glm/gtc/quaternion.hpp>
 
-#include "view/orbit.h"
+#include "view/change_settings.h"
 
 namespace {
 

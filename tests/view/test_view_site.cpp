@@ -4,8 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "view/change_settings.h"
 #include "view/live_render.h"
-#include "view/orbit.h"
 #include "view/view_site.h"
 
 namespace pt {

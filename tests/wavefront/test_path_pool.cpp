@@ -66,7 +66,9 @@ void store(const PathPool& pool, const Fields& fields, std::uint32_t slot) {
   pool.store_hit(slot, {static_cast<float>(slot) / 2, slot + 100, slot + 200});
   if (fields.lights) {
     const Ray ray{vector_of(slot, 4), vector_of(slot, 5)};
-    pool.store_shadow(slot, {ray, static_cast<float>(slot) + 0.5f, vector_of(slot, 6)}, path);
+    const ShadowRay shadow{ray, static_cast<float>(slot) + 0.5f, vector_of(slot, 6)};
+    pool.store_shadow_ray(slot, shadow, path);
+    pool.store_shadow_radiance(slot, shadow.radiance, path);
   }
   if (fields.tags) pool.tag[slot] = static_cast<StageId>(slot % 5);
   if (fields.tags && fields.lights) pool.shadow_tag[slot] = static_cast<StageId>(slot % 3);

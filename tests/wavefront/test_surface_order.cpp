@@ -6,8 +6,8 @@
 #include <span>
 
 #include "common/scene/data/scene_data.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_scene.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "scene/material_room.h"
 #include "statistics.h"
 #include "wavefront/surface_order.h"

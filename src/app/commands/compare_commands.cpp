@@ -108,7 +108,7 @@ int verify_command(const VerifyCommand& command) {
     throw Error(fmt::format("{}: has {}x{} pixels, its options say {}x{}", file, image.width,
                             image.height, whole.width, whole.height));
   }
-  const DeviceInfo device = choose_device(options.device);
+  const DeviceInfo device = choose_devices(options.device, options.threads).front();
   SceneData scene = load_scene(options, device);
   resolve_scene(scene, options);
   const ExecutionPlan plan = plan_render(options, scene, {device}).front();

@@ -15,7 +15,7 @@
 #include "common/error/error.h"
 #include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
-#include "common/mpi/serve_units.h"
+#include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
 #include "common/platform/steady_seconds.h"

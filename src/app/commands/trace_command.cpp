@@ -5,7 +5,7 @@
 #include "app/options/option_values.h"
 #include "app/render/render_outputs.h"
 #include "app/report/csv_file.h"
-#include "app/report/run_summary.h"
+#include "app/report/report.h"
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/device/devices.h"
 #include "common/error/error.h"

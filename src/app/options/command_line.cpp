@@ -98,9 +98,9 @@ ViewCommand parse_view(const Parser& parser) {
   command.settings = {{&find_option("scene"), scene}, {&find_option("output"), "page.png"}};
   for (const Setting& setting : given_settings(parser)) {
     const OptionEntry& entry = *setting.entry;
-    constexpr std::array refused = {"scene",      "output",     "aov",          "stats",  "csv",
-                                    "repeat",     "warmup",     "counters",     "part",   "explain",
-                                    "checkpoint", "time-limit", "target-error", "display"};
+    constexpr std::array refused = {"scene",      "output",     "aov",         "stats", "csv",
+                                    "repeat",     "warmup",     "counters",    "part",  "explain",
+                                    "checkpoint", "time-limit", "target-error"};
     if (std::ranges::find(refused, entry.name) != refused.end())
       throw Error(fmt::format("--{}: has no effect together with view", entry.name));
     if (entry.name == "quiet") command.is_quiet = true;

@@ -315,9 +315,9 @@ void add_execution(std::vector<OptionEntry>& list) {
       .expert()
       .only(wavefront, any_device)
       .add(integer("wave-collisions", &Options::wave_collisions, 0, 65535),
-           "wavefront, in media with grids: a path that has collided with\n"
-           "nothing so often waits for the next wave; 0: it loops until its\n"
-           "flight ends")
+           "wavefront, in media with grids: suspends delta tracking after N\n"
+           "null collisions until the next wave; 0: a flight is never\n"
+           "suspended")
       .expert()
       .only(wavefront, any_device)
       .add(integer("wave-rays", &Options::wave_rays, 1, 65535),
@@ -401,10 +401,6 @@ void add_measurement(std::vector<OptionEntry>& list) {
       .add(text("csv", "FILE", &Options::csv_file),
            "Appends the same as one row, below a header if the file is\n"
            "new; a file with other columns is refused")
-      .add(value("display", OptionForm::text, "HOST[:PORT]", &Options::display, parse_display,
-                 display_text),
-           "Shows the render at work in the viewer tev, which listens\n"
-           "there, by default at port 14158")
       .add(flag("explain", &Options::explain),
            "Prints how the render would be executed, and why, instead\nof rendering")
       .add(flag("quiet", &Options::quiet),

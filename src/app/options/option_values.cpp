@@ -163,34 +163,6 @@ CheckpointChoice parse_checkpoint(const std::string& name, const std::string& te
   return choice;
 }
 
-DisplayAddress parse_display(const std::string& name, const std::string& text) {
-  constexpr std::uint16_t port_of_tev = 14158;
-  DisplayAddress address{text, port_of_tev};
-  const std::size_t colon = text.rfind(':'), bracket = text.rfind(']');
-  const bool has_port =
-      colon != std::string::npos && (bracket == std::string::npos || colon > bracket);
-  if (has_port) {
-    address.host = text.substr(0, colon);
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + colon + 1, end, address.port);
-    if (error != std::errc() || stop != end || address.port == 0)
-      refuse_value(name, text, "expected HOST:PORT with a port from 1 to 65535");
-  }
-  if (address.host.starts_with('[') && address.host.ends_with(']'))
-    address.host = address.host.substr(1, address.host.size() - 2);
-  else if (address.host.find(':') != std::string::npos)
-    refuse_value(name, text, "expected HOST:PORT, an IPv6 address in brackets: [::1]:14158");
-  if (address.host.empty()) address.host = "localhost";
-  return address;
-}
-
-std::string display_text(const DisplayAddress& address) {
-  if (address.host.empty()) return "";
-  const bool is_ipv6 = address.host.find(':') != std::string::npos;
-  return is_ipv6 ? fmt::format("[{}]:{}", address.host, address.port)
-                 : fmt::format("{}:{}", address.host, address.port);
-}
-
 std::string checkpoint_text(const CheckpointChoice& checkpoint) {
   if (checkpoint.file.empty()) return "";
   return fmt::format("{},{}", checkpoint.file, checkpoint.interval_s);

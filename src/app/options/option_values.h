@@ -34,9 +34,6 @@ DeviceChoice parse_devices(const std::string& name, const std::string& text);
 /// "FILE" or "FILE,SECONDS".
 CheckpointChoice parse_checkpoint(const std::string& name, const std::string& text);
 std::string checkpoint_text(const CheckpointChoice& checkpoint);
-/// "HOST", "HOST:PORT" or ":PORT"; an IPv6 address in brackets: "[::1]:14158".
-DisplayAddress parse_display(const std::string& name, const std::string& text);
-std::string display_text(const DisplayAddress& address);
 /// "I/N" with 1 <= I <= N.
 PartChoice parse_part(const std::string& name, const std::string& text);
 std::string part_text(const PartChoice& part);  ///< empty for the whole image

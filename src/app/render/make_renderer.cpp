@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "app/terminal/warning_limit.h"
-#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 #include "common/render/film_renderer.h"
 #include "common/render/memory_share.h"
@@ -31,14 +30,6 @@ bool is_scene_file(const std::string& scene) {
   const bool built_in = std::any_of(list.begin(), list.end(),
                                     [&](const SceneInfo& info) { return info.name == name; });
   return !built_in && scene.find_first_of("./") != std::string::npos;
-}
-
-/// What renders for `device`: in serial mode a thread of the host.
-DeviceProperties properties_for(const Options& options, const DeviceInfo& device, bool is_one) {
-  const bool is_on_gpu =
-      device.choice.kind == DeviceChoice::Kind::cuda && options.mode != Mode::serial;
-  if (is_on_gpu || !is_one) return device.properties;
-  return cpu_properties(cpu_threads(options.threads));
 }
 
 }  // namespace
@@ -78,12 +69,11 @@ std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& 
                                        const std::vector<DeviceInfo>& devices) {
   check_film(options, scene.properties, scene.filter);
   SceneProperties properties = scene.properties;
-  std::vector<DeviceProperties> machines;
-  for (const DeviceInfo& device : devices)
-    machines.push_back(properties_for(options, device, devices.size() == 1));
-  const bool has_cpu = !std::ranges::all_of(machines, &DeviceProperties::is_cuda);
+  const bool has_cpu =
+      !std::ranges::all_of(devices, [](const DeviceInfo& d) { return d.properties.is_cuda; });
   std::vector<ExecutionPlan> plans;
-  for (DeviceProperties& machine : machines) {
+  for (const DeviceInfo& device : devices) {
+    DeviceProperties machine = device.properties;
     machine.needs_host_tree = has_cpu;
     machine.host_threads = cpu_threads(options.threads);
     plans.push_back(plan_execution(options, properties, machine));

@@ -4,10 +4,10 @@
 #include <array>
 
 #include "app/options/check_options.h"
-#include "app/render/make_group.h"
 #include "app/render/make_renderer.h"
 #include "app/render/rank_setup.h"
 #include "app/render/render_outputs.h"
+#include "app/render/rendering.h"
 #include "app/report/film_header.h"
 #include "common/error/error.h"
 #include "common/platform/steady_seconds.h"

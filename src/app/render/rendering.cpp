@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
+#include <cstdlib>
 
-#include "app/display/display.h"
 #include "app/render/make_renderer.h"
 #include "app/report/film_header.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 #include "common/error/host_memory.h"
-#include "common/mpi/serve_units.h"
+#include "common/mpi/ranks.h"
 #include "common/options/option_names.h"
 #include "common/platform/steady_seconds.h"
 
@@ -27,8 +28,7 @@ std::string label(const Options& options, int index) {
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& own) {
   const auto& stop = own.stop;
-  const RenderHooks hooks{
-      own.progress, stop, {options.time_limit, options.target_error, {}}, stop, own.watch};
+  const RenderHooks hooks{own.progress, stop, {options.time_limit, options.target_error, {}}, stop};
   Measurement measurement;
   RenderRun last;
   for (int i = 0; i < options.warmup + options.repeat; ++i) {
@@ -59,7 +59,7 @@ std::vector<std::string> names_of(const std::vector<std::unique_ptr<Worker>>& wo
 Rendering::Rendering(const Options& options, const std::vector<ExecutionPlan>& plans,
                      const SceneData& scene, const std::vector<DeviceInfo>& devices,
                      const Surroundings& surroundings)
-    : options_(options), warn_(surroundings.warn) {
+    : options_(options) {
   const Ranks* const ranks = surroundings.ranks;
   const bool has_ranks = ranks != nullptr && ranks->count() > 1;
   if (needs_group(options, devices) || has_ranks) {
@@ -104,9 +104,7 @@ void Rendering::make_group(const std::vector<ExecutionPlan>& plans, const SceneD
 
 Measurement Rendering::measure(const MeasureHooks& hooks) {
   try {
-    Measurement measurement = options_.display.host.empty()
-                                  ? pt::measure(renderer(), options_, hooks)
-                                  : measure_shown(hooks);
+    Measurement measurement = pt::measure(renderer(), options_, hooks);
     keep();
     return measurement;
   } catch (const std::exception& error) {
@@ -117,17 +115,6 @@ Measurement Rendering::measure(const MeasureHooks& hooks) {
                      ? fmt::format("ptexp resume {} goes on", options_.checkpoint.file)
                      : checkpoint_problem_));
   }
-}
-
-Measurement Rendering::measure_shown(const MeasureHooks& hooks) {
-  Display display(options_.display, std::filesystem::path(options_.output).filename().string(),
-                  warn_);
-  MeasureHooks shown = hooks;
-  shown.watch = [&](const std::function<Image()>& image) { display.watch(image); };
-  Measurement measurement = pt::measure(renderer(), options_, shown);
-  if (!measurement.runs.empty() && measurement.runs.back().samples_done > 0)
-    display.finish([this] { return renderer().image(); });
-  return measurement;
 }
 
 void Rendering::keep() {
@@ -142,6 +129,70 @@ void Rendering::keep() {
 void Rendering::save(const ImageFilm& film) const {
   write_checkpoint(options_.checkpoint.file, {film, header_}, filter_,
                    {0, 0, options_.width, options_.height});
+}
+
+namespace {
+
+// A wavefront's pool and a GPU's threads are full for some milliseconds (results/).
+constexpr std::uint64_t least_paths_cuda = std::uint64_t{1} << 22;
+constexpr std::uint64_t least_paths_per_thread = std::uint64_t{1} << 12;
+
+std::uint64_t least_paths(const DeviceInfo& device) {
+  if (device.choice.kind == DeviceChoice::Kind::cuda) return least_paths_cuda;
+  return least_paths_per_thread * static_cast<std::uint64_t>(device.properties.threads);
+}
+
+std::string name_of(const DeviceInfo& device) {
+  const std::string kind = to_string(device.choice.kind);
+  return fmt::format("{}:{}", kind, device.choice.index);
+}
+
+}  // namespace
+
+bool needs_group(const Options& options, const std::vector<DeviceInfo>& devices) {
+  const bool is_divided = std::getenv(units_variable) != nullptr;
+  return devices.size() > 1 || !options.checkpoint.file.empty() || options.part.count > 1 ||
+         is_divided;
+}
+
+std::vector<std::unique_ptr<Worker>> make_workers(const std::vector<ExecutionPlan>& plans,
+                                                  const SceneData& scene,
+                                                  const std::vector<DeviceInfo>& devices,
+                                                  ResultBell& bell) {
+  std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<LocalWorker*> locals;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const DeviceInfo& device = devices[i];
+    const auto make = [plan = plans[i], &scene, device](int halvings) {
+      ExecutionPlan own = plan;
+      own.memory_halvings = halvings;
+      return make_renderer(own, scene, device);
+    };
+    auto worker = std::make_unique<LocalWorker>(name_of(device), least_paths(device), make, bell);
+    locals.push_back(worker.get());
+    workers.push_back(std::move(worker));
+  }
+  for (LocalWorker* worker : locals) worker->wait_until_ready();
+  return workers;
+}
+
+std::vector<Window> part_windows(const Options& options) {
+  const Window image = window_of(options);
+  const PartChoice& part = options.part;
+  if (part.count == 1) return {image};
+  const auto count = static_cast<std::uint32_t>(part.count);
+  if (count > image.height) {
+    throw Error(fmt::format("--part {}/{}: the image has {} rows; expected at most as many parts",
+                            part.index, part.count, image.height));
+  }
+  constexpr std::uint32_t stripes_per_part = 8;
+  const std::uint32_t rows = std::max(1u, image.height / (stripes_per_part * count));
+  std::vector<Window> windows;
+  for (std::uint32_t y = 0, stripe = 0; y < image.height; y += rows, ++stripe) {
+    if (stripe % count + 1 != static_cast<std::uint32_t>(part.index)) continue;
+    windows.push_back({image.x, image.y + y, image.width, std::min(rows, image.height - y)});
+  }
+  return windows;
 }
 
 }  // namespace pt

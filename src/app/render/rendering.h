@@ -8,12 +8,29 @@
 #include <vector>
 
 #include "app/render/checkpoint_keeper.h"
-#include "app/render/make_group.h"
+#include "common/device/devices.h"
+#include "common/distribute/group_renderer.h"
 #include "common/film/checkpoint.h"
 #include "common/mpi/ranks.h"
+#include "common/plan/execution_plan.h"
 #include "common/render/renderer.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
+
+/// Whether the options ask for what one device's renderer alone cannot do.
+bool needs_group(const Options& options, const std::vector<DeviceInfo>& devices);
+
+/// A worker for each device and its plan, set up at the same time. `scene` must live as long and is
+/// prepared. Throws what a device's renderer throws.
+std::vector<std::unique_ptr<Worker>> make_workers(const std::vector<ExecutionPlan>& plans,
+                                                  const SceneData& scene,
+                                                  const std::vector<DeviceInfo>& devices,
+                                                  ResultBell& bell);
+
+/// The pixels of the options' part of the image: rows, every so many of them, so that parts take
+/// about the same time. Throws Error where the image has too few rows.
+std::vector<Window> part_windows(const Options& options);
 
 struct Measurement {
   /// The measured repeats; if a render was cut short, only that one, which the renderer's image and
@@ -29,7 +46,6 @@ struct MeasureHooks {
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  ///< as RenderHooks
   /// Asked between batches and between renders, and while a batch is traced, by any thread.
   std::function<bool()> stop;
-  std::function<void(const std::function<Image()>& image)> watch{};  ///< as RenderHooks
 };
 
 Measurement measure(Renderer& renderer, const Options& options, const MeasureHooks& hooks);
@@ -66,13 +82,10 @@ class Rendering {
  private:
   void make_group(const std::vector<ExecutionPlan>& plans, const SceneData& scene,
                   const std::vector<DeviceInfo>& devices, const Surroundings& surroundings);
-  /// In a viewer, too.
-  Measurement measure_shown(const MeasureHooks& hooks);
   void save(const ImageFilm& film) const;
   void keep();
 
   const Options options_;
-  const std::function<void(const std::string&)> warn_;
   PixelFilter filter_{};
   ImageMetadata header_;
   std::unique_ptr<Renderer> single_;

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "app/options/option_values.h"
-#include "app/report/run_summary.h"
+#include "app/report/report.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
@@ -28,7 +28,7 @@ std::string value_in(const ImageMetadata& header, const std::string& key) {
 std::string shown(const std::string& value) { return value.empty() ? "none" : value; }
 
 /// Options of earlier programs that never changed an image.
-constexpr std::string_view former_options[] = {"ptexp.option.shade"};
+constexpr std::string_view former_options[] = {"ptexp.option.display", "ptexp.option.shade"};
 
 }  // namespace
 

@@ -5,7 +5,6 @@
 #include "app/options/option_list.h"
 #include "app/report/csv_file.h"
 #include "app/report/report.h"
-#include "app/report/run_summary.h"
 #include "common/options/option_names.h"
 
 namespace pt {

@@ -2,7 +2,6 @@
 
 #include "app/options/option_list.h"
 #include "app/report/report.h"
-#include "app/report/run_summary.h"
 #include "common/options/option_names.h"
 #include "common/platform/build_info.h"
 

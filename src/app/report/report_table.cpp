@@ -5,7 +5,6 @@
 
 #include "app/options/option_values.h"
 #include "app/report/report.h"
-#include "app/report/run_summary.h"
 #include "common/options/option_names.h"
 #include "common/render/lane_histograms.h"
 

@@ -1,6 +1,6 @@
-#include "app/report/run_summary.h"
-
 #include <algorithm>
+
+#include "app/report/report.h"
 
 namespace pt {
 namespace {

@@ -9,7 +9,7 @@
 //
 //   start   slots whose path has ended get a new one and its camera ray
 //   trace   lanes take rays and shadow rays of the block, another one whenever theirs ends
-//   sort    the paths whose rays have ended, by the kind of the BSDF that they met
+//   sort    the paths whose rays have ended, by the kind of the BSDF that they hit
 //   shade   in this order: threads side by side execute the same code, and so do all warps at about
 //           the same time, which share what is in the instruction cache
 //

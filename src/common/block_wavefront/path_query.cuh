@@ -13,7 +13,7 @@ class PathQuery : public ClosestTriangle {
 
   __device__ bool is_shadow() const { return is_shadow_; }
 
-  /// The same once it has met nothing nearer than `t`, which is `primitive` or, without one, the
+  /// The same once it has hit nothing nearer than `t`, which is `primitive` or, without one, the
   /// end. For trees without instances.
   __device__ PathQuery resumed(const TriangleTree& tree, float t, std::uint32_t primitive) const {
     const bool has_hit = primitive != no_primitive;

@@ -20,7 +20,7 @@ struct alignas(128) PathSlot {
   PathRecord radiance;          ///< so far; the receiver
   PathRecord shadow_origin;     ///< of the shadow ray; distance
   PathRecord shadow_direction;  ///< of the shadow ray
-  PathRecord shadow_radiance;   ///< contribution if the ray is not occluded; what is around its ray
+  PathRecord shadow_radiance;   ///< contribution if the ray is not occluded; its medium
   StoredHit hit;                ///< of the ray
 
   /// All but its radiance.

@@ -15,14 +15,17 @@ struct Devices {
   std::string about_gpus;  ///< why there are no more
 };
 
+void set_threads(DeviceInfo& cpu, int threads) {
+  cpu.detail = fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
+  cpu.properties = cpu_properties(threads);
+}
+
 Devices find_devices() {
-  const int threads = cpu_threads(0);
   Devices devices;
   DeviceInfo cpu;
   cpu.choice.kind = DeviceChoice::Kind::cpu;
   cpu.name = "CPU";
-  cpu.detail = fmt::format("{} thread{}", threads, threads == 1 ? "" : "s");
-  cpu.properties = cpu_properties(threads);
+  set_threads(cpu, cpu_threads(0));
   devices.list.push_back(cpu);
 #ifdef PTEXP_CUDA
   // Which GPUs a process sees never changes, and asking takes a millisecond for each.
@@ -55,13 +58,12 @@ std::vector<DeviceInfo> choose_devices(const DeviceChoice& choice, int threads) 
   }
   chosen.push_back(choose_device({choice.kind, choice.index}));
   for (const int index : choice.more) chosen.push_back(choose_device({choice.kind, index}));
-  if (choice.kind != Kind::cpu || choice.more.empty()) return chosen;
-  const int share = std::max(1, cpu_threads(threads) / choice.count());
-  for (int i = 0; i < choice.count(); ++i) {
-    DeviceInfo& device = chosen[static_cast<std::size_t>(i)];
-    device.choice.index = i;
-    device.detail = fmt::format("{} thread{}", share, share == 1 ? "" : "s");
-    device.properties = cpu_properties(share);
+  if (chosen.front().choice.kind != Kind::cpu) return chosen;
+  const int share = std::max(1, cpu_threads(threads) / static_cast<int>(chosen.size()));
+  int index = 0;
+  for (DeviceInfo& device : chosen) {
+    device.choice.index = index++;
+    set_threads(device, share);
   }
   return chosen;
 }

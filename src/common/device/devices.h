@@ -25,7 +25,7 @@ std::vector<DeviceInfo> list_devices();
 /// saying why (no GPU found, built without CUDA, ordinal out of range).
 DeviceInfo choose_device(const DeviceChoice& choice);
 
-/// The same of a choice that may name several; of the CPU each has its share of `threads` (0: all).
+/// The same for a choice that may name several. Those of the CPU share `threads` (0: all).
 std::vector<DeviceInfo> choose_devices(const DeviceChoice& choice, int threads);
 
 /// Appends the usable CUDA devices; returns what to tell a user who misses one. Only in a build

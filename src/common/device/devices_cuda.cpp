@@ -1,7 +1,6 @@
 #include <cuda_runtime_api.h>
 #include <fmt/format.h>
 
-#include "common/device/cuda/cuda_launcher.cuh"
 #include "common/device/devices.h"
 
 namespace pt {
@@ -22,7 +21,10 @@ std::string append_cuda_devices(std::vector<DeviceInfo>& devices) {
     device.detail = fmt::format(
         "{} multiprocessors, {:.1f} GiB, compute capability {}.{}", p.multiProcessorCount,
         static_cast<double>(p.totalGlobalMem) / (1 << 30), p.major, p.minor);
-    device.properties = plan_properties(p);
+    device.properties.is_cuda = true;
+    device.properties.block_shared_bytes = p.sharedMemPerBlockOptin;
+    device.properties.block_threads_max = p.maxThreadsPerBlock;
+    device.properties.multiprocessors = p.multiProcessorCount;
     devices.push_back(device);
   }
   return fmt::format("this machine has {}", count);

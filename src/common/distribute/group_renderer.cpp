@@ -117,9 +117,9 @@ RenderRun GroupRenderer::add_samples(std::uint32_t end, const RenderHooks& hooks
     const BatchRun batches = for_each_batch(
         static_cast<int>(end - begin), static_cast<int>(end - begin), pixels, hooks,
         [&](int first, int count) {
-          RenderHooks watched;
-          watched.stop = hooks.stop, watched.watch = hooks.watch;
-          return complete(begin + static_cast<std::uint32_t>(first + count), watched, run);
+          RenderHooks stoppable;
+          stoppable.stop = hooks.stop;
+          return complete(begin + static_cast<std::uint32_t>(first + count), stoppable, run);
         },
         [&] { return estimate_error(); }, &pace);
     run.ended_by = batches.ended_by;
@@ -160,7 +160,6 @@ bool GroupRenderer::complete(std::uint32_t end, const RenderHooks& hooks, Render
     if (is_idle && (is_interrupted || queue.is_done())) break;
     if (is_idle) throw Error("no device is left that could go on");
     if (collect(queue, run)) {
-      if (hooks.watch) hooks.watch([this] { return image(); });
       active = std::chrono::steady_clock::now();
     } else if (bell_) {
       bell_->wait(bell_s);

@@ -83,12 +83,6 @@ bool Film::is_complete() const {
   return pixel_count == window.pixel_count();
 }
 
-Film blank_film(int width, int height) {
-  Film film;
-  film.window = {0, 0, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
-  return film;
-}
-
 void merge(Film& film, const Film& part) {
   if (part.is_empty()) return;
   check_merge(film, part);

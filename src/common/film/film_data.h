@@ -40,9 +40,6 @@ struct Film : FilmSums {
   bool is_complete() const;
 };
 
-/// Every pixel of an image, without samples.
-Film blank_film(int width, int height);
-
 /// Copies the pixels of `part` to their position in `film`, which has no samples of them, and adds
 /// the counts. Throws Error unless they lie in its window and both have the same samples (an empty
 /// film takes any).

@@ -23,7 +23,7 @@ struct Primitives {
   std::uint32_t quad_count = 0;
   // The spheres once more, for the pass that tests them all: relative to `scan_center`, widened by
   // more than that test's rounding error, filled up to a multiple of four with ones that no ray
-  // meets.
+  // hits.
   const Sphere* scan = nullptr;
   std::uint32_t scan_count = 0;
   Vec3 scan_center = Vec3(0.0f);

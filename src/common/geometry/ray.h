@@ -36,7 +36,7 @@ struct SurfacePoint {
   float error_bound;  ///< how far `position` and the surface may be apart through rounding
 };
 
-/// Where a ray from `point` towards `direction` begins, so that it cannot meet the surface it
+/// Where a ray from `point` towards `direction` begins, so that it cannot hit the surface it
 /// leaves: beyond the rounding error, on the side to which it goes (pbrt-v4, section 6.8.6).
 PT_HD Vec3 spawn_origin(const SurfacePoint& point, const Vec3& direction) {
   const float side = dot(direction, point.normal) < 0.0f ? -1.0f : 1.0f;

@@ -26,7 +26,7 @@ PT_HD float sphere_distance(const Sphere& sphere, const Ray& ray) {
   const float discriminant = sphere.radius_squared - off.x * off.x - off.y * off.y - off.z * off.z;
   const float half_chord = fast_sqrt(discriminant);
   const float near = b - half_chord;
-  // Without a branch: where a warp tests candidates one of its rays meets a sphere mostly.
+  // Without a branch: where a warp tests candidates one of its rays mostly hits a sphere.
   return select(discriminant<0.0f, -1.0f, near> 0.0f ? near : b + half_chord);
 }
 

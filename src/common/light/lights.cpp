@@ -17,13 +17,6 @@ std::optional<LightBounds> bounds_of(const Light& light) {
   });
 }
 
-Color delta_light_power(const DeltaLight& light, float scene_radius) {
-  return visit_light(Lights{}, light.kind, [&]<class Type>(std::type_identity<Type>) {
-    if constexpr (requires { Type::make(light); }) return Type::make(light).power(scene_radius);
-    return Color(0.0f);
-  });
-}
-
 Light make_light(const DeltaLight& light, float scene_radius) {
   return visit_light(Lights{}, light.kind, [&]<class Type>(std::type_identity<Type>) {
     if constexpr (requires { Type::make(light); }) {

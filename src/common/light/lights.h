@@ -50,7 +50,6 @@ bool has_position(LightKind kind);
 /// None for a light without position and for one that emits nothing.
 std::optional<LightBounds> bounds_of(const Light& light);
 
-Color delta_light_power(const DeltaLight& light, float scene_radius);
 Light make_light(const DeltaLight& delta, float scene_radius);
 
 }  // namespace pt

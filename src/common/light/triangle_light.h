@@ -94,7 +94,7 @@ struct TriangleSampler {
     return cosine_times_area > 0.0f ? divide(distance * distance, cosine_times_area) : 0.0f;
   }
 
-  /// Where a ray along `wi` meets its plane, within the triangle but for rounding.
+  /// Where a ray along `wi` intersects its plane, within the triangle but for rounding.
   PT_HD TrianglePoint point_along(const Vec3& wi) const {
     const Vec3 p = add_scaled(-v0, divide(dot(v0, normal), dot(wi, normal)), wi);
     const float scale = divide(1.0f, dot(normal, normal));

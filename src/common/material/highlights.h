@@ -12,9 +12,9 @@ struct TwoLobes {
   Color diffuse, specular;
 
   /// Scales both where their sum is above 1, so that they conserve energy.
-  PT_HD static TwoLobes make(const Color& diffuse, const Color& specular) {
+  PT_HD static void limit(Color& diffuse, Color& specular) {
     const float scale = divide(1.0f, fmaxf(max_abs(diffuse + specular), 1.0f));
-    return {diffuse * scale, specular * scale};
+    diffuse = diffuse * scale, specular = specular * scale;
   }
 
   /// The probability of sampling the glossy one.
@@ -56,10 +56,7 @@ struct Phong {
 
   template <int i>
   PT_HD void limit() {
-    if constexpr (i == index_of(&Phong::specular)) {
-      const TwoLobes limited = TwoLobes::make(diffuse, specular);
-      diffuse = limited.diffuse, specular = limited.specular;
-    }
+    if constexpr (i == index_of(&Phong::specular)) TwoLobes::limit(diffuse, specular);
     if constexpr (i == index_of(&Phong::exponent)) exponent = fmaxf(exponent, 0.0f);
   }
   PT_HD TwoLobes two() const { return {diffuse, specular}; }
@@ -112,10 +109,7 @@ struct Ward {
 
   template <int i>
   PT_HD void limit() {
-    if constexpr (i == index_of(&Ward::specular)) {
-      const TwoLobes limited = TwoLobes::make(diffuse, specular);
-      diffuse = limited.diffuse, specular = limited.specular;
-    }
+    if constexpr (i == index_of(&Ward::specular)) TwoLobes::limit(diffuse, specular);
     if constexpr (i == index_of(&Ward::alpha_x)) alpha_x = fmaxf(alpha_x, alpha_min);
     if constexpr (i == index_of(&Ward::alpha_y)) alpha_y = fmaxf(alpha_y, alpha_min);
   }

@@ -1,5 +1,5 @@
 // The energy that single scattering by microfacets of reflectance 1 loses: 1 - E, where E is the
-// directional albedo of microfacet.h's facets. Single scattering ignores light that meets a second
+// directional albedo of microfacet.h's facets. Single scattering ignores light that hits a second
 // facet. E has no closed form: this is a fit for all roughnesses, within 0.0005 for GGX and 0.001
 // for Beckmann.
 #pragma once

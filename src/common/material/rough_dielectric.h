@@ -78,7 +78,7 @@ struct RoughDielectric {
     Vec3 m = normalize(add_scaled(o, reflects ? 1.0f : relative_eta, i));
     if (m.z < 0.0f) m = -m;
     const float cos_o = dot(o, m), cos_i = dot(i, m);
-    // Else one of the directions meets the facet from behind.
+    // Else one of the directions is behind the facet.
     if (!(cos_o > 0.0f && (cos_i > 0.0f) == reflects)) return {};
     const float fresnel = fresnel_dielectric(fminf(cos_o, 1.0f), relative_eta);
     const float g1_i = facets.visible_over_cosine(i) * fabsf(i.z);

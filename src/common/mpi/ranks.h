@@ -6,6 +6,7 @@
 #include <deque>
 #include <utility>
 
+#include "common/distribute/worker.h"
 #include "common/mpi/channel.h"
 
 namespace pt {
@@ -68,5 +69,16 @@ class Ranks {
   std::optional<std::string> failure_;      ///< of the first rank that could not go on
   bool is_reported_ = false, is_closed_ = false;
 };
+
+// Devices of other ranks as workers of rank 0.
+
+/// On rank 0, after announce(): a worker for each device of each other rank, of
+/// Worker::least_paths() as said. `ranks` must outlive them; when they are destroyed the other
+/// ranks' serve_units() return.
+std::vector<std::unique_ptr<Worker>> remote_workers(Ranks& ranks, std::uint64_t least_paths = 1);
+
+/// On the other ranks: hands rank 0's units to `workers`, as many as devices were announced, and
+/// their results back, until rank 0 has no more.
+void serve_units(Ranks& ranks, const std::vector<std::unique_ptr<Worker>>& workers);
 
 }  // namespace pt

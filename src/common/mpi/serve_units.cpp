@@ -1,5 +1,3 @@
-#include "common/mpi/serve_units.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <map>
 
 #include "common/distribute/unit_message.h"
+#include "common/mpi/ranks.h"
 
 namespace pt {
 namespace {

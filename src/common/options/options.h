@@ -68,12 +68,6 @@ struct CheckpointChoice {
   float interval_s = 300.0f;
 };
 
-/// The address of a viewer that shows the render at work.
-struct DisplayAddress {
-  std::string host;  ///< empty: nowhere
-  std::uint16_t port = 0;
-};
-
 struct BlockSize {
   int x = 16;
   int y = 16;
@@ -195,7 +189,6 @@ struct Options : ImageSettings, ExecutionSettings {
   // Output
   std::string output = "image.exr";  ///< .exr, .png or .ppm
   ExposureChoice exposure;           ///< for PNG and PPM only
-  DisplayAddress display;
   CheckpointChoice checkpoint;
   PartChoice part;  ///< what is rendered; the rest is left to others
 

@@ -36,7 +36,7 @@ PT_HD RayRecord make_primary_ray(const Camera& camera, std::uint32_t pixel) {
   return {ray.origin, 0.0f, ray.direction, 1e30f};
 }
 
-/// A cosine-distributed ray from where `ray` met a surface, on the side from which it came, its
+/// A cosine-distributed ray from where `ray` hit a surface, on the side from which it came, its
 /// origin `offset` off the surface. The draw is numbered by (index, dimension).
 PT_HD RayRecord make_bounce_ray(const RayRecord& ray, float t, const Vec3& surface_normal,
                                 float offset, float t_max, std::uint32_t index,

@@ -13,7 +13,6 @@ namespace pt {
 namespace {
 
 constexpr std::uint64_t paths_end = std::uint64_t{1} << 31;  // a path's number has a bit to spare
-constexpr double watched_batch_s = 0.2;
 
 }  // namespace
 
@@ -51,8 +50,8 @@ int batch_samples(int spp, std::uint64_t pixels, std::uint64_t paths_max) {
   return static_cast<int>((wanted + batches - 1) / batches);
 }
 
-int BatchPace::next(int left, std::uint64_t pixels, double batch_s) const {
-  const double fitting = (paths_per_s_ > 0 ? batch_s * paths_per_s_ : double(first_paths_)) /
+int BatchPace::next(int left, std::uint64_t pixels) const {
+  const double fitting = (paths_per_s_ > 0 ? usual_s * paths_per_s_ : double(first_paths_)) /
                          static_cast<double>(pixels);
   if (left <= 1.5 * fitting) return left;
   return std::max(1, static_cast<int>(fitting));
@@ -62,18 +61,12 @@ BatchRun for_each_batch(int spp, int per_batch, std::uint64_t pixels, const Rend
                         const std::function<bool(int first_sample, int samples)>& run_batch,
                         const std::function<double()>& error, BatchPace* pace) {
   const std::uint64_t total = pixels * static_cast<std::uint64_t>(spp);
-  const bool is_watched = static_cast<bool>(hooks.watch);
-  const auto paced = [&](int left, bool is_first) {
-    if (pace == nullptr) return left;
-    if (is_watched && is_first) return 1;
-    return pace->next(left, pixels, is_watched ? watched_batch_s : BatchPace::usual_s);
-  };
   StopClock clock(hooks.stops);
   BatchRun run;
   while (run.samples < spp) {
     const int left = spp - run.samples;
-    const int samples =
-        std::min({per_batch, left, clock.next(run.samples), paced(left, run.samples == 0)});
+    const int paced = pace != nullptr ? pace->next(left, pixels) : left;
+    const int samples = std::min({per_batch, left, clock.next(run.samples), paced});
     const double begin_s = clock.elapsed_s();
     if (!run_batch(run.samples, samples)) {
       run.ended_by = RunEnd::interrupted;

@@ -30,7 +30,7 @@ class BatchPace {
   explicit BatchPace(std::uint64_t first_paths) : first_paths_(first_paths) {}
 
   /// Samples of the next batch, at least one; `left` of them if these take little longer.
-  int next(int left, std::uint64_t pixels, double batch_s = usual_s) const;
+  int next(int left, std::uint64_t pixels) const;
   void note(std::uint64_t paths, double seconds) {
     if (seconds > 0) paths_per_s_ = static_cast<double>(paths) / seconds;
   }

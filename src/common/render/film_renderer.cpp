@@ -125,7 +125,6 @@ RenderRun FilmRenderer::add_samples(int samples, const RenderHooks& hooks) {
         const SampleBuffer batch{samples_, window_, next_sample, static_cast<std::uint32_t>(count)};
         if (!render_batch(batch, run, hooks.cancel)) return false;
         pixel_samples_ += static_cast<std::uint64_t>(count);
-        if (hooks.watch) hooks.watch([this] { return image(); });
         return true;
       },
       [&] { return estimate_error(); }, &pace_);

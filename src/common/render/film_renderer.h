@@ -56,9 +56,7 @@ class FilmRenderer : public Renderer {
   const PathSupply& supply() const { return supply_; }
   void set_supply(const PathSupply& supply) { supply_ = supply; }
 
-  /// The samples that each pixel has after the last render.
-  std::uint64_t pixel_samples() const { return pixel_samples_; }
-  /// add() then begins with none.
+  /// add() then begins with no samples.
   void forget_film() { pixel_samples_ = 0; }
   /// What films there are: parts of the crop window, or of the whole image.
   const Window& image_window() const { return image_window_; }

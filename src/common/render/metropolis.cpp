@@ -307,7 +307,6 @@ RenderRun render_chains(ChainDevice& device, const ChainPlan& plan, const ImageS
     return true;
   };
   RenderHooks rest = hooks;
-  rest.watch = {};
   if (rest.stops.seconds > 0) {
     rest.stops.seconds = std::max(rest.stops.seconds - clock.elapsed_s(), least_seconds);
   }

@@ -33,10 +33,6 @@ struct RenderHooks {
   /// Polled while a batch is traced, by any thread; true, which must last, abandons it: the render
   /// ends with the samples that it had before. May be empty. CUDA finishes its batch.
   std::function<bool()> cancel{};
-  /// Called between batches whenever the image has more samples; `image()` is their mean, at the
-  /// cost of a copy from the device. May be empty; else batches are shorter, and the first one has
-  /// one sample per pixel. Markov chains have no image before they end.
-  std::function<void(const std::function<Image()>& image)> watch{};
 };
 
 class Renderer {

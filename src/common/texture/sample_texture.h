@@ -75,7 +75,7 @@ PT_HD TexelPair find_texels(float coordinate, std::uint32_t size, TextureWrap wr
   const float below = floorf(x);
   const int last = static_cast<int>(size) - 1;
   int first = static_cast<int>(below), second = first + 1;  // -1 .. last, 0 .. last + 1
-  const bool repeats = wrap == TextureWrap::repeat;         // a mirrored edge meets itself
+  const bool repeats = wrap == TextureWrap::repeat;         // a mirrored edge adjoins itself
   if (first < 0) first = repeats ? last : 0;
   if (second > last) second = repeats ? 0 : last;
   if (first > last) first = last;

@@ -85,7 +85,7 @@ PT_HD FirstHit first_hit(const Scene& scene, const Ray& ray, const Hit& hit, con
   return first;
 }
 
-/// What a camera ray meets behind boundaries of media without a BSDF.
+/// What a camera ray hits behind boundaries of media without a BSDF.
 struct ViewThroughMedia {
   Ray ray;                ///< from the last of them
   float distance = 0.0f;  ///< from the near plane to there

@@ -36,7 +36,7 @@ PT_HD bool any_primitive(const Scene& scene, const Ray& ray, float distance) {
   }
 }
 
-/// In a scene with masks: among what a camera ray may meet, if the ray is one.
+/// In a scene with masks: within the view, for a camera ray.
 PT_HD Hit closest_primitive_in_view(const Scene& scene, const Ray& ray, std::uint32_t ray_key) {
   const bool is_limited = is_limited_camera_ray(scene, ray_key);
   Hit hit;

@@ -43,7 +43,7 @@ PT_HD bool is_limited_camera_ray(const SceneOrMasks& scene, std::uint32_t ray_ke
   return scene.camera.is_limited && (ray_key & 1u) != 0;
 }
 
-/// How far along the path's next ray something may be met: of camera rays to the far plane.
+/// How far along the path's next ray a hit may lie: for camera rays up to the far plane.
 PT_HD float ray_length(const Scene& scene, const Vec3& direction, std::uint32_t ray_key) {
   if (!is_limited_camera_ray(scene, ray_key)) return infinite_distance;
   return scene.camera.distance_in_view(direction);
@@ -74,7 +74,7 @@ PT_HD float opacity_at(const SceneOrMasks& scene, const Opacity& opacity, const 
   return fused_multiply_add(opacity.scale, grey_of(c), opacity.offset);
 }
 
-/// Whether the ray passes a triangle that it meets at (b1, b2). `instance_index` gives the
+/// Whether the ray passes the triangle that it intersects at (b1, b2). `instance_index` gives the
 /// instance's InstanceRecord::index, 0 in scenes without instances.
 template <class SceneOrMasks, class InstanceIndex>
 PT_HD bool passes_mask(const SceneOrMasks& scene, std::uint32_t ray_key, const Triangle& triangle,

@@ -1,4 +1,4 @@
-// Step 3b: the ray met a surface, which may emit, reflect light from a light source, and send the
+// Step 3b: the ray hit a surface, which may emit, reflect light from a light source, and send the
 // path on (pbrt-v4, section 13.2.2: path tracing with multiple importance sampling).
 #pragma once
 
@@ -107,14 +107,14 @@ struct BoundaryCrossing {
   std::uint16_t medium_id;  ///< where it begins (Media)
 };
 
-/// The media on both sides of a surface that a ray in `medium_id` met.
+/// The media on both sides of a surface that a ray in `medium_id` hit.
 PT_HD MediumBoundary media_beside(const Scene& scene, const Surface& surface,
                                   std::uint16_t medium_id) {
   return surface.material.is(Material::boundary) ? scene.media.boundaries[surface.material_index]
                                                  : scene.media.same_on_both_sides(medium_id);
 }
 
-/// `medium_id`: what is around the ray's origin.
+/// `medium_id`: the medium at the ray's origin.
 PT_HD BoundaryCrossing cross_boundary(const Scene& scene, const Ray& ray, const Surface& surface,
                                       std::uint16_t medium_id) {
   const Ray next = spawn_ray(surface.point, ray.direction);

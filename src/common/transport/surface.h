@@ -174,7 +174,7 @@ PT_HD Surface triangle_surface(const Scene& scene, const Ray& ray, const Hit& hi
   return surface;
 }
 
-/// The material that a ray met.
+/// The material that a ray hit.
 PT_HD std::uint32_t material_index_at(const Scene& scene, const Hit& hit) {
   const std::uint32_t primitives = scene.primitives.count();
   return hit.primitive < primitives

@@ -38,7 +38,7 @@ PT_HD FlightEvent fly_homogeneous(const Scene& scene, const Color& extinction, c
   return fly_homogeneous(extinction, t_max, u_channel, u_distance, flight, densities, path.beta);
 }
 
-/// Before a flight begins: a camera ray is in what is around the camera.
+/// Before a flight begins: a camera ray starts in the medium around the camera.
 PT_HD void begin_flight(const Scene& scene, PathState& path) {
   if (path.rays > 0) return;
   path.medium = {};

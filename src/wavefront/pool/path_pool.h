@@ -211,11 +211,6 @@ struct PathPool {
     if (hit_instance != nullptr) *at(hit_instance, slot) = h.instance;
   }
 
-  PT_HD void store_shadow(std::uint32_t slot, const ShadowRay& shadow,
-                          const PathState& path) const {
-    store_shadow_ray(slot, shadow, path);
-    store_shadow_radiance(slot, shadow.radiance, path);
-  }
   PT_HD void store_shadow_ray(std::uint32_t slot, const ShadowRay& shadow,
                               const PathState& path) const {
     store_wide(half_at(shadow_origin, slot), pack_shadow_origin(shadow));

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "common/scene/data/plastic_material.h"
-#include "common/scene/edit/material_parameters.h"
 #include "common/scene/edit/scene_parameters.h"
 #include "load/mitsuba_scene.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "common/image/codecs/image_io.h"
-#include "common/scene/load/files/studio.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/load_scene.h"
 #include "load/gltf_files.h"
 

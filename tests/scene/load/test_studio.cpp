@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/load/files/studio.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "load/gltf_files.h"
@@ -17,7 +17,7 @@ SceneData ball(float albedo, const Vec3& side) {
   scene.add_sphere({0, 0, 0}, 1, scene.add_material(make_diffuse(Color(albedo))));
   scene.camera = frame_scene(scene);
   scene.camera.look_from = side;
-  add_studio(scene);
+  add_default_lighting(scene);
   return scene;
 }
 
@@ -98,7 +98,7 @@ TEST(Studio, LightsFilesThatBringNoLight) {
 TEST(Studio, SurvivesACameraWithoutDirection) {
   SceneData scene;
   scene.camera.look_at = scene.camera.look_from;
-  add_studio(scene);
+  add_default_lighting(scene);
   EXPECT_EQ(scene.environment.to_world.determinant(), 1.0f);
 }
 

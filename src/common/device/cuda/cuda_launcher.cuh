@@ -16,7 +16,6 @@
 #include "common/cuda/cuda_check.cuh"
 #include "common/device/cuda/counter_session_cuda.h"
 #include "common/device/cuda/stage_clock.h"
-#include "common/plan/render_properties.h"
 #include "common/render/renderer.h"
 
 namespace pt {
@@ -122,14 +121,5 @@ class CudaLauncher {
 
 /// Throws Error where there is no such device.
 cudaDeviceProp read_properties(int device);
-
-inline DeviceProperties plan_properties(const cudaDeviceProp& device) {
-  DeviceProperties result;
-  result.is_cuda = true;
-  result.block_shared_bytes = device.sharedMemPerBlockOptin;
-  result.block_threads_max = device.maxThreadsPerBlock;
-  result.multiprocessors = device.multiProcessorCount;
-  return result;
-}
 
 }  // namespace pt

@@ -9,6 +9,18 @@ namespace {
 constexpr double turn = 6.283185307179586, quarter_turn = turn / 4;
 constexpr double radians = turn / 360;
 
+// The files in data/sunsky say what the numbers are. Radiances are in Mitsuba's units.
+constexpr int sun_node_count = 129;
+constexpr float sky_shapes[10 * 2 * 6 * 3 * 9] = {
+#include <tables/sky_shapes.inc>
+};
+constexpr float sky_radiances[10 * 2 * 6 * 3] = {
+#include <tables/sky_radiances.inc>
+};
+constexpr float sun_irradiances[10 * sun_node_count * 3] = {
+#include <tables/sun_irradiances.inc>
+};
+
 /// A curve of Bezier over [0, 1] with six control points, `stride` apart.
 double quintic(const float* points, int stride, double x) {
   constexpr double binomial[] = {1, 5, 10, 10, 5, 1};
@@ -50,9 +62,9 @@ SkyModel::SkyModel(double turbidity, const Color& albedo, double elevation) {
     const double a = std::clamp(double{albedo[c]}, 0.0, 1.0);
     for (int i = 0; i < 9; ++i) {
       channel.shape[static_cast<std::size_t>(i)] =
-          tabulated(sunsky::sky_shapes, 27, 9 * c + i, turbidity, a, x);
+          tabulated(sky_shapes, 27, 9 * c + i, turbidity, a, x);
     }
-    channel.radiance = tabulated(sunsky::sky_radiances, 3, c, turbidity, a, x);
+    channel.radiance = tabulated(sky_radiances, 3, c, turbidity, a, x);
   }
 }
 
@@ -73,15 +85,14 @@ Color SkyModel::radiance(double cos_zenith, double sun_angle) const {
 
 Color sun_irradiance(double turbidity, double elevation) {
   if (elevation < 0) return Color(0.0f);
-  const double x =
-      std::cbrt(std::min(elevation / quarter_turn, 1.0)) * (sunsky::sun_node_count - 1);
-  const int node = std::min(static_cast<int>(x), sunsky::sun_node_count - 2);
+  const double x = std::cbrt(std::min(elevation / quarter_turn, 1.0)) * (sun_node_count - 1);
+  const int node = std::min(static_cast<int>(x), sun_node_count - 2);
   const double t = x - node;
   const Step step = turbidity_step(turbidity);
   Color result;
   for (int c = 0; c < 3; ++c) {
     const auto at = [&](int row, int i) {
-      return double{sunsky::sun_irradiances[(row * sunsky::sun_node_count + i) * 3 + c]};
+      return double{sun_irradiances[(row * sun_node_count + i) * 3 + c]};
     };
     const auto between = [&](int row) { return (1 - t) * at(row, node) + t * at(row, node + 1); };
     const double sum = (1 - step.rest) * between(step.index) + step.rest * between(step.index + 1);

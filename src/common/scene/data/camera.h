@@ -73,7 +73,7 @@ struct Camera {
   PT_HD float distance_of_near_plane(const Vec3& direction) const {
     return near_clip / dot(direction, forward);
   }
-  /// How far along a camera ray something may be met.
+  /// How far along a camera ray a hit may lie.
   PT_HD float distance_in_view(const Vec3& direction) const {
     return fminf(view_length / dot(direction, forward), infinite_distance);
   }

@@ -1,8 +1,16 @@
 #include "common/scene/data/plastic_material.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 namespace pt {
+
 namespace {
 
 Color packed(PlasticCoat coat, float internal_reflectance) {
@@ -44,6 +52,137 @@ MaterialDescription make_rough_plastic(const Color& diffuse, const Color& specul
   m[&RoughPlastic::transmittance_2].value = {t[6], t[7], t[8]};
   m[&RoughPlastic::is_beckmann].value = Color(is_beckmann ? 1.0f : 0.0f);
   return m;
+}
+
+namespace {
+
+constexpr std::size_t terms = RoughPlastic::terms;
+
+using Polynomial = std::array<double, terms>;  ///< the constant first
+
+double value_at(const Polynomial& c, double x) {
+  double sum = 0;
+  for (std::size_t i = terms; i-- > 0;) sum = sum * x + c[i];
+  return sum;
+}
+
+/// Solves the symmetric system in place (Gauss, with pivots).
+Polynomial solve(std::array<std::array<double, terms + 1>, terms>& rows) {
+  for (std::size_t i = 0; i < terms; ++i) {
+    std::size_t pivot = i;
+    for (std::size_t r = i + 1; r < terms; ++r) {
+      if (std::abs(rows[r][i]) > std::abs(rows[pivot][i])) pivot = r;
+    }
+    std::swap(rows[i], rows[pivot]);
+    for (std::size_t r = 0; r < terms; ++r) {
+      if (r == i) continue;
+      const double factor = rows[r][i] / rows[i][i];
+      for (std::size_t k = i; k <= terms; ++k) rows[r][k] -= factor * rows[i][k];
+    }
+  }
+  Polynomial c;
+  for (std::size_t i = 0; i < terms; ++i) c[i] = rows[i][terms] / rows[i][i];
+  return c;
+}
+
+Polynomial fit(const std::vector<double>& x, const std::vector<double>& y,
+               const std::vector<double>& weight) {
+  std::array<std::array<double, terms + 1>, terms> rows{};
+  for (std::size_t n = 0; n < x.size(); ++n) {
+    std::array<double, terms + 1> powers{1};
+    for (std::size_t i = 1; i < terms; ++i) powers[i] = powers[i - 1] * x[n];
+    powers[terms] = y[n];
+    for (std::size_t i = 0; i < terms; ++i) {
+      for (std::size_t k = 0; k <= terms; ++k) rows[i][k] += weight[n] * powers[i] * powers[k];
+    }
+  }
+  return solve(rows);
+}
+
+/// y(x), with the largest relative error as small as 40 rounds of least squares make it, whose
+/// weights grow where the error is large (Lawson 1961). Values below 0.05 count as 0.05.
+Polynomial fit_polynomial(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> weight(x.size()), error(x.size()), importance(x.size(), 1.0);
+  Polynomial best{};
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    const auto scale = [&](std::size_t n) { return 1.0 / std::max(y[n], 0.05); };
+    for (std::size_t n = 0; n < x.size(); ++n) weight[n] = importance[n] * scale(n) * scale(n);
+    best = fit(x, y, weight);
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      error[n] = std::abs(value_at(best, x[n]) - y[n]) * scale(n);
+    }
+    const double largest = std::max(*std::max_element(error.begin(), error.end()), 1e-12);
+    for (std::size_t n = 0; n < x.size(); ++n) importance[n] *= error[n] / largest + 0.02;
+  }
+  return best;
+}
+
+constexpr int nodes = 64;  // cosines
+
+float cosine_of(int node) { return std::max(1e-6f, static_cast<float>(node) / (nodes - 1)); }
+
+/// The mean of f(m) over the normals m that are visible from a direction.
+template <class Function>
+double mean_over_facets(const Microfacets& facets, const Vec3& wi, int steps, const Function& f) {
+  double sum = 0;
+  for (int i = 0; i < steps * steps; ++i) {
+    const float u0 = (static_cast<float>(i % steps) + 0.5f) / static_cast<float>(steps);
+    const float u1 = (static_cast<float>(i / steps) + 0.5f) / static_cast<float>(steps);
+    sum += static_cast<double>(f(facets.sample_visible(wi, u0, u1)));
+  }
+  return sum / (steps * steps);
+}
+
+float visible_part(const Microfacets& facets, const Vec3& w) {
+  return w.z > 0.0f ? facets.visible_over_cosine(w) * w.z : 0.0f;
+}
+
+double transmittance(const Microfacets& facets, float eta, const Vec3& wi) {
+  return mean_over_facets(facets, wi, 32, [&](const Vec3& m) {
+    const float cosine = std::clamp(dot(wi, m), 0.0f, 1.0f);
+    const float sine2 = (1.0f - cosine * cosine) / (eta * eta);
+    if (sine2 >= 1.0f) return 0.0f;
+    const float along = cosine / eta - std::sqrt(1.0f - sine2);
+    const Vec3 below = wi / eta - along * m;  // mirrored into the upper half
+    return (1.0f - fresnel_dielectric(cosine, eta)) * visible_part(facets, below);
+  });
+}
+
+/// With more steps, because total reflection begins abruptly.
+double reflectance(const Microfacets& facets, float eta, const Vec3& wi) {
+  return mean_over_facets(facets, wi, 64, [&](const Vec3& m) {
+    const float cosine = std::clamp(dot(wi, m), 0.0f, 1.0f);
+    return fresnel_dielectric(cosine, eta) * visible_part(facets, mirrored_by(wi, m, cosine));
+  });
+}
+
+RoughBoundary measure(float eta, float alpha, bool is_beckmann) {
+  const Microfacets facets = Microfacets::make(alpha, alpha, is_beckmann);
+  std::vector<double> x, passed;
+  double reflected = 0;
+  for (int node = 0; node < nodes; ++node) {
+    const float cosine = cosine_of(node);
+    const Vec3 wi(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+    x.push_back(2 * std::sqrt(static_cast<double>(cosine)) - 1);
+    passed.push_back(transmittance(facets, eta, wi));
+    reflected += 2.0 / nodes * static_cast<double>(cosine) * reflectance(facets, 1.0f / eta, wi);
+  }
+  const Polynomial c = fit_polynomial(x, passed);
+  RoughBoundary result;
+  for (std::size_t i = 0; i < terms; ++i) result.transmittance[i] = static_cast<float>(c[i]);
+  result.internal_reflectance = static_cast<float>(std::min(reflected, 0.999));
+  return result;
+}
+
+}  // namespace
+
+RoughBoundary measure_rough_boundary(float eta, float alpha, bool is_beckmann) {
+  static std::mutex mutex;
+  static std::map<std::tuple<float, float, bool>, RoughBoundary> known;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = known.try_emplace({eta, alpha, is_beckmann});
+  if (is_new) entry->second = measure(eta, alpha, is_beckmann);
+  return entry->second;
 }
 
 }  // namespace pt

@@ -1,11 +1,10 @@
-#include "common/scene/edit/material_parameters.h"
-
 #include <fmt/format.h>
 
 #include <iterator>
 #include <set>
 
 #include "common/scene/data/plastic_material.h"
+#include "common/scene/edit/scene_parameters.h"
 
 namespace pt {
 namespace {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "common/error/error.h"
-#include "common/scene/edit/material_parameters.h"
 
 namespace pt {
 namespace {

@@ -6,9 +6,9 @@
 #include <array>
 
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
-#include "common/scene/load/files/studio.h"
 #include "common/scene/load/files/text.h"
 
 namespace pt {

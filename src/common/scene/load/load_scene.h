@@ -4,9 +4,9 @@
 // What formats share is in `files`: importer.h (values with textures, maps, cameras), text.h
 // (words, numbers, warnings of a kind as one), whole_file.h (files by name),
 // images/texture_store.h, meshes/mesh_files.h, meshes/vertex_colors.h, volumes/volume_files.h,
-// spectra.h and studio.h (light for files without). In: a path and LoadOptions. Out: SceneData, and
-// what was replaced or left out as lines to LoadOptions::report. One bad element loses itself, not
-// the file.
+// spectra.h and default_lighting.h (light for files without). In: a path and LoadOptions. Out:
+// SceneData, and what was replaced or left out as lines to LoadOptions::report. One bad element
+// loses itself, not the file.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +20,8 @@ namespace pt {
 /// Loads a scene; the ending of the name, in either case, says which format it has: .xml (Mitsuba),
 /// .gltf, .glb, .pbrt (pbrt-v4), .obj or .ply. The last two have neither camera nor lights: they
 /// get a camera that frames them, and models that their own light does not show default lighting
-/// (studio.h); `options.warn` is told so. A .ply is grey, diffuse. Throws Error for other endings
-/// and as the formats' loaders do.
+/// (default_lighting.h); `options.warn` is told so. A .ply is grey, diffuse. Throws Error for other
+/// endings and as the formats' loaders do.
 SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& options = {});
 
 // Scenes in Mitsuba's XML, dialects 0.5, 0.6, 2 and 3.

@@ -2,10 +2,10 @@
 //
 // The scan computes, of a sphere around c of radius R and a ray's axes A and B (unit vectors) and
 // places a and b in float, x = c.A - a, y = c.B - b and R^2 - x^2 - y^2, whose sign says whether
-// the ray may meet it. Be u = 2^-11, the largest relative error of rounding to a half.
+// the ray may hit it. Be u = 2^-11, the largest relative error of rounding to a half.
 //
-// If the line meets the sphere, |x| <= R and |y| <= R. Then the computed x differs from the exact
-// one by at most
+// If the line intersects the sphere, |x| <= R and |y| <= R. Then the computed x differs from the
+// exact one by at most
 //   |c - rounded c|      the centre's own rounding, which is known,
 //   u |c|                the axis',
 //   u (|c| + R)          the place's, which is at most |c.A| + |x|,
@@ -18,10 +18,10 @@
 // rounded to a number without a sign. S = (Q + 2^-24) / (1 - u) suffices, rounded upwards.
 //
 // Nothing is asked of rays. A place beyond the halves is infinite, and so are x^2 and the
-// difference, which is negative, as it should be. A ray that is NaN meets nothing.
+// difference, which is negative, as it should be. A ray that is NaN hits nothing.
 //
 // Spheres that are much larger than the others would leave these too little of the halves' range.
-// They are candidates always: a line that passes through the scene meets its ground anyway.
+// They are candidates always: a line that passes through the scene intersects its ground anyway.
 #pragma once
 
 #include <span>

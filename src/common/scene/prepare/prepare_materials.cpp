@@ -1,5 +1,3 @@
-#include "common/scene/prepare/prepare_materials.h"
-
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -12,6 +10,7 @@
 
 #include "common/error/error.h"
 #include "common/light/light.h"
+#include "common/scene/prepare/prepare_steps.h"
 #include "common/texture/sample_texture.h"
 
 namespace pt {

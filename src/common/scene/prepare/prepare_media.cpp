@@ -5,7 +5,6 @@
 
 #include "common/error/error.h"
 #include "common/scene/data/volume_data.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {

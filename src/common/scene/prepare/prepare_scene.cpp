@@ -10,7 +10,6 @@
 #include "common/scene/data/scene_arrays.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_filter.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {

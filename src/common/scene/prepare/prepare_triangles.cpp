@@ -9,7 +9,6 @@
 #include "common/error/error.h"
 #include "common/scene/data/frame_scene.h"
 #include "common/scene/prepare/list_lights.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {

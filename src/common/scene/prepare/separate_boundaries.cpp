@@ -45,7 +45,7 @@ struct Box {
   DVec3 low{HUGE_VAL}, high{-HUGE_VAL};
 
   void grow(const DVec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool meets(const Box& b) const {
+  bool overlaps(const Box& b) const {
     return glm::all(glm::lessThanEqual(low, b.high)) && glm::all(glm::lessThanEqual(b.low, high));
   }
 };
@@ -99,7 +99,7 @@ double area_of(const std::vector<DVec3>& polygon) {
   return 0.5 * glm::length(sum);
 }
 
-/// Whether rays cannot tell in which order they meet the two; `between`: how far b is in front.
+/// Whether rays cannot tell in which order they hit the two; `between`: how far b is in front.
 bool touch(const Corners& a, const Corners& b, double tolerance, double& between) {
   const DVec3 n = normal_of(a), n_b = normal_of(b);
   const double cosine = glm::dot(n, n_b);
@@ -134,14 +134,14 @@ class TriangleGrid {
     asked_by_.assign(count(), 0);
   }
 
-  /// Calls function(i) once for each box i that meets this one.
+  /// Calls function(i) once for each box i that overlaps this one.
   template <class Function>
   void find(const Box& box, Function&& function) {
-    if (!all_.meets(box)) return;
+    if (!all_.overlaps(box)) return;
     ++query_;
     for_cells(box, [&](std::size_t cell) {
       for (const std::uint32_t i : lists_[cell]) {
-        if (asked_by_[i] == query_ || !boxes_[i].meets(box)) continue;
+        if (asked_by_[i] == query_ || !boxes_[i].overlaps(box)) continue;
         asked_by_[i] = query_;
         function(i);
       }
@@ -188,7 +188,7 @@ bool may_move(const Material& material) {
 /// Where a boundary has to go as seen from a surface in its plane.
 enum class Side { inward, outward, outward_or_inward };
 
-/// The order in which light has to meet the two, on its way from inside the boundary `p` outwards:
+/// The order in which light has to reach the two, on its way from inside the boundary `p` outwards:
 /// each must begin in the medium in which the other ends.
 Side side_of(const SceneData& scene, std::uint32_t p, std::uint32_t q, bool opposing, bool first) {
   const Material& other = scene.material_records[q];

@@ -560,7 +560,7 @@ TEST(PbrtWarnings, OfDirectives) {
        {"MakeNamedMedium \"m\" \"string type\" \"homogeneous\" MakeNamedMedium \"m\" \"string "
         "type\" "
         "\"homogeneous\"",
-        "a medium 'm' was defined before: that holds"},
+        "a medium 'm' was defined before: the new one is ignored"},
        {"MakeNamedMaterial \"m\" \"string type\" \"diffuse\" MakeNamedMaterial \"m\" \"string "
         "type\" "
         "\"diffuse\"",

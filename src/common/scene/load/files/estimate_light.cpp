@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "common/sampling/sampler_source.h"
-#include "common/scene/load/files/studio.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
 #include "common/transport/path_step.h"

@@ -97,7 +97,7 @@ inline void frame_finite_scene(SceneData& scene) {
   }
 }
 
-// Of round shapes that become triangles.
+// How finely round shapes are tessellated.
 inline constexpr int circle_segments = 256;    ///< a chord is within 7.5e-5 radii of its arc
 inline constexpr int meridian_segments = 128;  ///< of a sphere, pole to pole
 

@@ -15,7 +15,7 @@ struct LoadOptions {
   std::map<std::string, std::string> definitions;  ///< -D name=value; for formats with variables
   bool strict = false;  ///< an Error instead of each warning: nothing is replaced or ignored
   std::function<void(const std::string&)> warn;  ///< called with one line; empty: silence
-  /// Of a scene that is described in memory: what its shapes of the type "mesh" name as their data.
+  /// Meshes in memory, by the names that shapes of the type "mesh" give as their data.
   std::map<std::string, Mesh> meshes{};
   DefaultLighting default_lighting = DefaultLighting::automatic;
   CameraOverrides camera{};  ///< through which default lighting is decided, besides the file's

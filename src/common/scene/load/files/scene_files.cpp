@@ -24,8 +24,8 @@ std::string hex(const XXH128_hash_t& hash) {
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
-// Of packed files: the number of files, then of each the length of its path, the path, the number
-// of its bytes, the bytes.
+// Packed files: the number of files, then for each the length of its path, the path, the number of
+// its bytes, the bytes.
 void append_size(std::string& out, std::uint64_t size) {
   for (int i = 0; i < 8; ++i) out += static_cast<char>(size >> (8 * i) & 0xff);
 }

@@ -8,7 +8,7 @@
 namespace pt::gltf {
 namespace {
 
-/// Of all accessors without a buffer view.
+/// The most zeros that accessors without a buffer view may have in all.
 constexpr std::size_t max_zeros = std::size_t{1} << 24;
 
 /// (specification, section 3.6.2.2 and, for the division, KHR_mesh_quantization)

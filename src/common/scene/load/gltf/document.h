@@ -17,7 +17,7 @@
 
 namespace pt::gltf {
 
-/// Of formats of images: a texture that has only such an image is left out with a warning.
+/// Image formats without a decoder: a texture with only such an image is left out with a warning.
 inline constexpr std::array<std::string_view, 4> image_extensions = {
     "EXT_texture_avif", "EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"};
 
@@ -60,8 +60,8 @@ class File {
       : model(std::move(objects)), name_(std::move(name)), options_(load_options) {}
 
   const tinygltf::Model model;
-  /// Of accessors without a bufferView, which are all zeros, read so far: a file of a few bytes
-  /// must not fill the memory.
+  /// Zeros read so far for accessors without a bufferView: a file of a few bytes must not fill the
+  /// memory.
   mutable std::size_t zeros = 0;
 
   [[noreturn]] void fail(const std::string& place, const std::string& message) const {

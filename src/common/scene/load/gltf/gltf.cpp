@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "common/scene/data/frame_scene.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
-#include "common/scene/load/files/studio.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"

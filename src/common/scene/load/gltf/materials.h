@@ -49,7 +49,7 @@ class Textures {
   // Each gives the number in the scene; `place` is that of the textureInfo. An image that cannot be
   // decoded is no_texture, with a warning.
 
-  /// Of the mesh whose textures are added from now on.
+  /// Sets the maps of the mesh whose textures are added from now on.
   void set_uv_maps(const UvMaps& maps) { uv_maps_ = maps; }
 
   /// A colour texture (sRGB).

@@ -57,8 +57,9 @@ void finish_baking(File& file, bool mirrors, const std::string& place, Mesh& mes
 
 // Skins: meshes that joints place.
 
-/// Of each joint of a skin: from the mesh's space, as it was bound, to the world. `places`: of
-/// the scene's nodes, by number. Empty, and a warning, where the skin or a joint is missing.
+/// For each joint of a skin: from the mesh's space, as it was bound, to the world. `places`: the
+/// transformations of the scene's nodes, by number. Empty, and a warning, where the skin or a joint
+/// is missing.
 std::vector<Affine> joint_matrices(File& file, int skin,
                                    const std::unordered_map<int, Affine>& places,
                                    const std::string& place);

@@ -71,7 +71,7 @@ Affine local_transform(File& file, const tinygltf::Node& node, const std::string
   return result;
 }
 
-/// Of the default scene, or all nodes without a parent where the file has no scenes.
+/// The default scene's nodes, or all nodes without a parent where the file has no scenes.
 std::vector<int> root_nodes(File& file) {
   const auto& model = file.model;
   if (!model.scenes.empty()) {

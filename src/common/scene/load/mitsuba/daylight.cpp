@@ -9,7 +9,7 @@
 namespace pt::mitsuba {
 namespace {
 
-/// Of the sky's map: a row lies on the horizon.
+/// The sky's map has a row on the horizon.
 constexpr int columns = 1024, rows = 513;
 constexpr double sun_aperture = 0.5358;  ///< degrees, as seen from the ground
 

@@ -260,11 +260,4 @@ ShapeMedia media_of(Context& context, const Object& shape) {
   return result;
 }
 
-std::vector<std::string> phase_types() {
-  std::vector<std::string> names;
-  for_each_type(PhaseFunctions{},
-                [&]<class Phase>(std::type_identity<Phase>) { names.push_back(Phase::name); });
-  return names;
-}
-
 }  // namespace pt::mitsuba

@@ -46,7 +46,7 @@ SceneData load_mitsuba_scene(const mitsuba::Element& root, const std::string& na
   Context context(scene, options, graph);
   load_objects(context, graph.scene());
   context.colors.finish();
-  context.add_studio_if_dark();
+  context.add_default_lighting_if_dark();
   context.report_unused();
   return scene;
 }

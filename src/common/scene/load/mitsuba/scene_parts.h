@@ -38,9 +38,6 @@ struct ShapeMedia {
 };
 ShapeMedia media_of(Context& context, const Object& shape);
 
-/// All types of phase functions that are read.
-std::vector<std::string> phase_types();
-
 // The grids of media become the scene's.
 
 /// To be called when the scene has its shapes and its sensor. Outside of the box around its density

@@ -90,7 +90,7 @@ namespace {
 
 const Color luminance(0.212671f, 0.715160f, 0.072169f);  // as grey_of has it
 
-/// Of a scalar map. Alpha and the luminance of heights are taken elsewhere.
+/// Weights of the channels in a scalar map. Alpha and the luminance of heights are taken elsewhere.
 std::optional<Color> weights_of(char channel) {
   if (channel == 'r') return Color(1, 0, 0);
   if (channel == 'g') return Color(0, 1, 0);

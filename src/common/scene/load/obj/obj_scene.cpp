@@ -126,7 +126,7 @@ class Libraries {
                   word);
   }
 
-  /// Of files, the first that defines a material counts; within one, the last definition.
+  /// The first file that defines a material counts; within a file, the last definition.
   void define(const fs::path& path) {
     std::vector<fs::path> folders = {path.parent_path()};
     if (folder_ != folders[0]) folders.push_back(folder_);

@@ -30,7 +30,7 @@ constexpr std::array<std::uint8_t, 256> permutation = {
 
 int permuted(int i) { return permutation[static_cast<std::size_t>(i & 255)]; }
 
-/// Of the cell of a corner, by four bits of its hash: the sum of two axes with signs.
+/// The slope at a cell's corner, by four bits of its hash: the sum of two axes with signs.
 constexpr std::array<Vec3, 16> slopes = [] {
   constexpr int axes[8][2] = {{0, 1}, {0, 1}, {0, 2}, {0, 2}, {1, 2}, {1, 2}, {0, 1}, {1, 2}};
   std::array<Vec3, 16> all{};

@@ -244,7 +244,7 @@ void set_albedo(SceneData& scene, const SampleBox& box, const Colors& albedo, Me
 
 }  // namespace
 
-/// Of the two coefficients, one that is absent is 1 everywhere in pbrt.
+/// If one of the two coefficients is absent, it is 1 everywhere, as in pbrt.
 Medium read_rgb_grid(Context& context, const Entity& entity) {
   const Parameters& parameters = entity.parameters;
   const SampleBox box = read_sample_box(entity);

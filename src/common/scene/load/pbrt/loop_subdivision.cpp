@@ -21,7 +21,7 @@ struct Ring {
 
 std::uint64_t key(Index from, Index to) { return std::uint64_t{from} << 32 | to; }
 
-/// Of each edge, as a triangle goes along it: the vertex across.
+/// The vertex across from each edge, which has the direction of its triangle.
 using Edges = std::unordered_map<std::uint64_t, Index>;
 
 Edges edges_of(const Mesh& mesh) {

@@ -223,7 +223,7 @@ std::uint16_t add_medium(Context& context, const std::string& name, const Entity
   return static_cast<std::uint16_t>(media.size() - 1);
 }
 
-std::uint16_t read_medium(Context& context, const std::string& name, const Place& place) {
+std::uint16_t read_medium(Context& context, const std::string& name, const FileLocation& place) {
   const auto found = context.description.media.find(name);
   if (found == context.description.media.end()) {
     fail(place, "there is no medium '{}'; expected one that MakeNamedMedium defines", name);
@@ -233,7 +233,7 @@ std::uint16_t read_medium(Context& context, const std::string& name, const Place
 
 }  // namespace
 
-std::uint16_t medium_named(Context& context, const std::string& name, const Place& place) {
+std::uint16_t medium_named(Context& context, const std::string& name, const FileLocation& place) {
   if (name.empty()) return no_medium;
   const auto known = context.media.find(name);
   if (known != context.media.end()) return known->second;
@@ -244,7 +244,7 @@ std::uint16_t medium_named(Context& context, const std::string& name, const Plac
 }
 
 MediumBoundary media_of(Context& context, const ShapeEntity& shape) {
-  const Place& place = shape.shape.parameters.place();
+  const FileLocation& place = shape.shape.parameters.place();
   MediumBoundary boundary;
   boundary.inside = medium_named(context, shape.media.inside, place);
   boundary.outside = medium_named(context, shape.media.outside, place);

@@ -131,7 +131,7 @@ Mesh read_loop_mesh(Context& context, const Entity& entity, const ShapeMaterial&
          levels, cage.triangles.size(), most);
   }
   try {
-    // Of each triangle in the end: its vertices, and where its edges are found.
+    // For each final triangle: its vertices, and the entries of its edges.
     constexpr std::uint64_t bytes = 256;
     check_host_memory((cage.triangles.size() << (2 * levels)) * bytes, "loopsubdiv");
     return subdivide_loop(cage, levels);

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "common/scene/data/scene_data.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/spectra.h"
-#include "common/scene/load/files/studio.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"
@@ -93,8 +93,9 @@ void complete(Context& context, const LoadOptions& options) {
     context.reporter.note(description.place, "no Camera: one that frames the scene is used");
   }
   if (context.lit || options.default_lighting == DefaultLighting::off) return;
-  add_studio(scene);
-  const std::string text = fmt::format("no light that is supported: {} is used", studio_text);
+  add_default_lighting(scene);
+  const std::string text =
+      fmt::format("no light that is supported: {} is used", default_lighting_text);
   if (description.lights.empty()) return context.reporter.note(description.place, text);
   context.reporter.warn_once("dark", description.place, text);
 }

@@ -29,7 +29,7 @@ struct SkyPicture {
   Affine to_light;
   Color scale = Color(1.0f);
 
-  /// Of a direction in the light's space, without the scale.
+  /// The radiance from a direction in the light's space, without the scale.
   Color at(const Vec3& direction) const;
 };
 
@@ -63,7 +63,7 @@ const Parameter* find_picture(const Parameters& parameters);
 /// The scene's number of the medium of this name, which is made once; no_medium for an empty name
 /// and for a medium that is not supported, which is reported. Throws Error, with `place`, for a
 /// name that no MakeNamedMedium defines. Adding a kind is adding a line to the table in media.cpp.
-std::uint16_t medium_named(Context& context, const std::string& name, const Place& place);
+std::uint16_t medium_named(Context& context, const std::string& name, const FileLocation& place);
 
 /// What a shape has on its sides. Where both are the same, it keeps the medium of its surroundings.
 MediumBoundary media_of(Context& context, const ShapeEntity& shape);
@@ -99,7 +99,7 @@ struct SampleBox {
 
   std::size_t voxels() const { return std::size_t{size[0]} * size[1] * size[2]; }
 
-  /// Of the middle of a voxel, in the medium's space.
+  /// The middle of a voxel, in the medium's space.
   Vec3 center(std::uint32_t i, std::uint32_t j, std::uint32_t k) const;
 };
 

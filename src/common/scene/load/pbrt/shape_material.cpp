@@ -72,7 +72,7 @@ ShapeMaterials::AreaLight ShapeMaterials::read_light(const Entity& entity) {
 }
 
 void ShapeMaterials::add_light(const ShapeEntity& shape, ShapeMaterial& result) {
-  const Place& place = shape.shape.parameters.place();
+  const FileLocation& place = shape.shape.parameters.place();
   if (shape.group != 0) {
     context_.reporter.warn_once("instanced light", place,
                                 "an area light in an object is not supported: it is dark");

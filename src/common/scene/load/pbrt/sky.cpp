@@ -50,7 +50,7 @@ SkyPicture read_picture(Context& context, const std::filesystem::path& path,
   return picture;
 }
 
-/// Of the picture around a pixel of our map, which lies in the world as it is.
+/// The mean of the picture over a pixel of our map, which lies in world space.
 Color mean_around(const SkyPicture& picture, const EnvironmentData& map, int x, int y) {
   Color sum(0.0f);
   for (int j = 0; j < samples; ++j) {

@@ -71,7 +71,7 @@ bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xff\xd8"); }
 bool is_ppm(std::string_view bytes) { return bytes.starts_with("P6") || bytes.starts_with("P5"); }
 bool is_pfm(std::string_view bytes) { return bytes.starts_with("PF") || bytes.starts_with("Pf"); }
 
-/// Of formats that store floats.
+/// Whether the format stores floats.
 bool is_float(std::string_view bytes) { return is_exr(bytes) || is_hdr(bytes) || is_pfm(bytes); }
 
 Image decode_floats(std::string_view bytes) {

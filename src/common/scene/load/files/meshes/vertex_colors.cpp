@@ -114,7 +114,7 @@ bool all_equal(const std::vector<Color>& colors) {
   return std::ranges::all_of(colors, [&](const Color& c) { return c == colors.front(); });
 }
 
-/// Of all corners of triangles; white where there are none.
+/// The mean over all corners of triangles; white for a mesh without colours.
 Color mean_of_vertices(const Mesh& mesh) {
   if (mesh.colors.empty() || mesh.triangles.empty()) return Color(1.0f);
   if (all_equal(mesh.colors)) return mesh.colors.front();

@@ -22,7 +22,7 @@
 
 namespace pt::nanovdb_files {
 
-/// Of grids; files of later versions begin with other numbers.
+/// Begins a grid; files of later versions begin with other numbers.
 inline constexpr std::uint64_t magic = NANOVDB_MAGIC_NUMBER;
 inline constexpr std::uint64_t grid_magic = 0x314244566f6e614e;  // "NanoVDB1"
 

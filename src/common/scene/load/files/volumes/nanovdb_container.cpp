@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t file_magic = 0x324244566f6e614e;     // "NanoVDB2", of later versions
 constexpr std::uint64_t openvdb_magic = 0x0000000056444220;  // of OpenVDB's files
 constexpr std::uint32_t major_version = NANOVDB_MAJOR_VERSION_NUMBER;
-/// Of a byte of a compressed file: deflate's; blosc's LZ4 has 255.
+/// The most bytes that one byte of a compressed file becomes: deflate's; blosc's LZ4 has 255.
 constexpr std::uint64_t most_packed = 1032;
 
 /// Reads one thing after the other from bytes that may end too early.

@@ -126,6 +126,13 @@ bool read_is_beckmann(Context& context, const Object& bsdf) {
 
 }  // namespace
 
+const std::vector<ConductorIndex> conductors = {
+#include <tables/conductors.inc>
+};
+
+namespace {
+
+/// By the property `material`; one that is not known becomes aluminium with a warning.
 const ConductorIndex& read_named_metal(Context& context, const Object& bsdf) {
   const auto find = [](std::string_view name) {
     return std::ranges::find(conductors, name, &ConductorIndex::name);
@@ -136,8 +143,6 @@ const ConductorIndex& read_named_metal(Context& context, const Object& bsdf) {
                     "the conductor '{}' is not known: aluminium is used", name);
   return *find("Al");
 }
-
-namespace {
 
 /// eta and k, or those of a metal by name, over the index of what is outside.
 void read_index(Context& context, const Object& bsdf, Parameter* eta_and_k) {
@@ -239,7 +244,7 @@ Surface read_rough_plastic(Context& context, const Object& bsdf) {
   return surface;
 }
 
-/// Of Mitsuba 0.x, as `ward`.
+/// Only in Mitsuba 0.x, as `ward`.
 Surface read_phong(Context& context, const Object& bsdf) {
   Surface surface = glossy_of(context, bsdf, make_material<Phong>(), 0.2f);
   surface.material[&Phong::exponent] =

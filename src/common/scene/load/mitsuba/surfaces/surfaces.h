@@ -30,7 +30,7 @@ std::vector<std::string> surface_types();
 /// Reports, once for its type, that a bsdf is replaced `by` something.
 void report_replaced(Context& context, const Object& bsdf, std::string_view by);
 
-/// Of microfacets.
+/// Roughness of microfacets.
 struct Roughness {
   ColorTexture alpha_u, alpha_v;
   bool is_beckmann;
@@ -85,8 +85,5 @@ struct ConductorIndex {
 
 /// All that Mitsuba knows, and "none", which reflects everything.
 extern const std::vector<ConductorIndex> conductors;
-
-/// By the property `material`; one that is not known becomes aluminium with a warning.
-const ConductorIndex& read_named_metal(Context& context, const Object& bsdf);
 
 }  // namespace pt::mitsuba

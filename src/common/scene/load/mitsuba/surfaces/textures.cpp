@@ -13,7 +13,7 @@ struct UvMap {
   double v[3] = {0, 1, 0};
 };
 
-/// Of to_uv in Mitsuba 3 (z is ignored), of uscale, voffset, ... in 0.x.
+/// From to_uv in Mitsuba 3 (z is ignored), from uscale, voffset, ... in 0.x.
 UvMap read_uv_map(const Object& texture) {
   UvMap map;
   if (const Element* to_uv = texture.find("to_uv")) {
@@ -77,7 +77,7 @@ bool is_linear(Context& context, const Object& object) {
 /// Mitsuba's, of which a picture makes a number.
 constexpr Color luminance_weights(0.212671f, 0.715160f, 0.072169f);
 
-/// Of a colour without a picture, Mitsuba's number is this.
+/// What Mitsuba takes for a number where a texture is a single colour.
 Color mean_of(const Color& color) { return Color((color.x + color.y + color.z) / 3.0f); }
 
 ColorTexture read_bitmap(Context& context, const Object& object, Quantity quantity,
@@ -153,7 +153,7 @@ ColorTexture read_scale(Context& context, const Object& object, Quantity quantit
   return result;
 }
 
-/// Of Mitsuba's attributes of meshes the colours alone.
+/// Reads colours; other attributes of meshes are not supported.
 ColorTexture read_mesh_attribute(Context& context, const Object& object, Quantity quantity) {
   const std::string name = object.text("name", "");
   const Color scale(object.number("scale", 1.0f));

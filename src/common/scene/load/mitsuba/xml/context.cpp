@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "common/scene/load/files/studio.h"
+#include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/mitsuba/xml/elements.h"
 
 namespace pt::mitsuba {
@@ -73,11 +73,12 @@ std::filesystem::path Context::resolve(const Element& at, const std::string& nam
   return found.empty() ? beside / name : found;
 }
 
-void Context::add_studio_if_dark() {
+void Context::add_default_lighting_if_dark() {
   if (lit_ || options_.default_lighting == DefaultLighting::off) return;
-  add_studio(scene);
+  add_default_lighting(scene);
   const Element& at = graph_.scene().element();
-  if (left_out_.empty()) return note(at, fmt::format("no light: {} is used", studio_text));
+  if (left_out_.empty())
+    return note(at, fmt::format("no light: {} is used", default_lighting_text));
   std::string names;
   for (const Object* emitter : left_out_) {
     names += fmt::format("{}'{}' of line {}", names.empty() ? "" : ", ", emitter->type(),
@@ -88,7 +89,7 @@ void Context::add_studio_if_dark() {
       fmt::format(
           "NO LIGHT OF THE FILE IS LEFT: not supported: {}; {} is used instead, so brightness and "
           "colours are not the file's",
-          names, studio_text));
+          names, default_lighting_text));
 }
 
 void Context::report_unused() {

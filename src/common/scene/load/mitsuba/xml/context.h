@@ -58,15 +58,15 @@ class Context {
   /// Throws Error where shapes were left out and none is there.
   void expect_some_shape() const;
 
-  /// Of the scene's description in memory; nullptr: there is none of that name.
+  /// A mesh of the scene's description in memory; nullptr: there is none of that name.
   const Mesh* memory_mesh(const std::string& name) const;
 
-  /// An emitter becomes a light, or it is left out; add_studio_if_dark() needs to know.
+  /// An emitter becomes a light, or it is left out; add_default_lighting_if_dark() needs to know.
   void add_lit() { lit_ = true; }
   void add_left_out(const Object& emitter) { left_out_.push_back(&emitter); }
 
   /// Lights a scene in which no emitter is left.
-  void add_studio_if_dark();
+  void add_default_lighting_if_dark();
 
   /// Reports what is inside of objects in use and nothing asked for.
   void report_unused();

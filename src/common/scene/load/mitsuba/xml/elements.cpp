@@ -258,7 +258,7 @@ bool has_drive(const std::string& name) {
   return name.size() > 2 && std::isalpha(static_cast<unsigned char>(name[0])) && name[1] == ':';
 }
 
-/// Of an absolute name on another machine: as many of its last parts as are here.
+/// Finds an absolute name of another machine by as many of its last parts as exist here.
 fs::path find_last_parts(const Folders& folders, const fs::path& name, const WarnOfName& warn) {
   constexpr std::ptrdiff_t most_parts = 8;
   const std::vector<fs::path> parts(name.begin(), name.end());

@@ -54,9 +54,9 @@ bool is_name_character(char c) { return std::isalnum(static_cast<unsigned char>(
 
 }  // namespace
 
-// Of all names up to `name` in alphabetical order, what begins with a prefix of `name` comes after
-// that prefix: the last of them either is the longest one or shares with `name` all that the
-// longest one has.
+// In alphabetical order, names that begin with a prefix of `name` come after that prefix. So the
+// last name up to `name` either is the longest prefix or shares with `name` all that the longest
+// one has.
 Variables::Values::const_iterator Variables::longest_prefix_of(std::string_view name) const {
   while (!name.empty()) {
     const auto after = values_.upper_bound(name);
@@ -119,7 +119,7 @@ namespace {
 constexpr int max_element_depth = 64;
 constexpr std::size_t max_include_depth = 16;
 
-// Of files that have been included before. Files of a few bytes may name each other 8^15 times.
+// Limits for files that have been included before: small files may name each other 8^15 times.
 constexpr int max_repeats = 10000;
 constexpr std::size_t max_repeated_bytes = std::size_t{64} << 20;
 
@@ -145,7 +145,7 @@ class SourceFile {
   std::vector<std::size_t> line_ends_;
 };
 
-/// Of a name that the system does not take, being too long, that name: opening it is the error.
+/// A name that is too long for the system stays as it is: opening it is the error.
 std::filesystem::path without_links(const std::filesystem::path& path) {
   std::error_code refused;
   const std::filesystem::path found = std::filesystem::weakly_canonical(path, refused);

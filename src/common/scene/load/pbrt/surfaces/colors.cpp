@@ -16,7 +16,7 @@ namespace {
 
 float luminance_of(const Color& c) { return dot(c, Color(0.2126f, 0.7152f, 0.0722f)); }
 
-/// Of light. pbrt-v3 takes spectra as they are: a constant one of 1 has luminance 1.
+/// For light: pbrt-v3 takes spectra as they are: a constant one of 1 has luminance 1.
 Color of_earlier_version(const Color& color) {
   static const Color constant =
       spectrum_to_rgb({{360.0, 1.0}, {830.0, 1.0}}, Illuminant::equal_energy);
@@ -50,7 +50,7 @@ Color sampled(const Context& context, const Parameter& parameter,
                                         : of_luminance_one(parameter, color);
 }
 
-/// Of a file of lines "wavelength value"; # begins a comment.
+/// Reads a file of lines "wavelength value"; # begins a comment.
 std::vector<double> read_samples(Context& context, const Parameter& parameter) {
   const auto path = context.resolve(parameter.place, parameter.strings[0]);
   std::vector<double> numbers;
@@ -227,7 +227,7 @@ Color GlowingGas::radiance(float kelvins) const {
   return a + (x - static_cast<float>(below)) * (b - a);
 }
 
-std::vector<Color> read_gas_light(const Parameters& parameters, const Place& place,
+std::vector<Color> read_gas_light(const Parameters& parameters, const FileLocation& place,
                                   const std::vector<float>& temperatures) {
   const float offset =
       parameters.number("temperatureoffset", parameters.number("temperaturecutoff", 0.0f));

@@ -120,9 +120,8 @@ Surface read_coated_diffuse(Context& context, const Parameters& parameters) {
   const Roughness roughness = read_roughness(context, parameters);
   report_anisotropy(context, parameters, roughness);
   const ColorTexture body = read_color_texture(context, parameters, "reflectance", Color(0.5f));
-  // A coat absorbs exp(-thickness / cos) on each way, whatever its medium. Between what light on
-  // its way out meets and the mean of all directions, ways to the body and back are 3 thicknesses
-  // long.
+  // A coat absorbs exp(-thickness / cos) on each way, whatever its medium. 3 thicknesses are
+  // between the length of light's way to the body and out again, and that of all directions' mean.
   return coated(scaled(body, std::exp(-3.0f * read_thickness(context, parameters))),
                 read_index(context, parameters, "eta", 1.5f), roughness);
 }

@@ -121,7 +121,8 @@ void report_replaced(Context& context, const Parameters& parameters, std::string
                              "{} is not supported: {}", parameters.what(), by);
 }
 
-Surface read_surface(Context& context, const MaterialReference& reference, const Place& place) {
+Surface read_surface(Context& context, const MaterialReference& reference,
+                     const FileLocation& place) {
   if (const auto* pointer = std::get_if<EntityPointer>(&reference)) {
     return *pointer ? read_entity(context, **pointer, (*pointer)->type) : default_surface();
   }

@@ -15,7 +15,8 @@ struct Surface {
 
 /// An Error about a name that is not defined has `place`. Each replacement is reported once for its
 /// kind. Adding a material is adding a line to the table in surfaces.cpp.
-Surface read_surface(Context& context, const MaterialReference& reference, const Place& place);
+Surface read_surface(Context& context, const MaterialReference& reference,
+                     const FileLocation& place);
 
 // The kinds of materials: each reads one.
 
@@ -65,8 +66,8 @@ struct Roughness {
   void store(pt::Parameter* parameters) const;
 };
 
-/// Of the parameters `prefix` + roughness, uroughness and vroughness, remapped or not; as pbrt-v3
-/// remaps them where that is asked for.
+/// Reads `prefix` + roughness, uroughness and vroughness, remapped as in pbrt-v3 where that is
+/// asked for.
 Roughness read_roughness(Context& context, const Parameters& parameters,
                          const std::string& prefix = {}, float fallback = 0.0f,
                          bool is_earlier = false);
@@ -81,7 +82,7 @@ Surface coated(const ColorTexture& body, float eta, const Roughness& roughness);
 /// A metal of eta and k, over the index of what is outside.
 Surface conductor_of(const ColorTexture& eta, const ColorTexture& k, const Roughness& roughness);
 
-/// Of a coat.
+/// The thickness of a coat.
 float read_thickness(Context& context, const Parameters& parameters);
 
 /// Reports, once for the material's kind, that it is replaced `by` something.

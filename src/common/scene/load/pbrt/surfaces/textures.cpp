@@ -59,7 +59,7 @@ ColorTexture named_texture(Context& context, const Parameter& parameter, const T
   const Description& description = context.description;
   const auto& textures = use.is_number ? description.float_textures : description.spectrum_textures;
   auto found = textures.find(name);
-  // Of the other type there may be a newer one of that name.
+  // A newer texture of that name may have the other type.
   if (found == textures.end()) found = textures.find(name.substr(0, name.find(newest_mark)));
   if (found != textures.end()) return read_once(context, *found->second, use);
   fail(parameter.place, "there is no {} texture '{}'", use.is_number ? "float" : "spectrum",

@@ -50,7 +50,7 @@ class GlowingGas {
 
 /// The light of gas of these temperatures, of which `parameters` have the offset and the scale;
 /// `place` is theirs. Throws Error for temperatures that are not finite.
-std::vector<Color> read_gas_light(const Parameters& parameters, const Place& place,
+std::vector<Color> read_gas_light(const Parameters& parameters, const FileLocation& place,
                                   const std::vector<float>& temperatures);
 
 // Values that may vary over a surface, and the kinds of textures.

@@ -27,8 +27,8 @@ Vec2 TextureMapping::at(const Vec3& point) const {
   return {std::acos(cosine) * inverse_pi, turn < 0.0f ? turn + 1.0f : turn};
 }
 
-TextureMapping common_mapping(const std::vector<TextureMapping>& mappings, const Place& place,
-                              Reporter& reporter) {
+TextureMapping common_mapping(const std::vector<TextureMapping>& mappings,
+                              const FileLocation& place, Reporter& reporter) {
   if (mappings.empty()) return {};
   for (const TextureMapping& mapping : mappings) {
     if (mapping == mappings.front()) continue;
@@ -91,7 +91,7 @@ std::string with_slashes(const std::string& name) {
 
 }  // namespace
 
-std::filesystem::path Context::resolve(const Place& place, const std::string& name) {
+std::filesystem::path Context::resolve(const FileLocation& place, const std::string& name) {
   const auto warn = [&](const std::string& line) {
     reporter.warn_once("case " + name, place, line);
   };

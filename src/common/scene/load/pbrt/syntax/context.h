@@ -30,14 +30,14 @@ struct TextureMapping {
   bool is_uv() const { return kind == MappingKind::uv; }
   bool operator==(const TextureMapping& other) const;
 
-  /// Of a point of the world, as pbrt has it.
+  /// (u, v) of a point of the world, as in pbrt.
   Vec2 at(const Vec3& point) const;
 };
 
 /// The mapping that all have, or uv with a warning; uv of none. Textures are looked up by the
 /// coordinates of their surface, of which there are only one.
-TextureMapping common_mapping(const std::vector<TextureMapping>& mappings, const Place& place,
-                              Reporter& reporter);
+TextureMapping common_mapping(const std::vector<TextureMapping>& mappings,
+                              const FileLocation& place, Reporter& reporter);
 
 // What the making of one scene shares.
 
@@ -71,7 +71,7 @@ class Context {
 
   /// The file that a parameter names, beside the scene's own; one whose case differs is reported.
   /// Where there is none: the path for an error that names it.
-  std::filesystem::path resolve(const Place& place, const std::string& name);
+  std::filesystem::path resolve(const FileLocation& place, const std::string& name);
 
   /// By texture, while its value is being made: what refers to itself is an error.
   std::set<const Entity*> open_entities;
@@ -84,7 +84,7 @@ class Context {
   /// Whether a picture has an alpha that is not 1 everywhere.
   bool has_alpha(const std::filesystem::path& path);
 
-  /// Of the textures read since this was cleared. Two different ones tell as much as all.
+  /// Mappings of the textures read since this was cleared; two different ones tell as much as all.
   std::vector<TextureMapping> mappings;
   void add_mapping(const TextureMapping& mapping);
 

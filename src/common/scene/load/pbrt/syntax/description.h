@@ -49,14 +49,14 @@ struct ShapeEntity {
 
 struct InstanceEntity {
   std::string name;
-  Place place;
+  FileLocation place;
   Affine to_world;
   std::uint32_t group = 0;  ///< 0: it may be defined later
 };
 
 struct Description {
   std::filesystem::path folder;  ///< of the scene's own file
-  Place place;                   ///< its beginning
+  FileLocation place;            ///< its beginning
   bool is_earlier = false;       ///< of pbrt-v3 or before, as what it uses shows
   // Null: the file has none.
   EntityPointer camera, film, sampler, integrator, filter;

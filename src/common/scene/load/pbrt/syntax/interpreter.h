@@ -34,7 +34,7 @@ class Interpreter {
   // What directives do; the tables in directives*.cpp name them.
   struct Directive {
     TokenStream& tokens;
-    const Place& place;
+    const FileLocation& place;
     const std::string& name;
   };
   void transform(const Directive& directive);
@@ -61,7 +61,7 @@ class Interpreter {
 
  private:
   /// Says, once, that the file is one of pbrt-v3, as `what` shows.
-  void note_earlier(const Place& place, const std::string& what);
+  void note_earlier(const FileLocation& place, const std::string& what);
   void note_earlier_parameters(const std::vector<Parameter>& parameters);
   /// The name under which what is defined now is kept; that of a second one differs, and is what
   /// its name refers to from here on.
@@ -69,12 +69,12 @@ class Interpreter {
   std::string name_for(const Directive& directive, const char* what, const std::string& name,
                        const Table& table);
   void refer_to_newest(std::vector<Parameter>& parameters) const;
-  /// Of a directive that is ignored.
+  /// Reports a directive that is ignored.
   void report_bad(const Directive& directive, const std::string& message);
   std::string name_after(const Directive& directive) const;
   /// A type in quotes and parameters; those of the attribute `target` too.
   Entity read_entity(const Directive& directive, std::string_view target = {});
-  /// Of a file to include; empty where there is none, which is reported.
+  /// The path of a file to include; empty, and reported, where it does not exist.
   std::filesystem::path find(const std::string& name, const Directive& directive);
 
   Description& description_;

@@ -89,7 +89,7 @@ struct Glass {
   float index;
 };
 
-/// Of the makers' data sheets (n_d).
+/// n_d, from the makers' data sheets.
 constexpr std::array<Glass, 7> glasses = {{{"glass-BK7", 1.5168f},
                                            {"glass-BAF10", 1.67003f},
                                            {"glass-FK51A", 1.48656f},
@@ -103,7 +103,7 @@ struct Metal {
   Color eta, k;
 };
 
-/// Of pbrt's spectra, in daylight as the CIE 1931 observer sees them (spectrum_to_rgb). What the
+/// pbrt's spectra in daylight, as the CIE 1931 observer sees them (spectrum_to_rgb). What the
 /// metals reflect along the normal is within 0.022 of their spectra's sRGB (gold's red, which is
 /// 1.02, within 0.05). Mitsuba's numbers are those in light of equal energy.
 const std::array<Metal, 7> metals = {{

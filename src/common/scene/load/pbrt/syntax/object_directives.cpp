@@ -40,7 +40,7 @@ EntityPointer shared(Entity entity) { return std::make_shared<const Entity>(std:
 
 }  // namespace
 
-void Interpreter::note_earlier(const Place& place, const std::string& what) {
+void Interpreter::note_earlier(const FileLocation& place, const std::string& what) {
   if (std::exchange(description_.is_earlier, true)) return;
   reporter_.note(
       place,
@@ -184,7 +184,7 @@ void Interpreter::medium(const Directive& directive) {
   const std::string name = entity->type;
   if (!description_.media.try_emplace(name, entity).second) {
     reporter_.warn_once("medium named " + name, directive.place,
-                        "a medium '{}' was defined before: that holds", name);
+                        "a medium '{}' was defined before: the new one is ignored", name);
   }
 }
 

@@ -136,7 +136,7 @@ int whole(const Parameter& parameter, double number) {
 
 }  // namespace
 
-Parameters::Parameters(const Place& place, std::string what, std::vector<Parameter> own,
+Parameters::Parameters(const FileLocation& place, std::string what, std::vector<Parameter> own,
                        std::shared_ptr<const SharedParameters> inherited)
     : place_(place),
       what_(std::move(what)),

@@ -54,7 +54,7 @@ class Reporter {
 
   /// Reports what is replaced or ignored, once for each `kind`. Of kinds that begin with the same
   /// word there are at most ten: files may have any number of names.
-  void warn_once(const std::string& kind, const Place& place, const std::string& message) {
+  void warn_once(const std::string& kind, const FileLocation& place, const std::string& message) {
     int& family = families_[kind.substr(0, kind.find(' '))];
     if (family > most_of_a_family || !warned_.insert(kind).second) return;
     const bool is_last = ++family > most_of_a_family;
@@ -64,7 +64,7 @@ class Reporter {
 
   /// The same of a message with values in it.
   template <class First, class... Rest>
-  void warn_once(const std::string& kind, const Place& place,
+  void warn_once(const std::string& kind, const FileLocation& place,
                  fmt::format_string<First, Rest...> text, First&& first, Rest&&... rest) {
     warn_once(kind, place,
               fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
@@ -91,7 +91,7 @@ class Reporter {
   }
 
   /// Says what was chosen where the file leaves it open.
-  void note(const Place& place, const std::string& message) const {
+  void note(const FileLocation& place, const std::string& message) const {
     if (options_.warn) options_.warn(message_at(place, message));
   }
 
@@ -109,7 +109,7 @@ class Reporter {
 
 struct Parameter {
   std::string type, name;
-  Place place;
+  FileLocation place;
   ColorSpace space = ColorSpace::srgb;  ///< of colours in it
   std::vector<double> numbers;          ///< of all types but string, texture and bool
   std::vector<std::string> strings;     ///< of those, and of a spectrum that has a name
@@ -123,7 +123,7 @@ class Parameters {
  public:
   /// `what` names the directive in messages. Where both have a parameter, that of `own` holds;
   /// those of `inherited` may be of no use.
-  Parameters(const Place& place, std::string what, std::vector<Parameter> own,
+  Parameters(const FileLocation& place, std::string what, std::vector<Parameter> own,
              std::shared_ptr<const SharedParameters> inherited = {});
 
   /// The parameter of one of these types, or null. Throws Error for one of another type.
@@ -153,11 +153,11 @@ class Parameters {
   /// Warns of each parameter that nothing asked for.
   void report_unused(Reporter& reporter) const;
 
-  const Place& place() const { return place_; }
+  const FileLocation& place() const { return place_; }
   const std::string& what() const { return what_; }
 
  private:
-  Place place_;
+  FileLocation place_;
   std::string what_;
   std::vector<Parameter> own_;
   std::shared_ptr<const SharedParameters> inherited_;  ///< null: none

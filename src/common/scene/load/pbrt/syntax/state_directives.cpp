@@ -87,7 +87,7 @@ void check_map(const std::optional<Affine>& map, const Interpreter::Directive& d
   fail(directive.place, "{}: expected {}", directive.name, expected);
 }
 
-void check_finite(const Affine& map, const Place& place) {
+void check_finite(const Affine& map, const FileLocation& place) {
   for (const Vec4& row : map.row) {
     for (int i = 0; i < 4; ++i) {
       if (!std::isfinite(row[i])) fail(place, "a transformation with numbers that are not finite");

@@ -17,7 +17,7 @@
 
 namespace pt::pbrt {
 
-std::string Place::text() const { return fmt::format("{}:{}:{}", *file, line, column); }
+std::string FileLocation::text() const { return fmt::format("{}:{}:{}", *file, line, column); }
 
 namespace {
 
@@ -38,7 +38,7 @@ std::string with_short_names(std::string_view message) {
   return clipped(text.append(message), longest_message);
 }
 
-std::string message_at(const Place& place, std::string_view message) {
+std::string message_at(const FileLocation& place, std::string_view message) {
   return one_line(fmt::format("{}: {}", place.text(), with_short_names(message)));
 }
 
@@ -48,7 +48,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void fail(const Place& place, std::string_view message) { throw Error(message_at(place, message)); }
+void fail(const FileLocation& place, std::string_view message) {
+  throw Error(message_at(place, message));
+}
 
 namespace {
 
@@ -133,7 +135,7 @@ Tokenizer::Tokenizer(std::string content, const std::string& name)
   position_ = content_.size() - without_byte_order_mark(content_).size();
 }
 
-Place Tokenizer::place() const {
+FileLocation Tokenizer::place() const {
   return {name_, line_, static_cast<int>(position_ - line_start_) + 1};
 }
 
@@ -221,13 +223,13 @@ void TokenStream::open(const std::filesystem::path& path) {
   last_ = files_.back().tokens.place();
 }
 
-TokenStream::TokenStream(const std::filesystem::path& path, const Place& place,
+TokenStream::TokenStream(const std::filesystem::path& path, const FileLocation& place,
                          const TokenStream& parent)
     : parent_(&parent) {
   include(path, place);
 }
 
-void TokenStream::check_new(const std::filesystem::path& path, const Place& place) const {
+void TokenStream::check_new(const std::filesystem::path& path, const FileLocation& place) const {
   const std::filesystem::path own = canonical_of(path);
   std::size_t count = 0;
   for (const TokenStream* stream = this; stream; stream = stream->parent_) {
@@ -243,7 +245,7 @@ void TokenStream::check_new(const std::filesystem::path& path, const Place& plac
   }
 }
 
-void TokenStream::include(const std::filesystem::path& path, const Place& place) {
+void TokenStream::include(const std::filesystem::path& path, const FileLocation& place) {
   check_new(path, place);
   try {
     open(path);

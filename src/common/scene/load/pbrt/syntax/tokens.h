@@ -12,7 +12,7 @@
 
 namespace pt::pbrt {
 
-struct Place {
+struct FileLocation {
   std::shared_ptr<const std::string> file;
   int line = 0, column = 0;  ///< from 1
 
@@ -21,7 +21,7 @@ struct Place {
 };
 
 /// "FILE:LINE:COLUMN: message" in one line, with short names.
-std::string message_at(const Place& place, std::string_view message);
+std::string message_at(const FileLocation& place, std::string_view message);
 
 /// The same message with what stands in quotes, which may be as long as a file, cut to 80 bytes,
 /// and all of it to 800.
@@ -31,11 +31,11 @@ std::string with_short_names(std::string_view message);
 std::string one_line(std::string text);
 
 /// Throws Error with the place.
-[[noreturn]] void fail(const Place& place, std::string_view message);
+[[noreturn]] void fail(const FileLocation& place, std::string_view message);
 /// The same of a message with values in it.
 template <class First, class... Rest>
-[[noreturn]] void fail(const Place& place, fmt::format_string<First, Rest...> text, First&& first,
-                       Rest&&... rest) {
+[[noreturn]] void fail(const FileLocation& place, fmt::format_string<First, Rest...> text,
+                       First&& first, Rest&&... rest) {
   fail(place, fmt::format(text, std::forward<First>(first), std::forward<Rest>(rest)...));
 }
 
@@ -53,7 +53,7 @@ enum class TokenKind { word, string, open, close };  ///< open and close: bracke
 struct Token {
   TokenKind kind = TokenKind::word;
   std::string text;  ///< of a string: what is between the quotes, escapes resolved
-  Place place;
+  FileLocation place;
 };
 
 /// White space and comments, from # to the end of the line, are between tokens.
@@ -66,7 +66,7 @@ class Tokenizer {
   std::optional<Token> next();
 
   /// Where it has come to.
-  Place place() const;
+  FileLocation place() const;
 
  private:
   void skip_space();
@@ -85,10 +85,11 @@ double number_of(const Token& token);
 
 class TokenStream {
  public:
-  /// Of a scene's first file. Throws Error where it cannot be read.
+  /// Reads a scene's first file. Throws Error where it cannot be read.
   explicit TokenStream(const std::filesystem::path& path);
-  /// Of a file that is read, on its own, while those of `parent` are. Throws as include() does.
-  TokenStream(const std::filesystem::path& path, const Place& place, const TokenStream& parent);
+  /// Reads one file by itself while `parent` is read. Throws as include() does.
+  TokenStream(const std::filesystem::path& path, const FileLocation& place,
+              const TokenStream& parent);
 
   /// None where the last file ends.
   std::optional<Token> next();
@@ -100,7 +101,7 @@ class TokenStream {
   double expect_number(std::string_view what) { return number_of(expect(TokenKind::word, what)); }
 
   /// Goes on with the tokens of a file. Throws Error at `place` for one that is being read.
-  void include(const std::filesystem::path& path, const Place& place);
+  void include(const std::filesystem::path& path, const FileLocation& place);
 
   /// The folder of the file that is being read.
   std::filesystem::path folder() const;
@@ -112,12 +113,12 @@ class TokenStream {
   };
   void open(const std::filesystem::path& path);
   /// That a file is none of those being read.
-  void check_new(const std::filesystem::path& path, const Place& place) const;
+  void check_new(const std::filesystem::path& path, const FileLocation& place) const;
 
   const TokenStream* parent_ = nullptr;
   std::vector<File> files_;
   std::optional<Token> peeked_;
-  Place last_;
+  FileLocation last_;
 };
 
 }  // namespace pt::pbrt

@@ -1,4 +1,4 @@
-#include "common/scene/load/files/studio.h"
+#include "common/scene/load/files/default_lighting.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,6 @@
 #include "common/image/tone_mapping.h"
 #include "common/light/light.h"
 #include "common/scene/data/frame_scene.h"
-#include "common/scene/prepare/prepare_materials.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {
@@ -40,7 +39,7 @@ constexpr float weakest_emitter = 0.01f;  // what is less is no lamp
 /// Lights of a file are meant to light it, and a PNG's exposure is measured.
 constexpr LitRule by_lights{1e-6f, 0.0f};
 constexpr double lit_by_emission = 0.5, lit_by_lights = 0.02;
-/// Of a camera that was guessed and of the best one along an axis.
+/// For a camera that was guessed, and for the best one along an axis.
 constexpr double lit_as_framed = 0.2, lit_along_axis = 0.7;
 constexpr float tolerated_stops = 2.0f;
 
@@ -148,21 +147,21 @@ std::string dark_text(const SceneData& scene) {
         return !is_black(material.emission.radiance);
       }))
     what += what.empty() ? "emission" : " and emission";
-  if (what.empty()) return fmt::format("no light: {} is used", studio_text);
+  if (what.empty()) return fmt::format("no light: {} is used", default_lighting_text);
   return fmt::format("the file's {} {} little or nothing of what is seen: {} is added", what,
-                     scene.delta_lights.empty() ? "lights" : "light", studio_text);
+                     scene.delta_lights.empty() ? "lights" : "light", default_lighting_text);
 }
 
 }  // namespace
 
-float studio_radiance(const Vec3& direction) {
+float default_radiance(const Vec3& direction) {
   const Vec3 key = glm::normalize(Vec3(-1.0f, 1.1f, 0.9f));
   const float facing = std::max(0.0f, glm::dot(direction, key));
   const float ground = 1.0f + (1.0f - below) * std::min(direction.y, 0.0f);
   return grey * ground + key_light * std::pow(facing, key_exponent);
 }
 
-void add_studio(SceneData& scene) {
+void add_default_lighting(SceneData& scene) {
   EnvironmentData& map = scene.environment;
   map.width = 2 * map_height;
   map.height = map_height;
@@ -174,7 +173,7 @@ void add_studio(SceneData& scene) {
       const float azimuth = pi * ((static_cast<float>(column) + 0.5f) / map_height - 1.0f);
       const Vec3 direction(std::sin(from_zenith) * std::sin(azimuth), std::cos(from_zenith),
                            -std::sin(from_zenith) * std::cos(azimuth));
-      map.pixels.emplace_back(studio_radiance(direction));
+      map.pixels.emplace_back(default_radiance(direction));
     }
   }
   map.to_world = camera_axes(scene.camera);
@@ -188,7 +187,7 @@ std::string light_model(const LoadOptions& options, bool is_framed, SceneData& s
       has_lamp(scene, weakest_emitter) || has_bright_light(scene, by_lights.least);
   if (may_be_lit && is_lit(options.camera, is_framed, scene)) return "";
   const std::string text = dark_text(scene);
-  add_studio(scene);
+  add_default_lighting(scene);
   return text;
 }
 
@@ -196,7 +195,7 @@ std::string light_scene(const LoadOptions& options, SceneData& scene) {
   const bool wanted = options.default_lighting == DefaultLighting::on;
   if (wanted && scene.environment.width > 0)
     return "--default-lighting on: the scene has an environment, which is used instead";
-  if (wanted) add_studio(scene);
+  if (wanted) add_default_lighting(scene);
   constexpr float any = std::numeric_limits<float>::min();
   const bool glows = std::ranges::any_of(
       scene.media, [](const Medium& medium) { return !is_black(medium.emission); });

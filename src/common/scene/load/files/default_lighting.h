@@ -10,18 +10,18 @@
 namespace pt {
 
 /// For warnings: what is used where a file has no light.
-inline constexpr const char* studio_text =
+inline constexpr const char* default_lighting_text =
     "default lighting (bright behind and above the camera; --default-lighting off leaves it out)";
 
-/// Radiance from `direction` (a unit vector) in the studio's own space, where the camera looks
+/// Radiance from `direction` (a unit vector) in the lighting's own space, where the camera looks
 /// towards -z and +y is up in the image: grey, a little darker below, and a broad, soft light from
 /// above on the camera's left side and behind it. So white stands out from what is behind it, and
 /// so does black.
-float studio_radiance(const Vec3& direction);
+float default_radiance(const Vec3& direction);
 
-/// Makes the studio the scene's environment, rotated with the camera, and asks for a measured
+/// Makes it the scene's environment, rotated with the camera, and asks for a measured
 /// exposure.
-void add_studio(SceneData& scene);
+void add_default_lighting(SceneData& scene);
 
 /// Gives a model (glTF, OBJ, PLY), which has its camera, default lighting where it needs that or
 /// `options` want it. A model needs it where nothing lights it or, by a small picture through its
@@ -51,8 +51,8 @@ struct Glimpse {
   bool is_luminous = false;  ///< no such surface is seen
 };
 
-/// Of a scene that no renderer has prepared. The same on every machine: 32 x 32 pixels, 32 Sobol
-/// samples each, paths of 5 rays.
+/// Estimates the light in a scene that no renderer has prepared, with the same result on every
+/// machine: 32 x 32 pixels, 32 Sobol samples each, paths of 5 rays.
 class LightEstimate {
  public:
   /// Prepares a copy of the scene. Throws Error where it cannot be rendered.

@@ -1,0 +1,21 @@
+# Writes OUTPUT, lines of a C++ initializer, from the data file TABLE, whose lines are columns between
+# spaces; '#' begins a comment. ROW is one line, its columns as @1, @2, ...; without it, all columns are
+# numbers of one list.
+file(STRINGS ${TABLE} lines REGEX "^[^#]")
+set(text "")
+foreach(line IN LISTS lines)
+  string(REPLACE " " ";" columns "${line}")
+  if(ROW)
+    set(row "${ROW}")
+    set(number 1)
+    foreach(column IN LISTS columns)
+      string(REPLACE "@${number}" "${column}" row "${row}")
+      math(EXPR number "${number} + 1")
+    endforeach()
+  else()
+    string(JOIN ", " row ${columns})
+    string(APPEND row ",")
+  endif()
+  string(APPEND text "${row}\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}")
