@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "common/device/cuda/profiler_range.cuh"
 #include "common/error/error.h"
 #include "wavefront/wavefront.h"
 

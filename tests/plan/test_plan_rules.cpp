@@ -5,7 +5,7 @@
 #include "common/accel/traverse_triangles.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
-#include "common/plan/plan_rules.h"
+#include "common/plan/plan_steps.h"
 #include "common/scene/builtin/builtin_scenes.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/prepare_steps.h"

@@ -6,7 +6,7 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
-#include "common/plan/tree_times.h"
+#include "common/plan/plan_steps.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "common/plan/plan_rules.h"
+#include "common/plan/plan_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "medium/filled_glasses.h"
 #include "mode_cases.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/terminal/warning_limit.h"
+#include "common/device/cpu/cpu_renderer.h"
 #include "common/error/error.h"
 #include "common/render/film_renderer.h"
 #include "common/render/memory_share.h"

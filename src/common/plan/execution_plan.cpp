@@ -10,9 +10,8 @@
 #include "common/accel/traverse_triangles.h"
 #include "common/material/material.h"
 #include "common/options/option_names.h"
-#include "common/plan/plan_rules.h"
+#include "common/plan/plan_steps.h"
 #include "common/plan/render_properties.h"
-#include "common/plan/tree_times.h"
 
 namespace pt {
 namespace {

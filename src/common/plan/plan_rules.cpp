@@ -1,11 +1,10 @@
-#include "common/plan/plan_rules.h"
-
 #include <fmt/format.h>
 
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/error/error.h"
 #include "common/options/option_names.h"
 #include "common/plan/kernels.h"
+#include "common/plan/plan_steps.h"
 
 namespace pt {
 namespace {

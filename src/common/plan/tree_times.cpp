@@ -1,7 +1,7 @@
-#include "common/plan/tree_times.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "common/plan/plan_steps.h"
 
 namespace pt {
 namespace {

@@ -3,7 +3,6 @@
 #include "common/device/cuda/chain_kernels.cuh"
 #include "common/device/cuda/cuda_chains.cuh"
 #include "common/device/cuda/cuda_renderer.cuh"
-#include "common/device/cuda/profiler_range.cuh"
 
 namespace pt {
 

@@ -4,7 +4,6 @@
 
 #include "common/device/cuda/cuda_launcher.cuh"
 #include "common/device/cuda/film_kernels.cuh"
-#include "common/device/cuda/profiler_range.cuh"
 #include "common/device/cuda/stage_clock.h"
 #include "common/error/error.h"
 

@@ -8,7 +8,6 @@
 #include "common/device/cuda/cuda_launcher.cuh"
 #include "common/device/cuda/cuda_renderer.cuh"
 #include "common/device/cuda/film_kernels.cuh"
-#include "common/device/cuda/profiler_range.cuh"
 #include "common/device/cuda/stage_clock.h"
 #include "common/error/host_memory.h"
 #include "common/film/develop.h"

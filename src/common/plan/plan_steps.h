@@ -1,12 +1,24 @@
-// What a tree over triangles is expected to cost, built and traced: the choice of --builder auto.
+// What planning consists of: what cannot be had (plan_rules.cpp), and what a tree over triangles is
+// expected to cost, built and traced, by which --builder auto chooses (tree_times.cpp).
 #pragma once
 
 #include <vector>
 
-#include "common/options/options.h"
-#include "common/plan/render_properties.h"
+#include "common/plan/execution_plan.h"
+#include "common/plan/kernels.h"
 
 namespace pt {
+
+/// Before anything is chosen. Throws Error.
+void check_options_for_scene(const Options& options, const SceneProperties& scene);
+
+/// Which kernel a plan asks for; `on_cuda`: the device renders it, not a thread of the host.
+KernelNeed need_of(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
+                   bool on_cuda);
+
+/// What was chosen, with the options. Throws Error.
+void check_plan(const ExecutionPlan& plan, const Options& options, const SceneProperties& scene,
+                const DeviceProperties& device);
 
 /// How much there is to build and to trace.
 struct TreeWork {
