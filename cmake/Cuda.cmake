@@ -53,8 +53,9 @@ if(PTEXP_CUDA_FOUND)
   endif()
   # 20012: GLM 0.9.9 marks defaulted members __host__ __device__.
   target_compile_options(ptexp_cuda_flags INTERFACE
-    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 -lineinfo
+    $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012
     ${compression} -Xcompiler=-Wall,-Wno-unknown-pragmas,-ffp-contract=off>
+    $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_LINEINFO}>>:-lineinfo>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_WERROR}>>:-Werror=all-warnings>
     $<$<AND:$<COMPILE_LANGUAGE:CUDA>,$<BOOL:${PTEXP_FAST_MATH}>>:--use_fast_math>)
 endif()

@@ -43,10 +43,15 @@ void draw_for_surfaces(const StageContext<Source>& context, const Slots& slots, 
   if (has_lights) draw_block(context.source.seed, names, count, light);
 }
 
-#ifdef __x86_64__
-#define PT_SHADE [[gnu::flatten, gnu::target("avx2,bmi,bmi2,popcnt")]]
+#ifdef __SANITIZE_ADDRESS__  // which makes one function of all that take minutes to compile
+#define PT_FLATTEN
 #else
-#define PT_SHADE [[gnu::flatten]]
+#define PT_FLATTEN [[gnu::flatten]]
+#endif
+#ifdef __x86_64__
+#define PT_SHADE PT_FLATTEN [[gnu::target("avx2,bmi,bmi2,popcnt")]]
+#else
+#define PT_SHADE PT_FLATTEN
 #endif
 
 /// All that shading calls, but for what is never inlined, becomes one function, in which a path's
@@ -58,6 +63,7 @@ PT_SHADE Next shade_slot(const Stage& stage, const Scene& scene, std::uint32_t s
   return stage(scene, slot, 0);
 }
 #undef PT_SHADE
+#undef PT_FLATTEN
 
 /// As run_stage_cpu.
 template <class Traits, Branching branching, class Source>

@@ -111,8 +111,8 @@ class RayPaths {
       const Hit hit = intersect_closest<Traits>(scene_, ray);
       ++path.rays;
       if (hit.is_miss()) return no_ray;
-      const Scattering next = surface_scattering<Traits>(scene_, ray, hit, path, settings,
-                                                         eager_shading<Traits>(random, path));
+      const Scattering next = surface_scattering<ShadingTraits<Traits>>(
+          scene_, ray, hit, path, settings, eager_shading<Traits>(random, path));
       if (!next.alive) return no_ray;
       ray = next.ray;
     }
@@ -126,7 +126,7 @@ class RayPaths {
   Hit trace(const RayRecord& ray) const { return intersect_closest<Traits>(scene_, ray.ray()); }
 
   Vec3 normal_at(const RayRecord& ray, const Hit& hit) const {
-    return surface_at<Traits>(scene_, ray.ray(), hit).point.normal;
+    return surface_at<ShadingTraits<Traits>>(scene_, ray.ray(), hit).point.normal;
   }
 
   const Scene& scene_;

@@ -140,14 +140,15 @@ PT_HD FirstHit first_hit_of_path(const Scene& scene, const Source& source, const
   const std::uint32_t key = path_hash<Traits>(scene, id);
   if constexpr (Traits::has_media) {
     ViewThroughMedia view = look_through_media<Traits>(scene, ray, key);
-    FirstHit first = first_hit<Traits>(scene, view.ray, view.hit, random.draw(scatter_block(1)));
+    FirstHit first =
+        first_hit<ShadingTraits<Traits>>(scene, view.ray, view.hit, random.draw(scatter_block(1)));
     if (!view.hit.is_miss()) first.distance += near_plane + view.distance;
     first.collision = view.collides ? near_plane + view.collision : first.distance;
     first.transmittance = view.transmittance;
     return first;
   }
   const Hit hit = intersect_closest<Traits>(scene, ray, next_ray_key(scene, key, 0));
-  FirstHit first = first_hit<Traits>(scene, ray, hit, random.draw(scatter_block(1)));
+  FirstHit first = first_hit<ShadingTraits<Traits>>(scene, ray, hit, random.draw(scatter_block(1)));
   if (!hit.is_miss()) first.distance += near_plane;
   first.collision = first.distance;
   return first;
