@@ -313,6 +313,21 @@ class Statistics(CommandLine):
         self.assert_refused(self.render("--csv", "runs.csv", "--output", "image.ppm"), "runs.csv")
         self.assertEqual((self.folder / "runs.csv").read_text(encoding="ascii"), "a,b\n1,2\n")
 
+    def test_the_wall_time_of_the_process_is_divided(self):
+        begin = time.monotonic()
+        self.render_ok("--scene", "boxes", "--spp", "16", "--stats", "run.json", "--csv", "runs.csv")
+        wall_ms = 1e3 * (time.monotonic() - begin)
+        times = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))["process_ms"]
+        total = times.pop("total")
+        self.assertAlmostEqual(total, sum(times.values()), delta=1e-3)
+        self.assertGreaterEqual(min(times.values()), 0)
+        clock_ms = 10  # of the process's begin
+        self.assertLess(total, wall_ms + 2 * clock_ms)
+        self.assertGreater(times["render"], 0.3 * total)
+        with open(self.folder / "runs.csv", newline="", encoding="utf-8") as file:
+            row = next(csv.DictReader(file))
+        self.assertAlmostEqual(float(row["process_total_ms"]), total, delta=1e-3)
+
     def test_json_is_complete(self):
         self.render_ok("--stats", "run.json", "--repeat", "3", "--warmup", "1")
         text = (self.folder / "run.json").read_text(encoding="utf-8")

@@ -57,6 +57,7 @@ RenderReport unequal_report() {
                   {"sbvh", 301, 302, 303, 304.5, 305.5, 306.5}};
   report.scene_ms = 401.5, report.setup_ms = 402.5, report.load_ms = 403.5;
   report.transfer_ms = 404.5, report.image_write_ms = 405.5;
+  report.process_ms = {501.5, 502.5, 503.5, 504.5, 505.5, 506.5, 507.5};
   report.exposure = 2.25f;
   report.counts = {11'000'000, 22'000'000, 5'500'000, 13, {11'000'000, 8'000'000, 3'000'000}};
   report.runs = {first_run(), last_run()};
@@ -90,6 +91,8 @@ constexpr const char* expected_json = R"({
   "time_ms": {"kernel": {"median": 5.5, "min": 3.0, "max": 8.0},
               "wall": {"median": 7.5, "min": 5.0, "max": 10.0}, "scene": 401.5, "setup": 402.5,
               "load": 403.5, "transfer": 404.5, "image_write": 405.5},
+  "process_ms": {"start": 501.5, "devices": 502.5, "scene": 503.5, "prepare": 504.5,
+                 "setup": 505.5, "render": 506.5, "image": 507.5, "total": 3531.5},
   "rates": {"mpaths_per_s": 2000.0, "mrays_per_s": 5000.0},
   "waves": 23, "launches": 64,
   "stages": [
@@ -223,6 +226,14 @@ TEST(ReportFields, OfTheCsv) {
       {"load_ms", "403.500000"},
       {"transfer_ms", "404.500000"},
       {"image_write_ms", "405.500000"},
+      {"process_start_ms", "501.500000"},
+      {"process_devices_ms", "502.500000"},
+      {"process_scene_ms", "503.500000"},
+      {"process_prepare_ms", "504.500000"},
+      {"process_setup_ms", "505.500000"},
+      {"process_render_ms", "506.500000"},
+      {"process_image_ms", "507.500000"},
+      {"process_total_ms", "3531.500000"},
       {"memory_bytes", "3072"},
       {"kernels", "intersect:61:16:128:256:0.7812;shadow:43:8:32:192:0.6250"},
       {"counters_problem", ""},
@@ -313,6 +324,7 @@ ended by                time_limit
 standard error            0.156250  of the image's mean luminance
 
 not in the kernel time: scene 401.5 ms, set-up 402.5 ms, loading kernels 403.5 ms, transfer 404.5 ms, writing the image 405.5 ms
+process 3532 ms: start 502, devices 502, scene 504, preparing 504, set-up 506, rendering 506, image 508
 )");
 }
 

@@ -33,6 +33,24 @@ double timed_ms(const Work& work) {
   return 1e3 * (steady_seconds() - begin_s);
 }
 
+/// Divides the wall time of the process.
+class ProcessClock {
+ public:
+  ProcessClock() : last_s_(steady_seconds()) { times_.start = 1e3 * process_age_s(); }
+
+  /// What has passed since the last call belongs to `part`.
+  void end(double ProcessTimes::*part) {
+    const double now_s = steady_seconds();
+    times_.*part += 1e3 * (now_s - last_s_);
+    last_s_ = now_s;
+  }
+  const ProcessTimes& times() const { return times_; }
+
+ private:
+  ProcessTimes times_;
+  double last_s_;
+};
+
 /// Finds and prints the devices. The options then name these.
 std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given,
                                      const Ranks& ranks) {
@@ -64,7 +82,7 @@ std::optional<float> choose_exposure(const Options& options, const Image& image,
 /// checkpoint has all samples, too.
 void write_outputs(const Options& options, const Image& image, const std::string& scene_hash,
                    Renderer& renderer, RenderReport& report, bool has_checkpoint,
-                   Attempts& attempts) {
+                   Attempts& attempts, ProcessClock& clock) {
   const bool is_part = options.part.count > 1;  // its film is in the checkpoint
   const ToneMapping tone_mapping{report.exposure.value_or(0.0f)};
   bool is_written = has_checkpoint;
@@ -81,6 +99,8 @@ void write_outputs(const Options& options, const Image& image, const std::string
         },
         advice);
   }
+  clock.end(&ProcessTimes::image);
+  report.process_ms = clock.times();
   if (options.counters && is_complete(options, report))
     report.counters = count_hardware(renderer, print_warning);
   if (!options.quiet) {
@@ -160,24 +180,28 @@ std::future<LoadedScene> load_early(const Options& options, Ranks& ranks) {
 
 /// `resumption`: the checkpoint that goes on, or null.
 int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumption) {
+  ProcessClock clock;
   Options options = command.options;
   const bool is_first = ranks.is_first();
   if (is_first) check_outputs(options);
   options.quiet |= !is_first;
+  if (is_first) end_on_signal(": no sample was finished, no image written");
   std::future<LoadedScene> early = load_early(options, ranks);
   const std::vector<DeviceInfo> devices = find_devices(options, command.given, ranks);
   if (ranks.count() > 1) check_ranks(ranks, options, devices.front());
   if (const std::string text = binding_warning(ranks.own()); is_first && !text.empty())
     print_warning(text);
-  if (is_first) end_on_signal(": no sample was finished, no image written");
   std::optional<DeviceOpening> opening;
   if (options.mode != Mode::serial && !options.explain) opening.emplace(devices);
+
+  clock.end(&ProcessTimes::devices);
 
   RenderReport report;
   SceneData scene;
   std::vector<ExecutionPlan> plans;
   LoadedScene loaded = early.valid() ? early.get() : load_timed(options, devices.front(), ranks);
   scene = std::move(loaded.scene);
+  clock.end(&ProcessTimes::scene);
   report.scene_ms = loaded.load_ms + timed_ms([&] {
                       apply_defaults(scene.defaults, command.given, options);
                       resolve_scene(scene, options);
@@ -200,11 +224,14 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
     print("{}", scene_text(report.scene));
     flush_printed();
   }
+  clock.end(&ProcessTimes::prepare);
   Rendering rendering(options, plans, scene, devices, {&ranks, resumption, print_warning});
   Renderer& renderer = rendering.renderer();
 
   note_signals(!options.checkpoint.file.empty());
+  clock.end(&ProcessTimes::setup);
   const Measurement measurement = measure_and_show(rendering, options);
+  clock.end(&ProcessTimes::render);
   const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   const std::string& problem = rendering.checkpoint_problem();
   const bool has_checkpoint = !options.checkpoint.file.empty() && problem.empty();
@@ -219,7 +246,8 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
     if (const std::string text = black_image_text(options, image); !text.empty())
       print_warning(text);
     report.exposure = choose_exposure(options, image, scene.defaults.measure_exposure);
-    write_outputs(options, image, scene.source_hash, renderer, report, has_checkpoint, attempts);
+    write_outputs(options, image, scene.source_hash, renderer, report, has_checkpoint, attempts,
+                  clock);
   }
   if (measurement.interrupted) say_interrupted(options, measurement, has_image, has_checkpoint);
   attempts.check();

@@ -54,7 +54,7 @@ std::vector<std::pair<std::string, double>> counter_fields(const KernelCounters&
 
 /// Version of the JSON and the CSV. Raise it, and change docs/statistics.md, whenever a field is
 /// added or removed or changes its name, unit or meaning.
-inline constexpr int report_schema_version = 13;
+inline constexpr int report_schema_version = 14;
 
 /// Every repeat ran, and the last one had all its samples.
 bool is_complete(const Options& options, const RenderReport& report);

@@ -150,6 +150,14 @@ std::string counter_rows(const HardwareCounters& counters) {
   return text;
 }
 
+std::string process_row(const ProcessTimes& t) {
+  if (t.total() == 0) return "";
+  return fmt::format(
+      "process {:.0f} ms: start {:.0f}, devices {:.0f}, scene {:.0f}, preparing {:.0f}, set-up "
+      "{:.0f}, rendering {:.0f}, image {:.0f}\n",
+      t.total(), t.start, t.devices, t.scene, t.prepare, t.setup, t.render, t.image);
+}
+
 }  // namespace
 
 bool is_complete(const Options& options, const RenderReport& report) {
@@ -173,6 +181,7 @@ std::string report_table(const Options& options, const RenderReport& report) {
              report.scene_ms, report.setup_ms,
              report.load_ms > 0 ? fmt::format("loading kernels {:.1f} ms, ", report.load_ms) : "",
              report.transfer_ms, report.image_write_ms) +
+         process_row(report.process_ms) +
          (report.counters ? '\n' + counter_rows(*report.counters) : "") + divergence_rows(report);
 }
 

@@ -2,13 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 #include <initializer_list>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "common/error/error.h"
@@ -71,6 +76,23 @@ void note_signals(bool usr1) {
 
 void ignore_signals() {
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
+}
+
+// The name in the line, field 2, may have spaces and ends by the last bracket; proc(5): the process
+// was begun at field 22, in clock ticks since the machine was.
+double process_age_s() {
+  std::ifstream file("/proc/self/stat");
+  std::string line;
+  std::getline(file, line);
+  std::istringstream fields(line.substr(line.find_last_of(')') + 1));
+  std::string skipped;
+  for (int field = 3; field < 22; ++field) fields >> skipped;
+  double begin_ticks = 0;
+  timespec now{};
+  if (!(fields >> begin_ticks) || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return 0;
+  const double begin_s = begin_ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return std::max(
+      0.0, static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - begin_s);
 }
 
 bool interrupted() { return signalled != 0; }

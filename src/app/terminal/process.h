@@ -1,4 +1,4 @@
-// Signals and standard streams of the process.
+// Signals, standard streams and the age of the process.
 #pragma once
 
 namespace pt {
@@ -23,6 +23,10 @@ bool interrupted();
 
 /// 128 and the signal's number, as shells have it: 130 after SIGINT, 143 after SIGTERM.
 int exit_code_of_signal();
+
+/// Seconds since the process was begun, in steps of the kernel's clock (10 ms); 0 where /proc is
+/// not there.
+double process_age_s();
 
 // What is printed is a result: if it cannot be written, the program has failed.
 

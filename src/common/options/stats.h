@@ -125,6 +125,21 @@ struct SceneFacts {
   TreeFacts tree;
 };
 
+/// Where the wall time of a process went (ms): one after the other, so that the sum is what has
+/// passed since it was begun. What follows the statistics is missing: the end of CUDA, freed
+/// memory.
+struct ProcessTimes {
+  double start = 0;    ///< until the command runs, to 10 ms: libraries, options
+  double devices = 0;  ///< looking for them, while the scene is read
+  double scene = 0;    ///< waiting for the scene to be read
+  double prepare = 0;  ///< its plan, trees and lights
+  double setup = 0;    ///< waiting for the device's context, buffers, upload
+  double render = 0;   ///< all renders, warm-ups, and the loading of kernels
+  double image = 0;    ///< download, development, encoding, the file
+
+  double total() const { return start + devices + scene + prepare + setup + render + image; }
+};
+
 struct RenderReport {
   std::string device_name;     ///< e.g. "NVIDIA H200" or "CPU, 8 threads"
   std::string device_kind;     ///< "cpu" or "cuda"
@@ -143,6 +158,7 @@ struct RenderReport {
   double load_ms = 0;      ///< loading of kernels, before the first render; 0 on the CPU
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
+  ProcessTimes process_ms;        ///< zeros where the process renders several images
   std::optional<float> exposure;  ///< stops by which a PNG or PPM was multiplied
   PathCounts counts;
   std::vector<RenderRun> runs;  ///< the measured repeats
