@@ -77,7 +77,7 @@ def fit_loss(is_beckmann):
 
 
 def fit_average(coefficients, is_beckmann):
-    """Of the fitted loss; its error counts as much as it changes the albedo at most."""
+    """The average of the fitted loss; its error counts as much as it changes the albedo at most."""
     x, weight = np.polynomial.legendre.leggauss(16)
     alphas = np.concatenate([np.geomspace(1e-4, 0.05, 60), np.linspace(0.05, 1, 60)])
     averages, largest = [], []

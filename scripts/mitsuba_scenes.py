@@ -29,7 +29,7 @@ def values(parameters):
 
 
 def spectrum(name, *samples):
-    """Of samples every 50 nm."""
+    """A spectrum of samples every 50 nm."""
     pairs = ", ".join(f"{400 + 50 * i}:{value}" for i, value in enumerate(samples))
     return tag("spectrum", name, pairs)
 
@@ -259,7 +259,7 @@ def large(inside):
 ROUGH = {"distribution": "ggx", "alpha": "[0.3]"}
 BECKMANN = {"distribution": "beckmann", "alpha": "[0.3]"}
 MAPPED = diffuse("[0.8] 0.3 0.1")
-# Of wavelengths.
+# eta and k by wavelength.
 GOLD = spectrum("eta", 1.66, 1.5, 0.92, 0.35, 0.24, 0.16, 0.13) + spectrum(
     "k", 1.95, 1.88, 1.85, 2.69, 3.07, 3.59, 4.1)
 GLASS = bsdf("dielectric", int_ior=1.5, ext_ior=1.0)
@@ -374,7 +374,7 @@ SCENES = {
     "light_cube": mesh_lamp("cube", scale(0.3, 0.2, 0.4) + rotate("y", 20) + move(-0.3, 1.8, 0.4)),
     "light_cylinder": mesh_lamp("cylinder", scale(0.2, 0.2, 1.5) + rotate("y", 70)
                                 + move(-1, 1.9, 0.4)),
-    # Of smooth normals Mitsuba 3.9.1 takes the cosine of the interpolated one: 1 % too bright.
+    # With smooth normals Mitsuba 3.9.1 takes the interpolated cosine: 1 % too bright.
     "light_mesh": mesh_lamp("ply", scale(0.8) + rotate("x", 110) + move(-0.5, 2, 0.4),
                             filename="patch.ply", face_normals=True),
     "light_textured": lit_by(shape("rectangle", DOWN + scale(1.2, 1, 0.9) + move(-0.4, 1.9, 0.4),

@@ -132,7 +132,7 @@ UNPRINTABLE = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u2
 
 
 def printable(value):
-    """Of JSON: the same without characters that no page can show."""
+    """The same JSON without characters that no page can show."""
     if isinstance(value, str):
         return UNPRINTABLE.sub("?", value)
     if isinstance(value, list):

@@ -101,7 +101,7 @@ def about_panel(rows, style):
 
 
 def about_mark(table):
-    """Of each series, where its interval is above the mark: one sentence for all panels."""
+    """Where each series' interval is above the mark: one sentence for all panels."""
     mark, never = f"{table.plot['mark']:g}", []
     for series, rows in in_groups([row for row in table.drawn if is_measured(row)],
                                   "series").items():

@@ -1,4 +1,4 @@
-// Of triangles at one distance the one of the lowest number is met, then the lowest instance: known
+// A ray hits the lowest triangle of those at one distance, then the lowest instance: known
 // without asking any structure, so that an error which all of them share is seen too.
 #include <gtest/gtest.h>
 

@@ -601,7 +601,7 @@ class Streams(CommandLine):
             os.close(writer)
             self.assertEqual(code, 0)
             self.assert_image()
-        # Of what is printed it is the end, as of other programs.
+        # A closed pipe ends what is printed, as in other programs.
         reader, writer = os.pipe()
         os.close(reader)
         self.assertEqual(self.run_streams("--help", stdout=writer), -signal.SIGPIPE)

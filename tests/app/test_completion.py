@@ -57,7 +57,7 @@ class Help(unittest.TestCase):
 
 
 class Completion:
-    """Of one shell: complete(words) lists what it offers for the last of them."""
+    """Completion by one shell: complete(words) lists what it offers for the last of them."""
     shell = ""
 
     def setUp(self):

@@ -29,7 +29,7 @@ SCENE = """<scene version="3.0.0">
 
 
 def library():
-    """Of the program: "Open MPI v4.1.4", "MPICH ...", or "off"."""
+    """The program's MPI: "Open MPI v4.1.4", "MPICH ...", or "off"."""
     text = subprocess.run([PTEXP, "--version"], capture_output=True, text=True, check=True).stdout
     return re.search(r"^MPI (.*)$", text, re.M)[1]
 

@@ -142,7 +142,7 @@ TEST(Definitions, AreOneTextWhateverTheirValues) {
   std::map<std::string, std::string> again;
   for (const std::string& one : split_definitions(text)) parse_definition("define", one, again);
   EXPECT_EQ(again, all);
-  // Of files that were written before, without a code.
+  // Files that were written before have no code.
   EXPECT_EQ(split_definitions("a=1 b=50% c=%zz%2 d=1%"),
             (Texts{"a=1", "b=50%", "c=%zz%2", "d=1%"}));
   EXPECT_EQ(split_definitions(""), Texts{});

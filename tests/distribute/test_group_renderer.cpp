@@ -319,7 +319,7 @@ std::string text_of(const std::vector<BufferSize>& memory) {
   return text;
 }
 
-// Of devices that still work, each once; names are those of devices in their order.
+// Devices that still work are named once each, in their order.
 TEST(GroupRenderer, DescribesAllDevicesTogether) {
   struct Case {
     std::vector<std::tuple<std::string, std::vector<BufferSize>, bool>> devices;
@@ -378,7 +378,7 @@ TEST(GroupRenderer, UnitsDoNotShrinkForTheirOverhead) {
   EXPECT_LT(run.devices[0].units + run.devices[1].units, 3000u);
 }
 
-/// Of a speed in paths per second.
+/// Has a speed in paths per second.
 class TimedWorker : public FakeWorker {
  public:
   explicit TimedWorker(double speed, int fails_at = 0) : FakeWorker(fails_at), speed_(speed) {}

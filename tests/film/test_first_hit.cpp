@@ -106,7 +106,7 @@ void expect_found(const Found& found, const Expected& expected) {
   EXPECT_NEAR(found.uv.y, expected.uv.y, 2e-5);
 }
 
-/// Of the point p of a triangle in the plane of x and y.
+/// Barycentric weights of the point p of a triangle in the plane of x and y.
 Vec3 weights_at(const Vec3& p, const Vec3 (&v)[3]) {
   const auto area = [](const Vec3& a, const Vec3& b) { return a.x * b.y - a.y * b.x; };
   const float whole = area(v[1] - v[0], v[2] - v[0]);

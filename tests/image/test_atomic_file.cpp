@@ -278,7 +278,7 @@ TEST(AtomicFile, OneFileHasManyNames) {
   fs::create_symlink("pipe", folder.file("other"));
   EXPECT_TRUE(is_same_file(folder.file("pipe"), folder.file("./pipe")));
   EXPECT_FALSE(is_same_file(folder.file("pipe"), folder.file("other"))) << "nothing is replaced";
-  // Of files that do not exist yet.
+  // Files that do not exist yet.
   EXPECT_TRUE(is_same_file(folder.file("new"), folder.file("here/new")));
   EXPECT_FALSE(is_same_file(folder.file("new"), folder.file("newer")));
   EXPECT_FALSE(is_same_file(folder.file("new"), a));

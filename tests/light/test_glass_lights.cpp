@@ -8,7 +8,7 @@ namespace pt {
 namespace {
 
 constexpr float eta = 1.5f, eta2 = eta * eta;
-/// Of light that meets a surface of this glass head-on.
+/// Transmittance of a surface of this glass at normal incidence.
 constexpr double passes = 1 - 0.2 * 0.2;
 
 /// A unit ball of glass around the origin and a camera of a narrow view towards it.

@@ -143,7 +143,7 @@ TEST(LightTree, FindsEachOfManyLights) {
   for (int i = 0; i < 200'000; ++i) {
     found.insert(selector.sample({0, 0, 3}, {}, random.unit(), random.unit()).light);
   }
-  // Of n lights each one is missed with a probability of e^-10.
+  // Each of n lights is missed with a probability of e^-10.
   EXPECT_NEAR(static_cast<double>(found.size()), 2e4 * (1 - std::exp(-10.0)), 5);
   EXPECT_NEAR(selector.pmf({0, 0, 3}, {}, 7'777), 5e-5, 2.5e-5);
 }

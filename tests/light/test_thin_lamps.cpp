@@ -35,7 +35,7 @@ struct ThinLamp {
     return scene;
   }
 
-  /// Of a surface that faces the lamp, up to 1,000 times as far away as the lamp is long.
+  /// A surface that faces the lamp, up to 1,000 times as far away as the lamp is long.
   SurfacePoint receiver(TestRandom& random) const {
     const glm::dvec3 from_lamp = random.direction();
     const Vec3 position = 0.5f * (v[0] + v[1]) + Vec3(random.log_uniform(0.1, 1e3) * from_lamp);

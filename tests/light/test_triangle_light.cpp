@@ -219,7 +219,7 @@ TEST(DeltaLight, EverySpotFallsFromOneToZero) {
   }
 }
 
-/// Of a white light: its weight is the power's luminance over pi.
+/// For a white light, whose weight is the power's luminance over pi.
 double power_of(const DeltaLight& light, float scene_radius) {
   return pi_double * double{make_light(light, scene_radius).weight};
 }

@@ -14,7 +14,7 @@ struct Numbers {
   float a, b;
 };
 
-/// Of either sign, the absolute value between 2^-50 and 2^50.
+/// Has either sign, and an absolute value between 2^-50 and 2^50.
 float spread(std::uint32_t bits) {
   const float fraction = bits_to_float(0x3f800000u | (bits & 0x807fffffu));
   return std::ldexp(fraction, static_cast<int>(bits >> 23 & 0xffu) % 100 - 50);

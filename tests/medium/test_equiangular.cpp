@@ -14,7 +14,7 @@ struct EquiangularCase {
   float t_max;
 };
 
-/// Of a ray from (1, 2, 3) along +x.
+/// Along +x from (1, 2, 3).
 const Ray equiangular_ray{Vec3(1, 2, 3), Vec3(1, 0, 0)};
 const EquiangularCase equiangular_cases[] = {{{2, 2, 4}, 3},
                                              {{1, 2.5, 3}, 3},

@@ -61,7 +61,7 @@ TEST(FreeFlight, DistancesOfGreyMediaAreExponential) {
   expect_uniform(counts, samples, "distances");
 }
 
-/// Of many flights, in each channel: what arrives, and what has collided before `t`.
+/// Means over many flights, in each channel: what arrives, and what has collided before `t`.
 struct FlightMeans {
   MeanEstimate arrived[3], before[3];
 
@@ -147,7 +147,7 @@ TEST(FreeFlight, ARayToInfinityCollidesUnlessAChannelIsClear) {
   EXPECT_EQ(weight, Color(1.0f));
 }
 
-// Of media one behind the other: the channel is chosen again, as what the path has met demands.
+// In media one behind the other the channel is chosen again, by what the path has crossed.
 TEST(FreeFlight, LegsOfAPathMultiply) {
   const Color second(2.0f, 0.1f, 0.7f);
   TestRandom random(16);

@@ -293,7 +293,7 @@ std::vector<double> layer_means(const Image& image, const std::string& name) {
   throw std::runtime_error("no layer " + name);
 }
 
-// Of a wall behind two media that do not touch: along the whole ray, not from the last boundary.
+// To a wall behind two media that do not touch: along the whole ray, not from the last boundary.
 TEST(MediumLayers, ReachThroughAllBoundaries) {
   const Color near(0.4f, 0.1f, 0.7f), far(0.2f, 0.9f, 0.3f);
   for (const CloudShape shape : {CloudShape::quads, CloudShape::mesh_box}) {

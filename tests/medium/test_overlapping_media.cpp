@@ -43,7 +43,8 @@ struct Body {
   }
 };
 
-/// Of different priorities, in a random order, in a small place; black surfaces lie within others.
+/// Bodies of different priorities, in a random order, in a small place; black surfaces lie within
+/// others.
 std::vector<Body> random_bodies(TestRandom& random, std::size_t count) {
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < count; ++i) {

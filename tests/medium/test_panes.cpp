@@ -10,8 +10,8 @@
 namespace pt {
 namespace {
 
-/// Of a thin slab, in double precision: what of unpolarised light gets through after any number of
-/// reflections within.
+/// The unpolarised light that a thin slab transmits after any number of internal reflections, in
+/// double precision.
 double slab_transmittance(double cosine, double eta) {
   const double inside = std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
   const double s = (cosine - eta * inside) / (cosine + eta * inside);

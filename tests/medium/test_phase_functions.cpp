@@ -93,7 +93,7 @@ TEST(PhaseFunctions, SamplesHaveTheValueOfTheirDirection) {
     for (int i = 0; i < 1000; ++i) {
       const Vec3 direction = normalize(Vec3(random.direction()));
       const PhaseSample sample = sample_phase(phase, direction, random.unit(), random.unit());
-      // Of a peak the cosine's own rounding changes the value.
+      // At a peak the cosine's own rounding changes the value.
       const float value = phase.value(dot(direction, sample.wi));
       EXPECT_NEAR(sample.pdf, value, 0.02 * value + 1e-6);
     }

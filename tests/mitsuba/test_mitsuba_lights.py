@@ -25,7 +25,7 @@ def our_image(path, spp, seed=1, *options):
 
 
 def mean_and_error(images):
-    """Of independent images: mean of all pixels and its standard error."""
+    """Mean of all pixels of independent images, and its standard error."""
     means = np.array([image.mean() for image in images])
     return means.mean(), means.std(ddof=1) / np.sqrt(len(means))
 

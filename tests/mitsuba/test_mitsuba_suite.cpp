@@ -15,7 +15,7 @@ namespace {
 
 std::string suite_file(const std::string& name) { return test_data("mitsuba_suite/" + name); }
 
-/// Of all scenes, sorted.
+/// The names of all scenes, sorted.
 std::vector<std::string> suite_scenes() {
   std::vector<std::string> names;
   std::error_code missing;

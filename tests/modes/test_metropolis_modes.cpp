@@ -75,7 +75,7 @@ TEST_P(MetropolisModes, EqualSerial) {
   EXPECT_GT(differing_pixels(render_mlt(also({{"chains", "996"}})).image, serial.image), 300u);
 }
 
-/// Of 8 x 6 tiles and of the image, the last one: the means over some seeds.
+/// Means over some seeds of 8 x 6 tiles and, last, of the image.
 std::vector<MeanEstimate> tile_means(const Settings& settings, int seeds) {
   std::vector<MeanEstimate> tiles(49);
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -141,7 +141,7 @@ TEST(Metropolis, OneChainAndOneBootstrapPathAreEnough) {
   const Rendered one = render_mlt({{"chains", "1"}, {"spp", "2"}});
   EXPECT_EQ(one.run.metropolis->mutations, 31u * 19u * 2u);
   for (const float value : one.image.rgb) EXPECT_TRUE(std::isfinite(value) && value >= 0);
-  // Of those bootstraps that find light at all.
+  // Counts the bootstraps that find light at all.
   int rendered = 0;
   for (int seed = 1; seed <= 10; ++seed) {
     const Settings settings{

@@ -109,7 +109,7 @@ TEST(Passes, OfMarkovChainsAreRefused) {
   EXPECT_THROW(ready.renderer->add(1, {}), Error);
 }
 
-// Of a scene of triangles: move_camera refuses spheres, whose bounds depend on its place.
+// In a scene of triangles: move_camera refuses spheres, whose bounds depend on its place.
 TEST(Cameras, OfARendererCanBeChanged) {
   const Settings moved{{"look-from", "0.3,0.7,2.5"}, {"look-at", "0,0.4,0"}, {"fov", "50"}};
   for (const PassCase& one : pass_cases()) {

@@ -121,7 +121,7 @@ TEST(SamplingModes, ManyLampsByTreeEqualSerial) {
   }
 }
 
-/// Of 8 x 6 tiles: the means over some seeds.
+/// Means over some seeds of 8 x 6 tiles.
 std::vector<MeanEstimate> tile_means(const Settings& settings, int first_seed, int seeds) {
   std::vector<MeanEstimate> tiles(48);
   for (int seed = first_seed; seed < first_seed + seeds; ++seed) {

@@ -550,7 +550,7 @@ TEST(ExecutionPlan, WhatADeviceLacksIsRefused) {
   expect_refused(shared, many, gpu(48),
                  "--scene-memory shared: the scene's 8000 spheres take 64000 bytes");
   EXPECT_EQ(plan_of(shared, many, gpu()).scene_memory, SceneMemory::shared);
-  // Of what a block may have, 2 KiB are the kernel's own.
+  // The kernel itself needs 2 KiB of what a block may have.
   const auto with_scan = [](std::size_t bytes) {
     return changed(spheres(8000), [&](auto& s) { s.scan_bytes = bytes; });
   };

@@ -11,7 +11,7 @@
 namespace pt {
 namespace {
 
-/// Of a ray's traversal: how many steps, after each third of which a leaf is tested.
+/// The steps of a ray's traversal; after each third one it tests a leaf.
 std::uint32_t cost_of(std::uint32_t ray_id) { return ray_id % 7 == 0 ? 0 : ray_id * 37 % 23; }
 
 struct CountedQuery {

@@ -164,7 +164,7 @@ TEST(Stops, EstimateTheError) {
     }
     const double pixels = static_cast<double>(reference.rgb.size()) / 3;
     const double found = std::sqrt(squares / pixels) / (sum / pixels);
-    // Of 192 pixels with skewed errors the root of the mean square is known to a third.
+    // 192 pixels with skewed errors give the root of the mean square to a third.
     EXPECT_NEAR(stopped.run.relative_error.value() / found, 1.0, 0.35) << filter;
     EXPECT_LE(stopped.run.relative_error.value(), 0.15);
   }

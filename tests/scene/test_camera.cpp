@@ -130,7 +130,7 @@ TEST(Camera, RaysOfOneFilmPointMeetInTheFocalPlane) {
   }
 }
 
-// Of any kind of camera, at the image's corners, too; and hardly more.
+// For any kind of camera, at the image's corners, too; and hardly more.
 TEST(CameraExtent, HoldsWhereRaysBegin) {
   TestRandom random(8);
   for (int i = 0; i < 300; ++i) {

@@ -98,7 +98,7 @@ TEST(Dial, AlbedosAreAlike) {
   }
 }
 
-/// Of the cells of the floor, by the triangles' place: row by row from the near left.
+/// The materials of the floor's cells, by the triangles' place: row by row from the near left.
 std::vector<std::uint32_t> floor_materials(const SceneData& scene) {
   constexpr int n = dial_floor_cells;
   std::vector<std::uint32_t> materials(n * n, ~0u);

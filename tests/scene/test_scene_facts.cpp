@@ -13,7 +13,7 @@ std::uint64_t bytes_named(const SceneFacts& facts, const std::string& name) {
   return 0;
 }
 
-/// Of each kind another number; not prepared.
+/// Has another number of each kind; not prepared.
 SceneData scene_of_numbers() {
   SceneData scene;
   for (std::size_t i = 1; i <= 2; ++i) {

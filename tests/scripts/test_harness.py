@@ -58,7 +58,7 @@ def median_of_first(samples):
 class Intervals(unittest.TestCase):
     def test_few_times(self):
         self.assertEqual(intervals.median_interval(((4.0,),)), (4.0, 4.0))
-        # Of the 27 resamples of three times 7 have the least as their median, 7 the greatest.
+        # 7 of the 27 resamples of three times have the least as their median, 7 the greatest.
         self.assertEqual(intervals.median_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
         self.assertEqual(exact_interval(((3.0, 1.0, 2.0),)), (1.0, 3.0))
         self.assertEqual(intervals.median_interval(((3.0,), (1.0,), (2.0,))), (1.0, 3.0))
@@ -71,7 +71,7 @@ class Intervals(unittest.TestCase):
         for rounds in (((1.0, 2.0), (4.0, 8.0)), ((1.0, 1.1, 1.2), (3.0, 3.1, 3.2)),
                        ((1.0, 1.5), (2.0, 2.5), (4.0, 4.5))):
             low, high = intervals.median_interval(rounds)
-            # Of 4000 draws the share below has a deviation of 0.0025.
+            # The share below has a deviation of 0.0025 in 4000 draws.
             widest, narrowest = (exact_interval(rounds, share) for share in (0.0175, 0.0325))
             self.assertTrue(widest[0] <= low <= narrowest[0] < narrowest[1] <= high <= widest[1])
         self.assertEqual(intervals.median_interval(((1.0, 2.0), (4.0, 8.0))), (1.0, 8.0))

@@ -73,7 +73,7 @@ inline const std::uint32_t every_pattern_sizes[] = {
     0, 1, 2, 31, 32, 33, 255, 256, 257, 511, 512, 513, 1000, 1023, 1024, 1025, 8191, 8192, 8193};
 inline const std::uint32_t some_pattern_sizes[] = {65535,          65536,    65537,
                                                    (1u << 20) - 1, 1u << 20, (1u << 20) + 1};
-/// Of random tags only.
+/// With random tags only.
 inline const std::uint32_t large_sizes[] = {(1u << 24) - 1, 1u << 24, (1u << 24) + 1};
 
 inline std::vector<Role> make_roles(const RolePattern& pattern, std::uint32_t slot_count) {

@@ -14,7 +14,7 @@ struct Estimate {
   double value = 0, variance = 0;
 };
 
-/// Of each channel of each pixel.
+/// Estimates of each channel of each pixel.
 struct Estimates {
   int width = 0, height = 0;
   std::vector<std::array<Estimate, 3>> pixels;

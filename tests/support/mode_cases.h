@@ -67,7 +67,7 @@ inline bool has_plan(const Options& options, SceneData scene) {
 
 inline bool has_plan(const Options& options) { return has_plan(options, build_scene(options)); }
 
-/// Of variations of the options, those that a plan accepts.
+/// The variations of the options that a plan accepts.
 inline std::vector<Settings> planned(const Options& options, std::vector<Settings> variations) {
   std::erase_if(variations, [&](const Settings& more) { return !has_plan(with(options, more)); });
   EXPECT_FALSE(variations.empty());
@@ -174,7 +174,7 @@ std::vector<std::string> names_of(E usual, std::initializer_list<E> without = {}
   });
 }
 
-/// Of all values but one, which is usual.
+/// The names of all values but the usual one.
 template <NamedEnum E>
 std::vector<std::string> names_besides(E usual) {
   std::vector<std::string> names = names_of(usual);

@@ -10,7 +10,7 @@ class ReferenceTracer {
  public:
   using Vec3d = glm::dvec3;
 
-  /// Of diffuse and metal surfaces; `scene` is prepared, with a pinhole camera.
+  /// Traces diffuse and metal surfaces; `scene` is prepared, with a pinhole camera.
   ReferenceTracer(const SceneData& scene, int max_depth) : scene_(scene), max_depth_(max_depth) {}
 
   /// A sample of the radiance that arrives through the film point (s, t), each in [-1, 1], to the

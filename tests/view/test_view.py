@@ -639,7 +639,7 @@ class Tab:
         self.browser.call("Target.closeTarget", targetId=self.target)
 
     def samples(self):
-        """Of each mode, as the page shows them."""
+        """The samples of each mode, as the page shows them."""
         return self.value('[...document.querySelectorAll("#figures tr")]'
                           '.map((row) => Number(row.cells[1].textContent))') or []
 

@@ -73,7 +73,7 @@ TEST(ViewSite, TellsTheStateAsItIs) {
   EXPECT_EQ(page.get("image", {{"mode", "wavefront"}}).status, 404);
 }
 
-// Of one pass of several: each number is that of the view.
+// One pass of several: each number is that of the view.
 TEST(ViewSite, TellsWhatItsPassesTook) {
   Page page;
   page.live.set_watched(true);

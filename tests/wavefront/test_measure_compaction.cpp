@@ -46,7 +46,7 @@ TEST(CompactionTags, NeighboursAreInRuns) {
       ++changes;
       EXPECT_EQ(i % run, 0u) << run;
     }
-    // Of two runs side by side 1/4 + 2/16 are alike.
+    // 1/4 + 2/16 of two runs side by side are alike.
     const double runs = std::ceil(4999.0 / run), expected = (runs - 1) * 0.625;
     EXPECT_NEAR(changes, expected, 5 * std::sqrt(expected) + 1e-9) << run;
   }

@@ -278,7 +278,7 @@ TEST(WaveOrder, OneKernelShadesAllOrNothingIsOrdered) {
   EXPECT_EQ(std::ranges::count(as_they_come.notes.ran, StageId::order_surfaces), 0);
 }
 
-/// Of a wave in which paths repeat.
+/// Notes of a wave in which paths repeat.
 Notes<false> repeat_notes(bool fused) {
   WaveCounters counters{};
   WaveBuffers buffers;

@@ -19,7 +19,7 @@ constexpr TreeBuilder device_builders[] = {TreeBuilder::lbvh, TreeBuilder::hploc
 
 class CudaDeviceTree : public CudaTest {
  protected:
-  /// Of both structures by all builders.
+  /// Checks both structures by all builders.
   template <class Check>
   static void for_each_tree(Check&& check) {
     for (const AccelKind accel : {AccelKind::bvh2, AccelKind::cwbvh}) {

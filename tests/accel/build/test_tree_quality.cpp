@@ -100,7 +100,7 @@ TEST(TreeQuality, SpheresAndQuadsCostAsMuchAsByAnExactSweep) {
   }
 }
 
-/// Of rays that start on spheres, in all directions.
+/// For rays that start on spheres, in all directions.
 double nodes_per_ray(const SceneData& scene) {
   const Scene view = host_view(scene, 1, 1);
   TestRandom random(3);
@@ -208,7 +208,7 @@ TEST(TreeQuality, RaysVisitFewNodesOverTriangles) {
   }
 }
 
-// Of the tree over instances alone, whatever is in them.
+// The cost of the tree over instances alone, whatever is in them.
 TEST(TreeQuality, InstancesCostAsMuchAsByAnExactSweep) {
   Mesh mesh = mesh_of({triangle_at({0, 0, 0}, {1, 0, 0}, {0, 1, 1})});
   mesh.group = 1;

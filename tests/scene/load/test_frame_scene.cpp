@@ -22,7 +22,7 @@ float off_middle(const CameraParameters& parameters, int width, int height, cons
          (0.5f * std::min(width, height));
 }
 
-/// Of all of a scene's points, in images of three shapes.
+/// Checks all of a scene's points, in images of three shapes.
 void expect_filled(const SceneData& scene, const std::vector<Vec3>& points) {
   const CameraParameters camera = frame_scene(scene);
   for (const auto& [width, height] : {std::pair{300, 100}, {100, 100}, {100, 400}}) {

@@ -27,7 +27,7 @@ struct HostBuildTree {
 
 class SerialHploc {
  public:
-  /// Of at least one box.
+  /// Takes at least one box.
   explicit SerialHploc(const std::vector<Bounds>& boxes)
       : count_(static_cast<std::uint32_t>(boxes.size())) {
     for (const Bounds& box : boxes) tree.primitives.push_back({box.min, 0, box.max, 0});

@@ -44,7 +44,7 @@ class SampleSums {
     last_ = now;
   }
   std::uint64_t count() const { return last_.samples; }
-  /// Of `weight` times the mean.
+  /// Estimates `weight` times the mean.
   Estimate estimate(std::size_t channel, double weight) const {
     const auto n = static_cast<double>(last_.samples);
     if (n < 2) return {};

@@ -57,7 +57,7 @@ class ScenePrint {
   void rows(const Affine& map) {
     for (const Vec4& r : map.row) numbers({r.x, r.y, r.z, r.w});
   }
-  /// Of records without padding.
+  /// For records without padding.
   template <class Values>
   void bytes(const Values& values) {
     const std::string_view all(reinterpret_cast<const char*>(std::data(values)),

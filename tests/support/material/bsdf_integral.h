@@ -38,7 +38,7 @@ class BsdfIntegral {
   /// What of the light leaves again, in energy: what is refracted is not condensed.
   Vec3d albedo() const { return albedo_ + discrete_; }
 
-  // Of sample().
+  // By sample().
   Vec3d sampled_albedo() const { return sampled_; }
   double sampled_error() const {  ///< four standard deviations, were the numbers random
     return 4 * std::sqrt(std::max(0.0, squares_ - glm::dot(sampled_, sampled_)) / count);

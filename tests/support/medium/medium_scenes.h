@@ -20,7 +20,7 @@ inline Medium make_medium(const Color& extinction, const Color& albedo, PhaseKin
   return medium;
 }
 
-/// Of a surface without a BSDF.
+/// A surface without a BSDF.
 inline MaterialDescription make_boundary(std::uint32_t outside, std::uint32_t inside) {
   MaterialDescription boundary;
   boundary.is_boundary = boundary.passes = true;

@@ -22,7 +22,7 @@ float green_of_emission(const SceneData& scene) { return of_mesh(scene).emission
 float green_of_absorption(const SceneData& scene) {
   return scene.media.empty() ? 0.0f : scene.media[0].extinction.y;
 }
-/// Of the base's reflectance at normal incidence.
+/// The base's reflectance at normal incidence.
 float reflectance(const SceneData& scene) {
   return normal_reflectance(of_mesh(scene)[&Principled::eta].value.x);
 }

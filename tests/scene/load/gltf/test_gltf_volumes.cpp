@@ -68,7 +68,7 @@ TEST(GltfVolumes, ABadDistanceAbsorbsNothing) {
   }
 }
 
-/// Of a material that is on both faces of a pane of thickness 2 across the camera's axis.
+/// A pane of thickness 2 across the camera's axis, with this material on both faces.
 Loaded pane(const Json& material) {
   GltfMaker maker;
   const int positions = maker.floats({-3, -3, 1,  3,  -3, 1,  3, 3, 1,  -3, 3,  1,    // faces +z

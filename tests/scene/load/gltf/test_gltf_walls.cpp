@@ -55,7 +55,7 @@ Color seen(const Loaded& loaded, const Color& sky = Color(0.0f)) {
           static_cast<float>(means.of[2].mean())};
 }
 
-/// Of a dielectric (metallic 0 unless said), smooth.
+/// A smooth dielectric (metallic 0 unless said).
 Json clear(double transmission, const Json& pbr = Json::object(),
            const Json& more = Json::object()) {
   Json material = {

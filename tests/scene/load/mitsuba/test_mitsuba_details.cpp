@@ -43,7 +43,7 @@ std::string square(const std::string& material) {
   return "<shape type='rectangle'>" + material + "</shape><emitter type='constant'/>";
 }
 
-/// Of a shape's material, whose warnings are none.
+/// A scene with a shape of this material, which loads without warnings.
 SceneData scene_of(const std::string& material, const std::string& version = "3.0.0") {
   const LoadedScene loaded = load(square(material), version);
   EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();

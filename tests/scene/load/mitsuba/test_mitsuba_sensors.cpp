@@ -38,7 +38,7 @@ std::string ball(double z, double radius, const char* color) {
 
 const std::string sky = "<emitter type='constant'><rgb name='radiance' value='0.25'/></emitter>";
 
-/// Of no warnings.
+/// Expects no warnings.
 SceneData load_silently(const std::string& xml) {
   const LoadedScene loaded = load_xml(xml);
   EXPECT_TRUE(loaded.warnings.empty()) << loaded.warnings.front();

@@ -153,7 +153,7 @@ TEST(MitsubaSphere, OnlyThoseThatNeedItAreTriangles) {
 }
 
 TEST(MitsubaSphere, FramesStayWithTheirSpheres) {
-  // Of many: half of them before the first that needs a frame, and every third of the others.
+  // Many spheres: half of them before the first that needs a frame, and every third of the others.
   std::string xml;
   for (int i = 0; i < 40; ++i) {
     const std::string place = fmt::format("<translate x='{}' y='{}'/>", (i * 17) % 40, i % 3);

@@ -36,7 +36,7 @@ void expect_maps(const std::vector<MapCase>& cases, const std::string& statement
   }
 }
 
-// Of 2 x 2 texels; the centres lie at a quarter and three quarters.
+// Maps of 2 x 2 texels, whose centres lie at a quarter and three quarters.
 TEST(MtlMaps, Options) {
   expect_maps({
       {"t.ppm", {0.25f, 0.75f}, red},

@@ -185,7 +185,7 @@ TEST(PbrtGrids, GreyOnesHaveOneChannel) {
   expect_near(scene.media[0].albedo, Color(0.5f));
 }
 
-/// Of the CIE's y-bar, by Wyman, Sloan and Shirley 2013, 'Simple analytic approximations to the CIE
+/// The CIE's y-bar, by Wyman, Sloan and Shirley 2013, 'Simple analytic approximations to the CIE
 /// XYZ color matching functions'.
 double y_bar(double nm) {
   const auto lobe = [nm](double scale, double mean, double below, double above) {

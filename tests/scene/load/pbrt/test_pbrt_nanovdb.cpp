@@ -62,7 +62,7 @@ TEST_F(PbrtNanovdb, CoefficientsAreOneUnlessTheyAreGiven) {
   EXPECT_EQ(scene.grids.size(), 1u);  // and nothing glows
 }
 
-// Of a grid with other voxels, elsewhere: 0.75 from the middle of a ball of radius 1.25.
+// From a grid with other voxels, elsewhere: 0.75 from the middle of a ball of radius 1.25.
 TEST_F(PbrtNanovdb, TemperaturesAreBlackbodies) {
   const SceneData scene = load_pbrt_silently(pbrt_world(
       world_of_gas("Translate 7 0 0 " + gas("two.nvdb",

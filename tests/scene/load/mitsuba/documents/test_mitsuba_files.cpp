@@ -49,7 +49,7 @@ class MitsubaFiles : public testing::Test {
   void write_scene(const std::string& name, const std::string& inside) const {
     write(name, "<scene version='3.0.0'>\n" + inside + "</scene>");
   }
-  /// Of a scene in which each included file adds a sphere: their radii.
+  /// The radii of the spheres in a scene in which each included file adds one.
   std::vector<float> radii(const std::string& inside) const {
     write_scene("scene.xml", inside);
     std::vector<float> result;

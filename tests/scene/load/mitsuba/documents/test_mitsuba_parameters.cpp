@@ -26,7 +26,7 @@ const MaterialDescription& top_of(const SceneData& scene) {
                                                  : scene.meshes.at(0).material);
 }
 
-/// Of the material's parameter `index`.
+/// Probes the material's parameter `index`.
 Probe parameter(int index, int component = 0) {
   return [=](const SceneData& scene) {
     return double{top_of(scene).parameters[index].value[component]};
@@ -38,7 +38,7 @@ Probe parameter(Type Bsdf::*member) {
   return parameter(index_of(member));
 }
 
-/// Of anything.
+/// Probes anything.
 template <class Get>
 Probe of(Get get) {
   return [=](const SceneData& scene) { return static_cast<double>(get(scene)); };
