@@ -10,7 +10,7 @@ VERDICTS = {"as predicted": "quiet", "better than predicted": "good",
 
 
 def is_scaling(table):
-    """Whether the table is of measurements, not of simulated clusters, whose table has the same name."""
+    """Whether it has measurements; the table of simulated clusters has the same name."""
     return {"efficiency_median", "predicted"} <= set(table.columns)
 
 
