@@ -57,9 +57,8 @@ template <class Traits, class Policy, class Sink>
 PT_HD_IN_KERNEL void shade_surface(const Scene& scene, const Ray& ray, const Hit& hit,
                                    PathState& path, const PathSettings& settings,
                                    const Policy& policy, Sink& sink) {
-  follow_scattering<Traits>(
-      surface_scattering<ShadingTraits<Traits>>(scene, ray, hit, path, settings, policy), path,
-      sink);
+  follow_scattering<Traits>(surface_scattering<Traits>(scene, ray, hit, path, settings, policy),
+                            path, sink);
 }
 
 /// The ray has collided in a medium.
@@ -67,9 +66,8 @@ template <class Traits, class Policy, class Sink>
 PT_HD_IN_KERNEL void shade_medium(const Scene& scene, const Ray& ray, float distance,
                                   PathState& path, const PathSettings& settings,
                                   const Policy& policy, Sink& sink) {
-  follow_scattering<Traits>(
-      medium_scattering<ShadingTraits<Traits>>(scene, ray, distance, path, settings, policy), path,
-      sink);
+  follow_scattering<Traits>(medium_scattering<Traits>(scene, ray, distance, path, settings, policy),
+                            path, sink);
 }
 
 /// Shades a surface hit or a medium collision.
@@ -95,8 +93,8 @@ PT_HD_IN_KERNEL void shade_without_branches(const Scene& scene, const Ray& ray, 
   const bool miss = hit.is_miss();
   const std::uint16_t shadow_rays = path.shadow_rays;
   const Color sky = miss_radiance<Traits::lighting>(scene, ray.direction, path, settings.mis);
-  Scattering result = surface_scattering<ShadingTraits<Traits>>(
-      scene, ray, miss ? Hit{1.0f, 0} : hit, path, settings, policy);
+  Scattering result =
+      surface_scattering<Traits>(scene, ray, miss ? Hit{1.0f, 0} : hit, path, settings, policy);
   result.alive = result.alive && !miss;
   result.emitted = miss ? sky : result.emitted;
   result.shadow.radiance = miss ? Color(0.0f) : result.shadow.radiance;
