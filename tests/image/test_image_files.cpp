@@ -23,7 +23,7 @@ const Bytes corners = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 10, 20, 3
 
 /// 24 bits, from the foot to the head.
 std::string bmp_bytes() {
-  ByteWriter bmp;
+  MeshBytes bmp;
   bmp.text = "BM";
   bmp.put<std::uint32_t>(54 + 16).put<std::uint32_t>(0).put<std::uint32_t>(54);
   bmp.put<std::uint32_t>(40).put<std::int32_t>(2).put<std::int32_t>(2);
@@ -35,7 +35,7 @@ std::string bmp_bytes() {
 
 /// 32 bits with alpha, from the head to the foot, run-length encoded if asked for.
 std::string tga_bytes(bool encoded) {
-  ByteWriter tga;
+  MeshBytes tga;
   put_bytes(tga, {0, 0, encoded ? 10 : 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 32, 0x28});
   if (encoded) return put_bytes(tga, {0x83, 3, 2, 1, 4}).text;  // a run of four
   return put_bytes(tga, {3, 2, 1, 4, 7, 6, 5, 8, 11, 10, 9, 12, 15, 14, 13, 16}).text;
@@ -43,7 +43,7 @@ std::string tga_bytes(bool encoded) {
 
 /// 8x8 pixels of grey 200, baseline, with Huffman tables of one code each: DC 72, no AC.
 std::string jpeg_bytes() {
-  ByteWriter jpeg;
+  MeshBytes jpeg;
   put_bytes(jpeg, {0xff, 0xd8, 0xff, 0xdb, 0, 67, 0});
   for (int i = 0; i < 64; ++i) jpeg.put<std::uint8_t>(8);
   put_bytes(jpeg, {0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0});
@@ -54,7 +54,7 @@ std::string jpeg_bytes() {
 }
 
 std::string hdr_bytes() {
-  ByteWriter hdr;
+  MeshBytes hdr;
   hdr.text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
   return put_bytes(hdr, {128, 64, 32, 129, 200, 0, 0, 136}).text;
 }
@@ -151,7 +151,7 @@ TEST(ImageFiles, JpegTablesHaveTheirSize) {
 
 // Found by fuzzing: runs of length 0, which are what stb_image reads after the end.
 TEST(ImageFiles, HdrThatEndsWithinARun) {
-  ByteWriter hdr;
+  MeshBytes hdr;
   hdr.text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n";
   put_bytes(hdr, {2, 2, 0, 8, 0x88, 64, 0x88, 64, 4, 0, 1, 2, 3, 0, 0, 0});
   expect_error([&] { decode_texture_image(hdr.text, "x"); }, "corrupted");

@@ -15,7 +15,7 @@ namespace {
 /// differences of 7 bits, one for the end of a block. `adobe`: the transform in Adobe's marker, -1:
 /// no marker.
 std::string four_inks(const Bytes& values, int adobe) {
-  ByteWriter jpeg;
+  MeshBytes jpeg;
   put_bytes(jpeg, {0xff, 0xd8});
   if (adobe >= 0) {
     put_bytes(jpeg, {0xff, 0xee, 0, 14, 'A', 'd', 'o', 'b', 'e', 0, 100, 0, 0, 0, 0, adobe});
@@ -70,7 +70,7 @@ TEST(ImageKinds, PpmAndPgmAreAsStored) {
 }
 
 std::string pfm(const std::string& header, std::initializer_list<float> values, bool swapped) {
-  ByteWriter file;
+  MeshBytes file;
   file.text = header;
   for (const float value : values) {
     const auto word = std::bit_cast<std::uint32_t>(value);

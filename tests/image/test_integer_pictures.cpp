@@ -21,7 +21,7 @@ float from_srgb(double code) {
 }
 
 std::string bytes_of(const Bytes& bytes) {
-  ByteWriter out;
+  MeshBytes out;
   return put_bytes(out, bytes).text;
 }
 
@@ -202,7 +202,7 @@ TEST(PictureLimits, HoldForEveryFormat) {
        {"P6 65535 65535 255\n", "P5 65535 65535 65535\n", "PF 65535 65535 -1\n"}) {
     expect_error([&] { decode_texture_image(header, "x"); }, "truncated");
   }
-  ByteWriter tga;
+  MeshBytes tga;
   put_bytes(tga, {0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x20, 0x4e, 0x20, 0x4e, 24, 0});
   for (int i = 0; i < 300'000; ++i) put_bytes(tga, {0xff, 1, 2, 3});  // runs of 128
   expect_error([&] { decode_texture_image(tga.text, "x"); }, "20000x20000 pixels");

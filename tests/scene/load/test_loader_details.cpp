@@ -16,7 +16,7 @@ namespace {
 // Indices of two bytes and so many vertices that exchanged bytes are an index, too.
 TEST(LoaderDetails, BigEndianIndicesOfTwoBytesInParallel) {
   constexpr std::uint32_t count = 65'536;
-  ByteWriter body(true);
+  MeshBytes body(true);
   for (std::uint32_t i = 0; i < count; ++i) body.put(static_cast<float>(i)).put(0.0f).put(0.0f);
   for (std::uint32_t i = 0; i < count; ++i) {
     body.put<std::uint8_t>(3);

@@ -9,12 +9,12 @@
 namespace pt {
 
 /// Appends values as a binary file stores them.
-class ByteWriter {
+class MeshBytes {
  public:
-  explicit ByteWriter(bool big_endian = false) : big_endian_(big_endian) {}
+  explicit MeshBytes(bool big_endian = false) : big_endian_(big_endian) {}
 
   template <class T>
-  ByteWriter& put(T value) {
+  MeshBytes& put(T value) {
     char bytes[sizeof(T)];
     std::memcpy(bytes, &value, sizeof(T));
     for (std::size_t i = 0; i < sizeof(T); ++i) {
@@ -31,7 +31,7 @@ class ByteWriter {
 
 using Bytes = std::vector<int>;
 
-inline ByteWriter& put_bytes(ByteWriter& out, const Bytes& bytes) {
+inline MeshBytes& put_bytes(MeshBytes& out, const Bytes& bytes) {
   for (const int b : bytes) out.put(static_cast<std::uint8_t>(b));
   return out;
 }

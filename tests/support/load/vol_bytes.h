@@ -14,7 +14,7 @@ struct VolKind {
 };
 
 inline std::string vol_bytes(const VolKind& kind, const std::vector<float>& values) {
-  ByteWriter file;
+  MeshBytes file;
   file.text = kind.magic;
   file.put(static_cast<std::uint8_t>(kind.version)).put(kind.encoding);
   file.put(kind.x).put(kind.y).put(kind.z).put(kind.channels);

@@ -71,7 +71,7 @@ TEST_F(Ply, TextWithOtherLineEndsAndSpaces) {
 // A triangle and a pentagon (or two triangles), vertices in an order and with properties that
 // nothing but the header tells; a list in the vertices if asked for; edges in between.
 std::string odd_file(bool big_endian, bool list_in_vertices, bool pentagon) {
-  ByteWriter body(big_endian);
+  MeshBytes body(big_endian);
   for (int i = 0; i < 6; ++i) {
     body.put<std::uint8_t>(200).put<double>(10 + i);  // red, y
     if (list_in_vertices) body.put<std::uint16_t>(2).put<std::int16_t>(-1).put<std::int16_t>(7);
@@ -191,7 +191,7 @@ TEST_F(Ply, NormalsWithoutDirectionAreReplaced) {
 
 // Large enough for many blocks, each index of another value.
 std::string large_file(std::uint32_t count, std::uint32_t bad_face) {
-  ByteWriter body;
+  MeshBytes body;
   for (std::uint32_t i = 0; i < count; ++i) {
     body.put(static_cast<float>(i)).put(static_cast<float>(i / 2)).put(1.0f);
   }
@@ -228,7 +228,7 @@ TEST_F(Ply, LargeFilesAreReadInParallel) {
 // parallel, else one after the other.
 std::string polygons_file(const std::vector<std::uint32_t>& corners, std::uint32_t count,
                           bool big_endian) {
-  ByteWriter body(big_endian);
+  MeshBytes body(big_endian);
   for (std::uint32_t i = 0; i < count; ++i) {
     body.put(static_cast<float>(i)).put(0.5f).put(-static_cast<float>(i));
   }
@@ -395,7 +395,7 @@ TEST_F(Ply, StripsOfTriangles) {
 
 TEST_F(Ply, StripsInBinaryBesideFaces) {
   for (const bool big_endian : {false, true}) {
-    ByteWriter body(big_endian);
+    MeshBytes body(big_endian);
     for (int i = 0; i < 5; ++i) body.put(static_cast<float>(i)).put(0.0f).put(1.0f);
     body.put<std::int32_t>(5);
     for (const int v : {0, 1, 2, -1, 4}) body.put<std::int32_t>(v);

@@ -25,7 +25,7 @@ float from_srgb(double code) {
 struct Exporter {
   const char* program;
   std::string header;  ///< without the first and the last line
-  std::function<std::string(ByteWriter&)> body;
+  std::function<std::string(MeshBytes&)> body;
   bool has_normals = false, has_uvs = false, has_colors = false, has_face_colors = false;
   std::vector<std::string> warnings = {};
   bool big_endian = false;
@@ -53,10 +53,10 @@ std::string color_text(int v) {
   return fmt::format(" {} {} {}", colors[v][0], colors[v][1], colors[v][2]);
 }
 
-void put_position(ByteWriter& out, int v) {
+void put_position(MeshBytes& out, int v) {
   for (const float x : positions[v]) out.put(x);
 }
-void put_faces(ByteWriter& out, const std::function<void(int)>& more = {}) {
+void put_faces(MeshBytes& out, const std::function<void(int)>& more = {}) {
   for (int f = 0; f < 3; ++f) {
     out.put<std::uint8_t>(3);
     for (const int v : faces[f]) out.put<std::int32_t>(v);
@@ -80,14 +80,14 @@ std::vector<Exporter> exporters() {
        "format ascii 1.0\ncomment Created by Blender 4.2.0, www.blender.org\n" +
            elements(xyz + nxyz + "property float s\nproperty float t\n",
                     "property list uchar uint vertex_indices\n"),
-       [](ByteWriter&) { return text_body([](int v) { return normal_text(v) + uv_text(v); }); },
+       [](MeshBytes&) { return text_body([](int v) { return normal_text(v) + uv_text(v); }); },
        true, true},
       {"Blender, binary with colours and loose edges",
        "format binary_little_endian 1.0\ncomment Created in Blender version 4.2.0\n" +
            elements(xyz + nxyz + rgba8 + "property float s\nproperty float t\n",
                     "property list uchar uint vertex_indices\n") +
            "element edge 1\nproperty int vertex1\nproperty int vertex2\n",
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            put_position(out, v);
            for (const float x : normals[v]) out.put(x);
@@ -103,7 +103,7 @@ std::vector<Exporter> exporters() {
        "format ascii 1.0\ncomment VCGLIB generated\ncomment TextureFile skin.png\n" +
            elements(xyz + nxyz + rgba8 + "property float quality\n",
                     list + "property list uchar float texcoord\nproperty int texnumber\n"),
-       [=](ByteWriter&) {
+       [=](MeshBytes&) {
          return text_body([=](int v) { return normal_text(v) + with_colors(v) + " 0.5"; },
                           [](int) { return std::string(" 6 0 0 1 0 1 1 0"); });
        },
@@ -119,7 +119,7 @@ std::vector<Exporter> exporters() {
            elements(
                xyz + "property int flags\nproperty float texture_u\nproperty float texture_v\n",
                list + "property int flags\n"),
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            put_position(out, v);
            out.put(7).put(uvs[v][0]).put(uvs[v][1]);
@@ -131,12 +131,12 @@ std::vector<Exporter> exporters() {
       {"Stanford's zippered scans",
        "format ascii 1.0\ncomment zipper output\n" +
            elements(xyz + "property float confidence\nproperty float intensity\n", list),
-       [](ByteWriter&) { return text_body([](int) { return std::string(" 0.75 0.5"); }); }},
+       [](MeshBytes&) { return text_body([](int) { return std::string(" 0.75 0.5"); }); }},
       {"Stanford's VRIP, big-endian strips",
        "format binary_big_endian 1.0\nobj_info vripped with 5 files\nelement vertex 4\n" + xyz +
            "property uchar intensity\nelement tristrips 1\n"
            "property list int int vertex_indices\n",
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            put_position(out, v);
            out.put<std::uint8_t>(99);
@@ -157,7 +157,7 @@ std::vector<Exporter> exporters() {
            elements("property double x\nproperty double y\nproperty double z\n" + rgb8 +
                         "property float scalar_Original_cloud_index\n" + nxyz,
                     list),
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            for (const float x : positions[v]) out.put<double>(x);
            for (const int c : colors[v]) out.put(static_cast<std::uint8_t>(c));
@@ -174,7 +174,7 @@ std::vector<Exporter> exporters() {
                     "property double nx\nproperty double ny\nproperty double nz\n" +
                         rgb8,
                     "property list uchar uint vertex_indices\n"),
-       [](ByteWriter&) { return text_body([](int v) { return normal_text(v) + color_text(v); }); },
+       [](MeshBytes&) { return text_body([](int v) { return normal_text(v) + color_text(v); }); },
        true, false, true},
       {"PCL, with a camera before the faces",
        "format binary_little_endian 1.0\ncomment PCL generated\nelement vertex 4\n" + xyz + rgb8 +
@@ -182,7 +182,7 @@ std::vector<Exporter> exporters() {
            "property float curvature\nelement camera 1\nproperty float view_px\n"
            "property float view_py\nproperty int viewportx\nelement face 3\n" +
            list,
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            put_position(out, v);
            for (const int c : colors[v]) out.put(static_cast<std::uint8_t>(c));
@@ -202,7 +202,7 @@ std::vector<Exporter> exporters() {
                         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                         "property uchar alpha\n",
                     "property list uchar int vertex_index\n"),
-       [](ByteWriter& out) {
+       [](MeshBytes& out) {
          for (int v = 0; v < 4; ++v) {
            put_position(out, v);
            for (const float x : normals[v]) out.put(x);
@@ -224,7 +224,7 @@ std::vector<Exporter> exporters() {
            elements(xyz + "property uint8 red\nproperty uint8 green\nproperty uint8 blue\n"
                           "property uint8 class\n",
                     "property list uint8 int32 vertex_indices\n"),
-       [](ByteWriter&) { return text_body([](int v) { return color_text(v) + " 2"; }); }, false,
+       [](MeshBytes&) { return text_body([](int v) { return color_text(v) + " 2"; }); }, false,
        false, true},
       {"Rhino, with old names",
        "format ascii 1.0\ncomment Rhinoceros\n" +
@@ -234,7 +234,7 @@ std::vector<Exporter> exporters() {
                         "property uchar ambient_blue\nproperty uchar diffuse_red\n"
                         "property uchar diffuse_green\nproperty uchar diffuse_blue\n",
                     "property list int int vertex_index\n"),
-       [](ByteWriter&) {
+       [](MeshBytes&) {
          return text_body(
              [](int v) { return normal_text(v) + uv_text(v) + " 9 9 9" + color_text(v); });
        },
@@ -244,7 +244,7 @@ std::vector<Exporter> exporters() {
        "property float y\r\nproperty float z\r\nelement face 3\r\n"
        "property list uchar uint vertex_indices\r\nproperty uchar red\r\nproperty uchar green\r\n"
        "property uchar blue\r\n",
-       [](ByteWriter&) { return text_body([](int) { return std::string("\r"); }, color_text); },
+       [](MeshBytes&) { return text_body([](int) { return std::string("\r"); }, color_text); },
        false, false, false, true},
   };
 }
@@ -268,7 +268,7 @@ void expect_colors(const std::vector<Color>& found, const std::vector<Color>& ex
 TEST(PlyExporters, AreReadAsTheyMeanIt) {
   for (const Exporter& exporter : exporters()) {
     SCOPED_TRACE(exporter.program);
-    ByteWriter body(exporter.big_endian);
+    MeshBytes body(exporter.big_endian);
     const std::string file = "ply\n" + exporter.header + "end_header\n" + exporter.body(body);
     std::vector<std::string> warnings;
     MeshFileOptions options;

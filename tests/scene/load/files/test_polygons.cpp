@@ -39,7 +39,7 @@ std::string ply_of(const Ring& ring, bool binary, bool equal) {
       "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
       "property float z\nelement face {}\nproperty list ushort uint vertex_indices\nend_header\n",
       binary ? "binary_little_endian" : "ascii", ring.size(), equal ? 1 : 2);
-  ByteWriter body;
+  MeshBytes body;
   std::string words;
   for (const Vec3& p : ring) {
     body.put(p.x).put(p.y).put(p.z);

@@ -22,7 +22,7 @@ struct Kind {
   std::uint32_t float_flag = 0x1000;
 };
 
-void put_floats(ByteWriter& out, bool in_double, std::initializer_list<double> values) {
+void put_floats(MeshBytes& out, bool in_double, std::initializer_list<double> values) {
   for (const double value : values) {
     in_double ? out.put(value) : out.put(static_cast<float>(value));
   }
@@ -39,7 +39,7 @@ std::string compressed(const std::string& bytes) {
 
 /// One triangle, at height z.
 std::string shape(const Kind& kind, double z) {
-  ByteWriter body;
+  MeshBytes body;
   body.put<std::uint32_t>(kind.flags | (kind.in_double ? 0x2000 : kind.float_flag));
   if (kind.version == 4) body.text += std::string("a name\0", 7);
   body.put(kind.vertices).put(kind.triangles);
@@ -48,14 +48,14 @@ std::string shape(const Kind& kind, double z) {
   if (kind.flags & 2) put_floats(body, kind.in_double, {0, 0.25, 1, 0, 0, 1});
   if (kind.flags & 8) put_floats(body, kind.in_double, {9, 9, 9, 9, 9, 9, 9, 9, 9});
   body.put<std::uint32_t>(0).put<std::uint32_t>(1).put<std::uint32_t>(kind.last_index);
-  ByteWriter header;
+  MeshBytes header;
   header.put<std::uint16_t>(0x041c).put(static_cast<std::uint16_t>(kind.version));
   return header.text + compressed(body.text);
 }
 
 /// Three shapes, at heights 0, 1 and 2.
 std::string file_of(const Kind& kind) {
-  ByteWriter file, table;
+  MeshBytes file, table;
   for (int i = 0; i < 3; ++i) {
     kind.version == 4 ? table.put<std::uint64_t>(file.text.size())
                       : table.put(static_cast<std::uint32_t>(file.text.size()));

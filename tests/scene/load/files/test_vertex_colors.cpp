@@ -157,7 +157,7 @@ TEST(VertexColors, PlyHasBytesInTheCurveAndLinearFloats) {
 }
 
 TEST(VertexColors, BinaryPly) {
-  ByteWriter file(true);
+  MeshBytes file(true);
   for (const float x : {0.0f, 1.0f, 0.0f}) {
     file.put(x).put(1.0f - x).put(2.0f);
     for (const float share : {1.0f, x, 0.5f}) {
