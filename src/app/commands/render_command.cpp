@@ -2,6 +2,7 @@
 
 #include <future>
 #include <optional>
+#include <system_error>
 
 #include "app/commands/commands.h"
 #include "app/render/make_renderer.h"
@@ -174,8 +175,12 @@ LoadedScene load_timed(const Options& options, const DeviceInfo& device, Ranks& 
 /// where the scene depends on the device, or on other ranks.
 std::future<LoadedScene> load_early(const Options& options, Ranks& ranks) {
   if (ranks.count() > 1 || options.create_world != WorldBuilder::host) return {};
-  return std::async(std::launch::async,
-                    [options, &ranks] { return load_timed(options, {}, ranks); });
+  try {
+    return std::async(std::launch::async,
+                      [options, &ranks] { return load_timed(options, {}, ranks); });
+  } catch (const std::system_error&) {
+    return {};  // there are as many threads as may be: it is loaded later
+  }
 }
 
 /// `resumption`: the checkpoint that goes on, or null.
