@@ -11,20 +11,20 @@
 namespace pt {
 namespace {
 
-DeviceProperties gpu(int threads = 16) {
+DeviceProperties gpu_beside(int threads = 16) {
   DeviceProperties device;
   device.is_cuda = true, device.host_threads = threads;
   return device;
 }
 
-DeviceProperties cpu(int threads) {
+DeviceProperties cpu_with(int threads) {
   DeviceProperties device;
   device.has_avx2 = device.has_ray_blocks = true;
   device.threads = device.host_threads = threads;
   return device;
 }
 
-SceneProperties mesh(std::size_t triangles) {
+SceneProperties mesh_of(std::size_t triangles) {
   SceneProperties scene;
   scene.triangles = triangles, scene.bsdf_kinds = 1;
   return scene;
@@ -57,47 +57,47 @@ TEST(TreeTimes, RaysGrowWithPixelsSamplesAndShortPaths) {
 // A large mesh and few rays: the builder that is done first. The more rays, the better the tree.
 TEST(TreeTimes, ATreeIsWorthWhatItsRaysAreWorth) {
   using enum TreeBuilder;
-  EXPECT_EQ(builder_of(image(256, 1), mesh(2'000'000), cpu(2)), sah);
-  EXPECT_NE(builder_of(image(256, 16), mesh(2'000'000), cpu(2)), best);
-  EXPECT_EQ(builder_of(image(1024, 4096), mesh(100'000), cpu(2)), best);
+  EXPECT_EQ(builder_of(image(256, 1), mesh_of(2'000'000), cpu_with(2)), sah);
+  EXPECT_NE(builder_of(image(256, 16), mesh_of(2'000'000), cpu_with(2)), best);
+  EXPECT_EQ(builder_of(image(1024, 4096), mesh_of(100'000), cpu_with(2)), best);
   for (const std::size_t triangles : {1'000'000, 4'000'000, 10'000'000}) {
     for (const int spp : {1, 64}) {
-      const TreeBuilder builder = builder_of(image(1024, spp), mesh(triangles), gpu());
+      const TreeBuilder builder = builder_of(image(1024, spp), mesh_of(triangles), gpu_beside());
       EXPECT_TRUE(is_device_builder(builder)) << triangles << ", " << spp;
     }
   }
-  EXPECT_EQ(builder_of(image(1024, 64), mesh(1'000'000), gpu()), hploc_reinsert);
-  EXPECT_FALSE(is_device_builder(builder_of(image(64, 1), mesh(500), gpu())));
+  EXPECT_EQ(builder_of(image(1024, 64), mesh_of(1'000'000), gpu_beside()), hploc_reinsert);
+  EXPECT_FALSE(is_device_builder(builder_of(image(64, 1), mesh_of(500), gpu_beside())));
 }
 
 TEST(TreeTimes, ATimeLimitBoundsWhatATreeCanSave) {
   Options options = image(1024, 100'000);
-  EXPECT_EQ(builder_of(options, mesh(2'000'000), cpu(2)), TreeBuilder::best);
+  EXPECT_EQ(builder_of(options, mesh_of(2'000'000), cpu_with(2)), TreeBuilder::best);
   options.time_limit = 1;
-  EXPECT_EQ(builder_of(options, mesh(2'000'000), cpu(2)), TreeBuilder::sah);
+  EXPECT_EQ(builder_of(options, mesh_of(2'000'000), cpu_with(2)), TreeBuilder::sah);
 }
 
 TEST(TreeTimes, APartAndACropHaveFewerRays) {
   Options options = image(1024, 200);
-  const SceneProperties scene = mesh(200'000);
-  ASSERT_EQ(builder_of(options, scene, cpu(4)), TreeBuilder::best);
+  const SceneProperties scene = mesh_of(200'000);
+  ASSERT_EQ(builder_of(options, scene, cpu_with(4)), TreeBuilder::best);
   options.crop = CropWindow{0, 0, 32, 32};
-  EXPECT_EQ(builder_of(options, scene, cpu(4)), TreeBuilder::sah);
+  EXPECT_EQ(builder_of(options, scene, cpu_with(4)), TreeBuilder::sah);
   options.crop = {}, options.part.count = 1024, options.checkpoint.file = "part";
-  EXPECT_EQ(builder_of(options, scene, cpu(4)), TreeBuilder::sah);
+  EXPECT_EQ(builder_of(options, scene, cpu_with(4)), TreeBuilder::sah);
 }
 
 TEST(TreeTimes, TreesThatACpuTracesTooAreBuiltByTheHost) {
-  DeviceProperties device = gpu();
+  DeviceProperties device = gpu_beside();
   device.needs_host_tree = true;
-  EXPECT_FALSE(is_device_builder(builder_of(image(1024, 1), mesh(10'000'000), device)));
+  EXPECT_FALSE(is_device_builder(builder_of(image(1024, 1), mesh_of(10'000'000), device)));
 }
 
 TEST(TreeTimes, EachGroupTakesADeviceItsLaunches) {
-  SceneProperties scene = mesh(50'000);
+  SceneProperties scene = mesh_of(50'000);
   scene.instances = 2000, scene.tree_groups = 1000;
-  EXPECT_FALSE(is_device_builder(builder_of(image(1024, 64), scene, gpu())));
-  for (const TreeTimes& time : expected_tree_times({50'000, 1000, 0}, gpu(), 0)) {
+  EXPECT_FALSE(is_device_builder(builder_of(image(1024, 64), scene, gpu_beside())));
+  for (const TreeTimes& time : expected_tree_times({50'000, 1000, 0}, gpu_beside(), 0)) {
     if (is_device_builder(time.builder)) {
       EXPECT_GT(time.build_s, 2);
     }
@@ -107,21 +107,21 @@ TEST(TreeTimes, EachGroupTakesADeviceItsLaunches) {
 TEST(TreeTimes, GivenAndBuiltOnesHold) {
   Options options = image(1024, 1);
   options.builder = TreeBuilder::sbvh;
-  EXPECT_EQ(builder_of(options, mesh(10'000'000), gpu()), TreeBuilder::sbvh);
-  SceneProperties built = mesh(10'000'000);
+  EXPECT_EQ(builder_of(options, mesh_of(10'000'000), gpu_beside()), TreeBuilder::sbvh);
+  SceneProperties built = mesh_of(10'000'000);
   built.structure = Accel::cwbvh, built.builder = TreeBuilder::best;
-  EXPECT_EQ(builder_of(image(1024, 1), built, gpu()), TreeBuilder::best);
+  EXPECT_EQ(builder_of(image(1024, 1), built, gpu_beside()), TreeBuilder::best);
 }
 
 // --explain tells the times by which the choice was made: the first is the least.
 TEST(TreeTimes, AreSaid) {
-  const ExecutionPlan plan = plan_execution(image(1024, 64), mesh(1'000'000), gpu());
+  const ExecutionPlan plan = plan_execution(image(1024, 64), mesh_of(1'000'000), gpu_beside());
   const auto decision =
       std::ranges::find(plan.decisions, std::string("builder"), &Decision::option);
   ASSERT_NE(decision, plan.decisions.end());
   EXPECT_EQ(decision->value, to_string(plan.builder));
   const std::vector<TreeTimes> times =
-      expected_tree_times({1e6, 1, expected_rays(1024 * 1024, image(1024, 64))}, gpu(), 0);
+      expected_tree_times({1e6, 1, expected_rays(1024 * 1024, image(1024, 64))}, gpu_beside(), 0);
   EXPECT_EQ(times.size(), 5u);
   for (const TreeTimes& time : times) {
     if (time.builder == plan.builder) continue;
