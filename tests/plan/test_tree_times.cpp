@@ -66,7 +66,7 @@ TEST(TreeTimes, ATreeIsWorthWhatItsRaysAreWorth) {
       EXPECT_TRUE(is_device_builder(builder)) << triangles << ", " << spp;
     }
   }
-  EXPECT_EQ(builder_of(image(1024, 64), mesh_of(1'000'000), gpu_beside()), hploc_reinsert);
+  EXPECT_EQ(builder_of(image(1024, 512), mesh_of(1'000'000), gpu_beside()), hploc_reinsert);
   EXPECT_FALSE(is_device_builder(builder_of(image(64, 1), mesh_of(500), gpu_beside())));
 }
 
