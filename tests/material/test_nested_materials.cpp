@@ -126,8 +126,12 @@ TEST(NestedMaterials, APartIsAnEarlierMaterial) {
 }
 
 /// The wall's radiance under a directional light of irradiance pi that goes along -`to_light`.
-Color lit_wall(SceneData scene, std::uint32_t material, const Vec3& to_light) {
-  scene.meshes.push_back(wall_mesh(material));
+/// `mirrored`: v falls where it grew.
+Color lit_wall(SceneData scene, std::uint32_t material, const Vec3& to_light,
+               bool mirrored = false) {
+  Mesh wall = wall_mesh(material);
+  for (Vec2& uv : wall.uvs) uv.y = mirrored ? 1.0f - uv.y : uv.y;
+  scene.meshes.push_back(wall);
   DeltaLight sun;
   sun.kind = LightKind::directional;
   sun.direction = -glm::normalize(to_light);
@@ -170,24 +174,15 @@ TEST(Maps, GltfNormalMapsAreScaledAndHanded) {
     const std::uint32_t picture = add_picture(scene, 1, 1, {0.5f * slope + 0.5f});
     const std::uint32_t map = scene.add_material(make_mapped(
         MaterialNode::gltf_normal_map, {{0.5f, 1, 0}, picture}, add_diffuse(scene, red)));
-    Mesh wall = wall_mesh(map);
-    for (Vec2& uv : wall.uvs) uv.y = mirrored ? 1.0f - uv.y : uv.y;
-    scene.meshes.push_back(wall);
-    DeltaLight sun;
-    sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
-    scene.delta_lights.push_back(sun);
-    look_at_wall(scene);
-    prepare_scene(scene);
     const Vec3 normal = glm::normalize(Vec3(0.15f, mirrored ? -0.2f : 0.2f, slope.z));
-    expect_color(mean_of(render(scene, image_options(8, 8, 4, 2)).image),
-                 glm::dot(normal, to_light) * red, 1e-5f);
+    expect_color(lit_wall(scene, map, to_light, mirrored), glm::dot(normal, to_light) * red, 1e-5f);
   }
 }
 
 // Heights that grow evenly make a slope: the wall is 20 wide, so a height of h at u = 1 has the
 // slope h / 20.
 TEST(Maps, ABumpMapIsItsSlope) {
-  SceneData scene, mirrored;
+  SceneData scene;
   std::vector<Color> ramp;
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
@@ -199,18 +194,9 @@ TEST(Maps, ABumpMapIsItsSlope) {
       make_mapped(MaterialNode::bump_map, {{24, 1, 0}, picture}, add_diffuse(scene, red)));
   const Vec3 normal = glm::normalize(Vec3(-24 * 0.5f / 20, -24 * 0.25f / 20, 1));
   const Vec3 to_light = glm::normalize(Vec3(-0.4f, 0.3f, 0.8f));
-  mirrored = scene;
   expect_color(lit_wall(scene, map, to_light), glm::dot(normal, to_light) * red, 1e-5f);
   // Heights stay heights where the picture is mirrored.
-  Mesh wall = wall_mesh(map);
-  for (Vec2& uv : wall.uvs) uv.y = 1.0f - uv.y;
-  mirrored.meshes.push_back(wall);
-  DeltaLight sun;
-  sun.kind = LightKind::directional, sun.direction = -to_light, sun.intensity = Color(pi);
-  mirrored.delta_lights.push_back(sun);
-  look_at_wall(mirrored);
-  prepare_scene(mirrored);
-  expect_color(mean_of(render(mirrored, image_options(8, 8, 4, 2)).image),
+  expect_color(lit_wall(scene, map, to_light, true),
                glm::dot(Vec3(normal.x, -normal.y, normal.z), to_light) * red, 1e-5f);
 }
 

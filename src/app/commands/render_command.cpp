@@ -198,16 +198,13 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
     print_warning(text);
   std::optional<DeviceOpening> opening;
   if (options.mode != Mode::serial && !options.explain) opening.emplace(devices);
-
   clock.end(&ProcessTimes::devices);
 
   RenderReport report;
-  SceneData scene;
   std::vector<ExecutionPlan> plans;
-  LoadedScene loaded = early.valid() ? early.get() : load_timed(options, devices.front(), ranks);
-  scene = std::move(loaded.scene);
+  auto [scene, load_ms] = early.valid() ? early.get() : load_timed(options, devices.front(), ranks);
   clock.end(&ProcessTimes::scene);
-  report.scene_ms = loaded.load_ms + timed_ms([&] {
+  report.scene_ms = load_ms + timed_ms([&, &scene = scene] {
                       apply_defaults(scene.defaults, command.given, options);
                       resolve_scene(scene, options);
                       plans = plan_render(options, scene, devices);

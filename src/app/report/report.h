@@ -1,5 +1,5 @@
-// The repeats of a measurement and the hardware counters in a few numbers, which the table, the
-// JSON and the CSV share.
+// What a finished run tells: a table for people, JSON and CSV for programs (docs/statistics.md);
+// and the numbers that they share, of the repeats of a measurement and of the hardware counters.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,12 @@ std::uint64_t memory_bytes(const RenderReport& report);  ///< the sum of all buf
 std::vector<std::pair<std::string, double>> counter_fields(const KernelCounters& kernel,
                                                            int warps_per_sm);
 
-// What a finished run tells: a table for people, JSON and CSV for programs (docs/statistics.md).
+/// The parts of ProcessTimes by name, in their order.
+inline constexpr std::pair<const char*, double ProcessTimes::*> process_parts[] = {
+    {"start", &ProcessTimes::start}, {"devices", &ProcessTimes::devices},
+    {"scene", &ProcessTimes::scene}, {"prepare", &ProcessTimes::prepare},
+    {"setup", &ProcessTimes::setup}, {"render", &ProcessTimes::render},
+    {"image", &ProcessTimes::image}};
 
 /// Version of the JSON and the CSV. Raise it, and change docs/statistics.md, whenever a field is
 /// added or removed or changes its name, unit or meaning.

@@ -179,16 +179,9 @@ CsvRow report_csv_row(const Options& options, const RenderReport& report) {
   row.emplace_back("load_ms", ms(report.load_ms));
   row.emplace_back("transfer_ms", ms(report.transfer_ms));
   row.emplace_back("image_write_ms", ms(report.image_write_ms));
-  const ProcessTimes& process = report.process_ms;
-  for (const auto& [name, value] : {std::pair{"start", process.start},
-                                    {"devices", process.devices},
-                                    {"scene", process.scene},
-                                    {"prepare", process.prepare},
-                                    {"setup", process.setup},
-                                    {"render", process.render},
-                                    {"image", process.image},
-                                    {"total", process.total()}})
-    row.emplace_back(fmt::format("process_{}_ms", name), ms(value));
+  for (const auto& [name, part] : process_parts)
+    row.emplace_back(fmt::format("process_{}_ms", name), ms(report.process_ms.*part));
+  row.emplace_back("process_total_ms", ms(report.process_ms.total()));
   row.emplace_back("memory_bytes", std::to_string(memory_bytes(report)));
   row.emplace_back("kernels", joined(report.kernels, [](const KernelInfo& kernel) {
                      return fmt::format("{}:{}:{}:{}:{}:{:.4f}", kernel.name, kernel.registers,

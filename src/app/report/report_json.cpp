@@ -236,11 +236,9 @@ std::string report_json(const Options& options, const RenderReport& report) {
                      {"load", report.load_ms},
                      {"transfer", report.transfer_ms},
                      {"image_write", report.image_write_ms}};
-  const ProcessTimes& process = report.process_ms;
-  json["process_ms"] = {{"start", process.start}, {"devices", process.devices},
-                        {"scene", process.scene}, {"prepare", process.prepare},
-                        {"setup", process.setup}, {"render", process.render},
-                        {"image", process.image}, {"total", process.total()}};
+  Json& process = json["process_ms"];
+  for (const auto& [name, part] : process_parts) process[name] = report.process_ms.*part;
+  process["total"] = report.process_ms.total();
   json["rates"] = {{"mpaths_per_s", summary.mpaths_per_s}, {"mrays_per_s", summary.mrays_per_s}};
   json["waves"] = summary.waves;
   json["launches"] = summary.launches;

@@ -99,20 +99,17 @@ std::string scene_text(const KernelNeed& need, const Options& o, const SceneProp
   if (!is_specialized && scene.is_primitive_only)
     return "spheres and quads by general kernels, because of " + why_general(o, scene);
   std::string text = is_specialized ? "spheres and quads" : "triangles";
-  const std::pair<bool, const char*> more[] = {
+  const std::pair<bool, std::string> more[] = {
       {is_specialized && scene.has_emitters, "emitters"},
       {!is_specialized && scene.spheres > 0, "spheres"},
       {scene.instances > 0, "instances"},
       {scene.has_masks, "masks, a far plane or hidden emitters"},
       {scene.has_media, "media"},
-      {scene.has_open_boundaries, "boundaries without a BSDF"}};
-  for (const auto& [has, name] : more)
-    if (has) text += std::string(", ") + name;
-  const std::pair<bool, std::string> toggles[] = {
+      {scene.has_open_boundaries, "boundaries without a BSDF"},
       {o.branching == Branching::reduced, "--branching reduced"},
       {o.rng == RngKind::xorwow, "--rng xorwow"}};
-  for (const auto& [is_on, name] : toggles)
-    if (is_on && refused.find(name) == std::string::npos) text += ", " + name;
+  for (const auto& [has, name] : more)
+    if (has && refused.find(name) == std::string::npos) text += ", " + name;
   return text;
 }
 
