@@ -70,12 +70,9 @@ std::vector<ExecutionPlan> plan_render(const Options& options, const SceneData& 
                                        const std::vector<DeviceInfo>& devices) {
   check_film(options, scene.properties, scene.filter);
   SceneProperties properties = scene.properties;
-  const bool has_cpu =
-      !std::ranges::all_of(devices, [](const DeviceInfo& d) { return d.properties.is_cuda; });
   std::vector<ExecutionPlan> plans;
   for (const DeviceInfo& device : devices) {
     DeviceProperties machine = device.properties;
-    machine.needs_host_tree = has_cpu;
     machine.host_threads = cpu_threads(options.threads);
     plans.push_back(plan_execution(options, properties, machine));
     properties.structure = plans.front().accel;

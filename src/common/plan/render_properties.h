@@ -39,8 +39,7 @@ struct SceneProperties {
 
 struct DeviceProperties {
   bool is_cuda = false;
-  int host_threads = 1;          ///< build what the host builds
-  bool needs_host_tree = false;  ///< another device of the render, too, traces the scene's tree
+  int host_threads = 1;  ///< build what the host builds
   // CPU:
   bool has_avx2 = false;        ///< wide trees are traced by vectors
   bool has_ray_blocks = false;  ///< brute force scans for blocks of rays

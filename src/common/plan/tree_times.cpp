@@ -65,7 +65,7 @@ std::vector<TreeTimes> expected_tree_times(const TreeWork& work, const DevicePro
   if (limit_s > 0) trace_s = std::min(trace_s, limit_s);
   std::vector<TreeTimes> times;
   const double n = work.triangles;
-  if (device.is_cuda && !device.needs_host_tree) {
+  if (device.is_cuda) {
     for (const DeviceBuilder& b : device_builders) {
       times.push_back(
           {b.builder, b.start_s + work.groups * b.group_s + n * b.triangle_s, b.trace * trace_s});
