@@ -27,8 +27,10 @@ namespace {
 
 /// By its message: ptexp.Error or ptexp.OptionError.
 void set_error(const std::exception& error) {
-  const nb::object made =
-      nb::module_::import_("ptexp._errors").attr("error_of")(text(message_line(message_of(error))));
+  const nb::object made = run_python([&]() -> nb::object {
+    return nb::module_::import_("ptexp._errors")
+        .attr("error_of")(text(message_line(message_of(error))));
+  });
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
 }
 

@@ -28,8 +28,10 @@ std::vector<std::string> Warnings::take() {
 void Warnings::give() {
   const std::vector<std::string> messages = take();
   if (messages.empty()) return;
-  const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
-  for (const std::string& message : messages) warn(message);
+  run_python([&] {
+    const nb::object warn = nb::module_::import_("ptexp._errors").attr("warn");
+    for (const std::string& message : messages) warn(message);
+  });
 }
 
 RenderCommand command_of(const Words& words) {

@@ -62,7 +62,7 @@ class Watcher {
   void look() {
     if (error_) return;
     try {
-      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      if (run_python(PyErr_CheckSignals) != 0) throw nb::python_error();
       tell();
     } catch (nb::python_error& error) {
       error_.emplace(std::move(error));
@@ -77,7 +77,7 @@ class Watcher {
     const std::uint64_t done = state_.done, total = state_.total;
     if (progress_.is_none() || total == 0 || (done == told_ && total == told_total_)) return;
     told_ = done, told_total_ = total;
-    progress_(done, total);
+    run_python([&] { progress_(done, total); });
   }
 
   WorkState& state_;
@@ -127,12 +127,16 @@ Unlocked::~Unlocked() {
     std::unique_lock lock(a.mutex);
     const bool stays_away = a.has_ended && a.ender != std::this_thread::get_id();
     lock.unlock();
-    while (stays_away) ::pause();
+    if (stays_away) wait_forever();
   }
   PyEval_RestoreThread(state_);
   const std::lock_guard lock(a.mutex);
   --a.threads;
   a.changed.notify_all();
+}
+
+void wait_forever() {
+  for (;;) ::pause();
 }
 
 void add_end(nb::module_& m) {

@@ -2,6 +2,7 @@
 // reported, and the interpreter waits for it at its end.
 #pragma once
 
+#include <cxxabi.h>
 #include <nanobind/nanobind.h>
 
 #include <atomic>
@@ -35,6 +36,22 @@ class Unlocked {
  private:
   PyThreadState* state_;
 };
+
+/// The calling thread never goes on.
+[[noreturn]] void wait_forever();
+
+/// Runs `call`, which runs Python code. Before 3.14 Python ends a daemon thread in the midst of
+/// such code, when the interpreter ends, by unwinding the stack: std::terminate() at the first
+/// function that is noexcept. Such a thread waits here for the process to end instead, as
+/// since 3.14.
+template <class Call>
+auto run_python(const Call& call) {
+  try {
+    return call();
+  } catch (abi::__forced_unwind&) {
+    wait_forever();
+  }
+}
 
 /// Makes the interpreter stop all work and wait for it at its end.
 void add_end(nanobind::module_& m);

@@ -285,6 +285,34 @@ class Ends(TestCase):
                 self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "end\n", ""))
                 self.assertLess(time.monotonic() - begin, 30)
 
+    def test_an_interpreter_ends_while_work_runs_python_code(self):
+        """Daemon threads in an error's, a warning's or a progress function, which C++ called."""
+        warned = self.folder / "warned.obj"
+        warned.write_text("mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        long = "'cornell', width=256, height=256, spp=100000"
+        for name, work in (("_errors.error_of", "ptexp.load('missing.obj')"),
+                           ("_errors.warn", f"ptexp.load({str(warned)!r})"),
+                           ("progress", f"ptexp.render({long}, progress=ptexp.progress)")):
+            with self.subTest(name):
+                done = run_python(f"""
+                    import threading, time
+                    import ptexp._errors
+                    called = threading.Event()
+                    def slow(*arguments):
+                        called.set()
+                        while True:
+                            pass
+                    ptexp.{name} = slow
+                    class Slow:  # the end takes long enough for the thread to ask for the lock
+                        def __del__(self, sleep=time.sleep):
+                            sleep(0.2)
+                    slow_end = Slow()
+                    slow_end.me = slow_end
+                    threading.Thread(target=lambda: {work}, daemon=True).start()
+                    print(called.wait(20), flush=True)
+                """, cwd=self.folder)
+                self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "True\n", ""))
+
     def test_a_saver_beside_a_reader(self):
         image = ptexp.render("cornell", **SMALL)
         ends = threading.Event()
