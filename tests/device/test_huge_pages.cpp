@@ -32,7 +32,7 @@ TEST(HugePages, KeepWhatTheyHold) {
   scene.texels.resize(3 * page + 5);
   for (std::size_t i = 0; i < scene.texels.size(); ++i) scene.texels[i] = std::byte(i % 251);
   const std::vector<std::byte> before = scene.texels;
-  use_huge_pages(scene);
+  use_huge_pages(scene, 1e6);
   EXPECT_EQ(scene.texels, before);
 }
 

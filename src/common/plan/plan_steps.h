@@ -40,6 +40,9 @@ struct TreeTimes {
 /// many paths leave the scene. As many pixels as are rendered.
 double expected_rays(double pixels, const ImageSettings& image);
 
+/// Seconds of so many rays on threads of a CPU.
+double expected_cpu_trace_s(double rays, int threads);
+
 /// What each builder that --builder auto may take is expected to cost. `limit_s`: the rendering
 /// ends then, 0: it does not. The rates were measured on a host of 16 cores with an H200
 /// (results/log/2026-11-whole-process.md) and are scaled by a device's multiprocessors or threads;

@@ -57,11 +57,15 @@ double expected_rays(double pixels, const ImageSettings& image) {
   return pixels * image.spp * path * (1 + (image.nee ? shadow_rays_of_ray : 0));
 }
 
+double expected_cpu_trace_s(double rays, int threads) {
+  return rays * ray_s_of_thread / std::max(threads, 1);
+}
+
 std::vector<TreeTimes> expected_tree_times(const TreeWork& work, const DeviceProperties& device,
                                            double limit_s) {
-  double trace_s = work.rays * (device.is_cuda ? ray_s_of_device * device_multiprocessors /
-                                                     std::max(device.multiprocessors, 1)
-                                               : ray_s_of_thread / std::max(device.threads, 1));
+  double trace_s = device.is_cuda ? work.rays * ray_s_of_device * device_multiprocessors /
+                                        std::max(device.multiprocessors, 1)
+                                  : expected_cpu_trace_s(work.rays, device.threads);
   if (limit_s > 0) trace_s = std::min(trace_s, limit_s);
   std::vector<TreeTimes> times;
   const double n = work.triangles;

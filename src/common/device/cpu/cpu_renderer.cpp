@@ -13,6 +13,7 @@
 #include "common/device/cpu/huge_pages.h"
 #include "common/error/host_memory.h"
 #include "common/film/develop.h"
+#include "common/plan/plan_steps.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/mask.h"
 
@@ -74,7 +75,8 @@ CpuRenderer::CpuRenderer(const ExecutionPlan& plan, const SceneData& scene)
       arena_(threads_),
       primitive_count_(scene.primitive_count()) {
   const auto start = std::chrono::steady_clock::now();
-  use_huge_pages(scene);
+  use_huge_pages(scene, expected_cpu_trace_s(
+                            expected_rays(double(image_window().pixel_count()), plan), threads_));
   const std::uint64_t state_bytes = plan.rng == RngKind::xorwow ? sizeof(XorwowState) : 0;
   // The image itself and its copy for writing come on top of the film.
   constexpr std::uint64_t image_bytes = 2 * 3 * sizeof(float);

@@ -6,9 +6,10 @@
 
 namespace pt {
 
-/// Asks the system to put the scene's large arrays into huge pages, as they are. Where it cannot,
-/// nothing happens.
-void use_huge_pages(const SceneData& scene);
+/// Asks the system to put the scene's large arrays into huge pages, as they are, if the time that
+/// copies them is less than what `tracing_s` of tracing is expected to become shorter by. Where it
+/// cannot, nothing happens.
+void use_huge_pages(const SceneData& scene, double tracing_s);
 
 /// The part of an array of `size_bytes` at `begin` that whole huge pages cover.
 struct HugePageRange {

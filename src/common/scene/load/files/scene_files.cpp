@@ -64,6 +64,11 @@ void SceneFiles::note(const fs::path& path, std::string_view bytes) {
   if (current != nullptr) current->hashes_[normal(path)] = hash_of(bytes);
 }
 
+void SceneFiles::note(const Hashes& hashes) {
+  if (current == nullptr) return;
+  for (const auto& [path, hash] : hashes) current->hashes_[path] = hash;
+}
+
 std::string SceneFiles::hash(const fs::path& folder) const {
   const fs::path base = normal(folder.empty() ? fs::path(".") : folder / "");
   std::map<std::string, std::string> relative;

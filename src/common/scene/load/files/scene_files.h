@@ -15,6 +15,8 @@ namespace pt {
 /// load a scene each.
 class SceneFiles {
  public:
+  using Hashes = std::map<std::filesystem::path, std::string>;  ///< by absolute path
+
   SceneFiles();
   ~SceneFiles();
   SceneFiles(const SceneFiles&) = delete;
@@ -22,6 +24,9 @@ class SceneFiles {
 
   /// To be called by whoever reads a file of a scene. Does nothing where nobody asks.
   static void note(const std::filesystem::path& path, std::string_view bytes);
+  /// The same of what another thread has read for this one.
+  static void note(const Hashes& hashes);
+  const Hashes& hashes() const { return hashes_; }
 
   /// 32 hexadecimal digits (XXH3, 128 bits), of the bytes of all files and of their paths relative
   /// to `folder`: the same for a copy of all files elsewhere.
@@ -30,8 +35,8 @@ class SceneFiles {
   std::vector<std::filesystem::path> paths() const;
 
  private:
-  SceneFiles* const outer_;                              ///< of this thread, before
-  std::map<std::filesystem::path, std::string> hashes_;  ///< by absolute path
+  SceneFiles* const outer_;  ///< of this thread, before
+  Hashes hashes_;
 };
 
 /// The hash of a text, of the same form.

@@ -134,6 +134,44 @@ Error unpacks_to_more(std::size_t packed_bytes) {
                   packed_bytes, most_unpacked_bytes(packed_bytes) >> 20));
 }
 
+namespace {
+
+struct End {
+  void operator()(z_stream* stream) const { inflateEnd(stream); }
+};
+
+}  // namespace
+
+std::string decompress_gzip(std::string_view bytes) {
+  constexpr std::size_t block = 1 << 20;
+  z_stream stream{};
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  std::size_t left = bytes.size();
+  if (inflateInit2(&stream, 15 + 16) != Z_OK) throw std::bad_alloc();
+  const std::unique_ptr<z_stream, End> end(&stream);
+  std::string out;
+  while (true) {
+    const std::size_t before = out.size();
+    if (before > most_unpacked_bytes(bytes.size())) throw unpacks_to_more(bytes.size());
+    if (before + block > out.capacity()) check_host_memory(2 * before, "the unpacked file");
+    out.resize(before + block);
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
+    stream.avail_out = static_cast<uInt>(block);
+    const auto part = static_cast<uInt>(std::min<std::size_t>(left, 1u << 30));
+    stream.avail_in = part;
+    const int status = inflate(&stream, Z_NO_FLUSH);
+    left -= part - stream.avail_in;
+    out.resize(before + block - stream.avail_out);
+    if (status == Z_MEM_ERROR) throw std::bad_alloc();
+    if (status == Z_STREAM_END) {
+      if (left == 0) return out;
+      if (inflateReset(&stream) != Z_OK) throw Error("corrupted compressed data");
+    } else if (status != Z_OK) {
+      throw Error("truncated or corrupted compressed data");
+    }
+  }
+}
+
 Inflater::Inflater(std::string_view bytes)
     : left_(most_unpacked_bytes(bytes.size())), packed_bytes_(bytes.size()) {
   // zlib takes at most 4 GB of input at once: the rest of a larger file is never one stream's.

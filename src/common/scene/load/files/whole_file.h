@@ -51,6 +51,10 @@ inline std::uint64_t most_unpacked_bytes(std::size_t packed_bytes) {
 /// For one that becomes more.
 Error unpacks_to_more(std::size_t packed_bytes);
 
+inline bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+/// All of a gzip file, of which several may follow each other. Throws Error.
+std::string decompress_gzip(std::string_view bytes);
+
 /// Decompresses as much as is asked for, when it is asked for.
 class Inflater {
  public:

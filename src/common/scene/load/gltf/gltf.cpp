@@ -8,6 +8,7 @@
 #include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/gltf/materials.h"
 #include "common/scene/load/gltf/meshes.h"
 #include "common/scene/load/gltf/nodes.h"
@@ -67,6 +68,7 @@ class MeshAdder {
             SceneData& scene)
       : file_(file), scene_(scene), materials_(file, scene), colors_(scene, options) {
     for (const PlacedNode& node : nodes) places_[node.node] = node.to_world;
+    materials_.read_ahead();
   }
 
   void add(const Shape& shape, const std::vector<const PlacedNode*>& users) {
@@ -152,6 +154,7 @@ class MeshAdder {
   SceneData& scene_;
   Materials materials_;
   VertexColors colors_;
+  const ReadAhead ahead_;
   std::unordered_map<int, Affine> places_;  ///< by node
   std::uint32_t groups_ = 0;
 };

@@ -392,6 +392,16 @@ void Materials::set_opacity(const tinygltf::Material& source, const std::string&
   }
 }
 
+void Materials::read_ahead() const {
+  for (const tinygltf::Material& source : file_.model.materials) {
+    const auto& pbr = source.pbrMetallicRoughness;
+    textures_.read_ahead(texture_use(pbr.baseColorTexture), TextureFormat::srgb8);
+    textures_.read_ahead(texture_use(pbr.metallicRoughnessTexture), TextureFormat::linear8);
+    textures_.read_ahead(texture_use(source.emissiveTexture), TextureFormat::srgb8);
+    textures_.read_ahead(texture_use(source.normalTexture), TextureFormat::linear8);
+  }
+}
+
 std::uint32_t Materials::add(const tinygltf::Material& source, const std::string& place,
                              bool& both_sides) {
   MaterialDescription material = convert(source, place, both_sides);

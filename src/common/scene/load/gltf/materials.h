@@ -79,6 +79,9 @@ class Textures {
   std::optional<Veil> add_veil(const TextureUse& use, const std::string& place, float factor,
                                bool coloured);
 
+  /// Announces that add...() will be called (read_ahead.h).
+  void read_ahead(const TextureUse& use, TextureFormat format) const;
+
   /// Mean of the image's linear R, G, B over all texels, in [0, 1]. White, and a warning, where the
   /// image cannot be decoded: a factor is then used alone.
   Color mean(const TextureUse& use, const std::string& place);
@@ -116,6 +119,9 @@ class Materials {
   /// The scene's number of material `index` of the file, which exists, -1: the default material, on
   /// meshes with these texture coordinates.
   std::uint32_t material_index(int index, const UvMaps& maps);
+
+  /// Announces the pictures of all materials, but for those of extensions (read_ahead.h).
+  void read_ahead() const;
 
   /// Whether a material of the scene shines on both sides: its meshes need back_of().
   bool shines_on_both_sides(std::uint32_t number) const { return two_sided_.contains(number); }

@@ -179,6 +179,15 @@ std::uint32_t Textures::add(const TextureUse& use, const std::string& place, Tex
   }
 }
 
+void Textures::read_ahead(const TextureUse& use, TextureFormat format) const {
+  if (!use) return;
+  try {
+    const Encoded image = encoded_image(use, "");
+    decode_texture_ahead(image.bytes, image.name, format);
+  } catch (const Error&) {  // said where the texture is added
+  }
+}
+
 Color Textures::mean(const TextureUse& use, const std::string& place) {
   TextureImage image;
   try {

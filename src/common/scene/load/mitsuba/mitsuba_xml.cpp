@@ -1,6 +1,10 @@
 #include <cmath>
+#include <unordered_set>
 
+#include "common/error/error.h"
+#include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/files/importer.h"
+#include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 
@@ -8,6 +12,7 @@ namespace pt {
 namespace {
 
 using mitsuba::Context;
+using mitsuba::Element;
 using mitsuba::Object;
 
 /// The sensor, in the name of 0.x's first versions or of today. After the shapes, for it may have
@@ -23,6 +28,47 @@ void load_sensor(Context& context, const Object& root) {
     context.warn_once("sensors", sensors[1]->element(), "more than one sensor: the first is used");
   }
   read_sensor(context, *sensors.front());
+}
+
+bool is_bitmap(const std::string& type) {
+  return type == "bitmap" || type == "ldrtexture" || type == "exrtexture";
+}
+
+/// Announces the file of an object with this tag that has one.
+void read_file_ahead(const Context& context, const Object& object, std::string_view tag) {
+  const Element* filename = object.find("filename");
+  if (!filename || object.tag() != tag) return;
+  const auto path = [&] { return context.find(*filename, filename->required("value")); };
+  const bool is_linear = object.boolean("raw", false) || object.number("gamma", -1.0f) == 1.0f;
+  if (tag == "emitter" && object.type() == "envmap") read_radiance_ahead(path());
+  if (tag == "texture" && is_bitmap(object.type()))
+    read_texture_ahead(path(), is_linear ? TextureFormat::linear8 : TextureFormat::srgb8);
+  if (tag == "shape") read_mesh_ahead(context, object);
+}
+
+std::vector<const Object*> objects_in_use(const Object& root) {
+  std::unordered_set<const Object*> known{&root};
+  std::vector<const Object*> in_use{&root};
+  for (std::size_t i = 0; i < in_use.size(); ++i) {
+    for (const Object::Nested& nested : in_use[i]->nested()) {
+      if (nested.object && known.insert(nested.object).second) in_use.push_back(nested.object);
+    }
+  }
+  return in_use;
+}
+
+/// Announces all files in use, those first that take longest to decode.
+void read_files_ahead(const Context& context, const Object& root) {
+  const std::vector<const Object*> in_use = objects_in_use(root);
+  for (const std::string_view tag : {"emitter", "texture", "shape"}) {
+    for (const Object* object : in_use) {
+      try {
+        const Object copy = *object;  // to ask it for a property is not to use that
+        read_file_ahead(context, copy, tag);
+      } catch (const Error&) {  // said where it is read
+      }
+    }
+  }
 }
 
 void load_objects(Context& context, const Object& root) {
@@ -44,6 +90,8 @@ SceneData load_mitsuba_scene(const mitsuba::Element& root, const std::string& na
   SceneData scene;
   scene.name = name;
   Context context(scene, options, graph);
+  const ReadAhead ahead;
+  read_files_ahead(context, graph.scene());
   load_objects(context, graph.scene());
   context.colors.finish();
   context.add_default_lighting_if_dark();

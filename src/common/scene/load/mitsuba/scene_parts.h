@@ -72,6 +72,8 @@ void add_mesh(Context& context, const Object& shape, const Target& target, Mesh 
               const Affine& to_world);
 
 void add_file(Context& context, const Object& shape, const Target& target);
+/// Announces the file of a shape that has one (read_ahead.h).
+void read_mesh_ahead(const Context& context, const Object& shape);
 void add_memory(Context& context, const Object& shape, const Target& target);
 void add_rectangle(Context& context, const Object& shape, const Target& target);
 void add_cube(Context& context, const Object& shape, const Target& target);

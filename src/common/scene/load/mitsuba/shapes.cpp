@@ -43,26 +43,47 @@ void add_mesh(Context& context, const Object& shape, const Target& target, Mesh 
   context.scene.meshes.push_back(std::move(mesh));
 }
 
-void add_file(Context& context, const Object& shape, const Target& target) {
+namespace {
+
+MeshFile mesh_file_of(const Object& shape, std::filesystem::path path) {
+  using Format = MeshFile::Format;
+  const std::string type = shape.type();
+  MeshFile file{type == "obj"   ? Format::obj
+                : type == "ply" ? Format::ply
+                                : Format::serialized,
+                std::move(path)};
+  file.options.face_normals = shape.boolean("face_normals", false);
+  file.options.flip_v = !shape.boolean("flip_tex_coords", type == "obj");
+  file.shape_index = shape.integer("shape_index").value_or(0);
+  return file;
+}
+
+const Element& filename_of(const Object& shape) {
   const Element* filename = shape.find("filename");
   if (!filename) fail(shape.element(), "shape '{}' has no filename", shape.type());
-  const auto path = context.resolve(*filename, filename->required("value"));
+  return *filename;
+}
+
+}  // namespace
+
+void read_mesh_ahead(const Context& context, const Object& shape) {
+  if (shape.type() != "obj" && shape.type() != "ply" && shape.type() != "serialized") return;
+  const Element& filename = filename_of(shape);
+  pt::read_mesh_ahead(mesh_file_of(shape, context.find(filename, filename.required("value"))));
+}
+
+void add_file(Context& context, const Object& shape, const Target& target) {
+  const Element& filename = filename_of(shape);
+  const MeshFile file = mesh_file_of(shape, context.resolve(filename, filename.required("value")));
   std::vector<std::string> warnings;
-  MeshFileOptions options;
-  options.warnings = &warnings;
-  options.face_normals = shape.boolean("face_normals", false);
-  options.flip_v = !shape.boolean("flip_tex_coords", shape.type() == "obj");
-  const int index = shape.integer("shape_index").value_or(0);
   Mesh mesh;
   try {
-    mesh = shape.type() == "obj"   ? read_obj(path, options)
-           : shape.type() == "ply" ? read_ply(path, options)
-                                   : read_serialized(path, index, options);
+    mesh = read_mesh(file, warnings);
   } catch (const Error& error) {
-    return context.leave_out(shape, *filename, error.what());
+    return context.leave_out(shape, filename, error.what());
   }
   for (const std::string& warning : warnings) {
-    context.warn_once(warning, *filename, "{}: {}", path.string(), warning);
+    context.warn_once(warning, filename, "{}: {}", file.path.string(), warning);
   }
   add_mesh(context, shape, target, std::move(mesh), target.to_world);
 }

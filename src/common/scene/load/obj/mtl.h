@@ -111,6 +111,9 @@ class MtlTextures {
   /// channel. `is_opaque`: alpha is asked for and 1 everywhere.
   std::uint32_t add_opacity(const MapUse& use, bool& is_opaque);
 
+  /// Announces the pictures that have exactly the names in the material (read_ahead.h).
+  void read_ahead(const MtlMaterial& material) const;
+
   bool is_normal_map(std::uint32_t texture_index) const {
     return store_.is_normal_map(texture_index);
   }

@@ -124,6 +124,18 @@ Texture MtlTextures::look_of(const MapUse& use, TextureFormat format) {
   return look;
 }
 
+void MtlTextures::read_ahead(const MtlMaterial& m) const {
+  const auto read = [&](const MtlMap& map, TextureFormat format) {
+    if (map.name.empty() || map.name.size() > name_bytes_max) return;
+    for (const fs::path& folder : folders_) {
+      if (is_file(folder / map.name)) return read_texture_ahead(folder / map.name, format);
+    }
+  };
+  for (const MtlMap* map : {&m.map_Kd, &m.map_Ks, &m.map_Ke}) read(*map, TextureFormat::srgb8);
+  for (const MtlMap* map : {&m.map_d, &m.map_Pr, &m.map_Pm, &m.bump, &m.norm})
+    read(*map, TextureFormat::linear8);
+}
+
 template <class Read>
 std::uint32_t MtlTextures::read_or_warn(const MapUse& use, const Read& read) {
   const std::filesystem::path path = path_of(use.map);

@@ -9,6 +9,7 @@
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/obj.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"
+#include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/load_scene.h"
@@ -137,6 +138,7 @@ class Libraries {
       if (entry.textures) {
         warnings_.add("material twice", material.place + ": defined twice: the last one is used");
       }
+      textures->read_ahead(material);
       entry = {std::move(material), textures, {}};
     }
     defined_.merge(defined);
@@ -204,6 +206,7 @@ SceneData load(const fs::path& path, CountedWarnings& warnings) {
   SceneData scene;
   const WholeFile file(path);
   const std::string_view text = without_byte_order_mark(file.bytes());
+  const ReadAhead ahead;
   Libraries libraries(path, scene, warnings);
   read_libraries(text, libraries);
   MeshesByMaterial sink(libraries, scene.add_material(make_diffuse(Color(0.5f))));

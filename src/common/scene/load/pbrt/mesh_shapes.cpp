@@ -98,13 +98,9 @@ Mesh read_ply_mesh(Context& context, const Entity& entity, const ShapeMaterial&)
   parameters.ignore({"edgelength", "shadowalpha", "discarddegenerateUVs"});  // the latter of v3
   const auto path = context.resolve(filename->place, parameters.text("filename", ""));
   std::vector<std::string> warnings;
-  MeshFileOptions options;
-  options.warnings = &warnings;
   Mesh mesh;
   try {
-    const bool compressed = path.extension() == ".gz";
-    mesh = compressed ? decode_ply(read_source(path), path.string(), options)
-                      : read_ply(path, options);
+    mesh = read_mesh({MeshFile::Format::ply, path}, warnings);
   } catch (const Error& error) {
     fail(filename->place, error.what());
   }

@@ -2,9 +2,13 @@
 
 #include <cmath>
 
+#include "common/error/error.h"
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/default_lighting.h"
+#include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/files/importer.h"
+#include "common/scene/load/files/meshes/mesh_files.h"
+#include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/files/spectra.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/pbrt/scene_parts.h"
@@ -84,6 +88,29 @@ using pbrt::Context;
 using pbrt::Description;
 using pbrt::Reporter;
 
+/// Announces the file of an entity of this type that has one.
+void read_file_ahead(const Context& context, const pbrt::Entity& entity, std::string_view type) {
+  if (entity.type != type) return;
+  try {
+    const pbrt::Parameters parameters = entity.parameters;  // to ask for one is not to use it
+    if (!parameters.find("filename", {"string"})) return;
+    const auto path = context.find(parameters.text("filename", ""));
+    if (type == "plymesh") read_mesh_ahead({MeshFile::Format::ply, path});
+    if (type == "infinite") read_radiance_ahead(path);
+    if (type == "imagemap") read_texture_ahead(path, pbrt::encoding_of(parameters, path));
+  } catch (const Error&) {  // said where it is read
+  }
+}
+
+void read_files_ahead(const Context& context) {
+  const Description& description = context.description;
+  for (const auto& light : description.lights) read_file_ahead(context, *light, "infinite");
+  for (const auto* textures : {&description.spectrum_textures, &description.float_textures}) {
+    for (const auto& [name, texture] : *textures) read_file_ahead(context, *texture, "imagemap");
+  }
+  for (const auto& shape : description.shapes) read_file_ahead(context, shape.shape, "plymesh");
+}
+
 /// What a viewer needs and the file does not bring.
 void complete(Context& context, const LoadOptions& options) {
   SceneData& scene = context.scene;
@@ -108,6 +135,8 @@ SceneData load_pbrt(const std::filesystem::path& path, const LoadOptions& option
   SceneData scene;
   scene.name = path.stem().string();
   Context context(scene, description, reporter);
+  const ReadAhead ahead;
+  read_files_ahead(context);
   pbrt::read_view(context);
   if (description.camera) {
     scene.camera_medium = pbrt::medium_named(context, description.camera_medium,

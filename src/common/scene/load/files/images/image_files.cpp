@@ -1,6 +1,9 @@
 #include "common/scene/load/files/images/image_files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <any>
 #include <cstring>
 #include <utility>
 
@@ -8,6 +11,7 @@
 #include "common/error/host_memory.h"
 #include "common/image/codecs/image_codec.h"
 #include "common/image/tone_mapping.h"
+#include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/files/whole_file.h"
 #include "common/texture/sample_texture.h"
 
@@ -172,19 +176,59 @@ bool TextureImage::has_alpha() const {
   return false;
 }
 
+namespace {
+
+/// A texture's; `name` is the file's, or stands for it.
+std::string key_of(const std::string& name, TextureFormat integers) {
+  return fmt::format("picture {} {}", static_cast<int>(integers), name);
+}
+
+/// Takes what was read ahead, or reads. Errors name what cannot be read.
+template <class Read>
+auto take(const std::string& key, const std::string& name, const Read& read) {
+  return ReadAhead::take(key, [&] { return explaining("cannot read " + name, read); });
+}
+
+}  // namespace
+
 TextureImage read_texture_image(const std::filesystem::path& path, TextureFormat integers) {
-  return explaining("cannot read " + path.string(),
-                    [&] { return decode_texture(WholeFile(path).bytes(), integers); });
+  return take(key_of(path.string(), integers), path.string(),
+              [&] { return decode_texture(WholeFile(path).bytes(), integers); });
 }
 
 TextureImage decode_texture_image(std::string_view bytes, const std::string& name,
                                   TextureFormat integers) {
-  return explaining("cannot read " + name, [&] { return decode_texture(bytes, integers); });
+  return take(key_of(name, integers), name, [&] { return decode_texture(bytes, integers); });
 }
 
 Image read_radiance_image(const std::filesystem::path& path) {
-  return explaining("cannot read " + path.string(),
-                    [&] { return decode_radiance(WholeFile(path).bytes()); });
+  return take("radiance " + path.string(), path.string(),
+              [&] { return decode_radiance(WholeFile(path).bytes()); });
+}
+
+namespace {
+
+/// Loaders keep what they have read.
+template <class Read>
+void announce_once(const std::string& key, const Read& read) {
+  if (ReadAhead::is_announced(key)) return;
+  ReadAhead::announce(key, [read] { return std::any(read()); });
+}
+
+}  // namespace
+
+void read_texture_ahead(const std::filesystem::path& path, TextureFormat integers) {
+  announce_once(key_of(path.string(), integers),
+                [=] { return read_texture_image(path, integers); });
+}
+
+void decode_texture_ahead(std::string_view bytes, const std::string& name, TextureFormat integers) {
+  announce_once(key_of(name, integers),
+                [=] { return decode_texture_image(bytes, name, integers); });
+}
+
+void read_radiance_ahead(const std::filesystem::path& path) {
+  announce_once("radiance " + path.string(), [=] { return read_radiance_image(path); });
 }
 
 Image decode_radiance_image(std::string_view bytes, const std::string& name) {

@@ -60,4 +60,10 @@ TextureImage grey_image(TextureImage image, const Color& weights);
 Image read_radiance_image(const std::filesystem::path& path);
 Image decode_radiance_image(std::string_view bytes, const std::string& name);
 
+// Each announces one call of the function that it is named after (read_ahead.h), once.
+
+void read_texture_ahead(const std::filesystem::path& path, TextureFormat integers);
+void decode_texture_ahead(std::string_view bytes, const std::string& name, TextureFormat integers);
+void read_radiance_ahead(const std::filesystem::path& path);
+
 }  // namespace pt

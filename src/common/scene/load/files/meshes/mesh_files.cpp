@@ -6,11 +6,14 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <any>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "common/error/error.h"
 #include "common/geometry/bounds.h"
+#include "common/scene/load/files/read_ahead.h"
 
 namespace pt {
 namespace {
@@ -153,7 +156,46 @@ float angle_between(const Vec3& a, const Vec3& b) {
   return 2.0f * std::atan2(glm::length(u - v), glm::length(u + v));
 }
 
+struct ReadMesh {
+  Mesh mesh;
+  std::vector<std::string> warnings;
+};
+
+ReadMesh read(const MeshFile& file) {
+  ReadMesh result;
+  MeshFileOptions options = file.options;
+  options.warnings = &result.warnings;
+  switch (file.format) {
+    case MeshFile::Format::obj:
+      result.mesh = read_obj(file.path, options);
+      break;
+    case MeshFile::Format::ply:
+      result.mesh = read_ply(file.path, options);
+      break;
+    case MeshFile::Format::serialized:
+      result.mesh = read_serialized(file.path, file.shape_index, options);
+      break;
+  }
+  return result;
+}
+
+std::string key_of(const MeshFile& file) {
+  return fmt::format("mesh {} {} {} {} {}", static_cast<int>(file.format),
+                     file.options.face_normals, file.options.flip_v, file.shape_index,
+                     file.path.string());
+}
+
 }  // namespace
+
+Mesh read_mesh(const MeshFile& file, std::vector<std::string>& warnings) {
+  ReadMesh result = ReadAhead::take(key_of(file), [&] { return read(file); });
+  std::ranges::move(result.warnings, std::back_inserter(warnings));
+  return std::move(result.mesh);
+}
+
+void read_mesh_ahead(const MeshFile& file) {
+  ReadAhead::announce(key_of(file), [file] { return std::any(read(file)); });
+}
 
 void finish_mesh(Mesh& mesh, const MeshFileOptions& options, std::vector<std::string>* warnings) {
   drop_bad_indices(mesh, warnings);

@@ -29,13 +29,13 @@ struct MeshFileOptions {
   std::vector<std::string>* warnings = nullptr;  ///< gets what was guessed, a line each; or null
 };
 
-/// PLY: ASCII or binary of either byte order, any properties in any order. Vertices give x y z,
-/// optional nx ny nz (or normal_x ...), optional texture coordinates (u v, s t, texture_u texture_v
-/// or texture_s texture_t) and colours (red green blue, r g b, diffuse_red ..., or color_0 color_1
-/// color_2 as Mitsuba writes them); faces and tristrips give vertex_indices or vertex_index, and
-/// faces optional colours. Colours that are floats are linear. Those that are integers are in the
-/// sRGB curve: 255 is white where none is larger, else 65535, else the largest of their type. May
-/// return an empty mesh.
+/// PLY, which may be in gzip: ASCII or binary of either byte order, any properties in any order.
+/// Vertices give x y z, optional nx ny nz (or normal_x ...), optional texture coordinates (u v, s
+/// t, texture_u texture_v or texture_s texture_t) and colours (red green blue, r g b, diffuse_red
+/// ..., or color_0 color_1 color_2 as Mitsuba writes them); faces and tristrips give vertex_indices
+/// or vertex_index, and faces optional colours. Colours that are floats are linear. Those that are
+/// integers are in the sRGB curve: 255 is white where none is larger, else 65535, else the largest
+/// of their type. May return an empty mesh.
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options = {});
 
 /// All faces of an OBJ file as one mesh, ignoring its materials. A line that is wrong is left out,
@@ -46,6 +46,21 @@ Mesh read_obj(const std::filesystem::path& path, const MeshFileOptions& options 
 /// do not say how precise its numbers are get a warning: they are floats.
 Mesh read_serialized(const std::filesystem::path& path, int shape_index,
                      const MeshFileOptions& options = {});
+
+/// A file of one mesh, and how to read it.
+struct MeshFile {
+  enum class Format { obj, ply, serialized };
+
+  Format format;
+  std::filesystem::path path;
+  MeshFileOptions options{};  ///< but for the warnings
+  int shape_index = 0;        ///< of serialized files
+};
+
+/// What read_obj(), read_ply() or read_serialized() returns or throws. `warnings` gets its lines.
+Mesh read_mesh(const MeshFile& file, std::vector<std::string>& warnings);
+/// Announces one call of read_mesh() (read_ahead.h).
+void read_mesh_ahead(const MeshFile& file);
 
 // The same of a file's content in memory, for which `name` stands in errors.
 

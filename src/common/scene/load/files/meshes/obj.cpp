@@ -238,7 +238,8 @@ class ObjLines {
 std::string_view next_line(std::string_view& text, std::string& joined, std::size_t& line_number) {
   joined.clear();
   for (;;) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::size_t end = 0;  // find_first_of() calls memchr for each character
+    while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + (text.substr(end, 2) == "\r\n" ? 2 : 1), text.size()));
     ++line_number;

@@ -314,8 +314,11 @@ Mesh decode_ply(std::string_view bytes, const std::string& name, const MeshFileO
 }
 
 Mesh read_ply(const std::filesystem::path& path, const MeshFileOptions& options) {
-  return explaining("cannot read " + path.string(),
-                    [&] { return decode_file(WholeFile(path).bytes(), options); });
+  return explaining("cannot read " + path.string(), [&] {
+    const WholeFile file(path);
+    if (is_gzip(file.bytes())) return decode_file(decompress_gzip(file.bytes()), options);
+    return decode_file(file.bytes(), options);
+  });
 }
 
 }  // namespace pt

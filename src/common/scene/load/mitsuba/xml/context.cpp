@@ -63,12 +63,16 @@ void Context::note(const Element& at, const std::string& message) const {
 }
 
 std::filesystem::path Context::resolve(const Element& at, const std::string& name) {
+  return find(at, name, [&](const std::string& line) { warn_once("case " + name, at, line); });
+}
+
+std::filesystem::path Context::find(const Element& at, const std::string& name,
+                                    const WarnOfName& warn) const {
   const std::filesystem::path beside = at.file->parent_path();
   const SearchPath& path = graph_.search_path();
   Folders folders = path.folders();
   folders.push_back(path.scene());
   folders.insert(at.tag == "spectrum" ? folders.begin() : folders.end(), beside);
-  const auto warn = [&](const std::string& line) { warn_once("case " + name, at, line); };
   const std::filesystem::path found = find_in(folders, name, warn);
   return found.empty() ? beside / name : found;
 }

@@ -48,6 +48,9 @@ class Context {
   /// comes first. Else as find_in() has it, with a warning. Where there is none: beside the XML
   /// file, for a message that names it.
   std::filesystem::path resolve(const Element& at, const std::string& name);
+  /// The same, telling `warn`.
+  std::filesystem::path find(const Element& at, const std::string& name,
+                             const WarnOfName& warn = {}) const;
 
   /// Warns that a file cannot be read, and what is used instead.
   void warn_unreadable(const Element& at, const std::string& why, const std::string& instead);

@@ -273,6 +273,14 @@ Encoding read_encoding(const Parameters& parameters, const std::filesystem::path
   fail(given->place, "encoding '{}'; expected sRGB, linear or 'gamma 2.2'", name);
 }
 
+}  // namespace
+
+TextureFormat encoding_of(const Parameters& imagemap, const std::filesystem::path& path) {
+  return read_encoding(imagemap, path).is_srgb ? TextureFormat::srgb8 : TextureFormat::linear8;
+}
+
+namespace {
+
 ColorTexture add_file(Context& context, const Parameter& filename, const std::string& name,
                       const Texture& look, const TextureUse& use) {
   ColorTexture result{use.stand_in};
@@ -303,7 +311,7 @@ ColorTexture read_image_map(Context& context, const Entity& entity, const Textur
   if (!filename) fail(parameters.place(), "texture 'imagemap' has no 'string filename'");
   Texture look;
   const Encoding encoding = read_encoding(parameters, parameters.text("filename", ""));
-  look.format = encoding.is_srgb ? TextureFormat::srgb8 : TextureFormat::linear8;
+  look.format = encoding_of(parameters, parameters.text("filename", ""));
   look.wrap_u = look.wrap_v = read_wrap(context, parameters);
   read_filter(context, parameters, look);
   read_mapping(context, entity, look);

@@ -89,6 +89,9 @@ struct TextureUse {
   Color stand_in = Color(0.5f);  ///< of a picture that cannot be read
 };
 
+/// What the integers of an imagemap's picture mean. Throws Error.
+TextureFormat encoding_of(const Parameters& imagemap, const std::filesystem::path& path);
+
 ColorTexture read_image_map(Context& context, const Entity& entity, const TextureUse& use);
 ColorTexture read_constant(Context& context, const Entity& entity, const TextureUse& use);
 ColorTexture read_scale(Context& context, const Entity& entity, const TextureUse& use);

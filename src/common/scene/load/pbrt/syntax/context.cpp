@@ -92,9 +92,11 @@ std::string with_slashes(const std::string& name) {
 }  // namespace
 
 std::filesystem::path Context::resolve(const FileLocation& place, const std::string& name) {
-  const auto warn = [&](const std::string& line) {
-    reporter.warn_once("case " + name, place, line);
-  };
+  return find(name,
+              [&](const std::string& line) { reporter.warn_once("case " + name, place, line); });
+}
+
+std::filesystem::path Context::find(const std::string& name, const WarnOfName& warn) const {
   std::filesystem::path found = find_file(description.folder, name, warn);
   if (const std::string other = with_slashes(name); found.empty() && other != name) {
     found = find_file(description.folder, other, warn);

@@ -14,6 +14,7 @@
 #include "common/math/transform.h"
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/images/texture_store.h"
+#include "common/scene/load/files/whole_file.h"
 #include "common/scene/load/pbrt/syntax/description.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
 
@@ -72,6 +73,8 @@ class Context {
   /// The file that a parameter names, beside the scene's own; one whose case differs is reported.
   /// Where there is none: the path for an error that names it.
   std::filesystem::path resolve(const FileLocation& place, const std::string& name);
+  /// The same, telling `warn`.
+  std::filesystem::path find(const std::string& name, const WarnOfName& warn = {}) const;
 
   /// By texture, while its value is being made: what refers to itself is an error.
   std::set<const Entity*> open_entities;
