@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from functools import partial
 from pathlib import Path
@@ -170,7 +171,9 @@ class WholeProcesses(unittest.TestCase):
         self.assertGreaterEqual(min(ends), 0)
 
     def test_a_process_without_end(self):
+        begin_s = time.monotonic()
         process = program.measure(["sleep", "60"], 0.2, renders=False)
+        self.assertLess(time.monotonic() - begin_s, 30)
         self.assertEqual((process.status, process.message),
                          ("failed", "no end after 0.2 s (--timeout)"))
         self.assertEqual(program.measure(["sleep", "0"], 60, renders=False).status, "measured")
