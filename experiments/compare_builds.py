@@ -61,7 +61,7 @@ def configurations(arguments, device):
                             "case": case.name,
                             **{f"ratio_{part}": "" for part in ("median", "low", "high")},
                             "verdict": ""})
-            for case in cases(arguments, device) for build in BUILDS]
+            for case in cases(arguments, device) if case.renders for build in BUILDS]
 
 
 def times_of(row):

@@ -31,24 +31,28 @@ class Configuration:
     device: str = ""  # "": the experiment's device
     repeat: int = 0  # 0: as the command line says; then warmup is the command line's too
     warmup: int = 0
-    image: str = ""  # a whole path, where `finish` needs it; else no image is kept
+    image: str = ""  # a whole path is kept, for `finish`; else a name, thrown away ["image.ppm"]
     same_image: str = ""  # all with one such name render equal images, bit for bit; "": unchecked
     program: str = ""  # "": the experiment's ptexp
     launcher: str = ""  # a command before it: "mpirun -n 4", "env NAME=VALUE"
+    renders: bool = True  # else a command that is timed as it is: the harness adds no option
+    prepare: Callable = None  # called before each of its processes, outside of their times
 
 
 @dataclass
 class Plot:
     """How plot.py draws the table. Rows with one label `panel` share axes; in `lines`, rows with
     one label `series` share a line; the label `x` is the place on the axis, a number for lines, and
-    nothing for a row that the picture leaves out."""
-    kind: str  # "lines" or "bars"
+    nothing for a row that the picture leaves out. A bar of `stack` has a segment for each of the
+    `parts` that its row has."""
+    kind: str  # "lines", "bars" or "stack"
     title: str
     x_label: str = ""  # "": each panel's axis has the panel's name
     y_label: str = "kernel time [ms]"
     y: str = "kernel_ms"  # the columns y_median, then y_low, y_high or else y_min, y_max
     log_y: bool = True
     mark: float = None  # a value of y that a line marks
+    parts: tuple = ()  # of `stack`: (column, name), in order
 
 
 def no_arguments(_parser):
@@ -79,3 +83,4 @@ class Experiment:
     image_check: str = "--width 256 --height 256 --spp 8"
     quick_image_check: str = "--width 24 --height 12 --spp 2"
     needs_gpu: bool = False  # on a CPU it says so in one line and measures nothing
+    whole_process: bool = False  # the table says where the wall time of each process went

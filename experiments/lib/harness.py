@@ -46,7 +46,7 @@ def session_of(experiment, arguments):
 
 def open_journal(session):
     """The journal, begun or resumed. Without its image a configuration is not measured yet."""
-    images = {c.name: c.image for c in session.configurations if c.image}
+    images = {c.name: c.image for c in session.configurations if os.path.isabs(c.image)}
     journal = Journal(session.path.with_suffix(".journal"), session.key, session.arguments.fresh,
                       lambda name: name not in images or os.path.exists(images[name]))
     done = len(journal.of("process"))

@@ -6,7 +6,7 @@ loses no other, and the next one with the same key goes on from there.
 import contextlib
 import json
 import os
-from dataclasses import asdict
+from dataclasses import asdict, fields
 
 from lib.program import Process
 from lib.table import write_atomically
@@ -40,7 +40,8 @@ class Journal:
         self.events.append(event)
         if event["event"] == "process":
             self.by_name.setdefault(event["name"], []).append(
-                Process(*(event[key] for key in ("status", "message", "row", "runs"))))
+                Process(**{part.name: event[part.name] for part in fields(Process)
+                           if part.name in event}))
 
     def begin(self, **facts):
         """Of this call: the file has whole lines alone from now on."""

@@ -31,12 +31,13 @@ def in_groups(rows, label):
 
 def spread(rows, column):
     """Medians, and the lengths of the bars below and above them: none for a single value."""
-    if f"{column}_median" not in rows[0]:
-        return [float(row[column]) for row in rows], None
+    median = f"{column}_median" if f"{column}_median" in rows[0] else column
+    middle = [float(row[median]) for row in rows]
     has_interval = all(row.get(f"{column}_low") for row in rows)
-    ends = ("low", "high") if has_interval else ("min", "max")
-    low, middle, high = ([float(row[f"{column}_{part}"]) for row in rows]
-                         for part in (ends[0], "median", ends[1]))
+    if median == column and not has_interval:
+        return middle, None
+    low, high = ([float(row[f"{column}_{part}"]) for row in rows]
+                 for part in (("low", "high") if has_interval else ("min", "max")))
     return middle, [[m - l for m, l in zip(middle, low)], [h - m for m, h in zip(middle, high)]]
 
 
@@ -94,24 +95,52 @@ def draw_lines(axes, rows, style):
         axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)
 
 
-def draw_bars(axes, rows, style):
-    measured = drawable(rows, style["y"])
-    places = {row["name"]: -place for place, row in enumerate(rows)}  # the first one on top
-    if measured:
-        medians, bars = spread(measured, style["y"])
-        axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
-                  color=COLOURS[5], edgecolor=COLOURS[0])
+def places_of(rows):
+    return {row["name"]: -place for place, row in enumerate(rows)}  # the first one on top
+
+
+def name_bars(axes, rows, style):
+    places = places_of(rows)
     for row in rows:
         if row["status"] in MISSING:
             axes.text(0, places[row["name"]], f" {row['status']}", va="center", color="grey",
                       transform=axes.get_yaxis_transform())
-    if measured and measured[0]["x"] == "default":
-        axes.axvline(medians[0], color=COLOURS[4], linestyle="--", linewidth=1)
     axes.set_yticks(list(places.values()), [row["x"] for row in rows])
     axes.set_xlabel(style["y_label"])
     if style["log_y"]:
         axes.set_xscale("log")
         label_times(axes.xaxis)
+
+
+def draw_bars(axes, rows, style):
+    measured, places = drawable(rows, style["y"]), places_of(rows)
+    if measured:
+        medians, bars = spread(measured, style["y"])
+        axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
+                  color=COLOURS[5], edgecolor=COLOURS[0])
+        if measured[0]["x"] == "default":
+            axes.axvline(medians[0], color=COLOURS[4], linestyle="--", linewidth=1)
+    name_bars(axes, rows, style)
+
+
+def draw_stack(axes, rows, style):
+    """Segments are medians, whose sum need not be that of the whole, which has the marker."""
+    measured, places, ends = drawable(rows, style["y"]), places_of(rows), {}
+    for number, (column, name) in enumerate(style["parts"]):
+        mine = [row["name"] for row in measured if row.get(column)]
+        widths = [max(float(row[column]), 0) for row in measured if row.get(column)]
+        if mine:
+            axes.barh([places[row] for row in mine], widths, left=[ends.get(row, 0) for row in mine],
+                      color=COLOURS[number % len(COLOURS)], edgecolor="white", linewidth=0,
+                      hatch="///" * (number // len(COLOURS)), label=name)
+        ends.update((row, ends.get(row, 0) + width) for row, width in zip(mine, widths))
+    if measured:
+        medians, bars = spread(measured, style["y"])
+        axes.errorbar(medians, [places[row["name"]] for row in measured], xerr=bars, fmt="d",
+                      color=COLOURS[4], markersize=4, capsize=3, linewidth=1.2, label="whole")
+    name_bars(axes, rows, style)
+    axes.set_ylim(0.6 - len(rows), 0.6)
+    axes.figure.legend(fontsize="small", loc="outside lower center", ncols=6)
 
 
 def draw(path):
@@ -123,21 +152,22 @@ def draw(path):
         raise ValueError("no row has its place in the picture yet: is the table complete?")
     style = {**facts["plot"], "series": list(in_groups(rows, "series"))}
     panels = in_groups(rows, "panel")
-    bars = max(map(len, panels.values())) if style["kind"] == "bars" else 0
+    bars = max(map(len, panels.values())) if style["kind"] != "lines" else 0
     height = max(4.8, 0.3 * bars)
     if style["kind"] == "lines" and len(style["series"]) > len(COLOURS):
         height += 0.11 * len(style["series"])  # the legend is below
     columns = min(len(panels), COLUMNS)
+    width = 9.6 if style["kind"] == "stack" else 6.4
     lines = -(-len(panels) // columns)
     figure, all_axes = pyplot.subplots(lines, columns, squeeze=False, layout="constrained",
-                                       figsize=(6.4 * columns, lines * height))
+                                       figsize=(width * columns, lines * height))
     for axes in all_axes.flat[len(panels):]:
         axes.set_visible(False)
     for axes, (panel, members) in zip(all_axes.flat, panels.items()):
-        {"lines": draw_lines, "bars": draw_bars}[style["kind"]](
+        {"lines": draw_lines, "bars": draw_bars, "stack": draw_stack}[style["kind"]](
             axes, members, {**style, "x_label": style["x_label"] or panel})
         axes.set_title(panel, fontsize="medium")
-        axes.grid(True, axis="x" if style["kind"] == "bars" else "both", alpha=0.3)
+        axes.grid(True, axis="both" if style["kind"] == "lines" else "x", alpha=0.3)
     figure.suptitle(f"{plot_title(facts)}\n{facts['device']['name']}, {facts['host']['cpu']}",
                     fontsize="medium")
     picture = path.with_suffix(".png")

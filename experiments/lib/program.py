@@ -7,6 +7,8 @@ import re
 import shlex
 import subprocess
 import tempfile
+import threading
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -104,8 +106,11 @@ def check_gpu(experiment, device):
 
 
 def command_line(program, configuration, device, repeat, warmup):
-    return [*shlex.split(configuration.launcher), configuration.program or str(program), *shlex.split(configuration.arguments),
-            "--device", configuration.device or device.choice,
+    command = [*shlex.split(configuration.launcher), configuration.program or str(program),
+               *shlex.split(configuration.arguments)]
+    if not configuration.renders:
+        return command
+    return [*command, "--device", configuration.device or device.choice,
             "--repeat", str(repeat), "--warmup", str(warmup),
             "--output", configuration.image or "image.ppm",
             "--csv", "row.csv", "--stats", "run.json", "--quiet"]
@@ -118,32 +123,71 @@ class Process:
     message: str = ""  # why not measured
     row: dict = field(default_factory=dict)  # of ptexp's CSV
     runs: list = field(default_factory=list)  # for each repeat kernel_ms, wall_ms, {stage: ms}, devices
+    wall_ms: float = 0  # from fork to exit
+    early_ms: float = 0  # /proc/PID/stat, where ptexp reads its age, has the fork so much too early
 
 
 def code_text(code):
     return f"exit code {code}" if code > 0 else f"ended by signal {-code}"
 
 
-def measure(command, timeout_s):
+def early_ms_of(pid, begin_s):
+    """By how much the process began before `begin_s` of CLOCK_BOOTTIME, says /proc: 0 to 10 ms, for
+    it counts ticks of 10 ms."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+        return 1e3 * (begin_s - int(fields[19]) / os.sysconf("SC_CLK_TCK"))
+    except OSError:
+        return 0.0
+
+
+def run_timed(command, folder, errors, timeout_s):
+    """(exit code, None after the timeout; wall time from fork to exit in ms; early_ms)"""
+    late = threading.Event()
+    begin_s, begin_boot_s = time.perf_counter(), time.clock_gettime(time.CLOCK_BOOTTIME)
+    with subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                          stderr=errors) as process:
+        def end():
+            late.set()
+            process.kill()
+        # wait(timeout) would ask every 50 ms only.
+        timer = threading.Timer(timeout_s, end)
+        timer.start()
+        try:
+            early_ms = early_ms_of(process.pid, begin_boot_s)
+            code = process.wait()
+            wall_ms = 1e3 * (time.perf_counter() - begin_s)
+        except BaseException:
+            process.kill()
+            raise
+        finally:
+            timer.cancel()
+    return None if late.is_set() else code, wall_ms, early_ms
+
+
+def measure(command, timeout_s, renders=True):
     """Refused: ptexp took offence at an option, or at what the option needs. Whatever else is not
     success is a failure."""
     with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
-        try:
-            run = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False,
-                                 stdin=subprocess.DEVNULL, timeout=timeout_s)
-        except subprocess.TimeoutExpired:
+        errors = Path(folder, "errors")
+        with open(errors, "wb") as file:
+            code, wall_ms, early_ms = run_timed(command, folder, file, timeout_s)
+        if code is None:
             return Process("failed", f"no end after {timeout_s:g} s (--timeout)")
-        message = " ".join(run.stderr.split()).removeprefix("ptexp: error: ")
-        if run.returncode == 2 and not message.startswith("CUDA:"):
+        message = " ".join(errors.read_text(encoding="utf-8", errors="replace").split())
+        message = message.removeprefix("ptexp: error: ")
+        if code == 2 and not message.startswith("CUDA:"):
             return Process("refused", message)
-        if run.returncode == 130:  # Ctrl-C has reached ptexp first
+        if code == 130:  # Ctrl-C has reached ptexp first
             raise KeyboardInterrupt
-        if run.returncode != 0:
-            return Process("failed", ": ".join(filter(None, [code_text(run.returncode), message])))
+        if code != 0:
+            return Process("failed", ": ".join(filter(None, [code_text(code), message])))
+        if not renders:
+            return Process("measured", wall_ms=wall_ms, early_ms=early_ms)
         with open(Path(folder, "row.csv"), newline="", encoding="utf-8") as file:
             row, = csv.DictReader(file)
         facts = json.loads(Path(folder, "run.json").read_text(encoding="utf-8"))
-        return Process("measured", row=row, runs=[
+        return Process("measured", row=row, wall_ms=wall_ms, early_ms=early_ms, runs=[
             {"kernel_ms": run["kernel_ms"], "wall_ms": run.get("wall_ms"),
              "devices": run.get("devices", []),
              "stages": {stage["stage"]: stage["time_ms"] for stage in run["stages"]}}

@@ -57,11 +57,16 @@ def machine_state():
     return {"date": now(), "gpus": gpus, "load": os.getloadavg()[0]}
 
 
+def files_beside(scene):
+    """The scene's file and those beside and below it, which it may refer to."""
+    return sorted(path for path in Path(scene).parent.rglob("*") if path.is_file())
+
+
 @functools.lru_cache(maxsize=None)
 def folder_hash(scene):
-    """Of the scene's name and of the files beside and below it, which it may refer to."""
+    """Of the scene's name and of the files beside it."""
     digest, left = hashlib.sha256(f"{scene.name}\n".encode()), HASHED_BYTES
-    for path in sorted(path for path in scene.parent.rglob("*") if path.is_file()):
+    for path in files_beside(scene):
         size = path.stat().st_size
         left -= size
         content = "?"

@@ -2,7 +2,7 @@
 import time
 
 from lib import program as ptexp
-from lib.description import HarnessError
+from lib.description import HarnessError, Refused
 from lib.pooling import pooled
 from lib.provenance import machine_state, scene_hash
 
@@ -47,12 +47,13 @@ def row_of(session, journal, configuration):
     if processes and not wrong:
         made = configuration.name, len(processes)
         if made not in session.pooled:
-            session.pooled[made] = pooled(processes)
+            session.pooled[made] = pooled(processes, session.experiment.whole_process)
         columns = session.pooled[made]
     clash = set(configuration.labels) & (OWN | set(columns))
     if clash:
         raise HarnessError(f"ptexp's CSV or the harness has columns {sorted(clash)} already")
-    return {**row, "scene_hash": scene_hash(configuration.arguments), **columns}
+    scene = scene_hash(configuration.arguments) if configuration.renders else ""
+    return {**row, "scene_hash": scene, **columns}
 
 
 def rows_of(session, journal):
@@ -83,9 +84,20 @@ class Progress:
         self.done, self.here = self.done + 1, self.here + 1
         left = (time.monotonic() - self.start) / self.here * (self.total - self.done)
         times = sorted(run["kernel_ms"] for run in process.runs)
-        result = f"{times[len(times) // 2]:.4g} ms" if times else process.message
+        result = (f"{times[len(times) // 2]:.4g} ms" if times else
+                  process.message or f"{process.wall_ms:.4g} ms")
         more = f"  ({left_text(left)})" if self.done < self.total else ""
         print(f"{self.done}/{self.total}  {name}: {result}{more}", flush=True)
+
+
+def measured(session, configuration, number):
+    try:
+        if configuration.prepare:
+            configuration.prepare()
+    except (Refused, OSError) as error:
+        return ptexp.Process("refused", str(error))
+    return ptexp.measure(command_line(session, configuration, number), session.arguments.timeout,
+                         configuration.renders)
 
 
 def measure_all(session, journal, save):
@@ -103,8 +115,7 @@ def measure_all(session, journal, save):
             if configuration.name in wrong:
                 progress.skip()
                 continue
-            process = ptexp.measure(command_line(session, configuration, number),
-                                    session.arguments.timeout)
+            process = measured(session, configuration, number)
             journal.add_process(configuration.name, number, process)
             if process.status != "measured":
                 wrong.add(configuration.name)

@@ -10,14 +10,14 @@ from report_parts.tables import in_groups, interval, plot_title  # noqa: E402,F4
 from report_parts.words import change, exponent, listed, short, show, with_interval  # noqa: E402,F401
 
 
-def time_of(row):
-    """The median of the kernel time in ms with its interval."""
-    return interval(row, "kernel_ms")
+def time_of(row, column="kernel_ms"):
+    """The median of a time in ms with its interval."""
+    return interval(row, column)
 
 
-def against(base, row, name):
+def against(base, row, name, column="kernel_ms"):
     """'2.00 times as fast as NAME', say: a row against `base`, which is called so."""
-    word, ratio = change(time_of(base), time_of(row))
+    word, ratio = change(time_of(base, column), time_of(row, column))
     if word == "no significant difference":
         return f"{word} to {name} ({show(ratio)} times its time)"
     text = f"{show(1 / ratio)} times as fast" if ratio < 1 else f"{show(ratio)} times as slow"

@@ -69,7 +69,8 @@ def table_text(rows, labels):
         if row["status"] == "measured":
             times = [number(row, f"kernel_ms_{part}") for part in ("median", "low", "high")]
             lines.append([row["name"], *times, number(row, "mpaths_per_s"),
-                          *(str(row.get(label, "")) for label in labels)])
+                          *(number(row, label) if label.endswith("_ms") else
+                            str(row.get(label, "")) for label in labels)])
         else:
             lines.append([row["name"], row["status"], "", "", "", *[""] * len(labels)])
     widths = [max(map(len, column)) for column in zip(*lines)]

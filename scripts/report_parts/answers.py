@@ -2,6 +2,7 @@
 from html import escape
 
 from .html import Cell, html_table, paragraph, value_cell, verdict_cell
+from .processes import whole_processes
 from .scaling import several_devices
 from .size_map import size_map
 from .tables import in_groups, interval, number
@@ -175,4 +176,5 @@ QUESTIONS = (("Which mode for my scene?", which_mode),
              ("And for which size, samples and depth?", size_map),
              ("Which block size?", which_block),
              ("What does each idea give?", each_idea),
+             ("Where does the time of a whole process go?", whole_processes),
              ("What do several devices give?", several_devices))

@@ -9,7 +9,8 @@ from .words import show, with_interval
 MEASURES = ["kernel_ms_median", "time_ms", "mpaths_per_s", "mrays_per_s"]
 RAY_SETS = ["mesh", "ray_file", "accel", "builder", "variant", "build_ms", "bytes_per_triangle"]
 # The file has them; the ends of an interval stand beside its median.
-NOT_SHOWN = {"experiment", "kernel_ms_runs", "scene_hash", "rounds", "message", "alive", "command"}
+NOT_SHOWN = {"experiment", "kernel_ms_runs", "process_wall_ms_runs", "scene_hash", "rounds",
+             "message", "alive", "command"}
 ENDS = re.compile(r"(.+)_(?:low|high|min|max)(_ms)?")
 # Where tables without a schema version, whose columns are their experiment's, say what was measured.
 ORIGIN = {"version", "commit", "build_type", "compiler", "cuda", "fast_math", "command", "device",

@@ -39,16 +39,21 @@ def point(value, tip, name, shapes):
             f"<title>{escape(tip)}</title>{''.join(shapes)}</g>")
 
 
-def legend(series, left, top):
-    """The names of the series in lines below a plot: the SVG, and its height."""
+def marker_sign(number, x, y):
+    colour, marker = look(number)
+    return (f'<path class="marker {colour}" transform="translate({place(x + 5)} '
+            f'{place(y - 4)})" d="{marker}"/>')
+
+
+def legend(series, left, top, sign=marker_sign):
+    """The names of the series in lines below a plot: the SVG, and its height. `sign` draws a
+    series' sign by its number."""
     parts, x, y = [], left, top
     for name, number in series:
         needed = 24 + 6.1 * len(name)
         if x > left and x + needed > WIDTH:
             x, y = left, y + 17
-        colour, marker = look(number)
-        parts.append(f'<path class="marker {colour}" transform="translate({place(x + 5)} '
-                     f'{place(y - 4)})" d="{marker}"/>')
+        parts.append(sign(number, x, y))
         parts.append(text(x + 14, y, name, "legend"))
         x += needed
     return "".join(parts), y - top + 17

@@ -1,4 +1,5 @@
 """What a plot's numbers mean, in sentences. A difference is one only where intervals are apart."""
+from .processes import about_processes, is_processes
 from .scaling import about_scaling, is_scaling
 from .tables import in_groups, interval, is_measured, number, style_of
 from .words import (change, exponent, listed, plain, relation, show, unit_of, versus,
@@ -170,6 +171,8 @@ def meaning(table):
         found = list(about_steps(table))
     elif is_scaling(table):
         found = list(about_scaling(table))
+    elif is_processes(table):
+        found = list(about_processes(table))
     elif table.plot and table.plot.get("mark") is not None:
         found = list(about_mark(table))
     elif table.plot:

@@ -2,11 +2,13 @@
 beside it and writes what it was asked for into the file `log` there.
 
 behaviour.json: {"version": text, "times": {seed: [ms]}, "images": {seed: text}, "wrong": {seed:
-exit code}, "kills": n}; the last: it kills the harness when it is to render number n.
+exit code}, "kills": n, "process": {part: ms}, "end_s": s}; kills: it kills the harness when it is to
+render number n; process: what it says of its wall time; end_s: how long it sleeps after its files.
 """
 import json
 import os
 import sys
+import time
 
 HERE = os.path.dirname(sys.argv[0])
 
@@ -61,6 +63,8 @@ def render():
 def measure(times, seed):
     row = dict.fromkeys(COLUMNS, "1")
     row.update(seed=seed, paths="1000", rays="3000", shadow_rays="1000")
+    parts = BEHAVIOUR.get("process", {})
+    row.update((f"process_{part}_ms", str(ms)) for part, ms in parts.items())
     write(option("--csv"), ",".join(row) + "\n" + ",".join(row.values()) + "\n")
     wall = float(os.environ.get("PTEXP_FAKE_WALL", "0"))  # as multiple of the kernel time
     runs = [{"kernel_ms": time, "stages": [{"stage": "serial", "time_ms": time / 2}]}
@@ -70,6 +74,7 @@ def measure(times, seed):
         run.update(wall_ms=wall * run["kernel_ms"], devices=[
             {"units": 3 + place, "kernel_ms": time} for place, time in enumerate(devices)])
     write(option("--stats"), json.dumps({"runs": runs}))
+    time.sleep(BEHAVIOUR.get("end_s", 0))
 
 
 if sys.argv[1] == "--list-devices":

@@ -257,6 +257,16 @@ class Experiments(unittest.TestCase):
                 self.assertEqual(row["integrator"] == "mlt", is_mlt, row["name"])
             pictures = {path.name for path in self.folder.glob("out/*/metropolis-quick-*.png")}
             self.assertEqual(len(pictures), 2 * 2 * 2)
+        if script == "process_time":
+            plot = json.loads(self.result("json", "process_time-quick").read_text())["plot"]
+            for row in rows:  # one process each, so that its parts add up
+                wall, total = float(row["process_wall_ms"]), float(row["process_total_ms"] or 0)
+                parts = [float(row[column]) for column, _ in plot["parts"] if row[column]]
+                self.assertAlmostEqual(sum(parts), wall, delta=1e-4, msg=row["name"])
+                self.assertGreater(min(parts), -0.5, row["name"])
+                self.assertGreater(wall, total - 10, row["name"])  # a tick
+                self.assertEqual(row["process_kernels_ms"], row["kernel_ms_median"], row["name"])
+            self.assertEqual({row["output"] for row in rows}, {"", "image.png"})
         if script == "random_numbers":
             errors = {}
             for row in rows:

@@ -7,10 +7,13 @@ import io
 import itertools
 import json
 import math
+import os
 import random
+import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from functools import partial
 from pathlib import Path
@@ -23,7 +26,9 @@ EXPERIMENTS = HERE.parents[1] / "experiments"
 sys.path.insert(0, str(EXPERIMENTS))
 from lib import harness  # noqa: E402
 from lib import intervals  # noqa: E402
+from lib import page_cache  # noqa: E402
 from lib import pooling  # noqa: E402
+from lib import program  # noqa: E402
 from lib import provenance  # noqa: E402
 from lib import rounds  # noqa: E402
 from lib.harness import Configuration, Experiment  # noqa: E402
@@ -39,6 +44,19 @@ from lib.harness import Configuration, Experiment
 sys.exit(harness.main(Experiment("fake", "Fake?", lambda *_: [
     Configuration(f"seed {{seed}}", f"--seed {{seed}}", {{"x": seed}}) for seed in (1, 2, 3)],
     None)))
+"""
+
+# Says of its age what ptexp says, as the last thing that it does.
+AGE = """
+import os, time
+for name, text in (("run.json", '{"runs": []}'), ("row.csv", "process_start_ms\\n")):
+    with open(name, "w") as file:
+        file.write(text)
+fields = open("/proc/self/stat").read().rpartition(")")[2].split()
+with open("row.csv", "ab", buffering=0) as file:
+    now_s = time.clock_gettime(time.CLOCK_BOOTTIME)
+    file.write(b"%f\\n" % (1e3 * (now_s - int(fields[19]) / os.sysconf("SC_CLK_TCK"))))
+    os._exit(0)
 """
 
 
@@ -131,6 +149,64 @@ class Pooling(unittest.TestCase):
                     "scene_ms": "2.000000", "mpaths_per_s": "1.71429",
                     "mrays_per_s": "3.42857"}  # 6000 paths, 12000 rays in 3.5 ms; the mean is 5
         self.assertEqual({key: row[key] for key in expected}, expected)
+
+
+class WholeProcesses(unittest.TestCase):
+    def test_the_parts_add_up_by_hand(self):
+        process = Process("measured", wall_ms=100.0, early_ms=3.0, runs=[{"kernel_ms": 20.0}], row={
+            "kernel_ms_median": "20", "process_start_ms": "8", "process_scene_ms": "30",
+            "process_render_ms": "25", "process_image_ms": "4", "process_total_ms": "67"})
+        self.assertEqual(list(pooling.parts_of(process).items()), [
+            ("start", 5.0), ("scene", 30.0), ("kernels", 20.0), ("render_rest", 5.0),
+            ("image", 4.0), ("end", 36.0)])
+        self.assertEqual(pooling.parts_of(Process("measured", wall_ms=9.0)), {"undivided": 9.0})
+
+    def test_no_process_ends_before_its_last_word(self):
+        """/proc counts an age in ticks of 10 ms, which made one in two end earlier."""
+        with tempfile.TemporaryDirectory() as folder:
+            script = Path(folder, "age.py")
+            script.write_text(AGE, encoding="utf-8")
+            command = [sys.executable, "-I", "-S", str(script)]
+            ends = [pooling.parts_of(program.measure(command, 60))["end"] for _ in range(12)]
+        self.assertGreaterEqual(min(ends), 0)
+
+    def test_a_process_without_end(self):
+        begin_s = time.monotonic()
+        process = program.measure(["sleep", "60"], 0.2, renders=False)
+        self.assertLess(time.monotonic() - begin_s, 30)
+        self.assertEqual((process.status, process.message),
+                         ("failed", "no end after 0.2 s (--timeout)"))
+        self.assertEqual(program.measure(["sleep", "0"], 60, renders=False).status, "measured")
+
+
+class PageCache(unittest.TestCase):
+    def scene(self, where):
+        folder = tempfile.mkdtemp(prefix="ptexp cache ", dir=where)
+        self.addCleanup(shutil.rmtree, folder)
+        Path(folder, "meshes").mkdir()
+        for name in ("scene.xml", "meshes/one.ply"):
+            Path(folder, name).write_bytes(bytes(20000))
+        return str(Path(folder, "scene.xml"))
+
+    def cached(self, scene):
+        return list(map(page_cache.is_cached, provenance.files_beside(scene)))
+
+    def test_files_leave_and_come_back(self):
+        scene = self.scene(None)
+        self.assertEqual(self.cached(scene), [True, True])  # written just now
+        system = program.output_of("stat", "--file-system", "--format=%T", scene)
+        if system == "tmpfs":
+            self.skipTest("files are in memory alone")
+        page_cache.drop(scene)
+        self.assertEqual(self.cached(scene), [False, False])
+        page_cache.fill(scene)
+        self.assertEqual(self.cached(scene), [True, True])
+
+    def test_what_stays_in_memory_is_refused(self):
+        if not os.access("/dev/shm", os.W_OK):
+            self.skipTest("no /dev/shm")
+        with self.assertRaisesRegex(harness.Refused, "one.ply stays in the page cache"):
+            page_cache.drop(self.scene("/dev/shm"))
 
 
 class Harness(unittest.TestCase):
@@ -264,6 +340,44 @@ class Harness(unittest.TestCase):
         self.assertEqual((launched["units"], launched["uneven_ms_median"]), ("7", "1.250000"))
         self.assertEqual((plain["wall_ms_runs"], plain["units"]), ("", ""))
         self.assertIn("env PTEXP_FAKE_WALL=1.5", self.facts()["configurations"]["a"])
+
+    def test_where_the_wall_time_of_processes_went(self):
+        self.fake("a", times={"1": [4.0]}, end_s=0.25, process={
+            "start": 9, "scene": 7, "render": 11, "image": 2.5, "total": 29.5})
+        prepared = []
+
+        def refuse():
+            raise harness.Refused("not cold")
+        made = [Configuration("a", "--seed 1", repeat=2, prepare=partial(prepared.append, 1)),
+                Configuration("command", "--list-devices", repeat=2, renders=False),
+                Configuration("cold", "--seed 1", repeat=2, prepare=refuse)]
+        experiment = Experiment("fake", "Fake?", lambda *_: made, None, whole_process=True)
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(harness.main(experiment, self.options()), 0)
+        row, command, cold = self.rows()
+        walls = [float(wall) for wall in row["process_wall_ms_runs"].split(";")]
+        self.assertEqual([float(row[f"process_wall_ms_{end}"]) for end in ("low", "high")],
+                         [min(walls), max(walls)])
+        self.assertAlmostEqual(float(row["process_wall_ms"]), sum(walls) / 2, places=5)
+        self.assertGreater(min(walls), 250)
+        parts = {part: float(row[f"process_{part}_ms"]) for part in (
+            "start", "scene", "kernels", "render_rest", "image", "end")}
+        self.assertEqual([parts[part] for part in ("scene", "kernels", "render_rest", "image")],
+                         [7, 4, 7, 2.5])
+        self.assertTrue(-2 < parts["start"] <= 9, parts)  # less a part of a tick
+        # Each median is the mean of two processes, so these parts add up as well.
+        self.assertAlmostEqual(sum(parts.values()), sum(walls) / 2, places=4)
+        self.assertGreater(parts["end"], 250 - 29.5)
+        self.assertEqual((row["process_render_ms"], row["process_total_ms"]),
+                         ("11.000000", "29.500000"))  # as ptexp says them
+        self.assertEqual(len(prepared), 2)
+        self.assertEqual((command["process_undivided_ms"], command["kernel_ms_median"],
+                          command["scene_hash"], command["repeat"]),
+                         (command["process_wall_ms"], "", "", "2"))
+        self.assertLess(float(command["process_wall_ms"]), min(walls))
+        self.assertEqual(self.facts()["configurations"]["command"], "ptexp --list-devices")
+        self.assertEqual((cold["status"], cold["message"]), ("refused", "not cold"))
+        self.assertEqual(self.log(), [("1", "1")] * 2)
 
     def test_ctrl_c(self):
         self.fake("a", wrong={"2": 130})

@@ -2,12 +2,14 @@
 import importlib
 import itertools
 import random
+import runpy
 import struct
 import sys
 import tempfile
 import types
 import unittest
 from pathlib import Path
+from unittest import mock
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
@@ -340,6 +342,115 @@ class Scenes(unittest.TestCase):
             "s, both as usually written, wavefront: 2.00 times as slow as the megakernel",
             "s, megakernel at its best: 2.00 times as fast as what is usual",
             "s, wavefront at its best: 8.00 times as fast as what is usual"])
+
+
+class ProcessTime(unittest.TestCase):
+    def setUp(self):
+        self.experiment = experiment("process_time")
+
+    def configurations(self, device, scenes=(), quick=False, samples=(1, 64)):
+        arguments = types.SimpleNamespace(quick=quick, scenes=scenes, samples=list(samples),
+                                          picture="image.png", rounds=7)
+        return self.experiment.configurations(arguments, device)
+
+    def test_each_round_starts_what_a_user_types(self):
+        made = self.configurations(types.SimpleNamespace(kind="cuda", choice="cuda:2"))
+        self.assertEqual({(one.repeat, one.warmup) for one in made}, {(7, 0)})
+        empty, = (one for one in made if one.name == self.experiment.EMPTY)
+        self.assertRegex(empty.arguments, r"^-I -S \S+/experiments/lib/empty_cuda.py 2$")
+        self.assertEqual((empty.program, empty.renders), (sys.executable, False))
+        renders = [one for one in made if one.renders and one.labels["image"] != "any process"]
+        self.assertEqual({one.image for one in renders}, {"image.png"})
+        self.assertEqual([(option(one, "--scene"), option(one, "--builder")) for one in renders],
+                         [("spheres", None)] + [(scene, builder) for scene in (
+                             "statue:1M", "statue:4M", "terrain:10M", "instances:10K", "boxes")
+                                                for builder in (None, "best")])
+        self.assertFalse([one for one in renders if "--mode" in one.arguments or one.prepare])
+        self.assertEqual([one.labels["goal_ms"] for one in renders],
+                         [40, 150, "", 300, "", 450, "", "", "", "", ""])
+        on_cpu = self.configurations(CPU)
+        self.assertEqual([one.name for one in on_cpu if one.labels["image"] == "any process"],
+                         ["ptexp --list-devices", "one pixel"])
+        self.assertEqual([one.name for one in made], list(dict.fromkeys(one.name for one in made)))
+
+    def test_scene_files_are_warm_or_cold(self):
+        cache, hall = experiment("page_cache"), "/a b/modern-hall/scene.xml"
+        made = [one for one in self.configurations(CPU, [hall], samples=(1, 64, 1))
+                if one.prepare]
+        self.assertEqual([one.name.partition(", ")[2] for one in made], [
+            f"{samples}, {way} files" for samples in ("1 sample", "64 samples")
+            for way in ("auto, warm", "auto, cold", "best, warm")])
+        for one in made:
+            self.assertEqual(one.prepare.func, cache.drop if "cold" in one.name else cache.fill)
+            self.assertEqual(one.prepare.args, (hall,))
+            self.assertIn(f"--scene '{hall}' ", one.arguments)
+        self.assertEqual([one.labels["goal_ms"] for one in made], [110, "", "", "", "", ""])
+        quick = self.configurations(CPU, [hall], quick=True, samples=(64, 128))
+        self.assertEqual(len([one for one in quick if one.prepare]), 3)
+
+    def rows(self):
+        def process(image, variant, wall, kernels="", files="", goal_ms="", **parts):
+            return {**self.experiment.labels(image, variant, files, goal_ms), "repeat": "5",
+                    "name": variant, "kernel_ms_median": kernels, "process_kernels_ms": kernels,
+                    **{f"process_wall_ms{end}": str(wall + more) for end, more in (
+                        ("", 0), ("_low", -10), ("_high", 10))},
+                    **{f"process_{part}_ms": str(ms) for part, ms in parts.items()}}
+        of = self.experiment
+        return [process("any process", of.PYTHON, 20, undivided=20),
+                process("any process", of.EMPTY, 370, undivided=370),
+                process("s", "auto", 600, "60", "warm", 190, devices=200, prepare=240, end=30,
+                        setup=70),
+                process("s", "auto", 800, "60", "cold", devices=200, scene=480, end=40, setup=80),
+                process("s", "best", 610, "70", "warm", devices=200, prepare=340)]
+
+    def test_what_is_over_an_empty_program(self):
+        rows = self.rows()
+        arguments = types.SimpleNamespace(quick=False)
+        self.experiment.finish(rows, arguments)  # 600 - 60 - (370 - 20)
+        self.assertEqual([one["over_ms"] for one in rows],
+                         ["", "", "190.000000", "390.000000", "190.000000"])
+        self.assertEqual([one["verdict"] for one in rows], ["", "", "pass", "", ""])
+        rows[2]["goal_ms"] = 189
+        self.experiment.finish(rows, arguments)
+        self.assertEqual(rows[2]["verdict"], "MISS")
+        self.experiment.finish(rows, types.SimpleNamespace(quick=True))
+        self.assertEqual(rows[2]["verdict"], "quick")
+        on_cpu = self.rows()[2:]
+        self.experiment.finish(on_cpu, arguments)
+        self.assertEqual({(one["over_ms"], one["verdict"]) for one in on_cpu}, {("", "")})
+
+    def test_an_empty_program_makes_a_context(self):
+        def calls(*arguments, wrong=None):
+            made = []
+            cuda = types.SimpleNamespace(**{
+                name: lambda *_, name=name: made.append(name) or 100 * (name == wrong)
+                for name in ("cuInit", "cuDeviceGet", "cuDevicePrimaryCtxRetain", "cuCtxSetCurrent")})
+            with mock.patch("ctypes.CDLL", return_value=cuda), \
+                    mock.patch.object(sys, "argv", ["empty_cuda.py", *arguments]):
+                runpy.run_path(str(ROOT / "experiments" / "lib" / "empty_cuda.py"))
+            return made
+        self.assertEqual(calls("1"), ["cuInit", "cuDeviceGet", "cuDevicePrimaryCtxRetain",
+                                      "cuCtxSetCurrent"])
+        self.assertEqual(calls(), [])
+        with self.assertRaisesRegex(SystemExit, "cuInit: error 100"):
+            calls("0", wrong="cuInit")
+
+    def test_sentences(self):
+        rows = self.rows()
+        self.experiment.finish(rows, types.SimpleNamespace(quick=False))
+        said = self.experiment.conclude(rows, None)
+        self.assertEqual(said[0], "an empty CUDA program without Python: 350 ms")
+        self.assertIn(
+            "s, auto, warm files: 600 ms [590, 610], of it kernels 60.0 ms (10 %), plan and trees "
+            "40 %, driver and devices 33 % and context and upload 12 %; 190 ms over its kernels "
+            "and an empty CUDA program (goal 190 ms: pass)", said)
+        self.assertIn("s, builder auto: no significant difference to best (0.984 times its time)",
+                      said)
+        self.assertIn("s, cold files: 1.33 times as slow as warm ones", said)
+        for end in ("", "_low", "_high"):
+            rows[4][f"process_wall_ms{end}"] = str(1200)
+        self.assertIn("s, builder auto: 2.00 times as fast as best",
+                      self.experiment.conclude(rows, None))
 
 
 class RayFiles(unittest.TestCase):

@@ -444,6 +444,49 @@ class Report(unittest.TestCase):
                          ["worse than predicted", "as predicted", "better than predicted"])
         self.assertEqual(answer.count("10.0 %"), 3)
 
+    def test_whole_processes_in_parts(self):
+        columns = [("process_start_ms", "start"), ("process_prepare_ms", "trees"),
+                   ("process_kernels_ms", "kernels"), ("process_undivided_ms", "not divided")]
+        plot = {**TOGGLES, "kind": "stack", "y": "process_wall_ms", "parts": columns}
+
+        def process(name, wall, kernel_ms, verdict="", **parts):
+            return {**toggle("", name, kernel_ms, kernel_ms, kernel_ms), "name": name, "panel": "",
+                    "process_wall_ms": wall, "process_wall_ms_low": 0.9 * wall,
+                    "process_wall_ms_high": 1.1 * wall, "over_ms": 25 if verdict else "",
+                    "goal_ms": 20 if verdict else "", "verdict": verdict,
+                    **{f"process_{part}_ms": ms for part, ms in parts.items()}}
+        rows = [process("--list-devices", 16, "", undivided=16),
+                process("statue", 200, 40, "MISS", start=50, prepare=110, kernels=40),
+                process("boxes", 100, 60, start=25, prepare=15, kernels=60)]
+        write(self.folder, "process_time", rows, facts("process_time", plot))
+        self.run_report(self.folder, "--plots", self.folder)
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.check_well_formed(text)
+        self.assertIn("Trees: the largest part of 1 of 2 processes, statue (55 %).", text)
+        self.assertIn("Kernels: the largest part of 1 of 2 processes, boxes (60 %).", text)
+        answer = re.search("Where does the time of a whole process go.*?</article>", text, re.S)[0]
+        self.assertIn("For comparison: --list-devices 16.0 ms.", answer)
+        self.assertIn(">200 [180, 220]</td>", answer)
+        self.assertIn("<td>trees 55 %, start 25 %, kernels 20 %</td>", answer)
+        self.assertEqual(re.findall(r'class="verdict (\w+)">([^<]*)<', answer), [("bad", "MISS")])
+        bars = {}
+        svg = ElementTree.parse(self.folder / "process_time.svg").getroot()
+        for group in svg.iter("{http://www.w3.org/2000/svg}g"):
+            if (group.get("class") or "").startswith("point"):
+                bars[group.get("data-middle")] = [
+                    tuple(float(rect.get(side)) for side in ("x", "width"))
+                    for rect in group.iter("{http://www.w3.org/2000/svg}rect")]
+        self.assertEqual(list(map(len, bars.values())), [1, 3, 3])
+        (begin, start), (after_start, trees), (after_trees, kernels) = bars["200.0"]
+        self.assertAlmostEqual(trees / start, 110 / 50, delta=0.01)
+        self.assertAlmostEqual(kernels / start, 40 / 50, delta=0.01)
+        self.assertAlmostEqual(after_start, begin + start, delta=0.02)
+        self.assertAlmostEqual(after_trees, after_start + trees, delta=0.02)
+        self.assertEqual([name for name in ("start", "trees", "kernels", "not divided")
+                          if f">{name}</text>" in text], ["start", "trees", "kernels", "not divided"])
+        shutil.rmtree(self.folder)
+        self.assertIn("there is no table of process_time", self.make(toggles=toggles()))
+
     def test_a_series_without_numbers_is_not_judged(self):
         """As of a table that was cut off."""
         plot = {"kind": "lines", "y": "share", "mark": 0.8, "x_label": "items"}

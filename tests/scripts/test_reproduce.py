@@ -15,7 +15,7 @@ PTEXP = Path(os.environ.get("PTEXP", ROOT / "build" / "release" / "src" / "ptexp
 REPRODUCE = ROOT / "scripts" / "reproduce"
 # They need another build.
 NOT_IN_IT = {"compare_builds", "divergence"}
-BUDGET_S = 34 * 60
+BUDGET_S = 36 * 60
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.
 PARTLY_BROKEN = """#!/bin/sh
