@@ -1,10 +1,14 @@
 #include "common/scene/data/plastic_material.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <numeric>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -117,9 +121,11 @@ Polynomial fit_polynomial(const std::vector<double>& x, const std::vector<double
   return best;
 }
 
-constexpr int nodes = 64;  // cosines
+constexpr std::size_t nodes = 64;  // cosines
 
-float cosine_of(int node) { return std::max(1e-6f, static_cast<float>(node) / (nodes - 1)); }
+float cosine_of(std::size_t node) {
+  return std::max(1e-6f, static_cast<float>(node) / static_cast<float>(nodes - 1));
+}
 
 /// The mean of f(m) over the normals m that are visible from a direction.
 template <class Function>
@@ -158,15 +164,19 @@ double reflectance(const Microfacets& facets, float eta, const Vec3& wi) {
 
 RoughBoundary measure(float eta, float alpha, bool is_beckmann) {
   const Microfacets facets = Microfacets::make(alpha, alpha, is_beckmann);
-  std::vector<double> x, passed;
-  double reflected = 0;
-  for (int node = 0; node < nodes; ++node) {
-    const float cosine = cosine_of(node);
-    const Vec3 wi(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
-    x.push_back(2 * std::sqrt(static_cast<double>(cosine)) - 1);
-    passed.push_back(transmittance(facets, eta, wi));
-    reflected += 2.0 / nodes * static_cast<double>(cosine) * reflectance(facets, 1.0f / eta, wi);
-  }
+  std::vector<double> x(nodes), passed(nodes), reflected_at(nodes);
+  // Isolated: other work might want to measure, too, which one thread at a time does.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(std::size_t{0}, nodes, [&](std::size_t node) {
+      const float cosine = cosine_of(node);
+      const Vec3 wi(std::sqrt(1.0f - cosine * cosine), 0.0f, cosine);
+      x[node] = 2 * std::sqrt(static_cast<double>(cosine)) - 1;
+      passed[node] = transmittance(facets, eta, wi);
+      reflected_at[node] = 2.0 / static_cast<double>(nodes) * static_cast<double>(cosine) *
+                           reflectance(facets, 1.0f / eta, wi);
+    });
+  });
+  const double reflected = std::accumulate(reflected_at.begin(), reflected_at.end(), 0.0);
   const Polynomial c = fit_polynomial(x, passed);
   RoughBoundary result;
   for (std::size_t i = 0; i < terms; ++i) result.transmittance[i] = static_cast<float>(c[i]);

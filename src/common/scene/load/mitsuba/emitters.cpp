@@ -1,5 +1,6 @@
 // <emitter>s that are not on a shape.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,16 +41,17 @@ bool is_scaled_rotation(const Affine& map, const Affine& rotation, bool mirrored
 }
 
 std::vector<Color> scaled_pixels(const Image& image, float scale, bool mirrored) {
-  std::vector<Color> pixels;
-  pixels.reserve(static_cast<std::size_t>(image.width) * image.height);
-  for (int y = 0; y < image.height; ++y) {
+  const auto width = static_cast<std::size_t>(image.width);
+  std::vector<Color> pixels(width * static_cast<std::size_t>(image.height));
+  // A picture may hold negative or infinite pixels; light does not.
+  const auto light = [&](float v) { return std::isfinite(v) && v > 0.0f ? scale * v : 0.0f; };
+  tbb::parallel_for(0, image.height, [&](int y) {
+    Color* const row = &pixels[static_cast<std::size_t>(y) * width];
     for (int x = 0; x < image.width; ++x) {
       const float* p = image.pixel(mirrored ? image.width - 1 - x : x, y);
-      // A picture may hold negative or infinite pixels; light does not.
-      const auto light = [&](float v) { return std::isfinite(v) && v > 0.0f ? scale * v : 0.0f; };
-      pixels.push_back({light(p[0]), light(p[1]), light(p[2])});
+      row[x] = {light(p[0]), light(p[1]), light(p[2])};
     }
-  }
+  });
   return pixels;
 }
 

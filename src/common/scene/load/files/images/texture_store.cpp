@@ -145,7 +145,7 @@ std::size_t TextureStore::append(std::vector<std::byte> bytes) {
     return 0;
   }
   if (offset + bytes.size() > texels_.capacity()) {
-    const std::size_t most = std::max(offset + bytes.size(), texels_.size() + texels_.size() / 2);
+    const std::size_t most = std::max(offset + bytes.size(), 2 * texels_.size());
     check_host_memory(most, "the pictures of the scene");
     texels_.reserve(most);
   }
