@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <cstring>
@@ -49,14 +50,79 @@ void* CudaMemory::allocate_bytes(const std::string& name, std::uint64_t size_byt
   return pointer;
 }
 
+namespace {
+
+constexpr std::uint64_t piece_bytes = std::uint64_t{1} << 20;
+constexpr std::uint64_t large_bytes = std::uint64_t{32} << 20;  // pays for pinning the pieces
+
+}  // namespace
+
 void CudaMemory::copy_to_device(void* device, const void* host, std::uint64_t size_bytes) {
   if (size_bytes == 0) return;
-  check_cuda(cudaMemcpy(device, host, size_bytes, cudaMemcpyHostToDevice), "cudaMemcpy");
+  if (size_bytes < large_bytes) {
+    check_cuda(cudaMemcpy(device, host, size_bytes, cudaMemcpyHostToDevice), "cudaMemcpy");
+    return;
+  }
+  if (upload_ == nullptr) upload_ = std::make_unique<CudaUpload>();
+  upload_->copy(device, host, size_bytes);
+}
+
+void CudaUpload::allocate() {
+  check_cuda(cudaGetDevice(&device_), "cudaGetDevice");
+  for (Lane& lane : lanes_) {
+    check_cuda(cudaStreamCreateWithFlags(&lane.stream, cudaStreamNonBlocking), "cudaStreamCreate");
+    for (int i = 0; i < 2; ++i) {
+      check_cuda(cudaMallocHost(reinterpret_cast<void**>(&lane.pieces[i]), piece_bytes),
+                 "cudaMallocHost");
+      check_cuda(cudaEventCreateWithFlags(&lane.copied[i], cudaEventDisableTiming),
+                 "cudaEventCreate");
+    }
+  }
+}
+
+CudaUpload::~CudaUpload() {
+  for (const Lane& lane : lanes_) {
+    if (lane.stream != nullptr) cudaStreamSynchronize(lane.stream);
+    for (int i = 0; i < 2; ++i) {
+      cudaFreeHost(lane.pieces[i]);
+      if (lane.copied[i] != nullptr) cudaEventDestroy(lane.copied[i]);
+    }
+    if (lane.stream != nullptr) cudaStreamDestroy(lane.stream);
+  }
+}
+
+void CudaUpload::copy(void* to, const void* from, std::uint64_t size_bytes) {
+  if (lanes_[0].stream == nullptr) allocate();
+  // What was given to the default stream before may use the memory.
+  check_cuda(cudaStreamSynchronize(nullptr), "uploading");
+  tbb::parallel_for(
+      0, lanes,
+      [&](int lane) {
+        copy_every(lane, static_cast<char*>(to), static_cast<const char*>(from), size_bytes);
+      },
+      tbb::simple_partitioner());
+}
+
+/// Every piece that is the lane's.
+void CudaUpload::copy_every(int lane_index, char* to, const char* from, std::uint64_t size_bytes) {
+  check_cuda(cudaSetDevice(device_), "cudaSetDevice");  // of this thread
+  const Lane& lane = lanes_[lane_index];
+  int turn = 0;
+  for (std::uint64_t at = lane_index * piece_bytes; at < size_bytes; at += lanes * piece_bytes) {
+    const std::uint64_t count = std::min(piece_bytes, size_bytes - at);
+    check_cuda(cudaEventSynchronize(lane.copied[turn]), "uploading");  // at first nothing
+    std::memcpy(lane.pieces[turn], from + at, count);
+    check_cuda(
+        cudaMemcpyAsync(to + at, lane.pieces[turn], count, cudaMemcpyHostToDevice, lane.stream),
+        "uploading");
+    check_cuda(cudaEventRecord(lane.copied[turn], lane.stream), "cudaEventRecord");
+    turn = 1 - turn;
+  }
+  check_cuda(cudaStreamSynchronize(lane.stream), "uploading");
 }
 
 namespace {
 
-constexpr std::uint64_t piece_bytes = std::uint64_t{4} << 20;
 constexpr std::uint64_t grain_bytes = std::uint64_t{256} << 10;  // that a thread copies at least
 
 void copy_by_threads(char* to, const char* from, std::uint64_t size_bytes) {
