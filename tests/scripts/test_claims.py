@@ -1,13 +1,15 @@
-"""Claims on trial: files that are not as they should be, verdicts on tables whose numbers are known,
-and those on the committed tables, which the committed pages must say."""
+"""Claims on trial: wrong files, verdicts on tables whose numbers are known, and those on the committed
+tables, which the committed pages must say."""
 import dataclasses
 import re
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from html import unescape
 from pathlib import Path
+from unittest import mock
 
 import test_report as planted
 
@@ -40,6 +42,8 @@ LACKS = '''
 what = "a thing"
 takes = "work"
 '''
+# Their rows are of an experiment that has them since, but were not measured yet.
+UNMEASURED = {"meister_2018_reinsertion"}
 DEVICES = sorted({path.parent for path in (ROOT / "results").glob("*/*.json")})
 
 
@@ -103,6 +107,13 @@ class Files(unittest.TestCase):
                 ("claim = ", "mine.toml: not TOML")):
             self.assertIn(said, self.error_of(text))
 
+    def test_python_3_10_reads_with_tomli_and_says_so_where_it_lacks_it(self):
+        with mock.patch.dict(sys.modules, {"tomllib": None, "tomli": types.SimpleNamespace(
+                loads=lambda text: {"claim": "read by tomli", "colour": "red"})}):
+            self.assertIn("mine.toml: colour: unknown key", self.error_of(GOOD + RULE))
+        with mock.patch.dict(sys.modules, {"tomllib": None, "tomli": None}):
+            self.assertIn("pip install -r scripts/requirements.txt", self.error_of(GOOD + RULE))
+
     def test_ours_are_as_they_should_be(self):
         found = {claim.name: claim for claim in claim_files.read_claims()}
         self.assertGreaterEqual(len(found), 27)
@@ -136,7 +147,8 @@ class Files(unittest.TestCase):
                 used |= {claim.rule[key] for key in ("along", "last_of", "times", "per")
                          if key in claim.rule}
                 self.assertLessEqual(used, set(table.columns) | {"panel", "x"}, claim.name)
-                self.assertTrue(cells_of(table, claim.rule), claim.name)
+                self.assertEqual(bool(cells_of(table, claim.rule)), claim.name not in UNMEASURED,
+                                 claim.name)
 
 
 class Verdicts(unittest.TestCase):
