@@ -122,7 +122,7 @@ def judge_cells(cells, rule):
 def judge(claim, device):
     """The verdict on a claim by the tables of a device (report_parts.tables.Device)."""
     if claim.lacks:
-        return unjudged(f"ptexp lacks {claim.lacks['what']}; it would take {claim.lacks['takes']}")
+        return unjudged(f"ptexp lacks {claim.lacks['what']}")
     rule = claim.rule
     table = device.tables.get(rule["table"])
     if table is None:

@@ -18,7 +18,8 @@ def lines_of(claim, verdict):
     """The six texts of a claim, each with those in small print below it."""
     named = f"Number: {claim.number}." if claim.number else "No number."
     read = "Source read" if claim.source_read else "Source not read as a whole"
-    measured = f"{claim.rule['measures']}; bound: {claim.bounds}" if claim.rule else ""
+    measured = (f"{claim.rule['measures']}; bound: {claim.bounds}" if claim.rule else
+                f"It would take {claim.lacks['takes']}.")
     origin = ", ".join(part for part in (verdict.table, verdict.commit) if part)
     return [(claim.claim, named), (claim.citation, f"{read}: {claim.source_note}"),
             (verdict.text, ""), (verdict.numbers, measured),
