@@ -11,7 +11,7 @@ import sys
 from lib import harness
 from lib.harness import Configuration, Experiment, Plot
 from lib.kernels import tracing_kernel
-from lib.sentences import against, best_of, idle_share, in_groups, show
+from lib.sentences import against, best_of, in_groups, show
 
 IMAGES = [(600, 300, 50), (2400, 1200, 50)]
 EDGES = [4, 8, 16, 32, 64]
@@ -39,6 +39,14 @@ def configurations(arguments, _device):
                                  same_image="spheres")
                    for series, threads, options in BLOCKS]
     return result
+
+
+def idle_share(row):
+    """Threads of a launch with one thread a pixel that have no pixel."""
+    width, height = int(row["width"]), int(row["height"])
+    across, down = (int(side) for side in row["block"].split("x"))
+    threads = -(-width // across) * across * -(-height // down) * down
+    return 1 - width * height / threads
 
 
 def finish(rows, _arguments):

@@ -16,7 +16,8 @@ from statistics import median
 from lib import harness
 from lib.harness import Configuration, Experiment
 from lib.image_check import with_options
-from lib.intervals import bootstrap, in_rounds
+from lib.intervals import bootstrap
+from lib.ratios import runs_of
 
 BUILDS = ["A", "B"]
 SLOWER = 1.02  # an interval wholly above it is a loss
@@ -64,12 +65,6 @@ def configurations(arguments, device):
             for case in cases(arguments, device) if case.renders for build in BUILDS]
 
 
-def times_of(row):
-    """A list for each round."""
-    times = [float(time) for time in row["kernel_ms_runs"].split(";")]
-    return in_rounds(times, int(row["rounds"]))
-
-
 def flat(rounds):
     return [time for of_round in rounds for time in of_round]
 
@@ -101,7 +96,7 @@ def verdict_of(low, high):
 
 def finish(rows, _arguments):
     for before, after in pairs_of(rows):
-        samples = [times_of(before), times_of(after)]
+        samples = [runs_of(before), runs_of(after)]
         low, high = bootstrap(samples, ratio)
         after.update(ratio_median=f"{ratio(list(map(flat, samples))):.4f}",
                      ratio_low=f"{low:.4f}", ratio_high=f"{high:.4f}",
@@ -112,7 +107,7 @@ def conclude(rows, _arguments):
     pairs = pairs_of(rows)
     if not pairs:
         return ["no configuration was measured with both programs"]
-    samples = [times_of(row) for pair in pairs for row in pair]
+    samples = [runs_of(row) for pair in pairs for row in pair]
     mean = mean_ratio(list(map(flat, samples)))
     low, high = bootstrap(samples, mean_ratio)
     slower = [after["case"] for _, after in pairs if after["verdict"] == "SLOWER"]

@@ -19,7 +19,8 @@ KINDS = ["primary", "ao", "diffuse"]
 PATHS = ["bounce:0", "bounce:1", "bounce:3"]  # of scene files, which have materials
 CPU = [("bvh2", "sah", ""), ("cwbvh", "sah", ""), ("cwbvh", "sbvh", "")]
 CUDA = [("bvh2", "sah", "threads"), ("cwbvh", "sah", "threads"), ("cwbvh", "sah", "persistent"),
-        ("cwbvh", "sah", "beam"), ("cwbvh", "sbvh", "auto"), ("cwbvh", "hploc", "auto")]
+        ("cwbvh", "sah", "beam"), ("cwbvh", "sbvh", "auto"), ("cwbvh", "hploc", "auto"),
+        ("cwbvh", "hploc-reinsert", "auto")]
 
 
 def name_of(scene):

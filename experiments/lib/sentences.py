@@ -5,7 +5,6 @@ from lib.program import ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
 # pylint: disable=wrong-import-position
-from report_parts.claims import idle_share  # noqa: E402,F401
 from report_parts.tables import in_groups, interval, plot_title  # noqa: E402,F401
 from report_parts.words import change, exponent, listed, short, show, with_interval  # noqa: E402,F401
 

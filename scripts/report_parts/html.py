@@ -60,8 +60,7 @@ def html_table(heads, rows, name="", caption="", rich=""):
 
 
 def verdict_cell(word, name=""):
-    name = name or {"slower": "bad", "faster": "good", "refuted": "bad", "confirmed": "good",
-            "depends": "mixed"}.get(word, "good" if word.startswith("yes") else "quiet")
+    name = name or {"slower": "bad", "faster": "good"}.get(word, "quiet")
     return Cell(f'<td><span class="verdict {name}">{escape(word)}</span></td>')
 
 

@@ -1,4 +1,4 @@
-"""Sets the page: the answers, the audit, a section for each experiment, pictures."""
+"""Sets the page: the answers, the claims, a section for each experiment, pictures."""
 import re
 from html import escape
 from pathlib import Path
@@ -6,7 +6,7 @@ from string import Template
 
 from . import html, plots
 from .answers import QUESTIONS
-from .claims import audit
+from .claims import claims_table
 from .devices import side_by_side
 from .images import image_section
 from .verdicts import meaning
@@ -34,14 +34,6 @@ def for_each(devices, make):
 def answers(devices):
     return "".join(f'<article class="answer"><h3>{question}</h3>{for_each(devices, answer)}'
                    "</article>" for question, answer in QUESTIONS)
-
-
-def audit_table(device):
-    rows = [[html.Cell(f"<td>{escape(claim)}<small>{escape(rule)}</small></td>"),
-             html.verdict_cell(verdict), html.Cell(f"<td>{escape(numbers)}</td>"), source]
-            for claim, rule, verdict, numbers, source in audit(device)]
-    return html.html_table(["claim", "verdict", "what was measured", "table"], rows, "audit",
-                           "The paper's claims, each with the rule of its verdict")
 
 
 def figures(table, shared):
@@ -147,5 +139,5 @@ def page(devices, limit_bytes):
                         + ("one commit" if commits == 1 else
                            f"{commits} commits; each table's caption says which")),
         contents="".join(f'<a href="#{anchor(name)}">{escape(name.replace("_", " "))}</a>'
-                         for name in names), audit=for_each(devices, audit_table),
+                         for name in names), claims=for_each(devices, claims_table),
         experiments="\n".join(experiment(name, devices) for name in names), images=pictures)
