@@ -9,6 +9,7 @@ from pathlib import Path
 from lib.description import Device, Experiment
 from lib.program import version_of
 from lib.provenance import provenance, scene_hash
+from lib.resident import EACH
 from lib.rounds import command_line
 from lib.table import read_facts
 
@@ -22,6 +23,7 @@ class Session:
     configurations: list
     path: Path = None  # of the table
     key: str = ""  # as key_of() says
+    way: str = EACH  # as way_of() says
     pooled: dict = field(default_factory=dict)  # rows that rounds.py has made already
 
 
@@ -49,6 +51,7 @@ def origin(session, journal, constant):
     return {
         **constant, "date": begins[0]["date"], "resumed": [begin["date"] for begin in begins[1:]],
         "key": journal.key, "complete": False, "rounds": journal.of("machine"),
+        "measured_by": " and ".join(sorted({c.way or session.way for c in session.configurations})),
         "equal_images": {event["group"]: event["configurations"]
                          for event in journal.of("equal images")},
         **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
