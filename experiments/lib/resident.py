@@ -55,6 +55,7 @@ class Resident:
             self.process = None
 
     def start(self):
+        self.end()
         with open(self.errors, "wb") as errors:
             self.process = subprocess.Popen(  # pylint: disable=consider-using-with
                 [str(self.program), "measure"], cwd=self.folder.name, stdin=subprocess.PIPE,

@@ -41,23 +41,26 @@ def key_of(session, given):
 
 
 def constant_origin(session):
-    """Of the table's provenance what no measurement changes."""
-    return provenance(session.experiment, session.program, session.device, session.arguments)
+    """Of the table's provenance what no measurement changes, with all command lines: enough to
+    measure it again."""
+    return {
+        **provenance(session.experiment, session.program, session.device, session.arguments),
+        "measured_by": " and ".join(sorted({c.way or session.way for c in session.configurations})),
+        "configurations": {
+            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
+            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
+    }
 
 
 def origin(session, journal, constant):
-    """The table's provenance with all command lines: enough to measure it again."""
+    """The table's provenance."""
     begins = journal.of("begin")
     return {
         **constant, "date": begins[0]["date"], "resumed": [begin["date"] for begin in begins[1:]],
         "key": journal.key, "complete": False, "rounds": journal.of("machine"),
-        "measured_by": " and ".join(sorted({c.way or session.way for c in session.configurations})),
         "equal_images": {event["group"]: event["configurations"]
                          for event in journal.of("equal images")},
         **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
-        "configurations": {
-            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
-            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
     }
 
 

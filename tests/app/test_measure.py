@@ -100,9 +100,9 @@ class Measure(unittest.TestCase):
         (folder / "triangle.ply").write_text(PLY.format(z=z), encoding="utf-8")
 
     def start(self):
-        process = subprocess.Popen([PTEXP, "measure"], cwd=self.folder, text=True,  # pylint: disable=consider-using-with
-                                   stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
+        process = subprocess.Popen(  # pylint: disable=consider-using-with
+            [PTEXP, "measure"], cwd=self.folder, text=True, stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
         def end():
             process.kill()

@@ -3,9 +3,9 @@ beside it and writes what it was asked for into the file `log` there.
 
 behaviour.json: {"version": text, "times": {seed: [ms]}, "images": {seed: text}, "wrong": {seed:
 exit code}, "kills": n, "process": {part: ms}, "end_s": s, "dies": {seed: signal}, "hangs": [seed],
-"answers": {seed: text}, "factor": x}; kills: it kills the harness when it is to render number n; process: what it
-says of its wall time; end_s: how long it sleeps after its files; answers: what `measure` says instead;
-factor: its times are so many times as long.
+"answers": {seed: text}, "factor": x}; kills: it kills the harness when it is to render number n;
+process: what it says of its wall time; end_s: how long it sleeps after its files; answers: what
+`measure` says instead; factor: by which its times are multiplied.
 """
 import json
 import os
