@@ -100,9 +100,12 @@ class Measure(unittest.TestCase):
         (folder / "triangle.ply").write_text(PLY.format(z=z), encoding="utf-8")
 
     def start(self):
+        # AddressSanitizer keeps freed memory, by default up to 256 MiB.
+        options = os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=1"
         process = subprocess.Popen(  # pylint: disable=consider-using-with
             [PTEXP, "measure"], cwd=self.folder, text=True, stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+            env={**os.environ, "ASAN_OPTIONS": options})
 
         def end():
             process.kill()
@@ -132,7 +135,8 @@ class Measure(unittest.TestCase):
         return self.process.returncode, output, errors
 
     def single(self, options, folder):
-        subprocess.run([PTEXP, *words_of(f"--stats run.json --csv row.csv {options}")], cwd=folder, check=True, timeout=TIMEOUT_S,
+        words = words_of(f"--stats run.json --csv row.csv {options}")
+        subprocess.run([PTEXP, *words], cwd=folder, check=True, timeout=TIMEOUT_S,
                        stdin=subprocess.DEVNULL)
         with open(folder / "row.csv", newline="", encoding="utf-8") as file:
             row, = csv.DictReader(file)
