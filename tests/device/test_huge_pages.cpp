@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <string>
+
 #include "common/device/cpu/huge_pages.h"
 
 namespace pt {
@@ -34,6 +37,24 @@ TEST(HugePages, KeepWhatTheyHold) {
   const std::vector<std::byte> before = scene.texels;
   use_huge_pages(scene, 1e6);
   EXPECT_EQ(scene.texels, before);
+}
+
+/// KiB of huge pages that the process has, or -1 where the system does not say.
+long huge_kib() {
+  std::ifstream file("/proc/self/smaps_rollup");
+  for (std::string word; file >> word;) {
+    long kib = 0;
+    if (word == "AnonHugePages:" && file >> kib) return kib;
+  }
+  return -1;
+}
+
+TEST(HugePages, AreNotForShortRenders) {
+  SceneData scene;
+  scene.texels.resize(8 * page);
+  const long before = huge_kib();
+  use_huge_pages(scene, 1e-3);
+  EXPECT_EQ(huge_kib(), before);
 }
 
 }  // namespace

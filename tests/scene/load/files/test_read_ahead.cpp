@@ -208,6 +208,31 @@ TEST(ReadAhead, ScenesAreThoseOfOneThread) {
   expect_all_below(test_data("mitsuba_exporters"));
 }
 
+TEST(ReadAhead, OneFileIsReadInSeveralWays) {
+  const TempFolder folder;
+  std::ofstream(folder.file("a.obj"))
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0.25\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n";
+  std::ofstream scene(folder.file("scene.xml"));
+  scene << "<scene version='3.0.0'>";
+  for (const char* way : {"", "<boolean name='flip_tex_coords' value='false'/>",
+                          "<boolean name='face_normals' value='true'/>", ""}) {
+    scene << "<shape type='obj'><string name='filename' value='a.obj'/>" << way
+          << "<bsdf type='diffuse'/></shape>";
+  }
+  scene << "<emitter type='constant'/></scene>";
+  scene.close();
+  expect_same_on_all_threads(folder.file("scene.xml"));
+  LoadOptions options;
+  with_threads(threads, [&] {
+    const SceneData loaded = load_scene_file(folder.file("scene.xml"), options);
+    ASSERT_EQ(loaded.meshes.size(), 4u);
+    EXPECT_EQ(loaded.meshes[0].uvs[0].y, 0.25f);
+    EXPECT_EQ(loaded.meshes[1].uvs[0].y, 0.75f);
+    EXPECT_TRUE(loaded.meshes[2].normals.empty());
+    EXPECT_FALSE(loaded.meshes[3].normals.empty());
+  });
+}
+
 TEST(ReadAhead, RealScenesAreThoseOfOneThread) {
   if (!fs::exists(shared_file("scenes"))) GTEST_SKIP() << "no real scenes here";
   expect_all_below(shared_file("scenes"));
