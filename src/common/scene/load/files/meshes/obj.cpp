@@ -17,30 +17,46 @@
 
 namespace pt {
 
-std::size_t ObjMeshBuilder::Hash::operator()(const ObjCorner& corner) const {
-  // Products by odd constants, the high half folded in, spread neighbours over the table.
-  std::uint64_t hash = corner.position * 0x9e3779b97f4a7c15u;
-  hash = (hash ^ (hash >> 32) ^ corner.uv) * 0xbf58476d1ce4e5b9u;
-  hash = (hash ^ (hash >> 32) ^ corner.normal) * 0x94d049bb133111ebu;
-  return hash ^ (hash >> 32);
+namespace {
+
+/// Neighbours for neighbouring positions where all three numbers grow together, as in most files.
+std::uint64_t hash_of(const ObjCorner& corner) {
+  std::uint64_t hash = std::uint64_t{corner.uv - corner.position} * 0xbf58476d1ce4e5b9u;
+  hash = (hash ^ (hash >> 32) ^ (corner.normal - corner.position)) * 0x94d049bb133111ebu;
+  return 2 * std::uint64_t{corner.position} + (hash ^ (hash >> 32));
+}
+
+}  // namespace
+
+std::uint32_t& ObjMeshBuilder::slot_of(const ObjCorner& corner) {
+  for (std::uint64_t i = hash_of(corner);; ++i) {
+    std::uint32_t& slot = slots_[i & (slots_.size() - 1)];
+    if (slot == obj_none || corners_[slot] == corner) return slot;
+  }
+}
+
+void ObjMeshBuilder::double_slots() {
+  slots_.assign(std::max<std::size_t>(16, 2 * slots_.size()), obj_none);
+  for (std::uint32_t vertex = 0; vertex < corners_.size(); ++vertex)
+    slot_of(corners_[vertex]) = vertex;
 }
 
 std::uint32_t ObjMeshBuilder::vertex_of(const ObjCorner& corner, const ObjVertices& vertices) {
-  const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
-  const auto [entry, is_new] = vertex_of_.try_emplace(corner, next);
-  if (is_new) {
-    has_uvs_ |= corner.uv != obj_none;
-    has_normals_ |= corner.normal != obj_none;
-    mesh_.positions.push_back(vertices.positions[corner.position]);
-    if (corner.position < vertices.colors.size()) {
-      mesh_.colors.resize(next, Color(1.0f));
-      mesh_.colors.push_back(vertices.colors[corner.position]);
-    }
-    mesh_.uvs.push_back(corner.uv == obj_none ? Vec2(0.0f) : vertices.uvs[corner.uv]);
-    mesh_.normals.push_back(corner.normal == obj_none ? Vec3(0.0f)
-                                                      : vertices.normals[corner.normal]);
+  if (2 * corners_.size() >= slots_.size()) double_slots();
+  std::uint32_t& slot = slot_of(corner);
+  if (slot != obj_none) return slot;
+  slot = static_cast<std::uint32_t>(corners_.size());
+  corners_.push_back(corner);
+  has_uvs_ |= corner.uv != obj_none;
+  has_normals_ |= corner.normal != obj_none;
+  mesh_.positions.push_back(vertices.positions[corner.position]);
+  if (corner.position < vertices.colors.size()) {
+    mesh_.colors.resize(slot, Color(1.0f));
+    mesh_.colors.push_back(vertices.colors[corner.position]);
   }
-  return entry->second;
+  mesh_.uvs.push_back(corner.uv == obj_none ? Vec2(0.0f) : vertices.uvs[corner.uv]);
+  mesh_.normals.push_back(corner.normal == obj_none ? Vec3(0.0f) : vertices.normals[corner.normal]);
+  return slot;
 }
 
 void ObjMeshBuilder::add_face(const std::vector<ObjCorner>& corners, const ObjVertices& vertices) {

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "common/geometry/mesh.h"
@@ -40,16 +39,16 @@ class ObjMeshBuilder {
   Mesh finish(std::vector<std::string>* warnings) &&;
 
  private:
-  struct Hash {
-    std::size_t operator()(const ObjCorner& corner) const;
-  };
-
   std::uint32_t vertex_of(const ObjCorner& corner, const ObjVertices& vertices);
+  /// The slot that has the corner's vertex, or the empty one where it belongs.
+  std::uint32_t& slot_of(const ObjCorner& corner);
+  void double_slots();
 
   Mesh mesh_;
   PolygonFans fans_;
   bool has_uvs_ = false, has_normals_ = false;
-  std::unordered_map<ObjCorner, std::uint32_t, Hash> vertex_of_;
+  std::vector<ObjCorner> corners_;    ///< by vertex
+  std::vector<std::uint32_t> slots_;  ///< vertices by the hash of their corners, or obj_none; 2^n
 };
 
 // The lines of an OBJ file. One that is wrong loses itself, or what needs it, and not the file.
