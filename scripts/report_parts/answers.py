@@ -1,72 +1,15 @@
-"""The first section: which mode for my scene, which block size, what does each idea give."""
+"""Causes and other answers: what each choice gives, which block size, processes, several devices."""
 from html import escape
+from typing import NamedTuple
 
 from .html import Cell, html_table, paragraph, value_cell, verdict_cell
 from .processes import whole_processes
 from .scaling import several_devices
-from .size_map import size_map
-from .tables import in_groups, interval, number
-from .words import change, quotient, relation, show
+from .tables import Interval, in_groups, interval
+from .words import change, listed, quotient, relation, show
 
+MOST_NAMED = 4
 NOT_MEASURED = "This was not measured: there is no table {}."
-
-
-def way(row):
-    return row.get("x") if row.get("panel") else row.get("way") or row.get("x", "")
-
-
-def scene_rows(device):
-    """(table, scene, commit, rows of one image): the megakernel's rows and the wavefront's."""
-    for name in ("image_size", "defaults", "scenes", "shading", "dial"):
-        table = device.to_judge(name)
-        groups, kinds = {}, {row.get("device_kind") for row in table.measured} if table else ()
-        kind = "cuda" if "cuda" in kinds else "cpu"
-        for row in table.measured if table else []:
-            if name == "image_size":
-                if row.get("device_kind", kind) != kind:
-                    continue
-                scene = f"spheres, {row['width']}x{row['height']}"
-            elif name == "dial":
-                if number(row["materials"]) not in (1, 32) or row["coherence"] != "0":
-                    continue
-                scene = f"dial, {row['figure']}, {row['materials']} materials"
-            else:
-                scene = row.get("panel") or row["scene"]
-            groups.setdefault((scene, row.get("commit", "")), []).append(row)
-        for (scene, commit), rows in groups.items():
-            yield name, scene, commit, rows
-
-
-def best_of(rows, mode):
-    found = [(interval(row, "kernel_ms"), row) for row in rows if (
-        row.get("mode") or ("megakernel" if way(row) == "megakernel" else "wavefront")) == mode]
-    return min(((value, row) for value, row in found if value),
-               key=lambda pair: pair[0].middle, default=None)
-
-
-def which_mode(device):
-    lines, winners = [], {}
-    for name, scene, commit, rows in scene_rows(device):
-        mega, wave = best_of(rows, "megakernel"), best_of(rows, "wavefront")
-        if not (mega and wave):
-            continue
-        ratio = quotient(mega[0], wave[0])
-        winner = {"overlap": "no significant difference", "apart": "", "unknown": ""}[
-            relation(mega[0], wave[0])] or ("wavefront" if ratio.middle > 1 else "megakernel")
-        unsure = relation(mega[0], wave[0]) == "unknown"
-        winners.setdefault(winner + (", by values without a spread" if unsure else ""),
-                           []).append(scene)
-        lines.append([scene, value_cell(mega[0]), value_cell(wave[0]), value_cell(ratio),
-                      winner + (" (no spread known)" if unsure else ""), name, commit[:7]])
-    if not lines:
-        return paragraph(NOT_MEASURED.format("with both modes in it (image_size, defaults, scenes, "
-                                             "shading, dial)"))
-    parts = [f"{word}: {'; '.join(dict.fromkeys(scenes))}." for word, scenes in winners.items()]
-    return (paragraph("The faster one, each with its fastest options measured. "
-                      + " ".join(part[0].upper() + part[1:] for part in parts))
-            + html_table(["scene", "megakernel, ms", "wavefront, ms", "megakernel / wavefront",
-                          "faster", "table", "commit"], lines,
-                         caption="Fastest times of both modes, scene by scene"))
 
 
 def commit_of(table):
@@ -101,10 +44,26 @@ def which_block(device):
          "worst, threads"], lines, caption=f"Block sizes ({commit_of(table)})")
 
 
-def effect(idea, where, default, value, source):
-    word, ratio = change(default, value)
-    return [idea, where, value_cell(quotient(value, default), repr(ratio)), verdict_cell(word),
-            source]
+class Effect(NamedTuple):
+    """A choice, where it was measured, the times without and with it, and the table."""
+    idea: str
+    where: str
+    default: Interval
+    value: Interval
+    table: str
+
+    @property
+    def ratio(self):
+        return self.value.middle / self.default.middle
+
+    @property
+    def word(self):
+        return change(self.default, self.value)[0]
+
+    @property
+    def cells(self):
+        return [self.idea, self.where, value_cell(quotient(self.value, self.default),
+                                                  repr(self.ratio)), verdict_cell(self.word), self.table]
 
 
 def steps(device):
@@ -112,7 +71,7 @@ def steps(device):
     table = device.to_judge("ladder")
     for scene, rows in (in_groups(table.measured, "panel").items() if table else ()):
         for before, row in zip(rows, rows[1:]):
-            yield effect(f"step {row['x']}", f"{scene}, after {before['x']}",
+            yield Effect(f"step {row['x']}", f"{scene}, after {before['x']}",
                          interval(before, "kernel_ms"), interval(row, "kernel_ms"), "ladder")
 
 
@@ -134,7 +93,7 @@ def against_others(device):
             if row[label] == choice and other:
                 unit = {"scene_memory": " spheres", "pool_size": " paths"}.get(name, "")
                 where = ", ".join(row[place] for place in places) + unit
-                yield effect(f"{choice}, against {base}", where, interval(other, "kernel_ms"),
+                yield Effect(f"{choice}, against {base}", where, interval(other, "kernel_ms"),
                              interval(row, "kernel_ms"), name)
 
 
@@ -145,36 +104,57 @@ def effects(device):
         for row in rows if default else ():
             value = interval(row, "kernel_ms")
             if row["x"] != "default" and value:
-                yield effect(row["x"], mode, default, value, "toggles")
+                yield Effect(row["x"], mode, default, value, "toggles")
     yield from steps(device)
     yield from against_others(device)
-    for name, scene, _commit, rows in scene_rows(device):
-        if name not in ("shading", "dial"):
-            continue
-        ways = {row["variant"] if name == "dial" else way(row): interval(row, "kernel_ms")
+    for scene, rows, name in orders(device):
+        ways = {row["variant"] if name == "dial" else row["x"]: interval(row, "kernel_ms")
                 for row in rows}
         for new, idea in (("uber, sorted", "surfaces in order of their kinds"),
                           ("by material", "a kernel for each kind")):
             if ways.get("uber") and ways.get(new):
-                yield effect(idea, scene, ways["uber"], ways[new], name)
+                yield Effect(idea, scene, ways["uber"], ways[new], name)
+
+
+def orders(device):
+    """(scene, rows, table): ways to order surfaces, and the ends of the dial of materials."""
+    for name in ("shading", "dial"):
+        table = device.to_judge(name)
+        for row_group in in_groups(table.measured, "panel" if name == "shading" else "scene"
+                                   ).values() if table else ():
+            first = row_group[0]
+            if name == "shading":
+                yield first["panel"], row_group, name
+            elif first["coherence"] == "0" and first["materials"] in ("1", "32"):
+                yield f"dial, {first['figure']}, {first['materials']} materials", row_group, name
+
+
+def largest(found, word):
+    """The choices that are `word` by the largest factors, each once. A ladder starts from kernels that
+    do less than the one before it: its costs are no choice."""
+    chosen = {}
+    for effect in sorted(found, key=lambda one: one.ratio, reverse=word == "slower"):
+        if effect.word == word and (word == "faster" or effect.table != "ladder"):
+            chosen.setdefault(effect.idea, effect)
+    return listed(f"{effect.idea} ({effect.where}, x{show(effect.ratio)})"
+                  for effect in list(chosen.values())[:MOST_NAMED])
 
 
 def each_idea(device):
-    lines = list(effects(device))
-    if not lines:
+    found = list(effects(device))
+    if not found:
         return paragraph(NOT_MEASURED.format("of toggles, ladder, shading or dial"))
-    return paragraph("Time with the choice, divided by the time without it (of the mode's "
-                     "defaults; of one kernel over unordered surfaces for shading; of the step "
-                     "before it for the ladder): above 1 the "
-                     "choice costs, below 1 it gains. The interval follows from the extremes of "
-                     "both.") + html_table(
-                         ["choice", "where", "time ratio", "verdict", "table"], lines,
-                             caption="Each choice against its lack; commits are said at the tables")
+    ends = [f"{start}: {largest(found, word)}." for start, word in (
+        ("The largest gains", "faster"), ("The largest costs", "slower")) if largest(found, word)]
+    return paragraph(" ".join(ends)) + paragraph(
+        "Time with the choice, divided by the time without it (of the row default for toggles; of one "
+        "kernel over unordered surfaces for shading; of the step before it for the ladder). "
+        "The choice costs above one, and gains below.") + html_table(
+            ["choice", "where", "time ratio", "verdict", "table"],
+            [effect.cells for effect in found],
+            caption="Each choice against its lack; each table's caption says its commit")
 
 
-QUESTIONS = (("Which mode for my scene?", which_mode),
-             ("And for which size, samples and depth?", size_map),
-             ("Which block size?", which_block),
-             ("What does each idea give?", each_idea),
-             ("Where does the time of a whole process go?", whole_processes),
-             ("What do several devices give?", several_devices))
+CAUSES = (("What does each choice give?", each_idea), ("Which block size?", which_block))
+OTHERS = (("Where does the time of a whole process go?", whole_processes),
+          ("What do several devices give?", several_devices))

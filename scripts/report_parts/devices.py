@@ -40,9 +40,6 @@ def side_by_side(names, tables, column):
     text = (f"Over {len(common)} configurations that both measured, {names[1]} takes "
             f"{show(mean)} times the time of {names[0]} (geometric mean; from "
             f"{show(math.exp(min(logs)))} to {show(math.exp(max(logs)))}). It is "
-            + ", ".join(f"{word} in {count}" if word in ("faster", "slower") else
-                        f"without a significant difference in {count}"
-                        if word == "no significant difference" else f"not judged in {count}"
-                        for word, count in counts.items()) + "." + others)
+            + ", ".join(f"{word} in {count}" for word, count in counts.items()) + "." + others)
     heads = ["configuration", *(f"{name}, ms" for name in names), "time ratio", names[1] + " is"]
     return paragraph(text) + html_table(heads, lines, caption=f"{tables[0].name}: {names[0]} and {names[1]}")

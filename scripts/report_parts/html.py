@@ -3,14 +3,15 @@ import re
 from html import escape
 from urllib.parse import quote
 
+from .modes import how, mode_of, work_of
 from .tables import interval, number
 from .words import show, with_interval
 
 MEASURES = ["kernel_ms_median", "time_ms", "mpaths_per_s", "mrays_per_s"]
 RAY_SETS = ["mesh", "ray_file", "accel", "builder", "variant", "build_ms", "bytes_per_triangle"]
 # The file has them; the ends of an interval stand beside its median.
-NOT_SHOWN = {"experiment", "kernel_ms_runs", "process_wall_ms_runs", "scene_hash", "rounds",
-             "message", "alive", "command"}
+NOT_SHOWN = {"experiment", "kernel_ms_runs", "wall_ms_runs", "process_wall_ms_runs", "scene_hash",
+             "rounds", "message", "alive", "command"}
 ENDS = re.compile(r"(.+)_(?:low|high|min|max)(_ms)?")
 # Where tables without a schema version, whose columns are their experiment's, say what was measured.
 ORIGIN = {"version", "commit", "build_type", "compiler", "cuda", "fast_math", "command", "device",
@@ -33,10 +34,20 @@ def cell(text):
     return Cell(f'<td class="n" data-v="{escape(text)}"{title}>{shown}</td>')
 
 
-def value_cell(value, text=None, digits=3):
-    """A value with its interval; `text`: with all digits."""
-    return Cell(f'<td class="n" data-v="{escape(text or repr(value.middle))}">'
+def value_cell(value, text=None, digits=3, more=""):
+    """A value with its interval; `text`: with all digits. `more` are attributes: a cell that says
+    of which work its value is has the ends of the interval for tests, too."""
+    if more and value.known:
+        more += f' data-low="{value.low!r}" data-high="{value.high!r}"'
+    return Cell(f'<td class="n" data-v="{escape(text or repr(value.middle))}"{more}>'
                 f"{with_interval(value, digits=digits)}</td>")
+
+
+def work_attributes(table, row, column):
+    """Attributes of a cell with the time of a work: which work, options and mode it is of."""
+    work = work_of(row) if column == "kernel_ms_median" else None
+    return (f' data-work="{escape(str(work))}" data-how="{how(table, row)}" '
+            f'data-mode="{escape(mode_of(row))}"') if work else ""
 
 
 def row_head(text):
@@ -88,13 +99,13 @@ def columns_shown(table):
                                        and any(row[column] for row in table.rows)]))
 
 
-def measure_of(row, column, columns):
+def measure_of(table, row, column):
     """The cell of a column: a median with the interval that other columns have."""
     stem = column.removesuffix("_median")
     value = interval(row, stem) if column.endswith(("_median", "_ms")) else None
-    if value is None or not value.known or not any(ENDS.fullmatch(c) for c in columns):
+    if value is None or not value.known or not any(ENDS.fullmatch(c) for c in table.columns):
         return row[column]
-    return value_cell(value, row[column], 4)
+    return value_cell(value, row[column], 4, work_attributes(table, row, column))
 
 
 def without_ends(table, columns):
@@ -121,14 +132,14 @@ def caption_of(table):
 def table_of(table):
     columns = without_ends(table, columns_shown(table))
     text = html_table([column.replace("_", " ") for column in columns],
-                      [[measure_of(row, column, table.columns) for column in columns]
+                      [[measure_of(table, row, column) for column in columns]
                        for row in table.rows[:MOST_ROWS]],
                       "long" * (len(table.rows) > OPEN_ROWS), caption_of(table),
                       f'. <a href="{quote(table.name, safe="")}.csv">All columns</a>')
     if len(table.rows) > MOST_ROWS:
         text += (f'<p class="note">The first {MOST_ROWS} of {len(table.rows)} rows; '
                  f"{escape(table.name)}.csv has all.</p>")
-    if len(table.rows) > OPEN_ROWS or not table.facts:
+    if len(table.rows) > OPEN_ROWS:
         text = (f"<details><summary>{escape(caption_of(table))}</summary>{text}</details>"
                 f'<p class="paper-only">{escape(caption_of(table))}: in the file.</p>')
     return text

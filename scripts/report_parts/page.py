@@ -1,15 +1,19 @@
-"""Sets the page: the answers, the claims, a section for each experiment, pictures."""
+"""Sets the page: first screen, scenes, causes, claims, a section for each experiment, pictures, and
+the list of tables that have no section."""
 import re
 from html import escape
 from pathlib import Path
 from string import Template
+from urllib.parse import quote
 
-from . import html, plots
-from .answers import QUESTIONS
+from . import first, html, plots
+from .answers import CAUSES, OTHERS
 from .claims import claims_table
 from .devices import side_by_side
 from .images import image_section
+from .modes import MOST_DAYS, silent, verdicts
 from .verdicts import meaning
+from .words import SAME
 
 HERE = Path(__file__).parent
 
@@ -31,9 +35,34 @@ def for_each(devices, make):
         for device in devices) + "</div>"
 
 
-def answers(devices):
+def articles(questions, devices):
     return "".join(f'<article class="answer"><h3>{question}</h3>{for_each(devices, answer)}'
-                   "</article>" for question, answer in QUESTIONS)
+                   "</article>" for question, answer in questions)
+
+
+def first_screen(device):
+    """The answer, its limits and the map."""
+    answer = escape(first.answer_text(device)).replace(first.AUTO, f"<code>{first.AUTO}</code>")
+    return (f'<div class="first"><div><p class="answer-text">{answer}</p>'
+            f"{html.facts_list(first.limits(device))}</div>"
+            f"{first.mode_map(verdicts(device))}</div>")
+
+
+def table_list(device):
+    """The tables that have no section here: where they are, and why they have none."""
+    rows = []
+    for table in device.tables.values():
+        why = reason_without_section(table, device)
+        if why:
+            rows.append(f'<li><a href="{quote(table.name, safe="")}.csv">'
+                        f"{escape(html.caption_of(table))}</a>: {escape(why)}</li>")
+    return f'<ul class="files">{"".join(rows)}</ul>' if rows else "<p>None.</p>"
+
+
+def reason_without_section(table, device):
+    if not table.facts:
+        return "a plain table of a log page"
+    return silent(device).get(table.name, "")
 
 
 def figures(table, shared):
@@ -86,9 +115,6 @@ def on_a_device(table, shared):
     if table.facts.get("command"):
         command = escape(without_folders(table.facts["command"]))
         parts.append(f'<p class="method">Method: <code>{command}</code></p>')
-    if not table.facts:
-        parts.append(f'<p class="note plain">A plain table: no {escape(table.name)}.json says how '
-                     "it was measured, so nothing is drawn or concluded.</p>")
     if table.drawn:
         parts.append(figures(table, shared))
     parts.append(f'<div class="meaning">{sentences(table)}</div>{own_words(table)}')
@@ -100,7 +126,8 @@ def on_a_device(table, shared):
 
 
 def experiment(name, devices):
-    there = [device for device in devices if name in device.tables]
+    there = [device for device in devices if name in device.tables
+             and not reason_without_section(device.tables[name], device)]
     tables = [device.tables[name] for device in there]
     drawn = [table for table in tables if table.drawn]
     shared = plots.domains(drawn) if drawn else None
@@ -121,23 +148,28 @@ def tell_apart(devices):
             device.name = f"{device.name} ({device.folder.name})"
 
 
+def has_section(name, devices):
+    """Of one device alone the first sections say what tables that ask for the mode say."""
+    there = [device for device in devices if name in device.tables]
+    tables = [device.tables[name] for device in there]
+    answered = len(devices) == 1 and any(verdict.table.name == name
+                                         for verdict in verdicts(devices[0]).values())
+    return not answered and any(not reason_without_section(table, device)
+                                for table, device in zip(tables, there))
+
+
 def page(devices, limit_bytes):
     tell_apart(devices)
-    names = list(dict.fromkeys(
-        [name for device in devices for name in device.tables if device.tables[name].facts]
-        + [name for device in devices for name in device.tables]))
+    names = [name for name in dict.fromkeys(name for device in devices for name in device.tables)
+             if has_section(name, devices)]
     pictures = "".join(image_section(device.folder, limit_bytes) for device in devices)
     pictures = pictures and f'<section id="images"><h2>Images</h2>{pictures}</section>'
-    tables = [table for device in devices for table in device.tables.values()]
-    dates = sorted(table.facts["date"][:10] for table in tables if table.facts.get("date"))
-    commits = len({commit[:7] for table in tables for commit in table.commits})
-    span = " to ".join(dict.fromkeys((dates[0], dates[-1]))) if dates else "no dates"
     return Template(asset("page.html")).substitute(
         title=escape(" and ".join(device.name for device in devices)), style=asset("page.css")
-        + asset("plot.css"), script=asset("page.js"), answers=answers(devices),
-        subtitle=escape(f"{len(names)} tables, {span}, measured at "
-                        + ("one commit" if commits == 1 else
-                           f"{commits} commits; each table's caption says which")),
+        + asset("plot.css"), script=asset("page.js"), first=for_each(devices, first_screen),
+        same=f"{100 * SAME:g}\u00a0%", days=MOST_DAYS, scenes=for_each(devices, first.scene_table),
+        causes=articles(CAUSES, devices), others=articles(OTHERS, devices),
         contents="".join(f'<a href="#{anchor(name)}">{escape(name.replace("_", " "))}</a>'
                          for name in names), claims=for_each(devices, claims_table),
-        experiments="\n".join(experiment(name, devices) for name in names), images=pictures)
+        experiments="\n".join(experiment(name, devices) for name in names), images=pictures,
+        files=for_each(devices, table_list))

@@ -32,10 +32,11 @@ def look(number):
     return f"s{number % SERIES}", MARKERS[(number + number // SERIES) % len(MARKERS)]
 
 
-def point(value, tip, name, shapes):
-    """A measured value: what is shown of it, and its numbers for the reader and for tests."""
+def point(value, tip, name, shapes, more=""):
+    """A measured value: what is shown of it, and its numbers for the reader and for tests. `more`
+    are attributes."""
     ends = (f' data-low="{value.low!r}" data-high="{value.high!r}"' if value.known else "")
-    return (f'<g class="point {name}" data-middle="{value.middle!r}"{ends}>'
+    return (f'<g class="point {name}" data-middle="{value.middle!r}"{ends}{more}>'
             f"<title>{escape(tip)}</title>{''.join(shapes)}</g>")
 
 

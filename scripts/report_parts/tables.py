@@ -173,11 +173,12 @@ class Device:
     folder: Path
     name: str
     tables: dict  # by name
+    silent: dict = None  # by name, why a table neither is shown nor speaks (modes.silent)
 
     def to_judge(self, name):
-        """A table that answers and verdicts may rest on: not one of small images."""
+        """A table that answers may rest on: not one of small images, nor a silent one."""
         table = self.tables.get(name)
-        return None if table and table.facts.get("quick") else table
+        return None if table and (table.facts.get("quick") or name in (self.silent or ())) else table
 
 
 def read_device(folder):

@@ -51,14 +51,13 @@ def about_default(pairs, unit):
     for name, value in pairs[1:]:
         word, ratio = change(default, value)
         groups.setdefault(word, []).append((ratio, name))
-    parts = [f"The default takes {with_interval(default, unit)}."]
+    parts = [f"The row default takes {with_interval(default, unit)}."]
     for word, start in (("faster", "Faster: "), ("slower", "Slower: ")):
         if word in groups:
             ordered = sorted(groups[word], reverse=word == "slower")
             parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in ordered)
                          + " in time.")
-    for word, start in (("no significant difference", "No significant difference to the default: "),
-                        ("not known", "Without a spread, so not judged: ")):
+    for word, start in (("same", "The same as the default: "), ("ambiguous", "Ambiguous: ")):
         if word in groups:
             parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in groups[word])
                          + ".")

@@ -1,6 +1,8 @@
 """Numbers and comparisons in words. Two values differ only if their intervals are apart."""
 import math
 
+SAME = 0.02  # times of one program differ by so much from run to run
+
 
 def show(value, digits=3):
     """So many significant digits, as a person writes them: 1.09, 29.5, 104,678."""
@@ -47,11 +49,12 @@ def relation(a, b):
 
 
 def change(default, value):
-    """('slower' | 'faster' | 'no significant difference' | 'not known', the ratio of the times)"""
-    ratio = value.middle / default.middle
-    word = {"overlap": "no significant difference", "unknown": "not known",
-            "apart": "slower" if ratio > 1 else "faster"}[relation(default, value)]
-    return word, ratio
+    """(nvbench's word for `value`, the ratio of the times): 'faster' and 'slower' where intervals
+    are apart, 'same' where they overlap and the times are close, else 'ambiguous'."""
+    ratio, how = value.middle / default.middle, relation(default, value)
+    if how == "apart":
+        return "slower" if ratio > 1 else "faster", ratio
+    return "same" if how == "overlap" and abs(ratio - 1) <= SAME else "ambiguous", ratio
 
 
 def quotient(a, b):

@@ -1,7 +1,10 @@
-"""README.md's measured numbers are those of the tables in results/."""
+"""The measured numbers of README.md and of the reports' first sections are those of the tables in
+results/."""
 import csv
+import html
 import re
 import unittest
+from statistics import geometric_mean, mean
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -71,6 +74,74 @@ class ReadmeNumbers(unittest.TestCase):
         for name in ("README.md", "CITATION.cff"):
             self.assertIn("Parallel Path Tracing with CUDA",
                           (ROOT / name).read_text(encoding="utf-8"), name)
+
+
+def times_of(folder, table):
+    """{(scene, size, samples, depth): {mode: (kernel_ms, used mode)}}: the fastest of each mode."""
+    times = {}
+    with open(folder / f"{table}.csv", newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            if row["status"] == "measured":
+                work = ("/".join(row["scene"].split("/")[-2:]), f"{row['width']}x{row['height']}",
+                        row["spp"], row["max_depth"])
+                mode = row["variant"] if row.get("variant") == "auto" else row["mode"]
+                value = float(row["kernel_ms_median"]), row.get("used_mode", "")
+                times.setdefault(work, {}).setdefault(mode, value)
+                times[work][mode] = min(times[work][mode], value)
+    return times
+
+
+def cells_of(row):
+    return [(html.unescape(re.sub("<.*?>", "", text)), re.search(r'data-v="([^"]*)"', attributes))
+            for attributes, text in re.findall(r"<t[dh]([^>]*)>(.*?)</t[dh]>", row)]
+
+
+class ReportNumbers(unittest.TestCase):
+    def check_page(self, path):
+        text = path.read_text(encoding="utf-8")
+        answer = html.unescape(re.sub("<.*?>", "", re.search('"answer-text">(.*?)</p>', text)[1]))
+        ratios, grid = [], {}
+        section = text.partition('id="by-scene"')[2].partition('id="causes"')[0]
+        for row in re.findall(r'<tr><th scope="row">.*?</tr>', section):
+            cells = cells_of(row)
+            times = times_of(path.parent, cells[9][0])
+            grid |= {work: modes for work, modes in times.items() if "auto" in modes}
+            modes = times[tuple(cell for cell, _ in cells[:4])]
+            mega, wave = (modes[mode][0] for mode in ("megakernel", "wavefront"))
+            self.assertEqual([float(cell[1][1]) for cell in cells[4:7]], [mega, wave, mega / wave])
+            ratios.append((mega / wave, cells[7][0]))
+        expected = [str(len(ratios))] if ratios else []
+        for word in ("faster", "slower"):
+            mine = [max(ratio, 1 / ratio) for ratio, said in ratios if said == word]
+            expected += [str(len(mine)), f"{max(mine):.2f}"] if mine else []
+        expected += self.numbers_of_grid(grid) if grid else []
+        without_names = re.sub(r"\b[\w-]+:[\w:-]+", "", answer)
+        self.assertEqual(re.findall(r"\d+(?:\.\d+)?(?:x\d+)?", without_names), expected, path)
+
+    def numbers_of_grid(self, grid):
+        best = {work: min(modes["megakernel"][0], modes["wavefront"][0]) for work, modes in grid.items()}
+        losses = {mode: [modes[modes["auto"][1] if mode == "auto" else mode][0] / best[work] - 1
+                         for work, modes in grid.items()] for mode in ("auto", "wavefront", "megakernel")}
+        found = [str(len(grid)), str(sum(loss > 0 for loss in losses["auto"])),
+                 *(f"{100 * value:.1f}" for value in (max(losses["auto"]), mean(losses["wavefront"]),
+                                                      mean(losses["megakernel"])))]
+        for place, key in ((3, int), (1, lambda size: int(size.split("x")[0]))):
+            ends = [end((work[place] for work in grid), key=key) for end in (min, max)]
+            ratio = {work: modes["megakernel"][0] / modes["wavefront"][0] for work, modes in grid.items()}
+            means = [geometric_mean(value for work, value in ratio.items() if work[place] == end)
+                     for end in ends]
+            found += [ends[1], ends[0], f"{means[1] / means[0]:.3f}"]
+        return found
+
+    def test_first_sections(self):
+        pages = sorted((ROOT / "results").glob("*/report.html"))
+        self.assertGreaterEqual(len(pages), 4)
+        for path in pages:
+            self.check_page(path)
+
+    def test_the_frame_has_no_numbers(self):
+        frame = (ROOT / "scripts" / "report_parts" / "page.html").read_text(encoding="utf-8")
+        self.assertNotRegex(re.sub("<.*?>", "", frame), r"\d")
 
 
 if __name__ == "__main__":

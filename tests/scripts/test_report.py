@@ -130,7 +130,7 @@ def metropolis(*scenes, samples=200, references="agree"):
 def places():
     """A table of scene_memory."""
     return [{**toggle("megakernel, brute", "", 0.98 * ms, ms, 1.02 * ms), "series": memory,
-             "x": count} for count, times in ((50, (2.0, 1.0)), (1000, (2.0, 2.04)))
+             "x": count} for count, times in ((50, (2.0, 1.0)), (1000, (2.0, 2.02)))
             for memory, ms in zip(("global", "shared"), times)]
 
 
@@ -276,26 +276,14 @@ class Report(unittest.TestCase):
         self.assertEqual(words.change(far, one)[0], "faster")
         text = self.make(toggles=toggles(), image_size=sizes(), block_size=blocks((4, 3, 2, 1)))
         (_, said), = verdicts.meaning(read_table(self.folder / "toggles.csv"))
-        self.assertEqual(said, "The default takes 1.00 ms [0.980, 1.02]. Faster: rng <odd> & "
-                         "\"new\" (x0.750) in time. Slower: branching reduced (x2.00) in time. No "
-                         "significant difference to the default: scene-memory shared (x1.03).")
+        self.assertEqual(said, "The row default takes 1.00 ms [0.980, 1.02]. Faster: rng <odd> & "
+                         "\"new\" (x0.750) in time. Slower: branching reduced (x2.00) in time. "
+                         "Ambiguous: scene-memory shared (x1.03).")
         self.assertIn("16 times the pixels take 16.0 times as long (time grows as pixels^1.00)",
                       text)
         self.assertIn("3 of 9 configurations were measured once and have no interval.", text)
         self.assertIn("1 of 5 configurations were not measured (refused)", text)
         self.assertIn("Take 1024 threads: over the 1 cases they take at most 1.00 times", text)
-
-    def test_the_winner_is_the_one_with_less_time(self):
-        for mega, wave, winner in ((1.0, 2.0, "megakernel"), (4.0, 2.0, "wavefront"),
-                                   (2.0, 2.01, "no significant difference")):
-            rows = [{**toggle("room", mode, 0.98 * ms, ms, 1.02 * ms), "mode": mode}
-                    for mode, ms in (("megakernel", mega), ("wavefront", wave))]
-            text = self.make(defaults=rows)
-            answer = re.sub("<.*?>", " ", text[text.index("Which mode for my scene?"):
-                                               text.index("Which block size?")])
-            answer = " ".join(answer.split())
-            self.assertIn(f"{winner[0].upper()}{winner[1:]}: room.", answer)
-            self.assertRegex(answer, rf"{words.show(mega / wave)} \[\S+ \S+\] {winner} defaults")
 
     def test_names_of_the_release_before_are_read(self):
         row = {**toggle("room", "megakernel", 1, 2, 3), "sort_hits_ms_median": "4"}
@@ -331,9 +319,8 @@ class Report(unittest.TestCase):
         text = self.make(ladder=[{**step, "gain": ""} for step in steps])
         self.assertIn("Time against the step before: 1 split x4.00 and 2 soa x0.500.", text)
         self.make(ladder=steps, random_numbers=numbers, scene_memory=places(), pool_size=pools)
-        found = [(idea, where, re.sub("<.*?>", "", ratio).split(" ")[0],
-                  re.sub("<.*?>", "", verdict), source) for idea, where, ratio, verdict, source
-                 in answers.effects(read_device(self.folder))]
+        found = [(effect.idea, effect.where, words.show(effect.ratio), effect.word, effect.table)
+                 for effect in answers.effects(read_device(self.folder))]
         self.assertEqual(found, [
             ("step 1 split", "s, after 0 mega", "4.00", "slower", "ladder"),
             ("step 2 soa", "s, after 1 split", "0.500", "faster", "ladder"),
@@ -342,8 +329,10 @@ class Report(unittest.TestCase):
              "pool_size"),
             ("shared, against global", "megakernel, brute, 50 spheres", "0.500", "faster",
              "scene_memory"),
-            ("shared, against global", "megakernel, brute, 1000 spheres", "1.02",
-             "no significant difference", "scene_memory")])
+            ("shared, against global", "megakernel, brute, 1000 spheres", "1.01", "same",
+             "scene_memory")])
+        self.assertIn("The largest gains: regenerated, against filled when empty (s, 64K paths, x0.250), "
+                      "step 2 soa", answers.each_idea(read_device(self.folder)))
 
     def test_an_axis_without_a_label_is_named_by_its_panel(self):
         rows = [{**toggle("triangles", "", 0.99 * ms, ms, 1.01 * ms), "series": "megakernel",
@@ -467,8 +456,9 @@ class Report(unittest.TestCase):
         write(self.folder, "plain", [{"a": 1, "b": "<x>"}], None)
         page = self.check_well_formed(self.make(toggles=toggles(), image_size=sizes(),
                                                 block_size=blocks((4, 3, 2, 1))))
-        self.assertTrue({"answers", "claims", "toggles", "image-size", "plain"} <=
+        self.assertTrue({"answers", "claims", "toggles", "image-size"} <=
                         {name.replace("_", "-") for name in page.ids})
+        self.assertIn("plain.csv", page.references)
 
     def test_names_are_text_wherever_they_stand(self):
         """Markup of a stranger in every field, column, name and fact: no element of the page is his."""
@@ -650,29 +640,6 @@ class Report(unittest.TestCase):
         self.assertEqual(Scale(0, 10.5, False, 0, 1).ticks(), [0, 2, 4, 6, 8, 10])
         self.assertEqual([words.show(x) for x in (0.01234, 1.09096, 104678, 0)],
                          ["0.0123", "1.09", "104,678", "0"])
-
-    def test_sizes_are_a_map(self):
-        def cell(width, variant, ms, **more):
-            return {"experiment": "sizes", "name": f"{width} {variant}", "status": "measured",
-                    "panel": "room", "series": "a", "schema_version": 13,
-                    "x": width if variant == "wavefront" else "",
-                    "commit": "abc", "variant": variant, "width": width, "max_depth": 4, "spp": 1,
-                    "kernel_ms_median": ms, **more}
-        text = self.make(sizes=[
-            cell(128, "megakernel", 4.0), cell(128, "wavefront", 1.0),
-            cell(128, "auto", 1.1, used_mode="wavefront", loss=0.1),
-            cell(256, "megakernel", 1.0), cell(256, "wavefront", 2.0),
-            cell(512, "megakernel", 1.0)])
-        row = re.search(r'<th scope="row">room, depth 4, 1 sample</th>(.*?)</tr>', text).group(1)
-        found = re.findall(r"<td(.*?)>([^<]*)</td>", row)
-        self.assertEqual([value for _, value in found], ["4.00", "0.500", ""])
-        self.assertIn('"n wavefront"', found[0][0])
-        self.assertIn("--share:60%", found[0][0])  # four times as fast: the deepest
-        self.assertIn("auto takes wavefront, loses 10.0%", found[0][0])
-        self.assertIn('"n megakernel"', found[1][0])
-        self.assertIn("--share:30%", found[1][0])
-        (self.folder / "sizes.csv").unlink()
-        self.assertIn("there is no table sizes", self.make(toggles=toggles()))
 
     def test_committed_page_is_that_of_the_committed_tables(self):
         page = self.folder.parent / "page.html"
