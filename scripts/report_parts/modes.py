@@ -8,6 +8,7 @@ it disagrees with a newer one about the time of the same work with the same opti
 import hashlib
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import dropwhile, takewhile
 
 from .tables import interval, number
 from .words import SAME, change, quotient
@@ -55,9 +56,9 @@ def mode_of(row):
 
 def how(table, row):
     """Ten letters that are equal for equal options."""
-    first, last = (table.columns.index(name) if name in table.columns else None
-                   for name in ("fast_math", "repeat"))
-    asked = [f"{name}={row[name]}" for name in table.columns[first:last]
+    from_options = dropwhile(lambda name: name != "fast_math", table.columns)
+    options = takewhile(lambda name: name not in ("repeat", "warmup"), from_options)
+    asked = [f"{name}={row[name]}" for name in options
              if row[name] and name not in NOT_OPTIONS] + [
         mode_of(row), row.get("device_kind", ""), row.get("device_name", "")]
     return hashlib.sha1("\n".join(asked).encode()).hexdigest()[:10]
