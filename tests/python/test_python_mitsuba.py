@@ -60,7 +60,8 @@ def fog(medium, **items):
 
 
 def grid(shape):
-    return np.linspace(0.2, 3, int(np.prod(shape))).reshape(shape).astype(np.float32)
+    values = np.linspace(0, 3, int(np.prod(shape)))
+    return np.random.default_rng(1).permutation(values).reshape(shape).astype(np.float32)
 
 
 def homogeneous(phase=None):
@@ -234,7 +235,7 @@ class Dictionaries(TestCase):
             mi.set_variant("llvm_ad_rgb")
             made["jit"] = given(mi.Point3f, mi.Color3f, mi.Transform4f(move), mi.Float, mi.TensorXf)
             np.array(made["jit"]["thing"]["radius"])
-        except (ImportError, AttributeError, RuntimeError, Exception) as error:  # no LLVM here
+        except Exception as error:  # no LLVM here, in one of several ways
             made.pop("jit", None)
             print(f"without a JIT variant: {error}", file=sys.stderr)
         with warnings.catch_warnings():
