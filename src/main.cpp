@@ -5,6 +5,7 @@
 #include "app/reference/reference.h"
 #include "app/terminal/process.h"
 #include "common/device/devices.h"
+#include "common/error/error.h"
 #include "common/error/host_memory.h"
 #include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
@@ -37,6 +38,16 @@ int execute(const CompactCommand& command) { return compact_command(command); }
 int execute(const DoctorCommand& command) { return doctor_command(command); }
 
 int execute(const ViewCommand& command) { return view_command(command); }
+
+int execute(const MeasureCommand&, const Ranks& ranks) {
+  if (!ranks.is_first()) return 0;
+  if (ranks.count() > 1)
+    throw Error(
+        fmt::format("measure: one process renders, and this is a job of {}; expected ptexp "
+                    "without a launcher",
+                    ranks.count()));
+  return measure_command();
+}
 
 int execute(const ListScenesCommand&) {
   for (const SceneInfo& scene : scene_list())

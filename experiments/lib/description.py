@@ -36,6 +36,7 @@ class Configuration:
     program: str = ""  # "": the experiment's ptexp
     launcher: str = ""  # a command before it: "mpirun -n 4", "env NAME=VALUE"
     renders: bool = True  # else a command that is timed as it is: the harness adds no option
+    way: str = ""  # resident.ONE or EACH; "": as all of the table
     prepare: Callable = None  # called before each of its processes, outside of their times
 
 

@@ -1,7 +1,8 @@
 """Measures ptexp in the configurations of an experiment and writes one table of the results.
 
-An experiment is a script that describes itself by an Experiment and calls main(). Every
-configuration is one process of ptexp in each round. The table is DIR/DEVICE/EXPERIMENT.csv; the
+An experiment is a script that describes itself by an Experiment and calls main(). One process of
+ptexp measures all configurations where it can (resident.py), else each is a process in each round.
+The table is DIR/DEVICE/EXPERIMENT.csv; the
 file EXPERIMENT.json beside it says how, when and where it was measured. docs/experiments.md tells
 more.
 """
@@ -16,6 +17,7 @@ from lib.journal import Journal
 from lib.options import parse_arguments
 from lib.program import ROOT, check_gpu, find_device, find_program, run_ptexp  # noqa: F401
 from lib.provenance import now, provenance  # noqa: F401
+from lib.resident import way_of
 from lib.rounds import command_line, measure_all, plan, rows_of
 from lib.session import Session, constant_origin, is_complete, key_of, origin
 from lib.table import read_facts, read_rows, table_path, table_text, write_table  # noqa: F401
@@ -41,6 +43,7 @@ def session_of(experiment, arguments):
         raise HarnessError(f"{experiment.name}: two configurations have one name")
     session = Session(experiment, arguments, program, device, configurations)
     session.key = key_of(session, given)
+    session.way = way_of(experiment, arguments, configurations)
     return session
 
 
@@ -51,7 +54,7 @@ def open_journal(session):
                       lambda name: name not in images or os.path.exists(images[name]))
     done = len(journal.of("process"))
     if done:
-        print(f"goes on: {done} of {len(plan(session))} processes are measured already "
+        print(f"goes on: {done} of {len(plan(session))} measurements are done already "
               "(--fresh starts anew)", flush=True)
     journal.begin(date=now(), command=shlex.join(sys.argv))
     return journal
@@ -108,7 +111,8 @@ def run(experiment, arguments):
         return 0
     device = session.device
     check_gpu(experiment, device)
-    print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail})", flush=True)
+    print(f"{experiment.question}\non {device.choice}: {device.name} ({device.detail}), by {session.way}",
+          flush=True)
     session.path = table_path(experiment, device, arguments)
     if not arguments.fresh and is_complete(session.path, session.key):
         print("measured already by this program and command (--fresh measures again)")

@@ -28,7 +28,9 @@ def parse_arguments(experiment, command):
     add("--output", metavar="DIR", type=Path, default=ROOT / "results",
         help="the files are DIR/DEVICE/NAME.csv, .json and .png [results/ of the repository]")
     add("--timeout", metavar="S", type=float, default=3600,
-        help="seconds for one process [%(default)s]")
+        help="seconds for one configuration in one round [%(default)s]")
+    add("--single-processes", action="store_true",
+        help="start a process of ptexp for each configuration, where else one measures all")
     add("--list", action="store_true", help="print the command lines and run nothing")
     experiment.add_arguments(parser)
     arguments = parser.parse_args(command)

@@ -105,15 +105,18 @@ def check_gpu(experiment, device):
                            "cuda:N")
 
 
+def words_of(configuration, device, repeat, warmup):
+    """ptexp's arguments but for files."""
+    return [*shlex.split(configuration.arguments), "--device", configuration.device or device.choice,
+            "--repeat", str(repeat), "--warmup", str(warmup), "--quiet"]
+
+
 def command_line(program, configuration, device, repeat, warmup):
-    command = [*shlex.split(configuration.launcher), configuration.program or str(program),
-               *shlex.split(configuration.arguments)]
+    command = [*shlex.split(configuration.launcher), configuration.program or str(program)]
     if not configuration.renders:
-        return command
-    return [*command, "--device", configuration.device or device.choice,
-            "--repeat", str(repeat), "--warmup", str(warmup),
-            "--output", configuration.image or "image.ppm",
-            "--csv", "row.csv", "--stats", "run.json", "--quiet"]
+        return [*command, *shlex.split(configuration.arguments)]
+    return [*command, *words_of(configuration, device, repeat, warmup),
+            "--output", configuration.image or "image.ppm", "--csv", "row.csv", "--stats", "run.json"]
 
 
 @dataclass
@@ -165,30 +168,43 @@ def run_timed(command, folder, errors, timeout_s):
     return None if late.is_set() else code, wall_ms, early_ms
 
 
+def one_line(message):
+    return " ".join(message.split()).removeprefix("ptexp: error: ")
+
+
+def failed_or_refused(code, message):
+    """Of a process that has not measured. Refused: ptexp took offence at an option, or at what the
+    option needs. Whatever else is not success is a failure."""
+    if code == 130:  # Ctrl-C has reached ptexp first
+        raise KeyboardInterrupt
+    if code == 2 and not message.startswith("CUDA:"):
+        return Process("refused", message)
+    return Process("failed", ": ".join(filter(None, [code_text(code) if code else "", message])))
+
+
+def process_of(row, statistics, wall_ms, early_ms=0.0):
+    """Of one that has, by its row of the CSV and what --stats writes."""
+    return Process("measured", row=row, wall_ms=wall_ms, early_ms=early_ms, runs=[
+        {"kernel_ms": run["kernel_ms"], "wall_ms": run.get("wall_ms"),
+         "devices": run.get("devices", []),
+         "stages": {stage["stage"]: stage["time_ms"] for stage in run["stages"]}}
+        for run in statistics["runs"]])
+
+
 def measure(command, timeout_s, renders=True):
-    """Refused: ptexp took offence at an option, or at what the option needs. Whatever else is not
-    success is a failure."""
+    """Runs ptexp as a process of its own."""
     with tempfile.TemporaryDirectory(prefix="ptexp-") as folder:
         errors = Path(folder, "errors")
         with open(errors, "wb") as file:
             code, wall_ms, early_ms = run_timed(command, folder, file, timeout_s)
         if code is None:
             return Process("failed", f"no end after {timeout_s:g} s (--timeout)")
-        message = " ".join(errors.read_text(encoding="utf-8", errors="replace").split())
-        message = message.removeprefix("ptexp: error: ")
-        if code == 2 and not message.startswith("CUDA:"):
-            return Process("refused", message)
-        if code == 130:  # Ctrl-C has reached ptexp first
-            raise KeyboardInterrupt
         if code != 0:
-            return Process("failed", ": ".join(filter(None, [code_text(code), message])))
+            text = errors.read_text(encoding="utf-8", errors="replace")
+            return failed_or_refused(code, one_line(text))
         if not renders:
             return Process("measured", wall_ms=wall_ms, early_ms=early_ms)
         with open(Path(folder, "row.csv"), newline="", encoding="utf-8") as file:
             row, = csv.DictReader(file)
         facts = json.loads(Path(folder, "run.json").read_text(encoding="utf-8"))
-        return Process("measured", row=row, wall_ms=wall_ms, early_ms=early_ms, runs=[
-            {"kernel_ms": run["kernel_ms"], "wall_ms": run.get("wall_ms"),
-             "devices": run.get("devices", []),
-             "stages": {stage["stage"]: stage["time_ms"] for stage in run["stages"]}}
-            for run in facts["runs"]])
+        return process_of(row, facts, wall_ms, early_ms)

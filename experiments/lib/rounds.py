@@ -5,6 +5,7 @@ from lib import program as ptexp
 from lib.description import HarnessError, Refused
 from lib.pooling import pooled
 from lib.provenance import machine_state, scene_hash
+from lib.resident import ONE, Resident
 
 OWN = {"experiment", "name", "status", "message", "rounds", "kernel_ms_low", "kernel_ms_high",
        "kernel_ms_runs", "scene_hash"}
@@ -27,7 +28,7 @@ def command_line(session, configuration, number=0):
 
 
 def plan(session):
-    """(round, configuration) of every process, in order: every second round goes backwards, so
+    """(round, configuration) of every measurement, in order: every second round goes backwards, so
     that nothing always comes after the same."""
     return [(number, configuration) for number in range(session.arguments.rounds)
             for configuration in session.configurations[::-1 if number % 2 else 1]
@@ -72,7 +73,7 @@ def left_text(seconds):
 
 
 class Progress:
-    """Prints a line for each process; the time left follows from the mean time of a process."""
+    """Prints a line for each measurement; the time left follows from their mean time."""
 
     def __init__(self, total, done):
         self.total, self.done, self.here, self.start = total, done, 0, time.monotonic()
@@ -90,18 +91,27 @@ class Progress:
         print(f"{self.done}/{self.total}  {name}: {result}{more}", flush=True)
 
 
-def measured(session, configuration, number):
+def measured(session, resident, configuration, number):
     try:
         if configuration.prepare:
             configuration.prepare()
     except (Refused, OSError) as error:
         return ptexp.Process("refused", str(error))
-    return ptexp.measure(command_line(session, configuration, number), session.arguments.timeout,
+    timeout_s = session.arguments.timeout
+    if configuration.renders and (configuration.way or session.way) == ONE:
+        shares, warmup = repeats(configuration, session.arguments)
+        return resident.measure(configuration, session.device, shares[number], warmup, timeout_s)
+    return ptexp.measure(command_line(session, configuration, number), timeout_s,
                          configuration.renders)
 
 
 def measure_all(session, journal, save):
-    """Measures what the journal lacks; `save` is called after each process."""
+    """Measures what the journal lacks; `save` is called after each measurement."""
+    with Resident(session.program) as resident:
+        measure_missing(session, journal, save, resident)
+
+
+def measure_missing(session, journal, save, resident):
     done = {(event["round"], event["name"]) for event in journal.of("process")}
     work = plan(session)
     todo = [(number, c) for number, c in work if (number, c.name) not in done]
@@ -115,7 +125,7 @@ def measure_all(session, journal, save):
             if configuration.name in wrong:
                 progress.skip()
                 continue
-            process = measured(session, configuration, number)
+            process = measured(session, resident, configuration, number)
             journal.add_process(configuration.name, number, process)
             if process.status != "measured":
                 wrong.add(configuration.name)

@@ -9,6 +9,7 @@ from pathlib import Path
 from lib.description import Device, Experiment
 from lib.program import version_of
 from lib.provenance import provenance, scene_hash
+from lib.resident import EACH
 from lib.rounds import command_line
 from lib.table import read_facts
 
@@ -22,6 +23,7 @@ class Session:
     configurations: list
     path: Path = None  # of the table
     key: str = ""  # as key_of() says
+    way: str = EACH  # as way_of() says
     pooled: dict = field(default_factory=dict)  # rows that rounds.py has made already
 
 
@@ -39,12 +41,19 @@ def key_of(session, given):
 
 
 def constant_origin(session):
-    """Of the table's provenance what no measurement changes."""
-    return provenance(session.experiment, session.program, session.device, session.arguments)
+    """Of the table's provenance what no measurement changes, with all command lines: enough to
+    measure it again."""
+    return {
+        **provenance(session.experiment, session.program, session.device, session.arguments),
+        "measured_by": " and ".join(sorted({c.way or session.way for c in session.configurations})),
+        "configurations": {
+            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
+            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
+    }
 
 
 def origin(session, journal, constant):
-    """The table's provenance with all command lines: enough to measure it again."""
+    """The table's provenance."""
     begins = journal.of("begin")
     return {
         **constant, "date": begins[0]["date"], "resumed": [begin["date"] for begin in begins[1:]],
@@ -52,9 +61,6 @@ def origin(session, journal, constant):
         "equal_images": {event["group"]: event["configurations"]
                          for event in journal.of("equal images")},
         **({"plot": asdict(session.experiment.plot)} if session.experiment.plot else {}),
-        "configurations": {
-            c.name: shlex.join([*launcher, "ptexp", *command_line(session, c)[len(launcher) + 1:]])
-            for c in session.configurations for launcher in [shlex.split(c.launcher)]},
     }
 
 

@@ -134,6 +134,23 @@ TEST(RenderSession, KeepsTheSceneOrItsTree) {
             first.report.scene.tree.build_ms);
 }
 
+TEST(RenderSession, KeepsTheTreeWherePlansAgree) {
+  RenderSession session(command_of("terrain:2000"), {});
+  const auto built_ms = [&](const Words& words) {
+    const RenderResult result = render(session, command_of("terrain:2000", words));
+    EXPECT_EQ(result.report.process_ms.start, 0);
+    EXPECT_GT(result.report.process_ms.render, 0);
+    return result.report.scene.tree.build_ms;
+  };
+  const double first = built_ms({{"mode", "wavefront"}, {"accel", "cwbvh"}});
+  EXPECT_EQ(built_ms({{"mode", "megakernel"}, {"accel", "cwbvh"}}), first);
+  EXPECT_EQ(built_ms({{"mode", "wavefront"}, {"accel", "cwbvh"}, {"pool-size", "64"}}), first);
+  EXPECT_EQ(built_ms({{"accel", "cwbvh"}, {"width", "40"}}), first);
+  const double other = built_ms({{"accel", "bvh2"}});
+  EXPECT_NE(other, first);
+  EXPECT_NE(built_ms({{"accel", "bvh2"}, {"builder", "sbvh"}}), other);
+}
+
 // What a file asks for holds where the command says nothing.
 TEST(RenderSession, OptionsGoBeforeTheScenesOwn) {
   SceneDefaults defaults;

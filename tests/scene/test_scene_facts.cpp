@@ -1,7 +1,7 @@
 // What is told about a scene: numbers and lines, by value.
 #include <gtest/gtest.h>
 
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/data/scene_facts.h"
 
 namespace pt {

@@ -9,9 +9,11 @@ import io
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
+import threading
 import types
 import unittest
 from pathlib import Path
@@ -25,6 +27,7 @@ sys.path.insert(0, str(ROOT / "experiments"))
 from lib import harness  # noqa: E402
 from lib import pooling  # noqa: E402
 from lib import program  # noqa: E402
+from lib import resident  # noqa: E402
 from lib import table  # noqa: E402
 from lib.harness import Configuration, Experiment, Plot  # noqa: E402
 
@@ -117,6 +120,35 @@ class Experiments(unittest.TestCase):
                                                delta=1e-5 if float(value) else 1)
                     else:
                         self.assertEqual(row[column], value)
+
+    def test_both_ways_give_the_same_table(self):
+        tables = []
+        for way in ([], ["--single-processes"]):
+            status, output, errors = self.run_tiny(*way, "--rounds", "2", "--fresh")
+            self.assertEqual((status, errors), (0, ""), output)
+            facts = json.loads(self.result("json").read_text(encoding="utf-8"))
+            self.assertEqual(facts["measured_by"], resident.EACH if way else resident.ONE)
+            self.assertIn(facts["measured_by"], output)
+            changes = "_ms$|_ms_|_per_s$|launches$|^waves$|^output$|^used_exposure$|^csv$|^stats$"
+            tables.append([{column: text for column, text in row.items()
+                            if not re.search(changes, column)} for row in self.rows()])
+        self.assertEqual(*tables)
+
+    def test_a_killed_process_costs_one_configuration(self):
+        device = harness.find_device(PTEXP, "cpu")
+        small, long = (Configuration("", f"--mode megakernel --width 24 --height 12 --spp {spp}")
+                       for spp in (2, 100_000_000))
+        with resident.Resident(PTEXP) as process, contextlib.redirect_stdout(io.StringIO()):
+            measured = process.measure(small, device, 2, 0, TIMEOUT_S)
+            self.assertEqual((measured.status, len(measured.runs)), ("measured", 2))
+            threading.Timer(0.5, process.process.kill).start()
+            lost = process.measure(long, device, 1, 0, TIMEOUT_S)
+            self.assertEqual((lost.status, lost.message), ("failed", "ended by signal 9"))
+            lost = process.measure(long, device, 1, 0, 0.5)
+            self.assertEqual((lost.status, lost.message), ("failed", "no end after 0.5 s (--timeout)"))
+            refused = process.measure(Configuration("", "--block 64x64"), device, 1, 0, TIMEOUT_S)
+            self.assertEqual(refused.status, "refused")
+            self.assertEqual(process.measure(small, device, 2, 0, TIMEOUT_S).status, "measured")
 
     def test_the_origin_of_a_table(self):
         self.run_tiny()

@@ -210,6 +210,8 @@ class PageCache(unittest.TestCase):
 
 
 class Harness(unittest.TestCase):
+    way = []  # options
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="ptexp harness ")
         self.addCleanup(folder.cleanup)
@@ -235,7 +237,7 @@ class Harness(unittest.TestCase):
 
     def options(self, *more):
         return ["--ptexp", str(self.program), "--output", str(self.folder / "out"), "--warmup", "0",
-                "--repeat", "2", "--rounds", "2", *more]
+                "--repeat", "2", "--rounds", "2", *self.way, *more]
 
     def run_seeds(self, *more, seeds=(1, 2, 3), group="", **facts):
         """(exit code, text printed, text of errors)"""
@@ -341,6 +343,22 @@ class Harness(unittest.TestCase):
         self.assertEqual((plain["wall_ms_runs"], plain["units"]), ("", ""))
         self.assertIn("env PTEXP_FAKE_WALL=1.5", self.facts()["configurations"]["a"])
 
+    def test_bad_answers(self):
+        if self.way:
+            self.skipTest("there are none")
+        for text, said in (("garbage", "garbage"), ("{}", "{}"), ("[1]", "[1]"),
+                           ('{"error": 1}', '{"error": 1}'), ("\n", "\\n")):
+            with self.subTest(text=text):
+                self.fake("a", answers={"2": text})
+                status, output, _ = self.run_seeds("--fresh")
+                self.assertEqual((status, self.columns("status")),
+                                 (1, ["measured", "failed", "measured"]))
+                self.assertIn(f"answered '{said}", output)
+        self.fake("a", answers={"2": json.dumps({"error": "CUDA: broken", "exit_code": 2})})
+        status, output, _ = self.run_seeds("--fresh")
+        self.assertEqual(self.columns("message"), ["", "exit code 2: CUDA: broken", ""])
+        self.assertIn("CUDA: broken; another process goes on", output)
+
     def test_where_the_wall_time_of_processes_went(self):
         self.fake("a", times={"1": [4.0]}, end_s=0.25, process={
             "start": 9, "scene": 7, "render": 11, "image": 2.5, "total": 29.5})
@@ -404,6 +422,51 @@ class Harness(unittest.TestCase):
         self.assertEqual(self.run_seeds()[0], 0)
         self.assertEqual(self.log(), [("2", "1"), ("2", "1")])
         self.assertEqual(self.columns("status"), ["measured", "measured", "refused"])
+
+    def test_a_crash_costs_one_configuration(self):
+        for behaviour, message in (({"dies": {"2": 9}}, "ended by signal 9"),
+                                   ({"dies": {"2": 11}}, "ended by signal 11"),
+                                   ({"hangs": ["2"]}, "no end after 2 s (--timeout)")):
+            with self.subTest(message=message):
+                self.fake("a", **behaviour)
+                status, output, errors = self.run_seeds("--fresh", "--timeout", "2")
+                self.assertEqual(status, 1)
+                self.assertIn(f"failed: seed 2: {message}", errors)
+                self.assertEqual(self.columns("status"), ["measured", "failed", "measured"])
+                self.assertEqual(self.log(), [(seed, "1") for seed in "12331"])
+                self.assertEqual(f"ptexp measure: {message}; another process goes on" in output,
+                                 not self.way)
+
+    def processes(self):
+        """The number of those that measured."""
+        lines = (self.folder / "a" / "log").read_text(encoding="utf-8").splitlines()
+        self.log()
+        return len({line.split()[-1] for line in lines if line.startswith("measure")})
+
+    def test_which_way_measured(self):
+        self.run_seeds("--fresh")
+        self.assertEqual(self.processes(), 6 if self.way else 1)
+        by = self.facts()["measured_by"]
+        self.assertEqual(by, "a process for each" if self.way else "one process")
+        for facts in ({"whole_process": True}, {"own": {"launcher": "env A=1"}},
+                      {"own": {"program": str(self.program)}}):
+            with self.subTest(facts=facts):
+                own = facts.pop("own", {})
+                made = [Configuration("a", "--seed 1"), Configuration("b", "--seed 2", **own)]
+                with contextlib.redirect_stdout(io.StringIO()):
+                    self.assertEqual(harness.main(Experiment("fake", "Fake?", lambda *_, made=made: made,
+                                                             None, **facts),
+                                                  self.options("--fresh")), 0)
+                self.assertEqual(self.processes(), 4)
+                self.assertEqual(self.facts()["measured_by"], "a process for each")
+
+    def test_a_kept_image(self):
+        image = self.folder / "kept.exr"
+        made = [Configuration("a", "--seed 1", image=str(image)), Configuration("b", "--seed 2")]
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(harness.main(Experiment("fake", "Fake?", lambda *_: made, None),
+                                          self.options()), 0)
+        self.assertEqual(image.read_text(encoding="utf-8"), "same")
 
     def test_equal_images(self):
         status, _, errors = self.run_seeds(group="all", image_check="--width 7 --seed 5")
@@ -491,6 +554,41 @@ class Harness(unittest.TestCase):
         self.assertAlmostEqual(compare.mean_ratio([[1.0], [4.0], [4.0], [1.0]]), 1)
         self.assertAlmostEqual(compare.mean_ratio([[1.0], [8.0], [4.0], [8.0]]), 4)
 
+    def test_two_ways_to_measure(self):
+        if self.way:
+            self.skipTest("both are in it")
+        compare = importlib.import_module("compare_builds")
+
+        def ways(*more):
+            output = io.StringIO()
+            with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output), \
+                    mock.patch.object(compare, "WAYS_SCENES", {"spheres": "--scene spheres"}):
+                status = harness.main(compare.EXPERIMENT, [
+                    str(self.program), "--quick", "--repeat", "4", "--rounds", "2", "--warmup", "0",
+                    "--output", str(self.folder / "out"), "--fresh", *more], runner=compare.run)
+            return status, output.getvalue()
+        times = {"": [1.0, 1.001]}
+        self.fake("a", times=times, factor=1.005)
+        status, output = ways("--one-process")
+        self.assertEqual(status, 0, output)
+        self.assertIn("are 1.0050 times those of single processes (geometric mean of 6; ", output)
+        self.assertIn("equal within 1 %: 6 of 6; ambiguous: none", output)
+        path, = self.folder.glob("out/*/compare_builds-quick.json")
+        self.assertEqual(json.loads(path.read_text(encoding="utf-8"))["measured_by"],
+                         "a process for each and one process")
+        self.assertEqual(self.processes(), 1 + 6 * 2)
+        self.fake("a", times=times, factor=1.02)
+        status, output = ways("--one-process")
+        self.assertEqual(status, 1, output)
+        self.assertRegex(output, "different by more than 1 %: spheres: megakernel, spheres: mega")
+        status, output = ways()
+        self.assertEqual((status, output.count("\n")), (2, 1))
+        self.assertIn("expected two programs, or one and --one-process", output)
+        for low, high, verdict in ((0.995, 1.005, "equal"), (0.98, 1.0, "ambiguous"),
+                                   (1.0, 1.02, "ambiguous"), (1.011, 1.02, "DIFFERENT"),
+                                   (0.97, 0.989, "DIFFERENT")):
+            self.assertEqual(compare.verdict_of(low, high, True), verdict, (low, high))
+
     def trace(self, _experiment, _program, rays, *_):
         """Stands for the measurement of a set of rays; Ctrl-C at the third."""
         name = Path(rays.rays).name
@@ -568,6 +666,11 @@ class Harness(unittest.TestCase):
         self.assertEqual(plot.spread([row], "t"), ([3], [[2], [6]]))
         self.assertEqual(plot.spread([{**row, "t_low": "2.5", "t_high": "4"}], "t"),
                          ([3], [[0.5], [1]]))
+
+
+class SingleProcesses(Harness):
+    """All of it once more, with a process for each configuration."""
+    way = ["--single-processes"]
 
 
 if __name__ == "__main__":

@@ -19,8 +19,11 @@ BUDGET_S = 36 * 60
 
 # A ptexp that dies where it is to keep states of random numbers, unless the file `mended` is there.
 PARTLY_BROKEN = """#!/bin/sh
-case "$*" in *"--rng xorwow"*) [ -e '{folder}/mended' ] || exit 3 ;; esac
-exec '{program}' "$@"
+[ "$1" = measure ] || exec '{program}' "$@"
+while read -r line; do
+  case "$line" in *'"--rng", "xorwow"'*) [ -e '{folder}/mended' ] || exit 3 ;; esac
+  printf '%s\\n' "$line"
+done | '{program}' measure
 """
 # A ptexp on a machine of so many GPUs.
 WITH_GPUS = """#!/bin/sh
@@ -93,7 +96,7 @@ class Reproduce(unittest.TestCase):
             (folder / "mended").touch()
             second = reproduce(*command)
             self.assertEqual(second.returncode, 0, second.stdout + second.stderr)
-            self.assertRegex(second.stdout, r"goes on: \d\d of \d\d processes are measured already")
+            self.assertRegex(second.stdout, r"goes on: \d\d of \d\d measurements are done already")
             self.assertIn("measured already by this program and command", second.stdout)
 
 

@@ -43,4 +43,10 @@ int rays_command(const RaysCommand& command);
 /// Throws Error if a strategy breaks its contract.
 int compact_command(const CompactCommand& command);
 
+/// `ptexp measure`: renders the configurations that the standard input names, a JSON object in each
+/// line, and answers each with a line of the standard output: its statistics, or an error, after
+/// which the next follow. What configurations have in common is kept from one to the next. Returns
+/// 0 at the end of the input, or 128 + N after signal N.
+int measure_command();
+
 }  // namespace pt

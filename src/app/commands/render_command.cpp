@@ -34,24 +34,6 @@ double timed_ms(const Work& work) {
   return 1e3 * (steady_seconds() - begin_s);
 }
 
-/// Divides the wall time of the process.
-class ProcessClock {
- public:
-  ProcessClock() : last_s_(steady_seconds()) { times_.start = 1e3 * process_age_s(); }
-
-  /// What has passed since the last call belongs to `part`.
-  void end(double ProcessTimes::*part) {
-    const double now_s = steady_seconds();
-    times_.*part += 1e3 * (now_s - last_s_);
-    last_s_ = now_s;
-  }
-  const ProcessTimes& times() const { return times_; }
-
- private:
-  ProcessTimes times_;
-  double last_s_;
-};
-
 /// Finds and prints the devices. The options then name these.
 std::vector<DeviceInfo> find_devices(Options& options, const GivenOptions& given,
                                      const Ranks& ranks) {
@@ -185,7 +167,7 @@ std::future<LoadedScene> load_early(const Options& options, Ranks& ranks) {
 
 /// `resumption`: the checkpoint that goes on, or null.
 int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumption) {
-  ProcessClock clock;
+  ProcessClock clock(process_age_s());
   Options options = command.options;
   const bool is_first = ranks.is_first();
   if (is_first) check_outputs(options);

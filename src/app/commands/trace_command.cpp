@@ -13,7 +13,7 @@
 #include "common/error/terminal.h"
 #include "common/image/atomic_file.h"
 #include "common/rays/trace_rays.h"
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/scene/prepare/prepare_steps.h"
 

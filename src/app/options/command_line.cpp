@@ -193,6 +193,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (parser.rays.is_parsed()) return parse_alone(parser, parser.rays, arguments);
   if (parser.compact.is_parsed()) return parse_alone(parser, parser.compact, arguments);
   if (parser.doctor.is_parsed()) return parse_alone(parser, parser.doctor, arguments);
+  if (parser.measure.is_parsed()) return parse_alone(parser, parser.measure, arguments);
   const std::pair<const CLI::Option*, Command> lists[] = {
       {parser.list_scenes, ListScenesCommand{}},
       {parser.list_devices, ListDevicesCommand{}},

@@ -64,9 +64,9 @@ struct HelpCommand {
 
 using Command =
     std::variant<RenderCommand, ResumeCommand, MergeCommand, VerifyCommand, CompareCommand,
-                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, ViewCommand,
-                 ListScenesCommand, ListDevicesCommand, ListKernelsCommand, VersionCommand,
-                 CompletionCommand, ReferenceCommand, HelpCommand>;
+                 TraceCommand, RaysCommand, CompactCommand, DoctorCommand, MeasureCommand,
+                 ViewCommand, ListScenesCommand, ListDevicesCommand, ListKernelsCommand,
+                 VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
 
 /// Options of rendering from settings; a later one overrides an earlier one. Throws Error for
 /// everything that can be refused without a device or a scene.

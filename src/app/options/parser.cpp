@@ -34,6 +34,9 @@ constexpr const char* compact_text =
 constexpr const char* doctor_text =
     "Tells what would run on this machine, what not, and the remedy.\n"
     "Exit code 0: all that it was built for works, 1: something is missing.";
+constexpr const char* measure_text =
+    "Measures one configuration after the other: reads their options as lines of JSON,\n"
+    "{\"arguments\": [\"--mode\", \"wavefront\", ...]}, and answers each with a line.";
 constexpr const char* footer_text =
     "An option that has no effect in the chosen mode or on the chosen device is refused.\n"
     "Exit codes: 0 done, 2 an error (one line on stderr), 130 interrupted by Ctrl-C, 143 by\n"
@@ -70,7 +73,8 @@ Parser::Parser()
       trace(app, "trace", trace_text, trace_options()),
       rays(app, "rays", rays_text, rays_options()),
       compact(app, "compact", compact_text, compact_options()),
-      doctor(app, "doctor", doctor_text, doctor_options()) {
+      doctor(app, "doctor", doctor_text, doctor_options()),
+      measure(app, "measure", measure_text, {}) {
   for (const OptionEntry& entry : option_list()) add_option(entry);
   app.set_help_flag("-h,--help", "Prints this help")->group(information);
   list_scenes = add_flag(app, "--list-scenes", "Names and describes the scenes");

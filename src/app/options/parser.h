@@ -90,6 +90,7 @@ struct Parser {
   Subcommand<RaysCommand> rays;
   Subcommand<CompactCommand> compact;
   Subcommand<DoctorCommand> doctor;
+  Subcommand<MeasureCommand> measure;
   CLI::App *resume = nullptr, *merge = nullptr, *verify = nullptr, *view = nullptr;
   CLI::Option *checkpoint = nullptr, *merged = nullptr, *parts = nullptr, *verified = nullptr;
   CLI::Option *allow_missing = nullptr, *keep_sums = nullptr, *share = nullptr;

@@ -1,4 +1,5 @@
-// The subcommands `trace`, `rays`, `compact` and `doctor`, and the tables of their options.
+// The subcommands `trace`, `rays`, `compact`, `doctor` and `measure`, and the tables of their
+// options.
 #pragma once
 
 #include <cstdint>
@@ -66,6 +67,9 @@ struct CompactCommand {
 struct DoctorCommand {
   bool as_json = false;
 };
+
+/// Its configurations come from the standard input.
+struct MeasureCommand {};
 
 std::vector<SubcommandOption<TraceCommand>> trace_options();
 std::vector<SubcommandOption<RaysCommand>> rays_options();

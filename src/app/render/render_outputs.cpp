@@ -12,8 +12,8 @@
 
 namespace pt {
 
-void check_outputs(const Options& options) {
-  check_image_path(options.output);
+void check_outputs(const Options& options, bool writes_image) {
+  if (writes_image) check_image_path(options.output);
   if (!options.stats_file.empty()) check_writable(options.stats_file);
   if (!options.checkpoint.file.empty()) check_writable(options.checkpoint.file);
   if (!options.csv_file.empty()) check_csv(options.csv_file, report_csv_row(options, {}));

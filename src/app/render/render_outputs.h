@@ -13,7 +13,7 @@
 namespace pt {
 
 /// Throws Error if a file that the options name could not be written.
-void check_outputs(const Options& options);
+void check_outputs(const Options& options, bool writes_image = true);
 
 struct Exposure {
   float stops = 0;

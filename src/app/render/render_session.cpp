@@ -23,17 +23,19 @@ bool is_for_later(const OptionEntry& entry) {
   return std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
 }
 
-/// Whether only the renderer uses the option.
+/// Whether preparation does not use the option, or by move_camera() or prepares_alike() alone.
 bool is_of_renderer(const OptionEntry& entry) {
-  constexpr std::array names = {"spp", "seed", "max-depth", "rr", "crop", "aov"};
+  constexpr std::array names = {"width", "height", "spp", "seed", "max-depth", "rr", "crop", "aov"};
   using Group = OptionGroup;
-  constexpr std::array groups = {Group::camera, Group::stops, Group::parts, Group::measurement};
+  constexpr std::array groups = {Group::camera,    Group::stops,   Group::parts,
+                                 Group::execution, Group::toggles, Group::measurement};
   return std::ranges::find(groups, entry.group) != groups.end() ||
          std::ranges::any_of(names, [&](const char* name) { return entry.name == name; });
 }
 
 struct Keys {
-  std::string scene;     ///< renders of the same key share a prepared scene, except its camera
+  std::string scene;     ///< renders of the same key share a prepared scene if their plans agree
+  std::string camera;    ///< and those of the same key also its camera
   std::string renderer;  ///< renders of the same key also share a renderer
 };
 
@@ -43,6 +45,8 @@ Keys keys_of(const Options& options) {
     if (is_for_later(entry)) continue;
     const std::string line = entry.name + ' ' + entry.text(options) + '\n';
     (is_of_renderer(entry) ? keys.renderer : keys.scene) += line;
+    if (entry.group == OptionGroup::camera || entry.name == "width" || entry.name == "height")
+      keys.camera += line;
   }
   keys.renderer += keys.scene;
   return keys;
@@ -61,6 +65,16 @@ struct RenderSession::Prepared {
   Warn warn;  ///< of the render at work
   std::unique_ptr<Rendering> rendering;
   int samples = 0;  ///< of the last pass, in all
+
+  /// Plans for this scene as if it were not prepared yet.
+  std::vector<ExecutionPlan> plan_anew(const Options& by, const std::vector<DeviceInfo>& on) {
+    const SceneProperties known = scene.properties;
+    scene.properties.structure.reset();
+    scene.properties.builder.reset();
+    std::vector<ExecutionPlan> made = plan_render(by, scene, on);
+    scene.properties = known;
+    return made;
+  }
 
   void make_rendering() {
     rendering.reset();  // its memory is needed
@@ -92,9 +106,11 @@ CameraParameters& RenderSession::change_camera() {
   return source_.camera;
 }
 
-RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, const Warn& warn) {
+RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, const Warn& warn,
+                                                ProcessClock& clock) {
   Options options = command.options;
   std::vector<DeviceInfo> devices = choose_render_devices(options, command.given);
+  clock.end(&ProcessTimes::devices);
   apply_defaults(source_.defaults, command.given, options);
   Keys keys = keys_of(options);
   const bool is_same = prepared_ && !camera_changed_ && prepared_->keys.renderer == keys.renderer;
@@ -108,17 +124,24 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   const double begin_s = steady_seconds();
   std::unique_ptr<Prepared> next = std::move(prepared_);  // gone if anything is refused
   if (next && next->keys.renderer != keys.renderer) next->rendering.reset();
-  if (!next || next->keys.scene != keys.scene ||
-      !move_camera(next->scene, source_.camera, options)) {
+  const bool has_moved = camera_changed_ || (next && next->keys.camera != keys.camera);
+  bool is_kept = next && next->keys.scene == keys.scene &&
+                 (!has_moved || move_camera(next->scene, source_.camera, options));
+  if (is_kept && !next->rendering) {
+    std::vector<ExecutionPlan> plans = next->plan_anew(options, devices);
+    is_kept = prepares_alike(plans.front(), next->plans.front());
+    next->plans = std::move(plans);
+  }
+  if (!is_kept) {
+    next.reset();  // its memory is needed
     next = std::make_unique<Prepared>();
     next->scene = source_;
     resolve_scene(next->scene, options);
     next->plans = plan_render(options, next->scene, devices);
     prepare_scene(next->scene, next->plans.front());
     describe_scene(next->scene, next->facts);  // goes through the tree
-  } else if (!next->rendering) {
-    next->plans = plan_render(options, next->scene, devices);
   }
+  clock.end(&ProcessTimes::prepare);
   next->scene_ms = 1e3 * (steady_seconds() - begin_s);
   next->warn = warn;
   next->options = options;
@@ -127,6 +150,7 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
   next->samples = 0;
   const Camera camera = make_camera(next->scene.camera, options.width, options.height);
   if (!next->rendering || !next->rendering->renderer().set_camera(camera)) next->make_rendering();
+  clock.end(&ProcessTimes::setup);
   prepared_ = std::move(next);
   camera_changed_ = false;
   return *prepared_;
@@ -134,7 +158,8 @@ RenderSession::Prepared& RenderSession::prepare(const RenderCommand& command, co
 
 RenderResult RenderSession::render(const RenderCommand& command, const MeasureHooks& hooks,
                                    const Warn& warn, bool stays_on_device) {
-  Prepared& ready = prepare(command, warn);
+  ProcessClock clock;
+  Prepared& ready = prepare(command, warn, clock);
   if (stays_on_device && needs_group(ready.options, ready.devices)) {
     throw Error(
         "on_device: several devices, a checkpoint or a part put the image together in the host's "
@@ -148,6 +173,7 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   report.primitives = ready.scene.primitive_count() + ready.scene.triangle_count();
   report.scene = ready.facts;
   const Measurement measurement = ready.rendering->measure(hooks);
+  clock.end(&ProcessTimes::render);
   const std::string& problem = ready.rendering->checkpoint_problem();
   if (warn && !problem.empty()) warn("--checkpoint: " + problem);
   result.interrupted = measurement.interrupted;
@@ -157,6 +183,8 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
   Renderer& renderer = ready.rendering->renderer();
   if (stays_on_device) result.device_image = renderer.device_image();
   result.image = result.device_image ? result.device_image->frame() : renderer.image();
+  clock.end(&ProcessTimes::image);
+  report.process_ms = clock.times();
   renderer.describe(report);
   report.runs = measurement.runs;
   if (const std::string text = black_image_text(ready.options, result.image); warn && !text.empty())
@@ -169,7 +197,8 @@ RenderResult RenderSession::render(const RenderCommand& command, const MeasureHo
 
 RenderPass RenderSession::add_pass(const RenderCommand& command, int samples,
                                    const RenderHooks& hooks, const Warn& warn) {
-  Prepared& ready = prepare(command, warn);
+  ProcessClock clock;
+  Prepared& ready = prepare(command, warn, clock);
   Renderer& renderer = ready.rendering->renderer();
   RenderPass pass;
   const double begin_s = steady_seconds();

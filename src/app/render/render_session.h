@@ -64,7 +64,7 @@ class RenderSession {
  private:
   struct Prepared;
 
-  Prepared& prepare(const RenderCommand& command, const Warn& warn);
+  Prepared& prepare(const RenderCommand& command, const Warn& warn, ProcessClock& clock);
 
   SceneData source_;
   bool camera_changed_ = false;

@@ -13,6 +13,7 @@
 #include "common/film/checkpoint.h"
 #include "common/mpi/ranks.h"
 #include "common/plan/execution_plan.h"
+#include "common/platform/steady_seconds.h"
 #include "common/render/renderer.h"
 #include "common/scene/data/scene_data.h"
 
@@ -31,6 +32,27 @@ std::vector<std::unique_ptr<Worker>> make_workers(const std::vector<ExecutionPla
 /// The pixels of the options' part of the image: rows, every so many of them, so that parts take
 /// about the same time. Throws Error where the image has too few rows.
 std::vector<Window> part_windows(const Options& options);
+
+/// Divides the wall time of a process, or of one of its renders.
+class ProcessClock {
+ public:
+  /// `age_s`: of the process, where all of it is divided.
+  explicit ProcessClock(double age_s = 0) : last_s_(steady_seconds()) {
+    times_.start = 1e3 * age_s;
+  }
+
+  /// What has passed since the last call belongs to `part`.
+  void end(double ProcessTimes::*part) {
+    const double now_s = steady_seconds();
+    times_.*part += 1e3 * (now_s - last_s_);
+    last_s_ = now_s;
+  }
+  const ProcessTimes& times() const { return times_; }
+
+ private:
+  ProcessTimes times_;
+  double last_s_;
+};
 
 struct Measurement {
   /// The measured repeats; if a render was cut short, only that one, which the renderer's image and

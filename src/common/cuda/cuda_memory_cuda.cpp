@@ -15,10 +15,8 @@ namespace pt {
 void check_cuda(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;
   const std::string message = fmt::format("CUDA: {}: {}", what, cudaGetErrorString(status));
-  if (status == cudaErrorMemoryAllocation) {
-    cudaGetLastError();  // clears it
-    throw OutOfMemory(message);
-  }
+  cudaGetLastError();  // clears it, for what the process does next
+  if (status == cudaErrorMemoryAllocation) throw OutOfMemory(message);
   throw Error(message);
 }
 

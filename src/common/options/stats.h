@@ -158,7 +158,7 @@ struct RenderReport {
   double load_ms = 0;      ///< loading of kernels, before the first render; 0 on the CPU
   double transfer_ms = 0;  ///< scene upload and image download
   double image_write_ms = 0;
-  ProcessTimes process_ms;        ///< zeros where the process renders several images
+  ProcessTimes process_ms;        ///< of this render alone where the process makes several
   std::optional<float> exposure;  ///< stops by which a PNG or PPM was multiplied
   PathCounts counts;
   std::vector<RenderRun> runs;  ///< the measured repeats

@@ -11,7 +11,7 @@
 #include "common/sampling/random.h"
 #include "common/sampling/warp.h"
 #include "common/scene/data/camera.h"
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/prepare_scene.h"
 #include "common/transport/follow_path.h"
 #include "common/transport/generate_camera_path.h"

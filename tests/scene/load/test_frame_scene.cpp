@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 
 namespace pt {
 namespace {

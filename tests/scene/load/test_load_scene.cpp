@@ -1,5 +1,5 @@
 // Scene files by their endings, and what a viewer needs that they do not say.
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/load/load_scene.h"
 #include "load/expect_near.h"
 #include "load/gltf_files.h"

@@ -1,7 +1,7 @@
 // What is seen of files without lights or cameras.
 #include <cmath>
 
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/prepare/prepare_scene.h"

@@ -1,5 +1,10 @@
 #include "common/scene/data/scene_data.h"
 
+#include <algorithm>
+#include <map>
+
+#include "common/geometry/primitives.h"
+
 namespace pt {
 
 std::uint32_t SceneData::add_material(const MaterialDescription& material) {
@@ -30,6 +35,101 @@ std::uint64_t SceneData::triangle_count() const {
   std::uint64_t count = 0;
   for (const Mesh& mesh : meshes) count += mesh.triangles.size();
   return count;
+}
+
+namespace {
+
+/// Empty bounds have none.
+std::vector<Vec3> corners(const Bounds& bounds) {
+  std::vector<Vec3> result;
+  if (bounds.is_empty()) return result;
+  for (int i = 0; i < 8; ++i) {
+    result.emplace_back(i & 1 ? bounds.max.x : bounds.min.x, i & 2 ? bounds.max.y : bounds.min.y,
+                        i & 4 ? bounds.max.z : bounds.min.z);
+  }
+  return result;
+}
+
+Bounds transformed(const Bounds& bounds, const Affine& to_world) {
+  Bounds result;
+  for (const Vec3& corner : corners(bounds)) result.grow(to_world.point(corner));
+  return result;
+}
+
+/// Goes back from a point until everything is within 95 % of the image's smaller side.
+class Framing {
+ public:
+  explicit Framing(const Vec3& center) : center_(center) {}
+
+  void include(const Vec3& p, float radius = 0.0f) {
+    const Vec3 from_center = p - center_;
+    const float off =
+        std::max(std::abs(glm::dot(from_center, right_)), std::abs(glm::dot(from_center, up_)));
+    // The distance at which the planes through the camera and the image's edges touch the point.
+    const float distance = (off + radius * secant_) / tangent_ + glm::dot(from_center, backward_);
+    distance_ = std::max(distance_, distance);
+  }
+
+  CameraParameters camera() const {
+    CameraParameters camera = camera_;
+    camera.look_at = center_;
+    camera.focus_distance = distance_;
+    camera.look_from = center_ + distance_ * backward_;
+    return camera;
+  }
+
+ private:
+  static CameraParameters any_shape() {
+    CameraParameters camera;
+    camera.fov_axis = FovAxis::smaller;
+    return camera;
+  }
+
+  CameraParameters camera_ = any_shape();
+  Vec3 center_;
+  Vec3 backward_ = normalize(Vec3(1.0f, 0.7f, 1.5f));
+  Vec3 right_ = normalize(glm::cross(camera_.up, backward_));
+  Vec3 up_ = glm::cross(backward_, right_);
+  float tangent_ = 0.95f * std::tan(0.5f * camera_.fov_degrees * pi / 180.0f);
+  float secant_ = std::sqrt(1.0f + tangent_ * tangent_);
+  float distance_ = 1e-6f;
+};
+
+}  // namespace
+
+Bounds scene_bounds(const SceneData& scene) {
+  std::map<std::uint32_t, Bounds> groups;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vec3& p : mesh.positions) groups[mesh.group].grow(p);
+  }
+  Bounds all = groups[0];
+  for (const Instance& instance : scene.instances) {
+    all.grow(transformed(groups[instance.group], instance.to_world));
+  }
+  for (const Sphere& s : scene.spheres) all.grow(sphere_bounds(s));
+  for (const Quad& q : scene.quads) all.grow(quad_bounds(q));
+  return all;
+}
+
+CameraParameters frame_scene(const SceneData& scene) {
+  const Bounds bounds = scene_bounds(scene);
+  Framing framing(bounds.is_empty() ? Vec3(0.0f) : bounds.center());
+  std::map<std::uint32_t, Bounds> groups;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Vec3& p : mesh.positions) {
+      mesh.group == 0 ? framing.include(p) : groups[mesh.group].grow(p);
+    }
+  }
+  for (const Instance& instance : scene.instances) {
+    for (const Vec3& p : corners(groups[instance.group])) {
+      framing.include(instance.to_world.point(p));
+    }
+  }
+  for (const Sphere& s : scene.spheres) framing.include(s.center, std::sqrt(s.radius_squared));
+  for (const Quad& q : scene.quads) {
+    for (const Vec3& p : corners(quad_bounds(q))) framing.include(p);
+  }
+  return framing.camera();
 }
 
 }  // namespace pt

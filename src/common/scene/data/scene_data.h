@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/accel/build/triangle_tree_data.h"
+#include "common/geometry/bounds.h"
 #include "common/geometry/mesh.h"
 #include "common/light/light.h"
 #include "common/light/light_tree.h"
@@ -121,5 +122,13 @@ struct SceneData {
                   const SphereFrame& frame);
   void add_quad(const Vec3& corner, const Vec3& a, const Vec3& b, std::uint32_t material);
 };
+
+/// The bounds of everything in world space. Those of instances may be too large: they are the
+/// transformed boxes of their groups.
+Bounds scene_bounds(const SceneData& scene);
+
+/// A camera that sees all of the scene from the front, right and above (+z, +x and +y) in an image
+/// of any shape: the scene nearly fills the smaller side. It looks at the middle of the bounds.
+CameraParameters frame_scene(const SceneData& scene);
 
 }  // namespace pt

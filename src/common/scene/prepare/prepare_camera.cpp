@@ -4,7 +4,7 @@
 
 #include "common/error/error.h"
 #include "common/geometry/primitives.h"
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {

@@ -104,6 +104,11 @@ void prepare_scene(SceneData& scene, const ExecutionPlan& plan) {
   scene.properties.builder = plan.builder;
 }
 
+bool prepares_alike(const ExecutionPlan& a, const ExecutionPlan& b) {
+  return a.kernel_set == b.kernel_set && a.accel == b.accel && a.builder == b.builder &&
+         a.light_selection == b.light_selection;
+}
+
 void prepare_scene(SceneData& scene, const Options& options) {
   DeviceProperties device = cpu_properties(options.threads);
   device.is_cuda = is_on_cuda(options);

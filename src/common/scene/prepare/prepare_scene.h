@@ -16,6 +16,9 @@ void resolve_scene(SceneData& scene, const Options& options);
 /// and lists its lights. Throws Error for what cannot be built.
 void prepare_scene(SceneData& scene, const ExecutionPlan& plan);
 
+/// Whether a scene that is prepared for one of the plans is prepared for the other.
+bool prepares_alike(const ExecutionPlan& a, const ExecutionPlan& b);
+
 /// Both, with a plan for the kind of device that the options name, of the usual properties.
 void prepare_scene(SceneData& scene, const Options& options = {});
 

@@ -7,7 +7,7 @@
 #include "common/accel/build/build_triangle_tree.h"
 #include "common/accel/embree/embree_tree.h"
 #include "common/error/error.h"
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/list_lights.h"
 #include "common/scene/prepare/prepare_steps.h"
 

@@ -1,5 +1,5 @@
 // The glTF loader: containers, accessors, meshes, nodes and instances.
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "load/expect_near.h"
 #include "load/gltf_files.h"
 #include "shared_file.h"

@@ -1,5 +1,5 @@
 // Mitsuba files with a trifle wrong: they load, with a warning.
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "load/expect_near.h"
 #include "load/mitsuba_scene.h"
 

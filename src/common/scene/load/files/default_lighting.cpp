@@ -9,7 +9,7 @@
 
 #include "common/image/tone_mapping.h"
 #include "common/light/light.h"
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/prepare/prepare_steps.h"
 
 namespace pt {

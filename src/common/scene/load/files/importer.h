@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/math/transform.h"
-#include "common/scene/data/frame_scene.h"
 #include "common/scene/data/scene_data.h"
 
 namespace pt {
@@ -100,5 +99,20 @@ inline void frame_finite_scene(SceneData& scene) {
 // How finely round shapes are tessellated.
 inline constexpr int circle_segments = 256;    ///< a chord is within 7.5e-5 radii of its arc
 inline constexpr int meridian_segments = 128;  ///< of a sphere, pole to pole
+
+// Spectra to linear sRGB.
+
+/// wavelength (nm, ascending) -> value
+using Samples = std::vector<std::pair<double, double>>;
+
+/// Emission is taken as it is; all else is seen under D65, so that 1 everywhere is white.
+enum class Illuminant { equal_energy, d65 };
+
+/// Linear sRGB of a sampled spectrum, with the CIE 1931 observer, as Mitsuba's RGB variants have
+/// it.
+Color spectrum_to_rgb(const Samples& samples, Illuminant illuminant);
+
+/// Planck's law between two wavelengths in nm, W / (m^2 sr nm), as linear sRGB.
+Color blackbody_to_rgb(double kelvin, double from_nm = 0.0, double to_nm = 1e9);
 
 }  // namespace pt

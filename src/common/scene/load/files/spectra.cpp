@@ -1,8 +1,8 @@
-#include "common/scene/load/files/spectra.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "common/scene/load/files/importer.h"
 
 namespace pt {
 namespace {

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/scene/data/frame_scene.h"
+#include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/default_lighting.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/meshes/vertex_colors.h"

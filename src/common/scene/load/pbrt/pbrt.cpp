@@ -9,7 +9,6 @@
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/meshes/mesh_files.h"
 #include "common/scene/load/files/read_ahead.h"
-#include "common/scene/load/files/spectra.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/pbrt/scene_parts.h"
 #include "common/scene/load/pbrt/syntax/description.h"

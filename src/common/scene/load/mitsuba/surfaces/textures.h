@@ -3,7 +3,6 @@
 
 #include "common/math/vec.h"
 #include "common/scene/load/files/importer.h"
-#include "common/scene/load/files/spectra.h"
 #include "common/scene/load/mitsuba/xml/context.h"
 
 namespace pt::mitsuba {

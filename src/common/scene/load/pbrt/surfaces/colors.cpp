@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/scene/load/files/spectra.h"
+#include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/text.h"
 #include "common/scene/load/pbrt/surfaces/textures.h"
 #include "common/scene/load/pbrt/syntax/parameters.h"
