@@ -10,9 +10,9 @@ All modes give the same bits on a device. docs/python.md is the manual.
 """
 from . import _ptexp
 from ._errors import Error, OptionError, SceneWarning
-from ._image import Image, Layers
+from ._image import Image, Layers, denoise, write_image
 from ._params import Params
-from ._scene import DeviceInfo, Scene, SceneInfo, devices, explain, load, options, render, scenes
+from ._scene import DeviceInfo, Scene, SceneInfo, devices, explain, load, load_string, options, render, scenes
 from ._trace import Comparison, Hits, Mesh, compare, read_image, trace
 
 __version__ = _ptexp.build_info()["version"]
@@ -25,6 +25,6 @@ def build_info() -> dict:
 
 __all__ = [
     "Comparison", "DeviceInfo", "Error", "Hits", "Image", "Layers", "Mesh", "OptionError", "Params",
-    "Scene", "SceneInfo", "SceneWarning", "build_info", "compare", "devices", "explain", "load",
-    "options", "read_image", "render", "scenes", "trace",
+    "Scene", "SceneInfo", "SceneWarning", "build_info", "compare", "denoise", "devices", "explain",
+    "load", "load_string", "options", "read_image", "render", "scenes", "trace", "write_image",
 ]

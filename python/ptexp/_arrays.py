@@ -1,7 +1,18 @@
 """Arrays of whoever calls, as the module takes them."""
 from typing import Any
 
+from ._errors import Error
+
 MOST_INDEX = 2**32 - 1
+
+
+def numpy_for(what: str) -> Any:
+    """The module numpy; an Error, which names its use, where it is not installed."""
+    try:
+        import numpy
+    except ImportError:
+        raise Error(f"{what}: needs numpy, which is not installed") from None
+    return numpy
 
 
 def floats(values: Any) -> Any:

@@ -4,7 +4,7 @@ import re
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional, Tuple
 
 __all__ = ["Error", "OptionError", "SceneWarning"]
 
@@ -13,15 +13,32 @@ class Error(RuntimeError):
     """Something that the user can mend: a file, a scene, a size, a device, too little memory.
 
     Attributes:
-        file: the file that the message begins with, or None.
+        file: the file that the message is about, also a missing one, or None.
         line: the line there, from 1, or None.
     """
 
     def __init__(self, message: str = "") -> None:
         super().__init__(message)
-        place = re.match(r"(?P<file>[^\n]+?):(?P<line>\d+): ", message)
-        self.file = place["file"] if place else None
-        self.line = int(place["line"]) if place else None
+        self.file, self.line = _place_of(message)
+
+
+_LINE = r"(?:(?:parse error at )?line (?P<line>\d+)\b)?"
+_FILE_AND_LINE = re.compile(r"(?P<file>[^\n]+?):(?P<line>\d+)(?::\d+)?: ")  # and the column
+_FAILED = re.compile(r"(?:^|: )cannot (?:read|write|open) (?P<file>[^\n]+?): " + _LINE)
+_FILE = re.compile(r"(?P<file>[^\n]+?): " + _LINE)
+_ENDINGS = re.compile(r"\.(xml|gltf|glb|obj|mtl|ply|pbrt|serialized|nvdb|vol|exr|png|ppm|hdr|pfm|jpe?g|json|csv)$|^<string>$", re.I)
+
+
+def _place_of(message: str) -> Tuple[Optional[str], Optional[int]]:
+    """The file and line that a message of the program names, in one of its three forms."""
+    place = _FILE_AND_LINE.match(message) or _FAILED.search(message)
+    if place is None and not message.startswith("--"):
+        place = _FILE.match(message)
+        if place and not (os.path.lexists(place["file"]) or _ENDINGS.search(place["file"])):
+            place = None
+    if place is None:
+        return None, None
+    return place["file"], int(place["line"]) if place["line"] else None
 
 
 class OptionError(Error, ValueError):

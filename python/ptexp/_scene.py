@@ -4,7 +4,7 @@ from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple, Union
 
 from . import _ptexp
 from ._dict import to_elements
-from ._errors import Error, text_of_path, warn
+from ._errors import Error, checked_text, text_of_path, warn
 from ._image import Image
 from ._options import as_documentation, check_of_render, to_words
 from ._params import Params
@@ -31,22 +31,30 @@ class Scene:
 
         Args:
             scene: ``{"type": "scene", "sensor": {"type": "perspective", "fov": 40, ...}, ...}``:
-                what a Mitsuba file can have (docs/scenes.md), by the same names. Lists of three are
-                vectors or linear RGB; 4x4 lists or arrays are transforms; ``{"type": "ref",
-                "id": "red"}`` refers to what has the key "red". A shape of the type "mesh" has
-                ``vertices`` (n, 3), ``triangles`` (m, 3) and may have ``normals`` (n, 3) and
-                ``uvs`` (n, 2), as arrays.
+                what a Mitsuba file can have (docs/scenes.md), by the same names, as
+                ``mitsuba.cornell_box()`` returns it. Lists or arrays of three numbers are vectors or
+                linear RGB, those of 4x4, 3x4 or 3x3 transforms; arrays and transforms of numpy,
+                drjit and Mitsuba's variants are taken. ``{"type": "ref", "id": "red"}`` refers to
+                what has the key "red". A "mesh" has ``vertices`` (n, 3), ``triangles`` (m, 3) and
+                may have ``normals`` (n, 3) and ``uvs`` (n, 2); a "bitmap" or "envmap" ``data``
+                (height, width, 1 to 4), linear floats or sRGB integers, or ``bitmap``, a
+                ``mitsuba.Bitmap``; a "gridvolume" ``data`` (z, y, x) or (z, y, x, 1 or 3), or
+                ``grid``, a ``mitsuba.VolumeGrid``. Arrays are copied.
             name: for statistics.
             strict: what ptexp lacks is an Error, not a SceneWarning.
-            **options: those of :func:`render`, for all renders of the scene.
+            **options: those of :func:`render`, for all renders of the scene, and
+                ``default_lighting``.
 
         Raises:
             Error: it is no scene; the message says where: ``scene['box']['bsdf']: ...``.
+            ValueError: indices of a mesh are none, or its arrays hold no numbers.
         """
+        lighting = options.pop("default_lighting", None)
         check_of_render(options)
-        to_words(options)
-        root, meshes = to_elements(scene)
-        return cls(_ptexp.from_elements(root, meshes, name, strict), {**options, "scene": name})
+        words = to_words({**options, "strict": strict, "default_lighting": lighting})
+        root, arrays = to_elements(scene)
+        native = _ptexp.from_elements(root, arrays.meshes, arrays.pictures, arrays.grids, name, words)
+        return cls(native, {**options, "scene": name})
 
     @property
     def name(self) -> str:
@@ -99,6 +107,25 @@ def load(scene: PathLike, **options: Any) -> Scene:
     """
     given = {**options, "scene": text_of_path(scene)}
     return Scene(_ptexp.load(_words(given, given.get("output"))), given)
+
+
+def load_string(text: str, **options: Any) -> Scene:
+    """Loads a scene of Mitsuba's XML as a text.
+
+    Args:
+        text: ``<scene version="3.0.0">...</scene>``; the files that it names are looked for in the
+            current folder.
+        **options: as for :func:`load`.
+
+    Raises:
+        OptionError: an option is wrong.
+        Error: the text is no scene; ``error.line`` says where, ``error.file`` is "<string>".
+
+    Warns:
+        SceneWarning: as :func:`load`.
+    """
+    given = {**options, "scene": "<string>"}
+    return Scene(_ptexp.load_text(checked_text(text), _words(given, given.get("output"))), given)
 
 
 def _words(options: Dict[str, Any], output: Optional[PathLike]) -> List[Tuple[str, str]]:

@@ -93,7 +93,7 @@ def compare(a: Any, b: Any, *, tolerance: float = 0.0, hdr: Union[bool, None] = 
 
 
 def read_image(path: Union[str, "os.PathLike[str]"]) -> Image:
-    """Reads an .exr, .png or .ppm into linear RGB.
+    """Reads an .exr, .png or .ppm into linear RGB; ``aovs`` has the layers of an .exr.
 
     Raises:
         Error: the file cannot be read.

@@ -1,13 +1,17 @@
 // Image in Python, and how far two images differ.
 #include <fmt/format.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <filesystem>
+#include <cstring>
+#include <map>
+#include <tuple>
 
 #include "app/options/option_values.h"
-#include "app/render/render_outputs.h"
 #include "common/error/error.h"
+#include "common/image/codecs/image_codec.h"
 #include "common/image/compare/flip.h"
 #include "python/arrays.h"
 #include "python/image_object.h"
@@ -38,11 +42,41 @@ std::string ImageObject::table() {
   return now.runs.empty() ? "" : report_table(result_.options, now);
 }
 
-void ImageObject::save(const std::string& path, const std::string& exposure) {
-  check_image_path(path);
+std::optional<Exposure> ImageObject::exposure_of(const std::string& path,
+                                                 const std::string& exposure) {
   const ExposureChoice choice =
       exposure.empty() ? result_.options.exposure : parse_exposure("exposure", exposure);
-  const auto chosen = exposure_for(path, choice, image(), result_.measures_exposure);
+  return exposure_for(path, choice, image(), result_.measures_exposure);
+}
+
+std::string ImageObject::srgb(const std::string& exposure) {
+  return quantize(image(), {exposure_of("image.png", exposure)->stops}, srgb_curve);
+}
+
+std::string ImageObject::png(const std::string& exposure) {
+  return encode_png_fast(image(), {exposure_of("image.png", exposure)->stops});
+}
+
+namespace {
+
+constexpr const char* measured_by_default = "scene";  // by the scene, which is not kept
+
+}  // namespace
+
+std::string ImageObject::default_exposure() const {
+  const std::string text = exposure_text(result_.options.exposure);
+  return text.empty() && result_.measures_exposure ? measured_by_default : text;
+}
+
+void ImageObject::set_default_exposure(const std::string& text) {
+  result_.measures_exposure = text == measured_by_default;
+  if (!text.empty() && !result_.measures_exposure)
+    result_.options.exposure = parse_exposure("exposure", text);
+}
+
+void ImageObject::save(const std::string& path, const std::string& exposure) {
+  check_image_path(path);
+  const auto chosen = exposure_of(path, exposure);
   if (chosen) {
     const std::lock_guard lock(mutex_);
     result_.report.exposure = chosen->stops;
@@ -110,9 +144,59 @@ ImageObject* read(const std::string& path) {
   ImageMetadata header;
   Image image = [&] {
     const Unlocked unlocked;
-    return read_image(path, &header);
+    Image read = read_image_with_layers(path, header);
+    // A checkpoint's sums, which would be wrong beside other pixels.
+    std::erase_if(read.layers, [](const ImageLayer& one) { return one.name.starts_with("film."); });
+    return read;
   }();
   return new ImageObject(std::move(image), std::move(header));
+}
+
+nb::bytes bytes_of(const std::string& text) { return nb::bytes(text.data(), text.size()); }
+
+template <class T>
+std::vector<T> values_of(const nb::bytes& bytes, std::size_t count) {
+  if (bytes.size() != count * sizeof(T))
+    throw Error(fmt::format("{} bytes of an image; expected {}", bytes.size(), count * sizeof(T)));
+  std::vector<T> values(count);
+  std::memcpy(values.data(), bytes.c_str(), bytes.size());
+  return values;
+}
+
+/// (name, channels, whether of whole numbers, values) of each.
+using LayerStates = std::vector<std::tuple<std::string, std::string, bool, nb::bytes>>;
+/// All of an image but its statistics: width, height, pixels, layers, header, exposure.
+using ImageState =
+    std::tuple<int, int, nb::bytes, LayerStates, std::map<std::string, std::string>, std::string>;
+
+ImageState state_of(ImageObject& self) {
+  const auto bytes = [](const auto& values) {
+    return nb::bytes(values.data(), values.size() * sizeof(values[0]));
+  };
+  const Image& image = self.image();
+  LayerStates layers;
+  for (const ImageLayer& one : image.layers)
+    layers.emplace_back(one.name, one.channels, !one.numbers.empty(),
+                        one.numbers.empty() ? bytes(one.values) : bytes(one.numbers));
+  return {image.width,       image.height,         bytes(image.rgb),
+          std::move(layers), self.result().header, self.default_exposure()};
+}
+
+ImageObject* image_of_state(const ImageState& state) {
+  const auto& [width, height, pixels, layers, header, exposure] = state;
+  Image image{width, height, {}};
+  const std::size_t count = std::size_t{1} * width * height;
+  image.rgb = values_of<float>(pixels, 3 * count);
+  for (const auto& [name, channels, has_numbers, bytes] : layers) {
+    ImageLayer& one = image.layers.emplace_back(ImageLayer{name, channels, {}, {}});
+    if (has_numbers)
+      one.numbers = values_of<std::uint32_t>(bytes, count * channels.size());
+    else
+      one.values = values_of<float>(bytes, count * channels.size());
+  }
+  auto* const made = new ImageObject(std::move(image), header);
+  made->set_default_exposure(exposure);
+  return made;
 }
 
 using PixelsIn = nb::ndarray<const float, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
@@ -165,10 +249,15 @@ void add_image(nb::module_& m) {
       .def_prop_ro("has_image", [](const ImageObject& self) { return self.result().has_image; })
       .def_prop_ro("has_report",
                    [](const ImageObject& self) { return !self.result().report.runs.empty(); })
+      .def("srgb", [](ImageObject& self, const std::string& e) { return bytes_of(self.srgb(e)); })
+      .def("png", [](ImageObject& self, const std::string& e) { return bytes_of(self.png(e)); })
+      .def("exposure", &ImageObject::default_exposure)
+      .def("state", state_of)
       .def("write_statistics", &ImageObject::write_statistics, nb::call_guard<Unlocked>())
       .def("save", &ImageObject::save, nb::arg("path"), nb::arg("exposure"),
            nb::call_guard<Unlocked>());
   m.def("read_image", read, nb::arg("path"));
+  m.def("image_of_state", image_of_state, nb::arg("state"));
 }
 
 void add_compare(nb::module_& m) {

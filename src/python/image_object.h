@@ -6,9 +6,11 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/render/render_outputs.h"
 #include "app/render/render_session.h"
 
 namespace pt::python {
@@ -19,8 +21,8 @@ using ArrayOut = nanobind::ndarray<nanobind::array_api>;
 class ImageObject {
  public:
   explicit ImageObject(RenderResult result) : result_(std::move(result)) {}
-  /// An image that was read from a file.
-  ImageObject(Image image, ImageMetadata header) {
+  /// An image that was read from a file, or that Python made.
+  explicit ImageObject(Image image, ImageMetadata header = {}) {
     result_.has_image = true;
     result_.image = std::move(image);
     result_.header = std::move(header);
@@ -37,6 +39,12 @@ class ImageObject {
 
   std::string statistics();  ///< JSON; empty for an image that was read
   std::string table();
+  /// How a PNG shows it: three bytes a pixel. `exposure`: as for save().
+  std::string srgb(const std::string& exposure);
+  std::string png(const std::string& exposure);
+  /// What a file without an exposure of its own is given, as ImageState holds it.
+  std::string default_exposure() const;
+  void set_default_exposure(const std::string& text);
   /// Writes the image with its header. `exposure`: as the option; empty: the render's.
   void save(const std::string& path, const std::string& exposure);
   /// Writes the files of statistics that the options name.
@@ -44,6 +52,7 @@ class ImageObject {
 
  private:
   RenderReport report();  ///< a copy
+  std::optional<Exposure> exposure_of(const std::string& path, const std::string& exposure);
 
   std::mutex mutex_;  ///< of the host's pixels and the report
   RenderResult result_;

@@ -24,6 +24,9 @@ struct ImageCodec {
   Image (*decode)(std::string_view bytes, ImageMetadata* metadata);
 };
 
+/// The image of an EXR and all of its layers.
+Image decode_exr_layers(std::string_view bytes, ImageMetadata* metadata);
+
 /// The image of an EXR and those of its layers of whole numbers whose names begin with `prefix`.
 Image decode_exr_numbers(std::string_view bytes, const std::string& prefix,
                          ImageMetadata* metadata);

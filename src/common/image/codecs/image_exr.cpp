@@ -53,20 +53,30 @@ Imf::Header header_of(const Image& image) {
                      Imath::Box2i(corner, corner + size));
 }
 
+Imf::PixelType type_of(const ImageLayer& layer) {
+  return layer.numbers.empty() ? Imf::FLOAT : Imf::UINT;
+}
+
 /// A layer's channels are named LAYER.C.
-void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& buffer) {
+std::string channel_name(const ImageLayer& layer, std::size_t channel) {
+  return layer.name + '.' + layer.channels[channel];
+}
+
+void insert_layer(const ImageLayer& layer, const Imath::Box2i& window, Imf::FrameBuffer& buffer) {
   const std::size_t count = layer.channels.size(), stride = 4 * count;  // both types have 4 bytes
-  const bool has_numbers = !layer.numbers.empty();
-  const Imf::PixelType type = has_numbers ? Imf::UINT : Imf::FLOAT;
-  const Imath::Box2i& window = header.dataWindow();
   const std::size_t width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
   for (std::size_t c = 0; c < count; ++c) {
-    const std::string name = layer.name + '.' + layer.channels[c];
-    const void* first = has_numbers ? static_cast<const void*>(layer.numbers.data() + c)
-                                    : static_cast<const void*>(layer.values.data() + c);
-    header.channels().insert(name, Imf::Channel(type));
-    buffer.insert(name, Imf::Slice::Make(type, first, window, stride, stride * width));
+    const void* first = layer.numbers.empty() ? static_cast<const void*>(layer.values.data() + c)
+                                              : static_cast<const void*>(layer.numbers.data() + c);
+    buffer.insert(channel_name(layer, c),
+                  Imf::Slice::Make(type_of(layer), first, window, stride, stride * width));
   }
+}
+
+void add_layer(const ImageLayer& layer, Imf::Header& header, Imf::FrameBuffer& buffer) {
+  for (std::size_t c = 0; c < layer.channels.size(); ++c)
+    header.channels().insert(channel_name(layer, c), Imf::Channel(type_of(layer)));
+  insert_layer(layer, header.dataWindow(), buffer);
 }
 
 /// Decompressed, of all channels.
@@ -148,27 +158,41 @@ Names channels_to_read(const Imf::ChannelList& channels) {
   return names;
 }
 
-/// Blank layers for the channels PREFIX...C of whole numbers, in the order of the file.
-std::vector<ImageLayer> number_layers(const Imf::ChannelList& channels, const std::string& prefix,
-                                      std::size_t pixels) {
+/// The layers that are wanted besides the image.
+struct LayersWanted {
+  std::string prefix;  ///< of their names
+  bool only_numbers;
+};
+
+/// Blank layers for the channels PREFIX...C, in the order of the file; R, G and B in this order.
+std::vector<ImageLayer> blank_layers(const Imf::ChannelList& channels, const LayersWanted& wanted,
+                                     std::size_t pixels) {
   std::vector<ImageLayer> layers;
   for (auto it = channels.begin(); it != channels.end(); ++it) {
     const std::string name = it.name();
     const Imf::Channel& channel = it.channel();
     const std::size_t dot = name.size() < 2 ? name.npos : name.size() - 2;
-    if (dot == name.npos || name[dot] != '.' || !name.starts_with(prefix)) continue;
-    if (channel.type != Imf::UINT || channel.xSampling != 1 || channel.ySampling != 1) continue;
+    if (dot == name.npos || name[dot] != '.' || !name.starts_with(wanted.prefix)) continue;
+    const bool has_numbers = channel.type == Imf::UINT;
+    if (channel.xSampling != 1 || channel.ySampling != 1) continue;
+    if (wanted.only_numbers && !has_numbers) continue;
     if (layers.empty() || layers.back().name != name.substr(0, dot)) {
       layers.push_back({name.substr(0, dot), "", {}, {}});
+      if (has_numbers) layers.back().numbers.resize(1);  // its type
     }
-    layers.back().channels += name.back();
+    if (has_numbers == !layers.back().numbers.empty()) layers.back().channels += name.back();
   }
-  for (ImageLayer& layer : layers) layer.numbers.resize(pixels * layer.channels.size());
+  for (ImageLayer& layer : layers) {
+    if (layer.channels == "BGR") layer.channels = "RGB";
+    if (layer.channels == "ABGR") layer.channels = "RGBA";
+    const std::size_t size = pixels * layer.channels.size();
+    layer.numbers.empty() ? layer.values.resize(size) : layer.numbers.resize(size);
+  }
   return layers;
 }
 
-/// `prefix`: of the layers of whole numbers that are wanted, too; null: none.
-Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::string* prefix) {
+/// `wanted`: null: no layers.
+Image read_exr(std::string_view bytes, ImageMetadata* metadata, const LayersWanted* wanted) {
   const ExrSize announced = check_exr_header(bytes);
   const double pixels =
       static_cast<double>(announced.width) * static_cast<double>(announced.height);
@@ -176,6 +200,7 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
   AnnouncedSize size{announced.width, announced.height, stored};
   // OpenEXR unpacks up to 256 lines, or a row of tiles, at once.
   size.decoding_bytes = 2.0 * stored * std::min(1.0, 256.0 / static_cast<double>(size.height));
+  if (wanted != nullptr) size.decoding_bytes += 2.0 * stored;  // of halves, floats
   check_image_size(size, bytes.size());
   // For the whole process, hence the same value each time.
   Imf::Header::setMaxImageSize(max_image_size, max_image_size);
@@ -189,16 +214,9 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
   const Imath::Box2i window = header.dataWindow();
   Image image = allocate_image(size, bytes.size());
   Imf::FrameBuffer buffer = frame_buffer(image.rgb.data(), window, names);
-  if (prefix != nullptr) {
-    image.layers = number_layers(header.channels(), *prefix, image.rgb.size() / 3);
-    for (ImageLayer& layer : image.layers) {
-      const std::size_t stride = sizeof(std::uint32_t) * layer.channels.size();
-      for (std::size_t c = 0; c < layer.channels.size(); ++c) {
-        buffer.insert(layer.name + '.' + layer.channels[c],
-                      Imf::Slice::Make(Imf::UINT, layer.numbers.data() + c, window, stride,
-                                       stride * static_cast<std::size_t>(image.width)));
-      }
-    }
+  if (wanted != nullptr) {
+    image.layers = blank_layers(header.channels(), *wanted, image.rgb.size() / 3);
+    for (const ImageLayer& layer : image.layers) insert_layer(layer, window, buffer);
   }
   file.setFrameBuffer(buffer);
   file.readPixels(window.min.y, window.max.y);
@@ -215,9 +233,9 @@ Image read_exr(std::string_view bytes, ImageMetadata* metadata, const std::strin
   return image;
 }
 
-Image decode(std::string_view bytes, ImageMetadata* metadata, const std::string* prefix) {
+Image decode(std::string_view bytes, ImageMetadata* metadata, const LayersWanted* wanted) {
   try {
-    return read_exr(bytes, metadata, prefix);
+    return read_exr(bytes, metadata, wanted);
   } catch (const Iex::BaseExc& error) {
     // OpenEXR begins with 'Cannot read image file "NAME". ', and our stream has no name.
     const std::string_view message = error.what();
@@ -234,7 +252,13 @@ Image decode_exr(std::string_view bytes, ImageMetadata* metadata) {
 
 Image decode_exr_numbers(std::string_view bytes, const std::string& prefix,
                          ImageMetadata* metadata) {
-  return decode(bytes, metadata, &prefix);
+  const LayersWanted wanted{prefix, true};
+  return decode(bytes, metadata, &wanted);
+}
+
+Image decode_exr_layers(std::string_view bytes, ImageMetadata* metadata) {
+  const LayersWanted wanted{"", false};
+  return decode(bytes, metadata, &wanted);
 }
 
 const ImageCodec exr_codec{".exr", encode_exr, decode_exr};

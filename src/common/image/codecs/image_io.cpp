@@ -136,6 +136,12 @@ Image read_image(const std::string& path, ImageMetadata* metadata) {
   });
 }
 
+Image read_image_with_layers(const std::string& path, ImageMetadata& metadata) {
+  if (image_ending(path) != ".exr") return read_image(path, &metadata);
+  return explaining("cannot read " + path,
+                    [&] { return decode_exr_layers(read_file(path), &metadata); });
+}
+
 Image read_image_with_numbers(const std::string& path, const std::string& prefix,
                               ImageMetadata& metadata) {
   return explaining("cannot read " + path,

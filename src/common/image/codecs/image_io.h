@@ -33,6 +33,9 @@ void write_image(const std::string& path, const Image& image, const ImageMetadat
 /// pixels a side.
 Image read_image(const std::string& path, ImageMetadata* metadata = nullptr);
 
+/// As read_image; an .exr with its layers, the channels LAYER.C, which are floats or whole numbers.
+Image read_image_with_layers(const std::string& path, ImageMetadata& metadata);
+
 /// Reads an .exr as read_image does, with its layers of whole numbers (ImageLayer::numbers) whose
 /// names begin with `prefix`.
 Image read_image_with_numbers(const std::string& path, const std::string& prefix,

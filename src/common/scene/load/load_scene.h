@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "common/scene/data/scene_data.h"
 #include "common/scene/load/files/load_options.h"
@@ -30,6 +31,9 @@ SceneData load_scene_file(const std::filesystem::path& path, const LoadOptions& 
 /// replaced by the nearest that we can, or left out, and reported through the options, once for
 /// each kind. Throws Error, one line with file and line, for a file that is malformed or missing.
 SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The same of a file's text. Files lie beside the current folder; errors call it <string>.
+SceneData load_mitsuba_text(std::string_view text, const LoadOptions& options);
 
 namespace mitsuba {
 struct Element;

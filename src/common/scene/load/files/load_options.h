@@ -3,13 +3,17 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "common/error/error.h"
 #include "common/geometry/mesh.h"
 #include "common/options/options.h"
+#include "common/scene/data/volume_data.h"
 
 namespace pt {
+
+struct TextureImage;
 
 struct LoadOptions {
   std::map<std::string, std::string> definitions;  ///< -D name=value; for formats with variables
@@ -19,6 +23,9 @@ struct LoadOptions {
   std::map<std::string, Mesh> meshes{};
   DefaultLighting default_lighting = DefaultLighting::automatic;
   CameraOverrides camera{};  ///< through which default lighting is decided, besides the file's
+  /// Pictures of "bitmap" and "envmap" and grids of "gridvolume" in memory, named likewise.
+  std::map<std::string, std::shared_ptr<const TextureImage>> images{};
+  std::map<std::string, VolumeData> volumes{};
 
   /// For what a loader replaces or ignores. `message` names the file, the place, and what is used
   /// instead.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 
 #include "common/scene/load/files/images/image_files.h"
@@ -40,6 +41,14 @@ bool is_scaled_rotation(const Affine& map, const Affine& rotation, bool mirrored
   return true;
 }
 
+/// Of a picture of floats.
+Image floats_of(const TextureImage& picture) {
+  Image image{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
+  image.rgb.resize(picture.texels.size() / sizeof(float));
+  std::memcpy(image.rgb.data(), picture.texels.data(), picture.texels.size());
+  return image;
+}
+
 std::vector<Color> scaled_pixels(const Image& image, float scale, bool mirrored) {
   const auto width = static_cast<std::size_t>(image.width);
   std::vector<Color> pixels(width * static_cast<std::size_t>(image.height));
@@ -60,7 +69,8 @@ std::vector<Color> scaled_pixels(const Image& image, float scale, bool mirrored)
 // That is half a turn about y.
 void add_environment_map(Context& context, const Object& emitter) {
   const Element* filename = emitter.find("filename");
-  if (!filename) fail(emitter.element(), "emitter 'envmap' has no filename");
+  const TextureImage* data = context.memory_image(emitter);
+  if (!filename && !data) fail(emitter.element(), "emitter 'envmap' has no filename");
   const float scale = emitter.number("scale", 1.0f);
   emitter.ignore({"sampling_weight", "cache", "mis_compensation"});
   const Affine to_world = emitter.transform("to_world");
@@ -72,8 +82,9 @@ void add_environment_map(Context& context, const Object& emitter) {
   }
   EnvironmentData& environment = context.scene.environment;
   try {
-    const auto path = context.resolve(*filename, filename->required("value"));
-    const Image image = read_radiance_image(path);
+    const Image image =
+        data ? floats_of(*data)
+             : read_radiance_image(context.resolve(*filename, filename->required("value")));
     environment.width = image.width;
     environment.height = image.height;
     environment.pixels = scaled_pixels(image, scale, mirrored);
@@ -195,6 +206,16 @@ const std::map<std::string_view, Adder>& adders() {
   };
   return table;
 }
+
+}  // namespace
+
+std::vector<std::string> emitter_types() {
+  std::vector<std::string> types = {"area", "envmap"};
+  for (const auto& entry : adders()) types.emplace_back(entry.first);
+  return types;
+}
+
+namespace {
 
 std::string why_left_out(const std::string& type) {
   if (type == "envmap") return "more than one environment: the first is used";

@@ -62,16 +62,25 @@ VolumeData read_nanovdb_grid(const Object& volume, const std::filesystem::path& 
   return read_nanovdb(path, volume.text("grid", ""));
 }
 
-VolumeData read_grid(Context& context, const Object& volume) {
+VolumeData read_grid_file(Context& context, const Object& volume) {
   const Element* filename = volume.find("filename");
   if (!filename) fail(volume.element(), "volume 'gridvolume' has no filename");
   const auto path = context.resolve(*filename, filename->required("value"));
-  VolumeData grid;
   try {
     const bool is_nanovdb = path.extension() == ".nvdb";
-    grid = is_nanovdb ? read_nanovdb_grid(volume, path) : read_vol_grid(volume, path);
+    return is_nanovdb ? read_nanovdb_grid(volume, path) : read_vol_grid(volume, path);
   } catch (const Error& error) {
     fail(*filename, error.what());
+  }
+}
+
+VolumeData read_grid(Context& context, const Object& volume) {
+  VolumeData grid;
+  if (const VolumeData* data = context.memory_volume(volume)) {
+    volume.ignore({"use_grid_bbox"});
+    grid = *data;
+  } else {
+    grid = read_grid_file(context, volume);
   }
   grid.to_world = volume.transform("to_world") * grid.to_world;
   read_look(context, volume, grid);

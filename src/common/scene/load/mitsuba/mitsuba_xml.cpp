@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
@@ -7,6 +8,7 @@
 #include "common/scene/load/files/read_ahead.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
+#include "common/scene/load/mitsuba/surfaces/surfaces.h"
 
 namespace pt {
 namespace {
@@ -82,7 +84,40 @@ void load_objects(Context& context, const Object& root) {
   for (const Object* emitter : root.children("luminaire")) add_emitter(context, *emitter);
 }
 
+std::vector<std::string> with(std::vector<std::string> read, std::string_view others) {
+  for (std::size_t at = 0; at < others.size();) {
+    const std::size_t end = std::min(others.find(' ', at), others.size());
+    read.emplace_back(others.substr(at, end - at));
+    at = end + 1;
+  }
+  return read;
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, std::vector<std::string>>> mitsuba::plugin_types() {
+  return {
+      {"integrator", with(integrator_types(), "aov depth moment stokes")},
+      {"sensor", with({},
+                      "perspective thinlens orthographic radiancemeter irradiancemeter distant "
+                      "batch")},
+      {"film", with({}, "hdrfilm ldrfilm mfilm specfilm")},
+      {"sampler", with({}, "independent stratified multijitter orthogonal ldsampler")},
+      {"rfilter", with({}, "box tent gaussian mitchell catmullrom lanczos")},
+      {"texture", with({}, "bitmap checkerboard mesh_attribute scale volume")},
+      {"spectrum", spectrum_types()},
+      {"emitter", with(emitter_types(), "directionalarea timed_sunsky")},
+      {"medium", with({}, "homogeneous heterogeneous")},
+      {"volume", with({}, "constvolume gridvolume")},
+      {"phase", with({}, "isotropic hg rayleigh blendphase sggx tabphase")},
+      {"shape", with(shape_types(),
+                     "blender bsplinecurve linearcurve ellipsoids ellipsoidsmesh "
+                     "sdfgrid")},
+      {"bsdf", with(surface_types(),
+                    "circular hair measured measured_polarized polarizer pplastic "
+                    "retarder")},
+  };
+}
 
 SceneData load_mitsuba_scene(const mitsuba::Element& root, const std::string& name,
                              const LoadOptions& options) {
@@ -106,6 +141,10 @@ SceneData load_mitsuba_xml(const std::filesystem::path& path, const LoadOptions&
   const bool is_in_folder = stem == "scene" && path.has_parent_path();
   return load_mitsuba_scene(root, is_in_folder ? path.parent_path().filename().string() : stem,
                             options);
+}
+
+SceneData load_mitsuba_text(std::string_view text, const LoadOptions& options) {
+  return load_mitsuba_scene(mitsuba::read_document("<string>", options, &text), "string", options);
 }
 
 }  // namespace pt

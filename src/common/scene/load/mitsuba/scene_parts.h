@@ -13,6 +13,16 @@ void read_sensor(Context& context, const Object& sensor);
 /// image's final size.
 void read_fov(const Object& sensor, CameraParameters& camera);
 
+/// All types of <integrator>s, <emitter>s, <shape>s that are read.
+std::vector<std::string> integrator_types();
+std::vector<std::string> emitter_types();
+std::vector<std::string> shape_types();
+
+/// The types of all objects by their tag, in an order: those that are read, and Mitsuba 3.9's
+/// others, which are replaced or left out with a warning. A dictionary, which has no tags, finds
+/// its by this.
+std::vector<std::pair<std::string, std::vector<std::string>>> plugin_types();
+
 /// max_depth, rr_depth and hide_emitters; every integrator becomes a path tracer.
 void read_integrator(Context& context, const Object& integrator);
 

@@ -249,6 +249,17 @@ const std::set<std::string_view> light_transport = {
 /// Ways to run the integrator inside of one.
 const std::set<std::string_view> ways_to_run = {"adaptive", "irrcache"};
 
+}  // namespace
+
+std::vector<std::string> integrator_types() {
+  std::vector<std::string> types = {"direct"};
+  types.insert(types.end(), light_transport.begin(), light_transport.end());
+  types.insert(types.end(), ways_to_run.begin(), ways_to_run.end());
+  return types;
+}
+
+namespace {
+
 void read_max_depth(Context& context, const Object& integrator, int depth) {
   if (depth < -1) {
     fail(integrator.element(), "max_depth {}; expected -1 (any) or more", depth);

@@ -90,7 +90,7 @@ void add_file(Context& context, const Object& shape, const Target& target) {
 
 /// A mesh of LoadOptions::meshes.
 void add_memory(Context& context, const Object& shape, const Target& target) {
-  const Mesh* mesh = context.memory_mesh(shape.text("data", ""));
+  const Mesh* mesh = context.memory_mesh(shape);
   if (!mesh) fail(shape.element(), "shape 'mesh': expected vertices and triangles");
   add_mesh(context, shape, target, *mesh, target.to_world);
 }
@@ -199,6 +199,16 @@ const std::map<std::string_view, ShapeAdder>& shape_adders() {
   };
   return table;
 }
+
+}  // namespace
+
+std::vector<std::string> shape_types() {
+  std::vector<std::string> types = {"shapegroup", "instance", "merge"};
+  for (const auto& entry : shape_adders()) types.emplace_back(entry.first);
+  return types;
+}
+
+namespace {
 
 /// The group that a shapegroup becomes where an instance first asks for it; 0 where it is empty.
 std::uint32_t group_of(Context& context, const Object& shapegroup) {

@@ -88,6 +88,18 @@ std::uint32_t TextureStore::add_memory(std::string_view bytes, const std::string
   return add_stored(found->second, look);
 }
 
+std::uint32_t TextureStore::add_decoded(const TextureImage& image, const std::string& name,
+                                        const Texture& look, const std::optional<Color>& weights) {
+  const std::string key = key_of("decoded " + name, look, weights);
+  auto found = stored_.find(key);
+  if (found == stored_.end()) {
+    TextureImage copy = image;
+    if (copy.format != TextureFormat::rgb32f) copy.format = integers_of(look);
+    found = stored_.emplace(key, store(in_grey(std::move(copy), weights))).first;
+  }
+  return add_stored(found->second, look);
+}
+
 std::uint32_t TextureStore::add_image(TextureImage image, const Texture& look) {
   return add_stored(store(std::move(image)), look);
 }

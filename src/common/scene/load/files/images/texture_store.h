@@ -39,6 +39,10 @@ class TextureStore {
   std::uint32_t add_memory(std::string_view bytes, const std::string& name,
                            const Texture& look = {}, const std::optional<Color>& weights = {});
 
+  /// The same of an image that is decoded; integers become what `look` says.
+  std::uint32_t add_decoded(const TextureImage& image, const std::string& name, const Texture& look,
+                            const std::optional<Color>& weights);
+
   /// An image made by the caller.
   std::uint32_t add_image(TextureImage image, const Texture& look = {});
 

@@ -1,6 +1,7 @@
 // Colours and spectra, in elements and as plugins, to linear sRGB.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <set>
@@ -248,11 +249,16 @@ Color spectrum_object_color(Context& context, const Object& object, Quantity qua
 
 }  // namespace
 
+const std::vector<std::string>& spectrum_types() {
+  static const std::vector<std::string> types = {"d65",     "uniform",     "srgb",
+                                                 "rgb",     "rawconstant", "blackbody",
+                                                 "regular", "irregular",   "spectrum"};
+  return types;
+}
+
 bool is_spectrum(const Object& object) {
-  static const std::set<std::string_view> types = {"d65",     "uniform",     "srgb",
-                                                   "rgb",     "rawconstant", "blackbody",
-                                                   "regular", "irregular",   "spectrum"};
-  return object.tag() == "spectrum" || (object.tag() == "texture" && types.contains(object.type()));
+  return object.tag() == "spectrum" ||
+         (object.tag() == "texture" && std::ranges::count(spectrum_types(), object.type()) > 0);
 }
 
 Color read_spectrum_object(Context& context, const Object& object, Quantity quantity,

@@ -92,6 +92,10 @@ ColorTexture read_bitmap(Context& context, const Object& object, Quantity quanti
   object.ignore({"cache", "max_anisotropy", "accel", "format"});
   std::optional<Color> weights;
   if (quantity == Quantity::number) weights = luminance_weights;
+  if (const TextureImage* data = context.memory_image(object)) {
+    return {Color(1.0f),
+            context.textures.add_decoded(*data, object.text("data", ""), look, weights)};
+  }
   const Element* filename = object.find("filename");
   if (!filename) fail(object.element(), "texture 'bitmap' has no filename");
   const auto path = context.resolve(*filename, filename->required("value"));

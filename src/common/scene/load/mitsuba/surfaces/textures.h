@@ -20,6 +20,7 @@ Color read_color(Context& context, const Element& element, Quantity quantity,
 /// Whether an object is a spectrum: a <spectrum type="...">, or a <texture> of one of its types, as
 /// Mitsuba's own writer has it.
 bool is_spectrum(const Object& object);
+const std::vector<std::string>& spectrum_types();
 
 /// d65, uniform, srgb, rgb, rawconstant, blackbody, regular and irregular; `stand_in` for others,
 /// with a warning, and for a file that cannot be read.

@@ -53,9 +53,25 @@ void Context::expect_some_shape() const {
   if (none && !why_no_shape_.empty()) throw Error(why_no_shape_ + "; no shape is left");
 }
 
-const Mesh* Context::memory_mesh(const std::string& name) const {
-  const auto found = options_.meshes.find(name);
-  return found == options_.meshes.end() ? nullptr : &found->second;
+namespace {
+
+template <class Values>
+const typename Values::mapped_type* data_of(const Object& object, const Values& values) {
+  const auto found = values.find(object.text("data", ""));
+  return found == values.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+const Mesh* Context::memory_mesh(const Object& object) const {
+  return data_of(object, options_.meshes);
+}
+const TextureImage* Context::memory_image(const Object& object) const {
+  const auto* const found = data_of(object, options_.images);
+  return found ? found->get() : nullptr;
+}
+const VolumeData* Context::memory_volume(const Object& object) const {
+  return data_of(object, options_.volumes);
 }
 
 void Context::note(const Element& at, const std::string& message) const {

@@ -61,8 +61,11 @@ class Context {
   /// Throws Error where shapes were left out and none is there.
   void expect_some_shape() const;
 
-  /// A mesh of the scene's description in memory; nullptr: there is none of that name.
-  const Mesh* memory_mesh(const std::string& name) const;
+  // What LoadOptions has in memory by the name that an object gives as its `data`; nullptr:
+  // nothing.
+  const Mesh* memory_mesh(const Object& object) const;
+  const TextureImage* memory_image(const Object& object) const;
+  const VolumeData* memory_volume(const Object& object) const;
 
   /// An emitter becomes a light, or it is left out; add_default_lighting_if_dark() needs to know.
   void add_lit() { lit_ = true; }

@@ -52,8 +52,10 @@ template <class First, class... Rest>
 /// Reads a scene and what it includes. Variables come from the options' definitions and from
 /// <default>, in this order of precedence. Throws Error with file and line for malformed XML,
 /// undefined variables, definitions that nothing uses, files that include each other or the same
-/// file too often, variables that expand too far, and elements nested deeper than 64.
-Element read_document(const std::filesystem::path& path, const LoadOptions& options);
+/// file too often, variables that expand too far, and elements nested deeper than 64. `text`: what
+/// the file holds, which is not read then.
+Element read_document(const std::filesystem::path& path, const LoadOptions& options,
+                      const std::string_view* text = nullptr);
 
 // Where the files lie that a scene names.
 

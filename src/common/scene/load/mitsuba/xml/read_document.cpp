@@ -5,6 +5,7 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <pugixml.hpp>
 #include <set>
 #include <string>
@@ -157,30 +158,31 @@ class DocumentReader {
   DocumentReader(const std::filesystem::path& path, const LoadOptions& options)
       : options_(options), variables_(options.definitions), search_path_(path.parent_path()) {}
 
-  Element read(const std::filesystem::path& path) {
-    Element root = read_file(path);
+  Element read(const std::filesystem::path& path, const std::string_view* text) {
+    Element root = read_file(path, text);
     if (root.tag != "scene") fail(root, "<{}>; expected <scene>", root.tag);
     variables_.check_used(path.string());
     return root;
   }
 
  private:
-  Element read_file(const std::filesystem::path& path) {
+  Element read_file(const std::filesystem::path& path, const std::string_view* text = nullptr) {
     stack_.push_back({path, without_links(path)});
     pugi::xml_document document;
-    const SourceFile source = parse(path, document);
+    const SourceFile source = parse(path, text, document);
     Element root = element_of(document.document_element(), source, 0);
     stack_.pop_back();
     return root;
   }
 
-  SourceFile parse(const std::filesystem::path& path, pugi::xml_document& document) {
+  SourceFile parse(const std::filesystem::path& path, const std::string_view* text,
+                   pugi::xml_document& document) {
     try {
-      const WholeFile file(path);
-      count_repeats(stack_.back().canonical, file.bytes().size());
-      SourceFile source(path, file.bytes());
-      const pugi::xml_parse_result result =
-          document.load_buffer(file.bytes().data(), file.bytes().size());
+      std::optional<WholeFile> file;
+      const std::string_view bytes = text ? *text : std::string_view(file.emplace(path).bytes());
+      count_repeats(stack_.back().canonical, bytes.size());
+      SourceFile source(path, bytes);
+      const pugi::xml_parse_result result = document.load_buffer(bytes.data(), bytes.size());
       if (!result) {
         throw Error(fmt::format("line {}: {}; expected a scene in XML", source.line(result.offset),
                                 result.description()));
@@ -299,8 +301,9 @@ class DocumentReader {
 
 }  // namespace
 
-Element read_document(const std::filesystem::path& path, const LoadOptions& options) {
-  return DocumentReader(path, options).read(path);
+Element read_document(const std::filesystem::path& path, const LoadOptions& options,
+                      const std::string_view* text) {
+  return DocumentReader(path, options).read(path, text);
 }
 
 }  // namespace pt::mitsuba
