@@ -23,8 +23,8 @@ def _text(value: Any) -> str:
 
 
 def _has(value: Any, name: str) -> bool:
-    """By its type: drjit's arrays have every name of swizzles, ``matrix`` as well."""
-    return hasattr(type(value), name)
+    """By its type or its own attributes: drjit's arrays answer to every name, ``matrix`` as well."""
+    return hasattr(type(value), name) or name in getattr(value, "__dict__", ())
 
 
 def _plain(value: Any) -> Any:

@@ -10,16 +10,19 @@ __all__ = ["Error", "OptionError", "SceneWarning"]
 
 
 class Error(RuntimeError):
-    """Something that the user can mend: a file, a scene, a size, a device, too little memory.
+    """Something that the user can mend: a file, a scene, a size, a device, too little memory."""
 
-    Attributes:
-        file: the file that the message is about, also a missing one, or None.
-        line: the line there, from 1, or None.
-    """
+    # Without __init__: the module makes errors where no Python code may run (module.cpp).
 
-    def __init__(self, message: str = "") -> None:
-        super().__init__(message)
-        self.file, self.line = _place_of(message)
+    @property
+    def file(self) -> Optional[str]:
+        """The file that the message is about, also a missing one, or None."""
+        return _place_of(str(self))[0]
+
+    @property
+    def line(self) -> Optional[int]:
+        """The line there, from 1, or None."""
+        return _place_of(str(self))[1]
 
 
 _LINE = r"(?:(?:parse error at )?line (?P<line>\d+)\b)?"
@@ -68,11 +71,6 @@ def checked_text(text: str) -> str:
     if "\0" in text:
         raise Error(f"{ascii(text)}: expected text without zero bytes")
     return text
-
-
-def error_of(message: str) -> Error:
-    """The exception for a message of the program."""
-    return (OptionError if message.startswith("--") else Error)(message)
 
 
 def warn(message: str) -> None:

@@ -25,13 +25,13 @@ namespace nb = nanobind;
 
 namespace {
 
-/// By its message: ptexp.Error or ptexp.OptionError.
+/// By its message: ptexp.Error or ptexp.OptionError. Runs no Python code: if the interpreter ended
+/// the thread there, no handler could stop that, since another exception is being handled.
 void set_error(const std::exception& error) {
-  const nb::object made = run_python([&]() -> nb::object {
-    return nb::module_::import_("ptexp._errors")
-        .attr("error_of")(text(message_line(message_of(error))));
-  });
-  PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
+  const std::string message = message_line(message_of(error));
+  const nb::object type = nb::module_::import_("ptexp._errors")
+                              .attr(message.starts_with("--") ? "OptionError" : "Error");
+  PyErr_SetObject(type.ptr(), text(message).ptr());
 }
 
 const char* name_of(OptionForm form) {
