@@ -74,14 +74,16 @@ def is_time(name):
 
 
 def without_times(value):
+    """Without what times decide, either: into how many batches a render is divided."""
     if isinstance(value, dict):
-        return {name: without_times(one) for name, one in value.items() if not is_time(name)}
+        return {name: without_times(one) for name, one in value.items()
+                if not is_time(name) and name not in ("launches", "waves")}
     return [without_times(one) for one in value] if isinstance(value, list) else value
 
 
 def row_without_times(row):
     return {name: text for name, text in row.items()
-            if not re.search("_ms$|_ms_|_per_s$|^devices$", name)}
+            if not re.search("_ms$|_ms_|_per_s$|_launches$|^waves$|^devices$", name)}
 
 
 def resident_kib(pid):
