@@ -6,7 +6,8 @@ from lib.program import ROOT
 sys.path.insert(0, str(ROOT / "scripts"))
 # pylint: disable=wrong-import-position
 from report_parts.tables import in_groups, interval, plot_title  # noqa: E402,F401
-from report_parts.words import change, exponent, listed, short, show, with_interval  # noqa: E402,F401
+from report_parts.words import (change, exponent, listed, relation, short,  # noqa: E402,F401
+                                show, with_interval)
 
 
 def time_of(row, column="kernel_ms"):
@@ -16,18 +17,19 @@ def time_of(row, column="kernel_ms"):
 
 def against(base, row, name, column="kernel_ms"):
     """'2.00 times as fast as NAME', say: a row against `base`, which is called so."""
-    word, ratio = change(time_of(base, column), time_of(row, column))
-    if word == "no significant difference":
-        return f"{word} to {name} ({show(ratio)} times its time)"
+    before, after = time_of(base, column), time_of(row, column)
+    ratio, how = after.middle / before.middle, relation(before, after)
+    if how == "overlap":
+        return f"no significant difference to {name} ({show(ratio)} times its time)"
     text = f"{show(1 / ratio)} times as fast" if ratio < 1 else f"{show(ratio)} times as slow"
-    return f"{text} as {name}" + (", by times without a spread" if word == "not known" else "")
+    return f"{text} as {name}" + (", by times without a spread" if how == "unknown" else "")
 
 
 def fastest(rows):
     """(the row of the shortest time, the others that do not differ significantly from it)"""
     best = min(rows, key=lambda row: time_of(row).middle)
     return best, [row for row in rows if row is not best
-                  and change(time_of(best), time_of(row))[0] == "no significant difference"]
+                  and relation(time_of(best), time_of(row)) == "overlap"]
 
 
 def best_of(rows, label):
