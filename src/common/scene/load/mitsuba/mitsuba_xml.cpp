@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <unordered_set>
 
@@ -6,6 +5,7 @@
 #include "common/scene/load/files/images/image_files.h"
 #include "common/scene/load/files/importer.h"
 #include "common/scene/load/files/read_ahead.h"
+#include "common/scene/load/files/text.h"
 #include "common/scene/load/load_scene.h"
 #include "common/scene/load/mitsuba/scene_parts.h"
 #include "common/scene/load/mitsuba/surfaces/surfaces.h"
@@ -32,20 +32,15 @@ void load_sensor(Context& context, const Object& root) {
   read_sensor(context, *sensors.front());
 }
 
-bool is_bitmap(const std::string& type) {
-  return type == "bitmap" || type == "ldrtexture" || type == "exrtexture";
-}
-
-/// Announces the file of an object with this tag that has one.
-void read_file_ahead(const Context& context, const Object& object, std::string_view tag) {
+/// Announces the file of an object that has one.
+void read_file_ahead(const Context& context, const Object& object) {
   const Element* filename = object.find("filename");
-  if (!filename || object.tag() != tag) return;
+  if (!filename) return;
   const auto path = [&] { return context.find(*filename, filename->required("value")); };
-  const bool is_linear = object.boolean("raw", false) || object.number("gamma", -1.0f) == 1.0f;
-  if (tag == "emitter" && object.type() == "envmap") read_radiance_ahead(path());
-  if (tag == "texture" && is_bitmap(object.type()))
-    read_texture_ahead(path(), is_linear ? TextureFormat::linear8 : TextureFormat::srgb8);
-  if (tag == "shape") read_mesh_ahead(context, object);
+  if (object.tag() == "emitter" && object.type() == "envmap") read_radiance_ahead(path());
+  if (object.tag() == "texture" && mitsuba::is_bitmap(object))
+    read_texture_ahead(path(), mitsuba::integers_of_bitmap(object));
+  if (object.tag() == "shape") read_mesh_ahead(context, object);
 }
 
 std::vector<const Object*> objects_in_use(const Object& root) {
@@ -64,9 +59,10 @@ void read_files_ahead(const Context& context, const Object& root) {
   const std::vector<const Object*> in_use = objects_in_use(root);
   for (const std::string_view tag : {"emitter", "texture", "shape"}) {
     for (const Object* object : in_use) {
+      if (object->tag() != tag) continue;
       try {
         const Object copy = *object;  // to ask it for a property is not to use that
-        read_file_ahead(context, copy, tag);
+        read_file_ahead(context, copy);
       } catch (const Error&) {  // said where it is read
       }
     }
@@ -85,11 +81,7 @@ void load_objects(Context& context, const Object& root) {
 }
 
 std::vector<std::string> with(std::vector<std::string> read, std::string_view others) {
-  for (std::size_t at = 0; at < others.size();) {
-    const std::size_t end = std::min(others.find(' ', at), others.size());
-    read.emplace_back(others.substr(at, end - at));
-    at = end + 1;
-  }
+  for (std::string_view word; !(word = next_word(others)).empty();) read.emplace_back(word);
   return read;
 }
 

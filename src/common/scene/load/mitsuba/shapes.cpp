@@ -66,12 +66,6 @@ const Element& filename_of(const Object& shape) {
 
 }  // namespace
 
-void read_mesh_ahead(const Context& context, const Object& shape) {
-  if (shape.type() != "obj" && shape.type() != "ply" && shape.type() != "serialized") return;
-  const Element& filename = filename_of(shape);
-  pt::read_mesh_ahead(mesh_file_of(shape, context.find(filename, filename.required("value"))));
-}
-
 void add_file(Context& context, const Object& shape, const Target& target) {
   const Element& filename = filename_of(shape);
   const MeshFile file = mesh_file_of(shape, context.resolve(filename, filename.required("value")));
@@ -201,6 +195,13 @@ const std::map<std::string_view, ShapeAdder>& shape_adders() {
 }
 
 }  // namespace
+
+void read_mesh_ahead(const Context& context, const Object& shape) {
+  const auto adder = shape_adders().find(shape.type());
+  if (adder == shape_adders().end() || adder->second != add_file) return;
+  const Element& filename = filename_of(shape);
+  pt::read_mesh_ahead(mesh_file_of(shape, context.find(filename, filename.required("value"))));
+}
 
 std::vector<std::string> shape_types() {
   std::vector<std::string> types = {"shapegroup", "instance", "merge"};

@@ -64,14 +64,16 @@ void read_filter(Context& context, const Object& object, Texture& texture) {
   }
 }
 
-bool is_linear(Context& context, const Object& object) {
-  const bool raw = object.boolean("raw", false);
-  const float gamma = object.number("gamma", -1.0f);  // 0.x: -1 is what the file says, sRGB
+float gamma_of(const Object& bitmap) {
+  return bitmap.number("gamma", -1.0f);  // 0.x: -1 is what the file says, sRGB
+}
+
+void check_gamma(Context& context, const Object& object) {
+  const float gamma = gamma_of(object);
   if (gamma != -1.0f && gamma != 1.0f && gamma != 2.2f) {
     context.warn_once("gamma", object.element(),
                       "gamma {} of a bitmap is not supported: sRGB is used", gamma);
   }
-  return raw || gamma == 1.0f;
 }
 
 /// Mitsuba's, of which a picture makes a number.
@@ -83,7 +85,8 @@ Color mean_of(const Color& color) { return Color((color.x + color.y + color.z) /
 ColorTexture read_bitmap(Context& context, const Object& object, Quantity quantity,
                          const Color& stand_in) {
   Texture look;
-  look.format = is_linear(context, object) ? TextureFormat::linear8 : TextureFormat::srgb8;
+  look.format = integers_of_bitmap(object);
+  check_gamma(context, object);
   read_filter(context, object, look);
   const std::string wrap = object.text("wrap_mode", "repeat");
   look.wrap_u = wrap_of(context, object, object.text("wrap_mode_u", wrap));
@@ -187,6 +190,16 @@ const Object& without_d65(const Object& object) {
 
 }  // namespace
 
+bool is_bitmap(const Object& texture) {
+  const std::string type = texture.type();
+  return type == "bitmap" || type == "ldrtexture" || type == "exrtexture";
+}
+
+TextureFormat integers_of_bitmap(const Object& bitmap) {
+  const bool raw = bitmap.boolean("raw", false);
+  return raw || gamma_of(bitmap) == 1.0f ? TextureFormat::linear8 : TextureFormat::srgb8;
+}
+
 ColorTexture read_texture(Context& context, const Object& outer, Quantity quantity,
                           const Color& stand_in) {
   const Object& object = without_d65(outer);
@@ -197,7 +210,7 @@ ColorTexture read_texture(Context& context, const Object& outer, Quantity quanti
     fail(object.element(), "a <{}>; expected a <texture>", object.tag());
   }
   const std::string type = object.type();
-  if (type == "bitmap" || type == "ldrtexture" || type == "exrtexture") {
+  if (is_bitmap(object)) {
     return read_bitmap(context, object, quantity, stand_in);
   }
   if (type == "checkerboard") return read_checkerboard(context, object, quantity);

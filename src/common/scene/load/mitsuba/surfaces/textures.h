@@ -20,6 +20,9 @@ Color read_color(Context& context, const Element& element, Quantity quantity,
 /// Whether an object is a spectrum: a <spectrum type="...">, or a <texture> of one of its types, as
 /// Mitsuba's own writer has it.
 bool is_spectrum(const Object& object);
+/// Whether a <texture> is a picture, and what the integers of such a one mean.
+bool is_bitmap(const Object& texture);
+TextureFormat integers_of_bitmap(const Object& bitmap);
 const std::vector<std::string>& spectrum_types();
 
 /// d65, uniform, srgb, rgb, rawconstant, blackbody, regular and irregular; `stand_in` for others,
