@@ -15,6 +15,12 @@ def numpy_for(what: str) -> Any:
     return numpy
 
 
+def linear_of_srgb(values: Any) -> Any:
+    """The linear values of a numpy array in the sRGB curve (IEC 61966-2-1), 1 being white."""
+    numpy = numpy_for("the sRGB curve")
+    return numpy.where(values <= 0.04045, values / 12.92, ((numpy.maximum(values, 0) + 0.055) / 1.055) ** 2.4)
+
+
 def floats(values: Any) -> Any:
     """float32, C order; a copy only where it is neither. Needs numpy for anything but arrays."""
     return _converted(values, "float32")

@@ -4,7 +4,7 @@ import os
 from typing import Any, Dict, List, Optional, Tuple
 
 from . import _ptexp
-from ._arrays import floats, indices, numpy_for
+from ._arrays import floats, indices, linear_of_srgb, numpy_for
 from ._errors import Error, checked_text
 
 # (tag, attributes, children, place), as src/python/from_dict.cpp takes it
@@ -98,7 +98,7 @@ def _picture(value: Any, place: str, is_raw: bool, as_floats: bool) -> Any:
     if not numpy.isfinite(array).all():
         raise Error(f"{place}: a value that is not finite")
     if is_encoded and not is_raw:
-        array = numpy.where(array <= 0.04045, array / 12.92, ((numpy.maximum(array, 0) + 0.055) / 1.055) ** 2.4)
+        array = linear_of_srgb(array)
     return numpy.ascontiguousarray(array, numpy.float32)
 
 

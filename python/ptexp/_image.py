@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, Optional, Union
 
 from . import _ptexp
-from ._arrays import floats, numpy_for
+from ._arrays import floats, linear_of_srgb, numpy_for
 from ._errors import Error, text_of_path
 
 Exposure = Union[str, float, None]
@@ -254,8 +254,7 @@ def image_of(pixels: Any, layers: Optional[Mapping] = None, header: Optional[Map
     numpy = numpy_for("an image of arrays")
     array = numpy.asarray(pixels)
     if array.dtype == numpy.uint8:  # as to_srgb() gives them
-        array = array / numpy.float32(255)
-        array = numpy.where(array <= 0.04045, array / 12.92, ((array + 0.055) / 1.055) ** 2.4)
+        array = linear_of_srgb(array / numpy.float32(255))
     array = numpy.repeat(array[..., None], 3, axis=2) if array.ndim == 2 else array
     if array.ndim != 3 or array.shape[2] != 3 or 0 in array.shape:
         raise ValueError(f"an array {array.shape}; expected (height, width, 3) or (height, width)")
