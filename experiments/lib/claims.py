@@ -124,11 +124,11 @@ def judge(claim, device):
     if claim.lacks:
         return unjudged(f"ptexp lacks {claim.lacks['what']}")
     rule = claim.rule
-    table = device.tables.get(rule["table"])
+    table = device.tables.get(rule["table"]) or device.tables.get(f"{rule['table']}-quick")
     if table is None:
         return unjudged(f"no table {rule['table']}; {command_for(rule)} makes it")
     if table.facts.get("quick"):
-        return unjudged(f"the table {rule['table']} is of --quick; {command_for(rule)} makes it")
+        return unjudged(f"quick tables are not judged; {command_for(rule)} makes one that is")
     try:
         cells = cells_of(table, rule)
     except ValueError as error:

@@ -40,4 +40,6 @@ def parse_arguments(experiment, command):
         parser.error(f"--label {arguments.label}: expected letters, digits and any of _ . -")
     if arguments.quick and not arguments.label:
         arguments.label = "quick"
+    if getattr(arguments, "only", None) and not arguments.label:  # beside the table of all scenes
+        arguments.label = "only"
     return arguments

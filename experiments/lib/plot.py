@@ -11,7 +11,7 @@ import matplotlib
 matplotlib.use("Agg")  # draws into files, needs no screen
 from matplotlib import pyplot, ticker  # noqa: E402  pylint: disable=wrong-import-position
 
-from lib.sentences import plot_title, short  # noqa: E402  pylint: disable=wrong-import-position
+from lib.sentences import BASES, plot_title, short  # noqa: E402  pylint: disable=wrong-import-position
 from lib.table import read_facts, read_rows  # noqa: E402  pylint: disable=wrong-import-position
 
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#56B4E9", "#E69F00"]
@@ -118,7 +118,7 @@ def draw_bars(axes, rows, style):
         medians, bars = spread(measured, style["y"])
         axes.barh([places[row["name"]] for row in measured], medians, xerr=bars, capsize=3,
                   color=COLOURS[5], edgecolor=COLOURS[0])
-        if measured[0]["x"] == "default":
+        if measured[0]["x"] in BASES:
             axes.axvline(medians[0], color=COLOURS[4], linestyle="--", linewidth=1)
     name_bars(axes, rows, style)
 

@@ -5,7 +5,7 @@ from lib.program import ROOT
 
 sys.path.insert(0, str(ROOT / "scripts"))
 # pylint: disable=wrong-import-position
-from report_parts.tables import in_groups, interval, plot_title  # noqa: E402,F401
+from report_parts.tables import BASES, in_groups, interval, plot_title  # noqa: E402,F401
 from report_parts.words import (change, exponent, listed, relation, short,  # noqa: E402,F401
                                 show, with_interval)
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from .html import Cell, html_table, paragraph, value_cell, verdict_cell
 from .processes import whole_processes
 from .scaling import several_devices
-from .tables import Interval, in_groups, interval
+from .tables import BASES, Interval, in_groups, interval, unmeasured
 from .words import change, listed, quotient, relation, show
 
 MOST_NAMED = 4
@@ -19,7 +19,7 @@ def commit_of(table):
 def which_block(device):
     table = device.to_judge("block_size")
     if not table or not table.measured:
-        return paragraph(NOT_MEASURED.format("block_size"))
+        return paragraph(unmeasured(device, ["block_size"], NOT_MEASURED.format("block_size")))
     lines, losses = [], {}
     for (panel, series), rows in in_groups(table.measured, "panel", "series").items():
         pairs = [(row["x"], interval(row, "kernel_ms")) for row in rows]
@@ -100,10 +100,10 @@ def against_others(device):
 def effects(device):
     table = device.to_judge("toggles")
     for mode, rows in (in_groups(table.measured, "panel").items() if table else ()):
-        default = next((interval(row, "kernel_ms") for row in rows if row["x"] == "default"), None)
+        default = next((interval(row, "kernel_ms") for row in rows if row["x"] in BASES), None)
         for row in rows if default else ():
             value = interval(row, "kernel_ms")
-            if row["x"] != "default" and value:
+            if row["x"] not in BASES and value:
                 yield Effect(row["x"], mode, default, value, "toggles")
     yield from steps(device)
     yield from against_others(device)
@@ -143,11 +143,15 @@ def largest(found, word):
 def each_idea(device):
     found = list(effects(device))
     if not found:
-        return paragraph(NOT_MEASURED.format("of toggles, ladder, shading or dial"))
+        return paragraph(unmeasured(device, ["toggles", "ladder", "shading", "dial"],
+                                    NOT_MEASURED.format("of toggles, ladder, shading or dial")))
+    table = device.to_judge("toggles")
+    named = {row["x"] for row in table.measured} if table else ()
+    base = " or ".join(name for name in BASES if name in named) or BASES[0]
     ends = [f"{start}: {largest(found, word)}." for start, word in (
         ("The largest gains", "faster"), ("The largest costs", "slower")) if largest(found, word)]
     return paragraph(" ".join(ends)) + paragraph(
-        "Time with the choice, divided by the time without it (of the row default for toggles; of one "
+        f"Time with the choice, divided by the time without it (of the row {base} for toggles; of one "
         "kernel over unordered surfaces for shading; of the step before it for the ladder). "
         "The choice costs above one, and gains below.") + html_table(
             ["choice", "where", "time ratio", "verdict", "table"],

@@ -7,7 +7,8 @@ from statistics import mean
 from . import svg
 from .axes import Scale
 from .html import (Cell, html_table, paragraph, value_cell, verdict_cell, work_attributes)
-from .modes import MODES, one_for_each_scene, silent, verdicts
+from .modes import ANSWERING, MODES, one_for_each_scene, silent, verdicts
+from .tables import unmeasured
 from .words import listed, short, show, with_interval
 
 MOST_WORDS = 120
@@ -80,7 +81,7 @@ def answer_text(device):
     """At most MOST_WORDS words; sentences that do not fit are left out, from the end."""
     found = verdicts(device)
     if not found:
-        return NOT_MEASURED
+        return unmeasured(device, ANSWERING, NOT_MEASURED)
     scenes = one_for_each_scene(found)
     counts = [how_many(scenes, word) for word in ("faster", "slower", "same", "ambiguous")
               if any(one.word == word for one in scenes)]
@@ -213,7 +214,7 @@ def time_cell(verdict, mode):
 def scene_table(device):
     found = verdicts(device)
     if not found:
-        return paragraph(NOT_MEASURED)
+        return paragraph(unmeasured(device, ANSWERING, NOT_MEASURED))
     commits = {verdict.commit for verdict in found.values()}
     rows = [[verdict.work.scene, verdict.work.size, str(verdict.work.spp), str(verdict.work.depth),
              *(time_cell(verdict, mode) for mode in MODES),

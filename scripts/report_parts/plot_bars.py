@@ -2,14 +2,14 @@
 may be a stack of parts."""
 from . import svg
 from .axes import Scale
-from .tables import interval, is_measured, number
+from .tables import BASES, interval, is_measured, number
 from .words import show, short, unit_of, with_interval
 
 LEFT, RIGHT, STEP = 2, 430, 31
 
 
 def is_the_default(row):
-    return row["x"] == "default" and is_measured(row)
+    return row["x"] in BASES and is_measured(row)
 
 
 def bar(start, end, top, name, title=""):

@@ -1,6 +1,6 @@
 """Whole processes: what the table of `process_time` says of their wall time and its parts."""
 from .html import Cell, html_table, paragraph, value_cell, verdict_cell
-from .tables import in_groups, interval, number
+from .tables import in_groups, interval, number, unmeasured
 from .words import listed, show
 
 NOT_MEASURED = "This was not measured: there is no table of process_time."
@@ -44,7 +44,7 @@ def whole_processes(device):
     table = device.to_judge("process_time")
     rows = renders(table) if table and is_processes(table) else []
     if not rows:
-        return paragraph(NOT_MEASURED)
+        return paragraph(unmeasured(device, ["process_time"], NOT_MEASURED))
     lines = []
     for row in rows:
         largest = [f"{name} {percent(share)}" for share, name in shares(table, row)[:LARGEST]]

@@ -1,6 +1,6 @@
 """Several devices: what the table of `scaling` says of them, beside what a simulation expected."""
 from .html import html_table, paragraph, value_cell, verdict_cell
-from .tables import in_groups, interval, number
+from .tables import in_groups, interval, number, unmeasured
 from .words import listed, plain, show, with_interval
 
 NOT_MEASURED = ("This was not measured: there is no table of scaling. On a machine with several "
@@ -53,7 +53,7 @@ def several_devices(device):
     rows = [row for row in of_several(table) if row["panel"] == "strong"] if (
         table and is_scaling(table)) else []
     if not rows:
-        return paragraph(NOT_MEASURED)
+        return paragraph(unmeasured(device, ["scaling"], NOT_MEASURED))
     lines = []
     for row in rows:
         wall, lost = number(row["wall_ms_median"]), number(row["outside_ms"])

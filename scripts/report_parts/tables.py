@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 OLD_NAMES = {"by_itself": "defaults"}  # of tables, in the release before
+BASES = ("default", "no other change")  # rows that the others of their panel differ from by one thing
 CONFIDENCE = "confidence interval"
 RANGE = "fastest to slowest repeat"
 
@@ -179,6 +180,17 @@ class Device:
         """A table that answers may rest on: not one of small images, nor a silent one."""
         table = self.tables.get(name)
         return None if table and (table.facts.get("quick") or name in (self.silent or ())) else table
+
+
+def unmeasured(device, names, text):
+    """`text`, which says that there is no table of the experiments `names`; unless there are some of
+    small images."""
+    quick = sorted({table.facts.get("experiment", table.name) for table in device.tables.values()
+                    if table.facts.get("quick")} & set(names))
+    if not quick:
+        return text
+    return (f"Quick tables are not judged, and of {' and '.join(quick)} there is no other: without "
+            "--quick the experiment makes one.")
 
 
 def read_device(folder):

@@ -1,7 +1,7 @@
 """What a plot's numbers mean, in sentences. A difference is one only where intervals are apart."""
 from .processes import about_processes, is_processes
 from .scaling import about_scaling, is_scaling
-from .tables import in_groups, interval, is_measured, number, style_of
+from .tables import BASES, in_groups, interval, is_measured, number, style_of
 from .words import (change, exponent, listed, plain, relation, show, unit_of, versus,
                     with_interval)
 
@@ -46,18 +46,19 @@ def ranking(pairs, unit, low_is_better=True, start=capital):
 
 
 def about_default(pairs, unit):
-    """Each row against the first one, the default."""
-    default, groups = pairs[0][1], {}
+    """Each row against the first one, the default or another of BASES."""
+    (base, default), groups = pairs[0], {}
     for name, value in pairs[1:]:
         word, ratio = change(default, value)
         groups.setdefault(word, []).append((ratio, name))
-    parts = [f"The row default takes {with_interval(default, unit)}."]
+    parts = [f"The row {base} takes {with_interval(default, unit)}."]
     for word, start in (("faster", "Faster: "), ("slower", "Slower: ")):
         if word in groups:
             ordered = sorted(groups[word], reverse=word == "slower")
             parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in ordered)
                          + " in time.")
-    for word, start in (("same", "The same as the default: "), ("ambiguous", "Ambiguous: ")):
+    the = "the " * (base == BASES[0])
+    for word, start in (("same", f"The same as {the}{base}: "), ("ambiguous", "Ambiguous: ")):
         if word in groups:
             parts.append(start + listed(f"{name} (x{show(ratio)})" for ratio, name in groups[word])
                          + ".")
@@ -85,7 +86,7 @@ def about_panel(rows, style):
     unit = unit_of(style["y"])
     if style["kind"] == "bars":
         pairs = pairs_of(rows, style["y"], "x")
-        if pairs and pairs[0][0] == "default":
+        if pairs and pairs[0][0] in BASES:
             return about_default(pairs, unit)
         return ranking(pairs, unit, style["y"].endswith("_ms"))
     sentences = [about_series(capital(series) or "All", pairs_of(members, style["y"], "x"), style)

@@ -205,7 +205,7 @@ class Verdicts(unittest.TestCase):
                       claims.judge(claim_of('table = "compare_builds-spills"'), empty).text)
         self.assertIn("experiments/x.py A B makes it",
                       claims.judge(claim_of('command = "experiments/x.py A B"'), empty).text)
-        self.assertIn("is of --quick", self.kind(pair("room", 3), quick=True).text)
+        self.assertIn("quick tables are not judged", self.kind(pair("room", 3), quick=True).text)
         lacking = claim_of(rule="", lacks={"what": "wings", "takes": "feathers"})
         self.assertEqual(claims.judge(lacking, empty).text,
                          "cannot be judged here: ptexp lacks wings")

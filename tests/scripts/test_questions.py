@@ -3,6 +3,7 @@ import importlib
 import itertools
 import random
 import runpy
+import shlex
 import struct
 import sys
 import tempfile
@@ -14,6 +15,8 @@ from unittest import mock
 ROOT = Path(__file__).resolve().parents[2]
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(ROOT / "experiments"))
+from lib import options  # noqa: E402
+from lib.description import HarnessError  # noqa: E402
 
 CUDA, CPU = (types.SimpleNamespace(kind=kind) for kind in ("cuda", "cpu"))
 FULL = types.SimpleNamespace(quick=False, scenes=[])
@@ -225,7 +228,55 @@ class Metropolis(unittest.TestCase):
                          "12.5 ms and knows the image's scale within 1.5%")
 
 
+class Defaults(unittest.TestCase):
+    def configurations(self, *command):
+        arguments = options.parse_arguments(experiment("defaults").EXPERIMENT, command)
+        return arguments, experiment("defaults").configurations(arguments, CPU)
+
+    def test_ones_own_scene_alone_at_its_own_size(self):
+        with tempfile.TemporaryDirectory(prefix="my scenes ") as folder:
+            file = Path(folder).resolve() / "room.xml"
+            file.write_text("<scene/>", encoding="utf-8")
+            arguments, made = self.configurations("--scenes", str(file), "--only", str(file))
+            name = f"{file.parent.name}/room.xml"
+            self.assertEqual([one.name for one in made], [f"{name}: megakernel", f"{name}: wavefront"])
+            self.assertEqual([shlex.split(one.arguments) for one in made], [
+                ["--mode", mode, "--scene", str(file), "--spp", "64"]
+                for mode in ("megakernel", "wavefront")])
+            self.assertEqual(arguments.label, "only")  # the table of all scenes stays
+            _, made = self.configurations("--only", str(file), "cornell", "--quick")
+            self.assertEqual([(one.labels["panel"], option(one, "--width")) for one in made[::2]],
+                             [(name, "32"), ("cornell 32x32", "32")])
+            _, made = self.configurations("--scenes", str(file))
+            self.assertEqual({option(one, "--width") for one in made}, {"600", "2400", "1024"})
+            self.assertIn(str(file), shlex.split(made[-1].arguments))
+        arguments, made = self.configurations()
+        self.assertEqual((arguments.label, len(made)), ("", 18))
+        for wrong in ("absent.xml", "cornel"):
+            with self.assertRaisesRegex(HarnessError, f"--only {wrong}: no such file, and no scene"):
+                self.configurations("--only", wrong)
+
+
 class Toggles(unittest.TestCase):
+    def test_a_panels_first_row_is_what_it_says(self):
+        toggles = experiment("toggles")
+        made = {one.name: one.arguments.split() for one in toggles.configurations(FULL, CPU)}
+        size = made["megakernel: default"][2:]
+        for mode in ("megakernel", "wavefront"):
+            self.assertEqual(made[f"{mode}: default"], ["--mode", mode, *size])
+        split = made["wavefront, split stages: no other change"]
+        self.assertEqual(split, ["--mode", "wavefront", *size, "--stages", "split"])
+        self.assertEqual(split, made["wavefront: stages split"])
+        of_split = [one for name, one in made.items() if name.startswith("wavefront, split")]
+        self.assertEqual({len(one) - len(split) for one in of_split}, {0, 2})
+        rows = [row(ms, panel=panel, x=x) for ms, panel, x in (
+            (4, "w", "default"), (8, "w", "a"), (2, "s", "no other change"), (1, "s", "b"))]
+        toggles.finish(rows, None)
+        self.assertEqual([one["relative_to_first"] for one in rows],
+                         ["1.000", "2.000", "1.000", "0.500"])
+        self.assertEqual(toggles.conclude(rows, None), [
+            "w, a: 2.00 times as slow as the default", "s, b: 2.00 times as fast as split stages alone"])
+
     def test_each_against_what_it_replaces(self):
         for name, base, said in (("toggles", "default", "the default"), ("shading", "uber", "uber")):
             rows = [row(ms, panel="p", x=x) for ms, x in ((4, "a"), (2, base), (1, "b"))]

@@ -279,6 +279,12 @@ class Report(unittest.TestCase):
         self.assertEqual(said, "The row default takes 1.00 ms [0.980, 1.02]. Faster: rng <odd> & "
                          "\"new\" (x0.750) in time. Slower: branching reduced (x2.00) in time. "
                          "Ambiguous: scene-memory shared (x1.03).")
+        split = [dict(row, x="no other change") if row["x"] == "default" else row for row in toggles()]
+        write(self.folder, "toggles", split, facts("toggles", TOGGLES))
+        (_, said), = verdicts.meaning(read_table(self.folder / "toggles.csv"))
+        self.assertIn("The row no other change takes 1.00 ms [0.980, 1.02]. Faster: rng", said)
+        self.assertEqual([one.idea for one in answers.effects(read_device(self.folder))
+                          if one.table == "toggles"], [row["x"] for row in toggles()[1:]])
         self.assertIn("16 times the pixels take 16.0 times as long (time grows as pixels^1.00)",
                       text)
         self.assertIn("3 of 9 configurations were measured once and have no interval.", text)
@@ -450,6 +456,9 @@ class Report(unittest.TestCase):
         self.run_report(self.folder)
         text = (self.folder / "report.html").read_text(encoding="utf-8")
         self.assertIn("say nothing about speed", text)
+        self.assertIn("Quick tables are not judged, and of toggles there is no other", text)
+        self.assertNotIn("no table of toggles", text)
+        self.assertIn("This was not measured: there is no table block_size.", text)
         self.assertNotIn(">refuted<", text)
 
     def test_page_stands_alone(self):
