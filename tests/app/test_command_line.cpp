@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -647,6 +648,46 @@ TEST(Refused, WhatIsNoOption) {
   });
 }
 
+TEST(Refused, MisspeltNamesWithWhatWasMeant) {
+  expect_refused({
+      {"--ssp 8", "--ssp: no such option; did you mean --spp?"},
+      {"-spp 8", "-spp: no such option; did you mean --spp?"},
+      {"--max_depth=3", "--max_depth=3: no such option; did you mean --max-depth?"},
+      {"--wid 3", "--wid: no such option; did you mean --width?"},
+      {"--hegiht 3", "--hegiht: no such option; did you mean --height?"},
+      {"--Scene cornell", "--Scene: no such option; did you mean --scene?"},
+      {"compare a b --tolerence 3", "--tolerence: no such option; did you mean --tolerance?"},
+      {"view cornell --prot 3", "--prot: no such option; did you mean --port?"},
+      {"view cornell --spheers 3", "--spheers: no such option; did you mean --spheres?"},
+      {"--frobnicate", "--frobnicate: no such option, see ptexp --help"},
+      {"--s 3", "--s: no such option, see ptexp --help"},  // many begin so
+      {"comapre a b", "comapre: an argument without an option; did you mean ptexp compare?"},
+      {"cornell", "cornell: an argument without an option; did you mean --scene cornell?"},
+      {"statue:1K", "statue:1K: an argument without an option; did you mean --scene statue:1K?"},
+      {"absent.xml", "absent.xml: an argument without an option, see ptexp --help"},
+      {"--mode megakernal",
+       "--mode megakernal: expected one of auto, serial, megakernel, wavefront; did you mean "
+       "megakernel?"},
+      {"--mode wave", "; did you mean wavefront?"},
+      {"--mode CPU", "--mode CPU: expected one of auto, serial, megakernel, wavefront"},
+      {"--accel CWBVH", "; did you mean cwbvh?"},
+      {"--aov albedo,depht", "; did you mean depth?"},
+      {"--filter gausian:0.5", "--filter gausian: expected one of box, "},
+      {"--filter gausian:0.5", "; did you mean gaussian?"},
+      {"trace --mesh a --rays b --accel bvh", "; did you mean bvh2?"},
+  });
+  const std::vector<std::string> names{"on", "off", "automatic", "auto"};
+  EXPECT_EQ(nearest_name("of", names), "off");
+  EXPECT_EQ(nearest_name("autmoatic", names), "automatic");
+  EXPECT_EQ(nearest_name("", names), "");
+  EXPECT_EQ(nearest_name("nothing", names), "");
+  EXPECT_EQ(nearest_name(std::string(1 << 20, 'o'), names), "");
+  const TempFolder folder;
+  const std::string file = folder.file("scene.xml");
+  std::ofstream(file) << "<scene/>";
+  expect_error([&] { parse_command_line({file}); }, "; did you mean --scene " + file + "?");
+}
+
 TEST(Refused, CompareAndInformation) {
   expect_refused({
       {"compare", "compare: expected two images"},
@@ -784,6 +825,8 @@ TEST(Refused, WithoutEffectOnTheDevice) {
       {"--device cpu --scene-memory shared", "--scene-memory shared: has no effect"},
       {"--device cpu --create-world device", "--create-world device: has no effect"},
       {"--device cuda --threads 3", "--threads 3: has no effect on the device cuda"},
+      {"--device cpu --mode megakernel --counters",
+       "has no effect on the device cpu; it applies to cuda; on a CPU `perf stat"},
   });
 }
 

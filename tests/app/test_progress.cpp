@@ -31,6 +31,29 @@ TEST(ProgressText, EdgesStayInRange) {
   EXPECT_EQ(progress_text(999, 1000, 0, 4), "[###.]  99 %") << "100 % means done";
 }
 
+TEST(ForecastText, SaysWhichStopComesFirst) {
+  Options options;
+  options.target_error = 0.03f, options.spp = 1 << 30;
+  // 16 samples of 1,000 pixels took 2 s.
+  RenderProgress progress{1000, 16'000, 1'234'567'000, 2};
+  EXPECT_EQ(forecast_text(options, progress),
+            "--target-error 0.03: about 1,234,567 samples per pixel, 42:51:59 left");
+  progress.total = 32'000;
+  EXPECT_EQ(forecast_text(options, progress),
+            "--target-error 0.03: about 32 samples per pixel, 0:02 left");
+  options.time_limit = 4.01f;
+  EXPECT_EQ(
+      forecast_text(options, progress),
+      "--target-error 0.03: not within --time-limit 4.01, which ends it after about 32 samples");
+  options.time_limit = 4.1f;
+  EXPECT_EQ(forecast_text(options, progress).find("about 32"), 21u);
+  options.spp = 32;
+  EXPECT_EQ(forecast_text(options, progress), "--target-error 0.03: not within --spp 32");
+  progress.done = 15'000;
+  EXPECT_EQ(forecast_text(options, progress), "") << "there is no estimate yet";
+  EXPECT_EQ(forecast_text(options, {1000, 32'000, 32'000, 2}), "") << "it is done";
+}
+
 /// A progress that writes to a file and takes its time from `now_s`.
 class ProgressTest : public testing::Test {
  protected:

@@ -20,6 +20,7 @@
 #include "common/options/option_names.h"
 #include "common/plan/execution_plan.h"
 #include "common/platform/steady_seconds.h"
+#include "common/render/batches.h"
 #include "common/scene/data/scene_facts.h"
 #include "common/scene/prepare/prepare_scene.h"
 
@@ -122,11 +123,28 @@ void serve(Ranks& ranks, const std::vector<ExecutionPlan>& plans, const SceneDat
   serve_units(ranks, workers);
 }
 
-Measurement measure_and_show(Rendering& rendering, const Options& options) {
+/// Says once what --target-error will take, unless the film of a checkpoint has further samples.
+Measurement measure_and_show(Rendering& rendering, const Options& options, bool is_resumed) {
   Progress progress(stderr, progress_style(stderr, options.quiet));
+  const std::uint64_t pixels = window_of(options).pixel_count();
+  bool has_said = options.quiet || is_resumed || options.target_error == 0;
+  double begin_s = 0;
   MeasureHooks hooks;
-  hooks.begin = [&](const std::string& label) { progress.begin(label); };
-  hooks.progress = [&](std::uint64_t done, std::uint64_t total) { progress.update(done, total); };
+  hooks.begin = [&](const std::string& label) {
+    progress.begin(label);
+    begin_s = steady_seconds();
+  };
+  hooks.progress = [&](std::uint64_t done, std::uint64_t total) {
+    progress.update(done, total);
+    if (has_said) return;
+    const std::string text =
+        forecast_text(options, {pixels, done, total, steady_seconds() - begin_s});
+    if (text.empty()) return;
+    has_said = true;
+    progress.finish();
+    print("{}\n", text);
+    flush_printed();
+  };
   hooks.stop = interrupted;
   return rendering.measure(hooks);
 }
@@ -214,7 +232,7 @@ int render(const RenderCommand& command, Ranks& ranks, const Resumption* resumpt
 
   note_signals(!options.checkpoint.file.empty());
   clock.end(&ProcessTimes::setup);
-  const Measurement measurement = measure_and_show(rendering, options);
+  const Measurement measurement = measure_and_show(rendering, options, resumption != nullptr);
   clock.end(&ProcessTimes::render);
   const bool has_image = !measurement.runs.empty() && measurement.runs.back().samples_done > 0;
   const std::string& problem = rendering.checkpoint_problem();

@@ -41,8 +41,9 @@ void check_rule(const OptionRule& rule, const std::string& name, const std::stri
     throw Error(fmt::format("--{} {}: has no effect with --mode {}; it applies to {}", name, value,
                             to_string(mode), joined(rule.modes)));
   if (device && !contains(rule.devices, *device))
-    throw Error(fmt::format("--{} {}: has no effect on the device {}; it applies to {}", name,
-                            value, to_string(*device), joined(rule.devices)));
+    throw Error(fmt::format("--{} {}: has no effect on the device {}; it applies to {}{}", name,
+                            value, to_string(*device), joined(rule.devices),
+                            rule.instead.empty() ? "" : "; " + rule.instead));
 }
 
 void check_files(const Options& o, const GivenOptions& given) {
@@ -307,6 +308,21 @@ void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Op
   // A stop is asked to decide: the number of samples does only where it is given.
   const bool has_stop = options.time_limit > 0 || options.target_error > 0;
   if (has_stop && !given.contains("spp")) options.spp = std::numeric_limits<int>::max();
+}
+
+RenderCommand make_render_command(const std::vector<Setting>& settings) {
+  RenderCommand command;
+  for (const auto& [entry, value] : settings) {
+    entry->set(command.options, value);
+    command.given.insert(entry->name);
+  }
+  fit_mode(command.options, command.given);
+  check_consistent(command.options, command.given);
+  std::optional<DeviceChoice::Kind> device;
+  if (command.options.device.kind != DeviceChoice::Kind::automatic)
+    device = command.options.device.kind;
+  check_applicable(command.options, command.given, device);
+  return command;
 }
 
 }  // namespace pt

@@ -5,12 +5,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "app/options/option_list.h"
 #include "common/options/options.h"
 
 namespace pt {
 
-struct OptionEntry;
 struct SceneDefaults;
 
 /// The names of the options that the user gave, without dashes: defaults are never refused.
@@ -36,5 +37,14 @@ void check_applicable(const Options& options, const GivenOptions& given,
 
 /// Fills in what `given` lacks and the scene's file has. Throws Error as check_crop does.
 void apply_defaults(const SceneDefaults& defaults, const GivenOptions& given, Options& options);
+
+struct RenderCommand {
+  Options options;
+  GivenOptions given;  ///< for check_applicable, once the device is known
+};
+
+/// Options of rendering from settings; a later one overrides an earlier one. Throws Error for
+/// everything that can be refused without a device or a scene.
+RenderCommand make_render_command(const std::vector<Setting>& settings);
 
 }  // namespace pt

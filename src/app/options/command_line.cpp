@@ -7,12 +7,14 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "app/options/option_list.h"
 #include "app/options/option_values.h"
 #include "app/options/parser.h"
 #include "common/error/error.h"
+#include "common/scene/builtin/builtin_scenes.h"
 
 namespace pt {
 namespace {
@@ -134,30 +136,45 @@ std::vector<std::string> with_leading_zeros(std::vector<std::string> arguments) 
   return arguments;
 }
 
+/// What a user may have meant by an argument that no option takes, as it has to be written; or "".
+std::string meant_by(const Parser& parser, const std::string& argument) {
+  const auto subcommands = parser.app.get_subcommands();
+  const CLI::App* const own = subcommands.empty() ? &parser.app : subcommands.front();
+  std::vector<std::string> names;
+  if (argument.starts_with('-')) {
+    std::vector<const CLI::App*> sources{own};
+    if (parser.rendering_subcommand() != nullptr) sources.push_back(&parser.app);
+    for (const CLI::App* source : sources)
+      for (const CLI::Option* option : source->get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back(name);
+    const std::size_t begin = std::min(argument.find_first_not_of('-'), argument.size());
+    const std::string nearest =
+        nearest_name(argument.substr(begin, argument.find('=') - begin), names);
+    return nearest.empty() ? "" : "--" + nearest;
+  }
+  if (own != &parser.app) return "";
+  const std::string scene = argument.substr(0, argument.find(':'));
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(argument, ignored) ||
+      std::ranges::any_of(scene_list(), [&](const auto& info) { return info.name == scene; }))
+    return "--scene " + argument;
+  for (const CLI::App* command : parser.app.get_subcommands({}))
+    names.push_back(command->get_name());
+  const std::string nearest = nearest_name(argument, names);
+  return nearest.empty() ? "" : "ptexp " + nearest;
+}
+
 void check_extras(const Parser& parser) {
   const auto extras = parser.app.remaining(true);
   if (extras.empty()) return;
   const bool is_option = extras.front().starts_with('-');
-  throw Error(fmt::format("{}: {}, see ptexp --help", extras.front(),
-                          is_option ? "no such option" : "an argument without an option"));
+  const std::string meant = meant_by(parser, extras.front());
+  throw Error(fmt::format("{}: {}{}", extras.front(),
+                          is_option ? "no such option" : "an argument without an option",
+                          meant.empty() ? ", see ptexp --help" : meaning(meant)));
 }
 
 }  // namespace
-
-RenderCommand make_render_command(const std::vector<Setting>& settings) {
-  RenderCommand command;
-  for (const auto& [entry, value] : settings) {
-    entry->set(command.options, value);
-    command.given.insert(entry->name);
-  }
-  fit_mode(command.options, command.given);
-  check_consistent(command.options, command.given);
-  std::optional<DeviceChoice::Kind> device;
-  if (command.options.device.kind != DeviceChoice::Kind::automatic)
-    device = command.options.device.kind;
-  check_applicable(command.options, command.given, device);
-  return command;
-}
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
   Parser parser;

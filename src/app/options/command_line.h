@@ -13,10 +13,6 @@
 
 namespace pt {
 
-struct RenderCommand {
-  Options options;
-  GivenOptions given;  ///< for check_applicable, once the device is known
-};
 /// Continues a checkpoint by its own options, changed by these.
 struct ResumeCommand {
   std::string file;
@@ -67,10 +63,6 @@ using Command =
                  TraceCommand, RaysCommand, CompactCommand, DoctorCommand, MeasureCommand,
                  ViewCommand, ListScenesCommand, ListDevicesCommand, ListKernelsCommand,
                  VersionCommand, CompletionCommand, ReferenceCommand, HelpCommand>;
-
-/// Options of rendering from settings; a later one overrides an earlier one. Throws Error for
-/// everything that can be refused without a device or a scene.
-RenderCommand make_render_command(const std::vector<Setting>& settings);
 
 /// `arguments` without the program's name. Throws Error, one line that names the option, for
 /// everything that can be refused without a device or a scene.

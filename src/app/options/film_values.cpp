@@ -72,7 +72,10 @@ std::uint32_t parse_aovs(const std::string& name, const std::string& text) {
   for (const std::string& part : split(text, ',')) {
     std::uint32_t bit = 0;
     for (const AovInfo& info : aov_table) bit |= info.name == part ? info.bit : 0;
-    if (bit == 0) refuse_value(name, text, "expected a list of " + aov_names(", "));
+    if (bit == 0)
+      refuse_value(name, text,
+                   "expected a list of " + aov_names(", ") +
+                       meaning(nearest_name(part, split(aov_names(","), ','))));
     if ((aovs & bit) != 0) refuse_value(name, text, "names " + part + " twice");
     aovs |= bit;
   }

@@ -50,8 +50,9 @@ class Group {
   }
 
   /// Restricts the option added last, or this value of it, to these modes and devices.
-  Group& only(std::span<const Mode> modes, std::span<const Kind> devices, std::string value = "") {
-    list_.back().rules.push_back({std::move(value), modes, devices});
+  Group& only(std::span<const Mode> modes, std::span<const Kind> devices, std::string value = "",
+              std::string instead = "") {
+    list_.back().rules.push_back({std::move(value), modes, devices, std::move(instead)});
     return *this;
   }
 
@@ -394,7 +395,10 @@ void add_measurement(std::vector<OptionEntry>& list) {
            "Reads the GPU's counters of each kernel (SIMT efficiency,\n"
            "occupancy, cache hits, bytes), in renders after the measured\n"
            "ones; docs/experiments.md explains them")
-      .only(parallel, cuda)
+      .only(
+          parallel, cuda, "",
+          "on a CPU `perf stat -d ptexp ...` counts, and without --quiet the wavefront prints the "
+          "time of each stage")
       .add(text("stats", "FILE", &Options::stats_file),
            "Writes all options, times, counts and kernels as JSON;\n"
            "docs/statistics.md explains the fields")

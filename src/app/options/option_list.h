@@ -43,6 +43,7 @@ struct OptionRule {
   std::string value;  ///< empty: any; "cuda" covers "cuda:1"
   std::span<const Mode> modes;
   std::span<const DeviceChoice::Kind> devices;
+  std::string instead{};  ///< what to do where it has none; empty: nothing to say
 };
 
 struct OptionEntry {

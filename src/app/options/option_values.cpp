@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "common/error/error.h"
@@ -50,6 +52,54 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 void refuse_value(const std::string& name, const std::string& value, const std::string& problem) {
   throw Error(fmt::format("--{} {}: {}", name, value.empty() ? "''" : value, problem));
+}
+
+namespace {
+
+/// Letters that are missing, too many, wrong or swapped with their neighbour.
+std::size_t edits_between(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> before, last, row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before = std::exchange(last, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const bool is_equal = a[i - 1] == b[j - 1];
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, last[j - 1] + (is_equal ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_name(const std::string& text, const std::vector<std::string>& names) {
+  constexpr std::size_t longest = 40;
+  std::string wanted;
+  for (const char c : text)
+    wanted += c == '_' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (wanted.empty() || wanted.size() > longest) return "";
+  std::string nearest, begun;
+  std::size_t least = wanted.size() / 3 + 1, begins = 0;
+  for (const std::string& name : names) {
+    const std::size_t edits = edits_between(wanted, name);
+    if (edits < least) least = edits, nearest = name;
+    if (name.starts_with(wanted)) ++begins, begun = name;
+  }
+  return !nearest.empty() || begins != 1 ? nearest : begun;
+}
+
+std::string meaning(const std::string& name) {
+  return name.empty() ? "" : "; did you mean " + name + "?";
+}
+
+void refuse_name(const std::string& name, const std::string& value,
+                 const std::vector<std::string>& names) {
+  refuse_value(name, value,
+               fmt::format("expected one of {}{}", fmt::join(names, ", "),
+                           meaning(nearest_name(value, names))));
 }
 
 std::uint64_t parse_integer(const std::string& name, const std::string& text, std::uint64_t lowest,

@@ -17,6 +17,17 @@ namespace pt {
 [[noreturn]] void refuse_value(const std::string& name, const std::string& value,
                                const std::string& problem);
 
+/// The one of `names` that a misspelt `text` stands for: the most similar, else the only one that
+/// begins so; empty if there is none.
+std::string nearest_name(const std::string& text, const std::vector<std::string>& names);
+
+/// "; did you mean NAME?", or nothing for no name.
+std::string meaning(const std::string& name);
+
+/// refuse_value with the names that were expected, and the nearest.
+[[noreturn]] void refuse_name(const std::string& name, const std::string& value,
+                              const std::vector<std::string>& names);
+
 /// The parts between separators.
 std::vector<std::string> split(const std::string& text, char separator);
 
@@ -53,7 +64,9 @@ E parse_name(const std::string& name, const std::string& text) {
     if (entry.name == text) return entry.value;
   for (const EnumName<E>& entry : old_enum_names<E>)
     if (entry.name == text) return entry.value;
-  refuse_value(name, text, "expected one of " + joined_names<E>(", "));
+  std::vector<std::string> names;
+  for (const EnumName<E>& entry : enum_names<E>) names.emplace_back(entry.name);
+  refuse_name(name, text, names);
 }
 
 // The inverse: text that the functions above parse to the same value.

@@ -23,8 +23,7 @@ using S = const std::string&;
 
 AccelKind parse_accel(const std::string& text) {
   const auto accel = parse_name<AccelKind>("accel", text);
-  if (accel == AccelKind::embree)
-    refuse_value("accel", text, "expected one of auto, brute, bvh2, cwbvh");
+  if (accel == AccelKind::embree) refuse_name("accel", text, {"auto", "brute", "bvh2", "cwbvh"});
   return accel;
 }
 

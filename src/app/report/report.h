@@ -30,6 +30,7 @@ struct StageSummary {
 
 struct RunSummary {
   Spread kernel_ms, wall_ms;         ///< over the repeats
+  Spread devices_ms;                 ///< the kernel times of several devices in all; of one: 0
   std::vector<StageSummary> stages;  ///< in the order in which the runs first name them
   std::uint64_t waves = 0;           ///< of the last repeat, as is what follows
   std::uint64_t launches = 0;        ///< of all stages

@@ -21,17 +21,21 @@ std::string stage_rows(const RenderReport& report, const RunSummary& summary) {
   std::string text = fmt::format(
       "{:<16}{:>12}{}{:>9}{:>11}\n", "stage", repeated ? "median ms" : "ms",
       repeated ? fmt::format("{:>12}{:>12}", "min ms", "max ms") : "", "share", "launches");
-  const double total = summary.kernel_ms.median;
+  // The times of stages are sums over all devices, the kernel time is the longest one's.
+  const bool has_several = summary.devices_ms.median > 0;
+  const double total = (has_several ? summary.devices_ms : summary.kernel_ms).median;
   for (const StageSummary& stage : summary.stages)
     text += fmt::format(
         "{:<16}{}{:>7.1f} %{:>11}\n", stage.stage, time_columns(stage.time_ms, repeated),
         total > 0 ? 100 * stage.time_ms.median / total : 0, grouped(stage.launches));
+  if (has_several)
+    text += fmt::format("{:<16}{}\n", "all devices", time_columns(summary.devices_ms, repeated));
   return text + fmt::format("{:<16}{}{:>9}{:>11}\n", "kernel time",
                             time_columns(summary.kernel_ms, repeated), "",
                             grouped(summary.launches));
 }
 
-/// A row for each of several devices. The times of stages are sums over all devices.
+/// A row for each of several devices.
 std::string device_rows(const RenderReport& report) {
   if (report.runs.empty() || report.runs.back().devices.size() < 2) return "";
   std::string text = fmt::format("{:<16}{:>12}{:>12}{:>9}{:>18}\n", "device", "kernel ms",
@@ -82,7 +86,7 @@ std::string metropolis_rows(const std::optional<MetropolisStats>& stats) {
          percent("small accepted", stats->small_acceptance);
 }
 
-std::string stop_row(const RunSummary& summary) {
+std::string stop_row(const Options& options, const RunSummary& summary) {
   std::string text;
   if (summary.ended_by != RunEnd::samples) {
     text += fmt::format("{:<16}{:>18}\n", "ended by", to_string(summary.ended_by));
@@ -90,6 +94,11 @@ std::string stop_row(const RunSummary& summary) {
   if (summary.relative_error) {
     text += fmt::format("{:<16}{:>18.6f}  of the image's mean luminance\n", "standard error",
                         *summary.relative_error);
+    const double factor =
+        options.target_error > 0 ? *summary.relative_error / options.target_error : 0;
+    if (factor > 1 && std::isfinite(factor))
+      text += fmt::format("{:<16}{:>18}  would take about {:.3g} times the samples\n",
+                          "--target-error", number_text(options.target_error), factor * factor);
   }
   return text;
 }
@@ -174,7 +183,7 @@ std::string report_table(const Options& options, const RenderReport& report) {
              report.runs.size() > 1 ? fmt::format(", {} repeats", report.runs.size()) : "") +
          stage_rows(report, summary) + '\n' + device_rows(report) +
          count_rows(report.counts, summary) + metropolis_rows(summary.metropolis) +
-         stop_row(summary) +
+         stop_row(options, summary) +
          fmt::format(
              "\nnot in the kernel time: scene {:.1f} ms, set-up {:.1f} ms, {}"
              "transfer {:.1f} ms, writing the image {:.1f} ms\n",

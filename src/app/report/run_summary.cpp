@@ -46,10 +46,15 @@ Spread spread(std::vector<double> values) {
 
 RunSummary summarize(const RenderReport& report) {
   RunSummary summary;
-  std::vector<double> kernel_ms, wall_ms;
+  std::vector<double> kernel_ms, wall_ms, devices_ms;
   for (const RenderRun& run : report.runs) {
     kernel_ms.push_back(run.kernel_ms), wall_ms.push_back(run.wall_ms);
+    if (run.devices.size() < 2) continue;
+    double sum_ms = 0;
+    for (const DeviceShare& device : run.devices) sum_ms += device.kernel_ms;
+    devices_ms.push_back(sum_ms);
   }
+  summary.devices_ms = spread(std::move(devices_ms));
   summary.kernel_ms = spread(std::move(kernel_ms));
   summary.wall_ms = spread(std::move(wall_ms));
   summary.stages = summarize_stages(report.runs);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/options/option_values.h"
+
 namespace pt {
 namespace {
 
@@ -51,6 +53,26 @@ std::string progress_text(std::uint64_t done, std::uint64_t total, double elapse
   if (done < total)
     text += fmt::format("  {} left", clock_text(static_cast<double>(total - done) / samples_per_s));
   return text;
+}
+
+std::string forecast_text(const Options& options, const RenderProgress& progress) {
+  constexpr double first_estimate = 16;  // samples per pixel, see StopClock
+  const auto pixels = static_cast<double>(progress.pixels);
+  const double done = static_cast<double>(progress.done) / pixels;
+  const double expected = static_cast<double>(progress.total) / pixels;
+  if (done < first_estimate || expected <= done || progress.elapsed_s <= 0) return "";
+  const std::string error = "--target-error " + number_text(options.target_error);
+  const auto samples = [](double count) {
+    return grouped(static_cast<std::uint64_t>(std::llround(count)));
+  };
+  if (expected >= options.spp) return fmt::format("{}: not within --spp {}", error, options.spp);
+  const double left_s = progress.elapsed_s * (expected / done - 1);
+  // The limit's own clock began a little later than this one.
+  if (options.time_limit > 0 && progress.elapsed_s + left_s > 0.99 * options.time_limit)
+    return fmt::format("{}: not within --time-limit {}, which ends it after about {} samples",
+                       error, number_text(options.time_limit), samples(expected));
+  return fmt::format("{}: about {} samples per pixel, {} left", error, samples(expected),
+                     clock_text(left_s));
 }
 
 Progress::Progress(std::FILE* stream, ProgressStyle style, Clock clock)

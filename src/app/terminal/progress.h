@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "common/options/options.h"
 #include "common/platform/steady_seconds.h"
 
 namespace pt {
@@ -22,6 +23,17 @@ ProgressStyle progress_style(std::FILE* stream, bool quiet);
 /// E.g. "[#####...............]  25 %  12.5 Msamples/s  0:08 left"; without a bar if `bar_width` is
 /// 0, without rate and time while they are unknown.
 std::string progress_text(std::uint64_t done, std::uint64_t total, double elapsed_s, int bar_width);
+
+/// How far a render is.
+struct RenderProgress {
+  std::uint64_t pixels = 1;
+  std::uint64_t done = 0, total = 0;  ///< samples of all pixels, as RenderHooks has them
+  double elapsed_s = 0;
+};
+
+/// What --target-error will take, by the first estimate of the error, which is behind `total`;
+/// empty while there is none.
+std::string forecast_text(const Options& options, const RenderProgress& progress);
 
 /// Shows one render after the other. Cheap to call often: it writes at most every tenth of a second
 /// (bar) or every five seconds (lines).
