@@ -15,7 +15,11 @@ set(package ${PROJECT_BINARY_DIR}/python/ptexp)
 file(GLOB python_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/python/ptexp/*.py
      ${PROJECT_SOURCE_DIR}/python/ptexp/py.typed)
 file(GLOB module_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/python/*.cpp)
-nanobind_add_module(_ptexp NB_STATIC ${module_sources})
+nanobind_add_module(_ptexp NB_STATIC NOMINSIZE ${module_sources})
+# Nothing in these takes long, but their compilation would.
+foreach(target _ptexp nanobind-static)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endforeach()
 target_include_directories(_ptexp SYSTEM PRIVATE ${NB_DIR}/include)  # no warnings from there
 target_link_libraries(_ptexp PRIVATE ptexp_app)
 ptexp_unite(_ptexp)

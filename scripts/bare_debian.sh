@@ -13,7 +13,9 @@ make_bare_debian() {
   install_missing debootstrap
   # shellcheck disable=SC2016 # apt-get's own variables
   mirror=$(apt-get indextargets --format '$(SITE)' "Codename: $debian_release" | head -n 1)
-  [[ -n $mirror ]] || die "apt-get indextargets names no mirror of $debian_release"
+  [[ ! $release =~ ^(jammy|noble)$ ]] || mirror=${PTEXP_UBUNTU_MIRROR:-}
+  [[ -n $mirror ]] || die "apt-get indextargets names no mirror of $debian_release; for Ubuntu set \
+PTEXP_UBUNTU_MIRROR"
   remove_bare_debian "$tree"
   mkdir -p "$tree"
   debootstrap --variant=minbase --include=ca-certificates "$release" "$tree" "$mirror"

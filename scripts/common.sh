@@ -111,3 +111,14 @@ build() {
   cmake -S "$root" --preset "$1" "${options[@]}" || return
   cmake --build "$root/build/$1" --target "${targets[@]:-all}"
 }
+
+# make_deb FOLDER: builds the program for CPUs in build/deb/cpu and makes FOLDER/ptexp_VERSION_*.deb.
+make_deb() {
+  local build=$root/build/deb/cpu folder
+  install_missing "${ptexp_packages[@]}" dpkg-dev || return
+  mkdir -p "$1" && folder=$(realpath -- "$1") &&
+    cmake -S "$root" --preset release -B "$build" -DPTEXP_CUDA=OFF -DPTEXP_TESTS=OFF &&
+    cmake --build "$build" --target ptexp && rm -rf "$build/package" &&
+    (cd "$build" && cpack -G DEB -B "$build/package") &&
+    mv -- "$build"/package/ptexp_*.deb "$folder/"
+}
