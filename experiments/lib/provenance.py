@@ -58,8 +58,10 @@ def machine_state():
 
 
 def files_beside(scene):
-    """The scene's file and those beside and below it, which it may refer to."""
-    return sorted(path for path in Path(scene).parent.rglob("*") if path.is_file())
+    """The scene's file and those beside and below it, which it may refer to; those that others remove
+    meanwhile are none of it."""
+    found = [Path(folder, name) for folder, _, names in os.walk(Path(scene).parent) for name in names]
+    return sorted(path for path in found if path.is_file())
 
 
 @functools.lru_cache(maxsize=None)
@@ -67,12 +69,12 @@ def folder_hash(scene):
     """Of the scene's name and of the files beside it."""
     digest, left = hashlib.sha256(f"{scene.name}\n".encode()), HASHED_BYTES
     for path in files_beside(scene):
-        size = path.stat().st_size
-        left -= size
-        content = "?"
-        if left >= 0:
-            with contextlib.suppress(OSError):
+        size, content = 0, "?"
+        with contextlib.suppress(OSError):
+            size = path.stat().st_size
+            if left >= size:
                 content = hashlib.sha256(path.read_bytes()).hexdigest()
+        left -= size
         digest.update(f"{path.relative_to(scene.parent)}\n{size}\n{content}\n".encode())
     return digest.hexdigest()[:16]
 

@@ -509,6 +509,9 @@ class Harness(unittest.TestCase):
         self.assertEqual(found(), before)
         (folder / "texture.png").write_text("blue")
         self.assertNotEqual(found(), before)
+        # A scene may lie in a folder of temporary files.
+        with mock.patch.object(provenance, "files_beside", lambda _: [folder / "gone.tmp"]):
+            self.assertRegex(found(), "^sha256 [0-9a-f]{16}$")
         self.assertEqual(provenance.scene_hash("--spp 1"), "built-in spheres")
         self.assertEqual(provenance.scene_hash("--scene statue:1M"), "built-in statue:1M")
 
