@@ -80,8 +80,9 @@ def varies(table, column):
 
 
 def is_in_the_name(table, column):
-    return column in ("series", "panel") and all(
-        row[column] and row[column] in row.get("name", "") for row in table.rows)
+    """Texts that each row's name repeats: the table names its rows once."""
+    return column != "name" and any(row[column] for row in table.rows) and all(
+        number(row[column]) is None and row[column] in row.get("name", "") for row in table.rows)
 
 
 def columns_shown(table):
